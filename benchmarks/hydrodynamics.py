@@ -15,7 +15,6 @@ from benchmarks.linear_motion import GRAVITY, SEA_DENSITY, first_swings, linear_
 from sim.floating import Body, Hull, MotionCoefficients, equilibrium_draft, make_fleet, step, still_water
 from sim.floating.boundary_elements import FREQUENCIES, make_table
 from sim.floating.equilibrium import SEA_WATER
-from sim.floating.excitation import HullExcitation
 from sim.floating.hydrodynamics import LinearHull, lagrange, linear_hull, natural_frequency
 
 COMPARED = (("Box", Hull.box(1.8, 1.8, 1.05)), ("Buoy", Hull.cylinder(0.9, 1.05)), ("Ball", Hull.sphere(0.75)))
@@ -78,7 +77,7 @@ def compared(name: str, hull: Hull, known: Hull) -> list[Compared]:
     """The numbers of a hull as shipped beside those of the same hull with Capytaine's coefficients, `known`."""
     draft = equilibrium_draft(hull, COMPARED_DENSITY, SEA_WATER)
     own, live = linear_hull(hull, draft), linear_hull(known, draft)
-    C, mass = stiffness_of(hull, own), mass_of(hull)
+    C, mass = stiffness_of(own), mass_of(hull)
     rows = []
     for axis, quantity in AXES:
         if C[axis, axis] <= 1e-3 * C[2, 2] * own.length**2 and axis > 2:
@@ -108,9 +107,9 @@ def mass_of(hull: Hull) -> np.ndarray:
     return mass
 
 
-def stiffness_of(hull: Hull, linear: LinearHull) -> np.ndarray:
+def stiffness_of(linear: LinearHull) -> np.ndarray:
     """Hydrostatic stiffness (6, 6)."""
-    plane, C = HullExcitation(hull, linear, 0.0).plane, np.zeros((6, 6))
+    plane, C = linear.plane, np.zeros((6, 6))
     C[2, 2], C[3, 3], C[4, 4] = plane.rise[2], plane.slope[1, 3], -plane.slope[0, 4]
     return SEA_DENSITY * GRAVITY * C
 

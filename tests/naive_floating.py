@@ -84,6 +84,14 @@ def lumpy(rng: np.random.Generator, vertices: np.ndarray) -> np.ndarray:
     return vertices * rng.uniform(0.6, 1.4, size=(len(vertices), 1))
 
 
+def axes_of_heading(turn: np.ndarray) -> np.ndarray:
+    """Level axes (3, 3) along the body's x axis seen from above, or its y axis where x is within 30 degrees of up."""
+    x, y = turn[:2, 0], np.array([turn[1, 1], -turn[0, 1]])
+    ahead = y if abs(turn[2, 0]) > math.cos(math.radians(30.0)) else x
+    cosine, sine = ahead / np.linalg.norm(ahead)
+    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+
+
 def naive_step(
     hull: Hull, density: float, state, upper, lower, flow, lift, law: MotionCoefficients, h: float, given, lines
 ):
@@ -98,11 +106,7 @@ def naive_step(
     position, rotation, spin = naive_drift(hull, position, rotation, velocity, spin, h / 2)
     true = rotation_matrix(rotation)
     turn = np.eye(3) if hull.shape.is_round else true
-    heading = np.eye(3)
-    if not hull.shape.is_round:
-        angle = 2 * math.atan2(rotation[3], rotation[0])
-        cosine, sine = math.cos(angle), math.sin(angle)
-        heading = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    heading = np.eye(3) if hull.shape.is_round else axes_of_heading(true)
     tilt = heading.T @ turn
     pose = (1.0, 0.0, 0.0, 0.0) if hull.shape.is_round else rotation
     place = hull.vertices @ turn.T + position

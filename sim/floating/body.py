@@ -22,7 +22,7 @@ from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import POLES, afloat
 from sim.floating.rotation import rotation_matrix
 from sim.floating.shapes.record import COLLISION_FORMS
-from sim.floating.stability import rest_of, with_heading
+from sim.floating.stability import UPRIGHT, Loaded, rest_of, with_heading
 from sim.validation import (
     argument_error,
     as_array,
@@ -69,12 +69,8 @@ class Body(NamedTuple):
         inertia = density * self.hull.inertia if self.inertia is None else checked_inertia(self.inertia)
         return loaded_hull(self.hull, centre, (inertia / density).tobytes()), density
 
-    def afloat(self, layers: Layers = SEA_WATER) -> "Body":
-        """The body at rest in these fluids, the surface at z = 0: upright where no arm turns it, or with its trim.
-
-        Its x, y and heading stay. Raises ValueError for a body that sinks, or finds no stable rest within 60 degrees.
-        """
-        check_pose(self)
+    def draft(self, layers: Layers = SEA_WATER) -> float:
+        """Depth [m] of its lowest point below the surface, upright. Raises ValueError for a body that sinks."""
         hull, density = self.loaded()
         draft = equilibrium_draft(hull, density, layers)
         if math.isinf(draft):
@@ -82,11 +78,23 @@ class Body(NamedTuple):
             if self.mass is not None:
                 raise argument_error("mass", self.mass, f"at most {deepest * hull.volume:g} kg, or it sinks")
             raise argument_error("density", density, f"at most {deepest:g} kg/m3, or it sinks")
+        return draft
+
+    def afloat(self, layers: Layers = SEA_WATER) -> "Body":
+        """The body at rest in these fluids, the surface at z = 0: upright where no arm turns it, or with its trim.
+
+        Its x, y and heading stay. A body that is not stable upright leans as far as it turns over. Raises ValueError
+        for a body that sinks, and for one that finds no stable rest within 60 degrees, with its GM.
+        """
+        check_pose(self)
+        draft = self.draft(layers)
+        hull, density = self.loaded()
+        rest = rest_of(Loaded(hull, density, check_layers(layers)))
         x, y, _ = self.position
-        z, turn = rest_of(hull, density, check_layers(layers), -draft - float(hull.extents[2, 0]))
         return self._replace(
-            position=(x, y, z),
-            rotation=with_heading(turn, self.rotation),
+            # the closed form where the shape is round, and its mesh is not quite
+            position=(x, y, -draft - float(hull.extents[2, 0]) if rest.rotation == UPRIGHT else rest.height),
+            rotation=with_heading(rest.rotation, self.rotation),
             velocity=(0.0, 0.0, 0.0),
             spin=(0.0, 0.0, 0.0),
         )

@@ -10,72 +10,21 @@ those of linear theory, whatever the length of the wave beside the hull, and lar
 import copy
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from sim.floating.body import Body, Fleet
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers
-from sim.floating.hull import Hull
-from sim.floating.hydrodynamics import DIRECTIONS, LinearHull, afloat, lagrange, wet_pressure
+from sim.floating.hydrodynamics import DIRECTIONS, afloat
 from sim.floating.rigid import heading_of
-from sim.interruption import pieces, raise_if_stopped
+from sim.interruption import raise_if_stopped
 from sim.jit import kernel
 from sim.ocean.gerstner import Waves, widened
 from sim.ocean.wave_sum import fine_wave
 
 HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are taken again
-NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
 LAST_RATES = (15 / 8, -10 / 8, 3 / 8)  # weights of the last three rates of change, for that half a step after them
 CREEPING = 0.1  # of sqrt(g k), below which a wave in viscous fluids only sinks away, and does nothing upward here
-PIECE = 64  # waves at a time: the solve yields in between
-BEYOND = 1.0  # [lengths] of 1/k over which the force fades beyond the highest frequency of a table
-
-
-class PlaneForce(NamedTuple):
-    """Force and moment (6,) on an upright hull under a plane, at unit density and gravity."""
-
-    rise: np.ndarray  # for each metre that it rises
-    slope: np.ndarray  # (2, 6) for each unit of slope along x, y
-
-
-def plane_force(hull: Hull, draft: float) -> PlaneForce:
-    """The force of a plane on a hull at a draft [m], by differences."""
-    nudge = NUDGE * draft
-    tilt = nudge / float(np.abs(hull.extents[:2]).max())
-
-    def force(rise: float, x: float, y: float) -> np.ndarray:
-        return -wet_pressure(hull, draft, rise, (x, y))[:6]
-
-    def change(rise: float, x: float, y: float, size: float) -> np.ndarray:
-        return (force(rise, x, y) - force(-rise, -x, -y)) / (2 * size)
-
-    slopes = np.stack([change(0.0, tilt, 0.0, tilt), change(0.0, 0.0, tilt, tilt)])
-    return PlaneForce(change(nudge, 0.0, 0.0, nudge), slopes)
-
-
-class HullExcitation:
-    """The difference D of one hull for given waves, by heading."""
-
-    def __init__(self, hull: Hull, linear: LinearHull, width: float) -> None:
-        """width [m]: diameter over which the plane's waves are averaged."""
-        raise_if_stopped()
-        self.linear, self.width = linear, width
-        self.plane = plane_force(hull, linear.draft)
-
-    def tabulate(self, k: np.ndarray) -> np.ndarray:
-        """X (waves, 36, 6) in directions against the hull, for wavenumbers k (waves,) [rad/m], over g."""
-        linear, found = self.linear, np.empty((len(k), len(DIRECTIONS) * 6), complex)
-        still = np.broadcast_to(self.plane.rise, (1, len(DIRECTIONS), 6))
-        nodes = np.concatenate([[0.0], linear.frequency])
-        values = np.concatenate([still, linear.excitation]).reshape(len(nodes), -1)
-        last = float(nodes[-1])
-        index, weights = lagrange(nodes, np.minimum(np.sqrt(k), last))
-        for piece in pieces(len(k), PIECE):
-            for i, one in enumerate(k[piece].tolist(), start=piece.start):
-                fade = math.exp(-max(one - last**2, 0.0) * linear.length * BEYOND)
-                found[i] = fade * (weights[i] @ values[index[i]])
-        return found.reshape(len(k), len(DIRECTIONS), 6)
 
 
 class WaveExcitation:
@@ -86,11 +35,14 @@ class WaveExcitation:
         fluids = check_layers(layers)
         keys = [(*body.loaded(), float(width)) for body, width in zip(bodies, widths, strict=True)]
         unique = list(dict.fromkeys(keys))
-        self.kinds = [HullExcitation(hull, afloat(hull, rho, fluids).linear, width) for hull, rho, width in unique]
+        self.kinds = [afloat(hull, rho, fluids).linear for hull, rho, _ in unique]
+        self.widths = [width for _, _, width in unique]
         self.kind = np.array([unique.index(key) for key in keys], dtype=np.int64)
-        self.is_round = np.array([kind.linear.is_round for kind in self.kinds], dtype=bool)
+        self.is_round = np.array([kind.is_round for kind in self.kinds], dtype=bool)
         planes = [np.vstack([kind.plane.rise, kind.plane.slope]) for kind in self.kinds]
         self.planes = np.array(planes).reshape(len(self.kinds), 3, 6)
+        longs = [np.vstack([kind.long.rise, kind.long.lift, kind.long.run]) for kind in self.kinds]
+        self.longs = np.array(longs).reshape(len(self.kinds), 4, 6)
         self.kx = self.ky = np.zeros(0)
         self.heading = np.full(len(keys), np.inf)  # (n,) [rad] for which the weights were taken
         self.weights = np.zeros((len(keys), 12, 0))
@@ -118,15 +70,17 @@ class WaveExcitation:
         if not (np.array_equal(kx, self.kx) and np.array_equal(ky, self.ky)):
             self.kx, self.ky, self.impulses = kx.copy(), ky.copy(), ()
             k = np.hypot(kx, ky)
-            self.tables = np.array([kind.tabulate(k) for kind in self.kinds])
-            averaged = [widened(Waves(kx, ky, kx, kx), kind.width) for kind in self.kinds]
+            found = [kind.beyond_long_waves(k) for kind in self.kinds]
+            self.tables = np.array([rest for rest, _ in found]).reshape(len(found), len(k), len(DIRECTIONS), 6)
+            self.is_long = np.array([is_long for _, is_long in found]).reshape(len(found), len(k))
+            averaged = [widened(Waves(kx, ky, kx, kx), width) for width in self.widths]
             self.averaged = np.array(averaged).reshape(len(self.kinds), len(k))
             self.heading[:] = np.inf
             self.weights = np.zeros((len(self.kind), 12, len(k)))
             raise_if_stopped()
         set_weights(
-            fleet.rotation, self.kind, self.is_round, self.heading, kx, ky, self.tables, self.averaged, self.planes,
-            self.weights,
+            fleet.rotation, self.kind, self.is_round, self.heading, kx, ky, self.tables, self.is_long, self.longs,
+            self.averaged, self.planes, self.weights,
         )  # fmt: skip
         raise_if_stopped()
         out = np.zeros((len(self.kind), 6))
@@ -154,10 +108,11 @@ def rate_of_change(values: Sequence[np.ndarray], h: float) -> np.ndarray:
 
 
 @kernel
-def set_weights(rotation, kind, is_round, heading, kx, ky, tables, averaged, planes, weights):
+def set_weights(rotation, kind, is_round, heading, kx, ky, tables, is_long, longs, averaged, planes, weights):
     """Set weights (n, 12, waves), real and imaginary part of D in turn, of the bodies that have turned since.
 
-    tables (kinds, waves, 36, 6), averaged (kinds, waves), planes (kinds, 3, 6).
+    tables (kinds, waves, 36, 6) without the long-wave force where is_long (kinds, waves), longs (kinds, 4, 6): that
+    force, averaged (kinds, waves), planes (kinds, 3, 6).
     """
     count = tables.shape[2]
     spacing = 2.0 * math.pi / count
@@ -173,7 +128,7 @@ def set_weights(rotation, kind, is_round, heading, kx, ky, tables, averaged, pla
         q = kind[b]
         for i in range(kx.size):
             along, across = c * kx[i] + s * ky[i], c * ky[i] - s * kx[i]
-            u = math.atan2(across, along) / spacing
+            k, u = math.hypot(along, across), math.atan2(across, along) / spacing
             first = math.floor(u)
             t = u - first
             # the cubic through four directions
@@ -184,6 +139,9 @@ def set_weights(rotation, kind, is_round, heading, kx, ky, tables, averaged, pla
             for d in range(6):
                 X = a0 * tables[q, i, j0, d] + a1 * tables[q, i, j1, d]
                 X += a2 * tables[q, i, j2, d] + a3 * tables[q, i, j3, d]
+                if is_long[q, i]:
+                    X += longs[q, 0, d] + k * longs[q, 1, d]
+                    X += 1j * (along * longs[q, 2, d] + across * longs[q, 3, d])
                 plane = planes[q, 0, d] + 1j * (along * planes[q, 1, d] + across * planes[q, 2, d])
                 D[d] = X - averaged[q, i] * plane
             for d in range(2):

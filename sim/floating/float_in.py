@@ -3,22 +3,25 @@
 >>> from sim.floating import Body, Hull
 >>> from sim.ocean import Sea
 >>> sea = Sea(64, 128.0, "regular", wave_height=0.5, wave_period=6.0, wind_speed=0.0)
->>> run = float_in(sea, [Body(Hull.cylinder(0.5, 1.0)).afloat()], duration=10.0, frames=101)
+>>> buoy = Body(Hull.cylinder(0.5, 1.0), mass=390.0, center_of_gravity=(0.0, 0.0, -0.25))
+>>> run = float_in(sea, [buoy.afloat()], duration=10.0, frames=101)
 >>> run.x.shape, run.lift.shape
 ((101, 1, 3), (101, 1, 4))
 """
 
 import math
+import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from sim.floating.body import Body, make_fleet
-from sim.floating.equilibrium import Layers
+from sim.floating.equilibrium import Layers, check_layers
 from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
 from sim.floating.fluid_state import make_water
 from sim.floating.motion import STANDARD, MotionCoefficients, step
+from sim.floating.stability import Loaded, is_stable, near_upright
 from sim.interruption import raise_if_stopped
 from sim.ocean import Sea
 from sim.ocean.radial import RadialSea, SurfaceAt
@@ -51,8 +54,9 @@ def float_in(
     """Let bodies float in a sea from its time 0 for a duration [s]; `Body.afloat` lets them begin at rest.
 
     On a sum of waves they feel linear wave forces; on the FFT sea those of waves long beside the hull (motion.py). The
-    gravity is the sea's. A step is 1/60 s, or shorter to divide the frames. Raises ValueError for a value that is not
-    allowed, and as `make_fleet`, `RadialSea.at` and `step`.
+    gravity is the sea's. A step is 1/60 s, or shorter to divide the frames. A UserWarning gives the GM of a body that
+    is not stable upright. Raises ValueError for a value that is not allowed, and as `make_fleet`, `RadialSea.at` and
+    `step`.
     """
     check_kind("sea", sea, Sea | RadialSea, "a Sea or a RadialSea")
     check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
@@ -63,6 +67,8 @@ def float_in(
     gravity = sea.conditions.gravity if isinstance(sea, Sea) else sea.column.gravity
     coefficients = coefficients._replace(gravity=gravity)
     fleet = make_fleet(bodies, layers)
+    for words in unstable(bodies, layers):
+        warnings.warn(words, UserWarning, stacklevel=2)
     widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
     tile = TileSea(sea) if isinstance(sea, Sea) else sea
     excitation = WaveExcitation(bodies, widths, layers) if isinstance(sea, RadialSea) else None
@@ -98,6 +104,19 @@ def float_in(
             surface[frame + 1] = at.height
     x, rotation, velocity, spin, lift = kept
     return FloatRun(np.linspace(0.0, duration, frames), x, rotation, velocity, spin, lift, surface)
+
+
+def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:
+    """A sentence with the GM of each load of a hull that floats, but is not stable upright."""
+    fluids, found = check_layers(layers), {}
+    for i, body in enumerate(bodies):
+        load = body.loaded()
+        if load in found or load[1] > fluids[-1][0]:
+            continue
+        found[load], rest = "", near_upright(Loaded(*load, fluids))
+        if rest is not None and not is_stable(load[0], rest):
+            found[load] = f"bodies[{i}]: GM = {rest.least_height:.3g} m: it is not stable upright"
+    return [words for words in found.values() if words]
 
 
 def layers_of(sea: Sea | RadialSea) -> Layers:

@@ -5,6 +5,12 @@ cylinder and a sphere are in the tables at every size: to the water a hull is it
 a table of its own (`springtide hydrodynamics`). Any other has, as an approximation, those of the box with its volume
 and the second moments of its waterplane.
 
+**Long waves.** The water about a hull that is short beside the wave moves as one, and its surface is a plane. The force
+is that of the plane on the hull, plus the mass displaced and the added mass times the acceleration of the water (Taylor
+1928, Proc. R. Soc. A 120:260). So a free hull moves with the water: 1 m/m, and the slope of the wave. What is left of X
+is of order k^2, and fades so below the table, or faster. There the added mass is that of the first
+frequency, and the damping is that of the waves that the hull makes, which follows from X (`haskind`).
+
 Cummins (1962): (M + A_inf) a + int K(t - s) v(s) ds + C x = F. The transform of K is B + i w (A - A_inf); here it is a
 sum over the same few poles for all entries, so that the memory is a small state: s' = p s + v, force -2 Re(R s). The
 residues R are fitted, best where the hull's own frequencies lie, under the condition that a steady motion is free.
@@ -21,9 +27,9 @@ from numpy.typing import ArrayLike
 from sim.floating.closed_mesh import ClosedMesh, area_vectors
 from sim.floating.equilibrium import SEA_WATER, Layers, equilibrium_draft, upright
 from sim.floating.hull import Hull
-from sim.floating.hydrostatics import add_pressure
+from sim.floating.hydrostatics import Submerged, add_pressure
 from sim.floating.linear_table import LinearTable, table_of
-from sim.interruption import raise_if_stopped
+from sim.interruption import pieces, raise_if_stopped
 
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
 POLES = np.array([-0.362 + 0.419j, -0.408 + 0.850j, -0.311 + 1.274j, -1.344 + 1.128j, -1.127 + 4.227j])
@@ -34,9 +40,41 @@ STEADY_WEIGHT = 30.0  # of the condition that a steady motion meets no force
 DEEPEST = 0.98  # of the height of a hull: the draft at which one that is wholly under water has its coefficients
 ONE_DRAFT = 0.01  # by how much a body's draft may differ from the only one of its table
 MAX_TURNS = 60  # of the search for a natural frequency
+PIECE = 64  # waves at a time: the solve yields in between
+BEYOND = 1.0  # [lengths] of 1/k over which the force fades beyond the highest frequency of a table
+LONG_NODES = 3  # frequencies of a table, up to which the force of long waves is taken off before interpolation
+LONG_POWERS = np.array([1.0, 1.0, 1.0, 1.0, 1.0, 2.0])  # of k, by which what is left is divided there
+# Of k, by which what is left at the first frequency fades below it; but for yaw faster than by its law, since it is
+# small, and wrong where a hull has the coefficients of a box.
+FADING_POWERS = np.array([3.0, 3.0, 3.0, 3.0, 3.0, 2.0])
+NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
+LEVEL_MOTIONS = [0, 1, 5]  # surge, sway, yaw: water that is higher, and level, does not push along them
 # Signs of the motions under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
 MIRROR_Y = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+
+
+class PlaneForce(NamedTuple):
+    """Force and moment (6,) on an upright hull under a plane, at unit density and gravity."""
+
+    rise: np.ndarray  # for each metre that it rises
+    slope: np.ndarray  # (2, 6) for each unit of slope along x, y
+
+
+class LongWaveForce(NamedTuple):
+    """Force and moment (6,) of a wave a cos(k.x - wt) that is long beside the hull, to first order of k.
+
+    X = rise + k lift + i (kx run[0] + ky run[1]), at unit density and gravity.
+    """
+
+    rise: np.ndarray
+    lift: np.ndarray  # [for each rad/m]
+    run: np.ndarray  # (2, 6) the same
+
+    def at(self, kx: np.ndarray, ky: np.ndarray) -> np.ndarray:
+        """X (..., 6) of wavenumbers kx, ky (...) [rad/m]."""
+        kx, ky = kx[..., None], ky[..., None]
+        return self.rise + np.hypot(kx, ky) * self.lift + 1j * (kx * self.run[0] + ky * self.run[1])
 
 
 class LinearHull(NamedTuple):
@@ -55,13 +93,58 @@ class LinearHull(NamedTuple):
     draft: float  # [m]
     volume: float  # [m3] displaced
     is_round: bool  # seen from above: the excitation does not depend on the heading
+    plane: PlaneForce  # of a plane on the hull at this draft
+    long: LongWaveForce
 
     def at(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
-        """Added mass and damping (6, 6) at a frequency [1/sqrt(m)]; beyond the table those of its end."""
-        x = min(max(frequency, float(self.frequency[0])), float(self.frequency[-1]))
-        nodes, weights = lagrange(self.frequency, x)
+        """Added mass and damping (6, 6) at a frequency [1/sqrt(m)].
+
+        Beyond the table they are those of its end; below it the damping is that of the waves that the hull makes.
+        """
+        first, last = float(self.frequency[0]), float(self.frequency[-1])
+        nodes, weights = lagrange(self.frequency, min(max(frequency, first), last))
         a = np.tensordot(weights, self.added_mass[nodes], 1)
+        if frequency < first:
+            return a, haskind(self.around(np.array([frequency**2]))[0], frequency)
         return a, np.tensordot(weights, self.damping[nodes], 1)
+
+    def around(self, k: np.ndarray) -> np.ndarray:
+        """X (waves, 36, 6) of waves in DIRECTIONS against the hull, for wavenumbers k (waves,) [rad/m], over g."""
+        rest, is_long = self.beyond_long_waves(k)
+        kx, ky = k[:, None] * np.cos(DIRECTIONS), k[:, None] * np.sin(DIRECTIONS)
+        return rest + is_long[:, None, None] * self.long.at(kx, ky)
+
+    def beyond_long_waves(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """X (waves, 36, 6) as `around`, less that of long waves where is_long (waves,) is 1, and not 0.
+
+        Above the table it fades with the shortness of the wave beside the hull.
+        """
+        nodes = self.frequency**2
+        is_long = (k < nodes[LONG_NODES - 1]).astype(float)
+        cosine, sine = np.cos(DIRECTIONS), np.sin(DIRECTIONS)
+        beyond = self.excitation - self.long.at(nodes[:, None] * cosine, nodes[:, None] * sine)
+        scaled = (beyond / nodes[:, None, None] ** LONG_POWERS).reshape(len(nodes), -1)
+        powers, fading = (np.tile(one, len(DIRECTIONS)) for one in (LONG_POWERS, FADING_POWERS))
+        index, weights = lagrange(self.frequency, np.minimum(np.sqrt(k), self.frequency[-1]))
+        table, found = self.excitation.reshape(len(nodes), -1), np.empty((len(k), scaled.shape[1]), complex)
+        for piece in pieces(len(k), PIECE):
+            for i, one in enumerate(k[piece].tolist(), start=piece.start):
+                if one < nodes[0]:
+                    found[i] = (one / nodes[0]) ** fading * beyond[0].ravel()
+                elif is_long[i]:
+                    found[i] = one**powers * (weights[i] @ scaled[index[i]])
+                else:
+                    fade = math.exp(-max(one - nodes[-1], 0.0) * self.length * BEYOND)
+                    found[i] = fade * (weights[i] @ table[index[i]])
+        return found.reshape(len(k), len(DIRECTIONS), 6), is_long
+
+
+def haskind(X: np.ndarray, frequency: float) -> np.ndarray:
+    """Damping (6, 6) over sqrt(g) at a frequency [1/sqrt(m)], of the forces X (36, 6) over g in DIRECTIONS.
+
+    B = k/(8 pi rho g v) int X X* d beta, v = g/(2 w) the group velocity (Newman 1977, section 6.18, eq. 173).
+    """
+    return 0.5 * frequency**3 * np.einsum("di,dj->ij", X, X.conj()).real / len(X)
 
 
 class Memory(NamedTuple):
@@ -69,6 +152,10 @@ class Memory(NamedTuple):
 
     poles: np.ndarray  # (p,) complex
     residues: np.ndarray  # (p, 6, 6) complex
+
+    def slow_added_mass(self) -> np.ndarray:
+        """What it adds (6, 6) to the added mass at infinite frequency in a motion far slower than its poles."""
+        return -2.0 * np.einsum("pij,p->ij", self.residues, self.poles**-2.0).real
 
 
 class TablePlace(NamedTuple):
@@ -151,17 +238,29 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
     # the wave reaches the axis of the table and the centre of mass one after the other; k = frequency^2
     path = hull.axis[0] * np.cos(DIRECTIONS) + hull.axis[1] * np.sin(DIRECTIONS)
     excitation = excitation * np.exp(1j * np.square(frequency)[:, None] * path)[:, :, None]
+    added, plane, cut = S.T @ (a * scale) @ S, plane_force(hull, draft), upright(hull, draft)
     return LinearHull(
         frequency=frequency,
-        added_mass=S.T @ (a * scale) @ S,
+        added_mass=added,
         damping=S.T @ (b * scale / root) @ S,
         infinite=S.T @ (infinite * scale) @ S,
         excitation=(excitation * unit * length) @ S,
         length=length,
         draft=draft,
-        volume=upright(hull, draft).volume,
+        volume=cut.volume,
         is_round=is_round,
+        plane=plane,
+        long=long_wave_force(plane, cut, added[0]),
     )
+
+
+def long_wave_force(plane: PlaneForce, cut: Submerged, added: np.ndarray) -> LongWaveForce:
+    """The force of long waves on a hull of added mass (6, 6), and the part of it that is wet at rest.
+
+    The mass displaced, times the acceleration of the water, is in the force of the plane but for its vertical part.
+    """
+    weight = cut.volume * np.array([0.0, 0.0, 1.0, cut.centre[1], -cut.centre[0], 0.0])
+    return LongWaveForce(plane.rise, -added[:, 2] - weight, plane.slope - added[:, :2].T)
 
 
 def velocity_at(x: float, y: float, z: float) -> np.ndarray:
@@ -319,7 +418,27 @@ def afloat(hull: Hull, density: float, layers: Layers = SEA_WATER) -> Afloat:
         stiffness = cut.second[1 - axis] + cut.volume * cut.centre[2]
         inertia = cut.volume / hull.volume * float(hull.inertia[axis, axis])
         own[3 + axis] = natural_frequency(linear, 3 + axis, inertia, stiffness)
-    return Afloat(linear, memory_of(linear, own), wet_pressure(hull, draft, 0.0, (0.0, 0.0))[6:9])
+    memory = memory_of(linear, own)
+    # with the added mass that `step` has, or a long wave would not carry the body as far as the water
+    linear = linear._replace(long=long_wave_force(linear.plane, cut, linear.infinite + memory.slow_added_mass()))
+    return Afloat(linear, memory, wet_pressure(hull, draft, 0.0, (0.0, 0.0))[6:9])
+
+
+def plane_force(hull: Hull, draft: float) -> PlaneForce:
+    """The force of a plane on a hull at a draft [m], by differences."""
+    nudge = NUDGE * draft
+    tilt = nudge / float(np.abs(hull.extents[:2]).max())
+
+    def force(rise: float, x: float, y: float) -> np.ndarray:
+        return -wet_pressure(hull, draft, rise, (x, y))[:6]
+
+    def change(rise: float, x: float, y: float, size: float) -> np.ndarray:
+        return (force(rise, x, y) - force(-rise, -x, -y)) / (2 * size)
+
+    slopes = np.stack([change(0.0, tilt, 0.0, tilt), change(0.0, 0.0, tilt, tilt)])
+    rise = change(nudge, 0.0, 0.0, nudge)
+    rise[LEVEL_MOTIONS] = 0.0  # but for round-off, by which a long wave would push a body that little holds there
+    return PlaneForce(rise, slopes)
 
 
 def wet_pressure(hull: Hull, draft: float, rise: float, slope: tuple[float, float]) -> np.ndarray:

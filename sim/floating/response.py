@@ -13,11 +13,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.floating.body import Body, check_body
-from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft
-from sim.floating.excitation import HullExcitation, plane_force
-from sim.floating.hydrodynamics import DIRECTIONS, lagrange, linear_hull
+from sim.floating.body import Body, check_body, check_pose
+from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
+from sim.floating.hydrodynamics import DIRECTIONS, LEVEL_MOTIONS, lagrange, linear_hull, plane_force
+from sim.floating.stability import about_rest, is_stable
 from sim.validation import argument_error, as_array, check_angle, check_positive
+
+MAX_TRIM = 1e-3  # [rad] of a body that counts as upright: a hull from a file is never quite symmetric
 
 
 class LinearForces(NamedTuple):
@@ -38,16 +40,21 @@ def response_amplitude(
 
     Complex: surge, sway, heave [m/m], roll, pitch, yaw [rad/m] along and about the body's axes, x = Re(xi e^(-i w t))
     in the wave cos(k.x - w t), x from the centre of gravity. heading [rad]: where the waves go to, from the body's x.
-    It solves (C - w^2 (M + A) - i w B) xi = X (Newman 1977, section 6.20), upright, on deep water, without drag. Beyond
-    the table's frequencies A and B are those of its end and X fades; far below them roll and pitch are rough. In layers
+    It solves (C - w^2 (M + A) - i w B) xi = X (Newman 1977, section 6.20), upright, on deep water, without drag. Above
+    the table's frequencies A and B are those of its end and X fades. Below them A is that of its first frequency, and X
+    tends to the force of long waves, so that the body moves with the water and leans as the wave is steep. In layers
     the coefficients have the mean density of what is displaced, and the interface follows the surface.
 
-    Raises ValueError for a value that is not allowed, a body that sinks, or one with a trim.
+    Raises ValueError for a value that is not allowed, and for a body that sinks, has a trim, or is not stable upright.
     """
     f = linear_forces(body, frequency, heading, layers, gravity)
     w = np.asarray(frequency, dtype=float)[:, None, None]
     D = f.stiffness - w * w * (f.mass + f.added) - 1j * w * f.damping
-    return np.linalg.solve(D, f.excitation[..., None])[..., 0]
+    # what nothing restores is in units of 1/w, or its rows would be lost in long waves beside those of the stiffness
+    unit = np.ones((len(w), 6, 1))
+    unit[:, LEVEL_MOTIONS] = 1.0 / w
+    scaled = np.linalg.solve(unit * D * unit.swapaxes(1, 2), unit * f.excitation[..., None])
+    return (unit * scaled)[..., 0]
 
 
 def linear_forces(
@@ -55,16 +62,19 @@ def linear_forces(
 ) -> LinearForces:
     """The terms of the equation that `response_amplitude` solves, with the same arguments and errors."""
     check_body("body", body)
+    check_pose(body)
     w = as_array("frequency", frequency, "finite numbers above 0 rad/s, shape (n,)")
     if w.ndim != 1 or not ((w > 0.0) & (w < math.inf)).all():
         raise argument_error("frequency", w.tolist(), "finite numbers above 0 rad/s, shape (n,)")
     heading, gravity = check_angle("heading", heading), check_positive("gravity", gravity, "m/s2")
     layers = check_layers(layers)
     hull, density = body.loaded()
-    rest = body._replace(rotation=(1.0, 0.0, 0.0, 0.0)).afloat(layers)
-    if rest.rotation != (1.0, 0.0, 0.0, 0.0):
+    draft = body.draft(layers)
+    _, rest = about_rest(body, layers)
+    if not is_stable(hull, rest):
+        raise argument_error("body", f"GM = {rest.least_height:.3g} m", "a body that is stable upright: GM above 0")
+    if rest.tilt > MAX_TRIM:
         raise argument_error("center_of_gravity", body.center_of_gravity, "one over the centre of buoyancy")
-    draft = equilibrium_draft(hull, density, layers)
     planes = [(change, plane_force(hull, draft - top)) for change, top in density_steps(layers) if draft > top]
     linear, C = linear_hull(hull, draft), np.zeros((6, 6))
     for change, plane in planes:  # water that is higher towards +y, or +x, is a hull that leans there
@@ -74,12 +84,14 @@ def linear_forces(
     mass = density * np.block([[hull.volume * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), hull.inertia]])
     index, weights = lagrange(np.append(DIRECTIONS, 2.0 * math.pi), heading % (2.0 * math.pi))
     k = w**2 / gravity
-    tables = HullExcitation(hull, linear, 0.0).tabulate(k)
-    X = fluid * np.einsum("d,ndm->nm", weights, tables[:, index % len(DIRECTIONS)])
+    beyond, is_long = linear.beyond_long_waves(k)
+    X = np.einsum("d,ndm->nm", weights, beyond[:, index % len(DIRECTIONS)])
+    X = fluid * (X + is_long[:, None] * linear.long.at(k * math.cos(heading), k * math.sin(heading)))
     # the pressure under a plane that follows the wave, in each fluid instead of the mean one
-    for density_step, plane in [*planes, (-fluid, planes[0][1])]:
+    for density_step, plane in [*planes, (-fluid, linear.plane)]:
         slope = math.cos(heading) * plane.slope[0] + math.sin(heading) * plane.slope[1]
         X += density_step * (plane.rise + 1j * k[:, None] * slope)
     root = math.sqrt(gravity)
+    centre = (float(body.position[0]), float(body.position[1]), -draft - float(hull.extents[2, 0]))
     added, damping = (fluid * np.array(part) for part in zip(*(linear.at(one / root) for one in w), strict=True))
-    return LinearForces(mass, C, added, root * damping, gravity * X, rest.position)
+    return LinearForces(mass, C, added, root * damping, gravity * X, centre)

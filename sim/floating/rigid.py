@@ -87,10 +87,17 @@ def set_rotation(rotation, i, R):
 
 @kernel
 def heading_of(rotation, i):
-    """Cosine and sine of the turn about the vertical in the quaternion rotation[i] of (n, 4)."""
-    w, z = rotation[i, 0], rotation[i, 3]
-    size = w * w + z * z
-    return ((w * w - z * z) / size, 2.0 * w * z / size) if size > 1e-12 else (1.0, 0.0)
+    """Cosine and sine of the heading of the quaternion rotation[i] of (n, 4), whichever side of the body is up.
+
+    It is that of the body's x axis, seen from above. Where that stands within 30 degrees of the vertical, its y axis is
+    a quarter turn to the left of the heading.
+    """
+    w, x, y, z = rotation[i, 0], rotation[i, 1], rotation[i, 2], rotation[i, 3]
+    cosine, sine = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
+    if cosine * cosine + sine * sine < 0.25:
+        cosine, sine = 1.0 - 2.0 * (x * x + z * z), -2.0 * (x * y - w * z)
+    size = math.sqrt(cosine * cosine + sine * sine)
+    return cosine / size, sine / size
 
 
 @kernel

@@ -8,17 +8,25 @@
     array([0.    , 0.4639])
 
 Heel is about x, and trim stays as it is at rest. Layers stay level.
+
+A body is stable in a pose of rest where each tilt is righted: where both eigenvalues of its restoring matrix, which are
+its metacentric heights about two level axes, are above 0 (Newman 1977, section 6.16). A ball has none, and rests in any
+pose: within `NEUTRAL` a body counts as one.
 """
 
 import math
-from typing import TYPE_CHECKING
+import warnings
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.floating.closed_mesh import area_vectors
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.hull import Hull
-from sim.floating.hydrostatics import submerged
+from sim.floating.hydrostatics import add_displaced
+from sim.floating.rigid import heading_of
 from sim.floating.rotation import rotation_matrix
 from sim.validation import argument_error, as_array, is_whole_number
 
@@ -26,48 +34,91 @@ if TYPE_CHECKING:
     from sim.floating.body import Body
 
 Quaternion = tuple[float, float, float, float]
+UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 MAX_TILT = math.radians(60.0)  # of a body at rest
 TILT = 1e-6  # [rad] of the differences
 LEVEL = 1e-9  # share of the size of a hull: an arm below it is none
-MAX_TURNS = 60  # of the search for rest
+NEUTRAL = 1e-3  # share of the size of a hull: a GM is none if it is nearer to 0, as that of a ball of 500 triangles
+FIRST_LEAN = 0.05  # [rad] from an unstable rest, where the search for a stable one begins
+MAX_TURN = 0.2  # [rad] of one turn of the search for rest
+MAX_TURNS = 60  # of that search
+ROUND_OFF = 1e-15  # share of the height of a hull that is none
+
+
+class Balance(NamedTuple):
+    """A body in a pose in which the displaced fluids weigh as much as it does."""
+
+    rotation: Quaternion
+    height: float  # [m] of the centre of gravity over the surface
+    arm: np.ndarray  # (2,) [m] by which the buoyancy turns the body back about x and about y, less than 0: over
+    restoring: np.ndarray  # (2, 2) [m] rise of the arms with each tilt about x, y [rad]; symmetric
+
+    @property
+    def least_height(self) -> float:
+        """The least metacentric height [m] over all level axes."""
+        return float(np.linalg.eigvalsh(self.restoring)[0])
+
+    @property
+    def tilt(self) -> float:
+        """Angle [rad] of the body's z axis from upright."""
+        _, x, y, _ = self.rotation
+        return 2.0 * math.asin(min(math.hypot(x, y), 1.0))
 
 
 def metacentric_height(body: "Body", layers: Layers = SEA_WATER, axis: int = 0) -> float:
     """GM [m] of the body at rest: transverse, for heel about x, or longitudinal with axis 1.
 
-    The rise of the righting arm per radian. Of one fluid it is KB + I/V - KG (Newman 1977, section 6.16), negative
-    where the body capsizes. Raises ValueError as `Body.afloat`, or for another axis.
+    The rise of the righting arm per radian. Of one fluid it is KB + I/V - KG (Newman 1977, section 6.16). A body that
+    is not stable upright has its GM there, which is negative about one axis at least. Raises ValueError as
+    `Body.afloat`, or for another axis.
     """
     if not is_whole_number(axis) or axis not in (0, 1):
         raise argument_error("axis", axis, "0 (heel) or 1 (trim)")
-    arms = arms_of(body, np.array([-TILT, TILT]), layers, axis)
+    arms = arms_of(*about_rest(body, layers), np.array([-TILT, TILT]), axis)
     return float(arms[1] - arms[0]) / (2.0 * TILT)
 
 
 def righting_arm(body: "Body", heel: ArrayLike, layers: Layers = SEA_WATER) -> np.ndarray:
     """GZ [m] at angles of heel [rad] from rest, of the same shape: from the centre of gravity to the line of buoyancy.
 
-    Positive where it rights the body. At each angle the weight of the displaced fluids is that of the body. Raises
-    ValueError for an angle that is not within half a turn, and as `Body.afloat`.
+    Positive where it rights the body. At each angle the weight of the displaced fluids is that of the body. The heel of
+    a body that is not stable upright is from there, and a UserWarning gives its GM. Raises ValueError for an angle that
+    is not within half a turn, and as `Body.afloat`.
     """
     allowed = "angles from -pi to pi rad"
     angles = as_array("heel", heel, allowed)
     bad = ~(np.abs(angles) <= math.pi)
     if bad.any():
         raise argument_error("heel", float(angles[bad].flat[0]), allowed)
-    return arms_of(body, angles.ravel(), layers, 0).reshape(angles.shape)
+    afloat, rest = about_rest(body, layers)
+    if not is_stable(afloat.hull, rest):
+        words = f"GM = {rest.least_height:.3g} m: the body is not stable upright, and the heel is from there"
+        warnings.warn(words, UserWarning, stacklevel=2)
+    return arms_of(afloat, rest, angles.ravel(), 0).reshape(angles.shape)
 
 
-def arms_of(body: "Body", angles: np.ndarray, layers: Layers, axis: int) -> np.ndarray:
-    """Righting arms (n,) [m] at angles (n,) [rad] about the world's x, or y, from rest without its heading."""
+class Loaded(NamedTuple):
+    """A hull about its centre of gravity, of a mean density [kg/m3], in fluids."""
+
+    hull: Hull
+    density: float
+    layers: Layers
+
+
+def about_rest(body: "Body", layers: Layers) -> tuple[Loaded, Balance]:
+    """The body, and the balance about which it heels: near upright where there is one, else where it is at rest."""
     if not hasattr(body, "loaded"):  # sim/floating/body.py imports this module
         raise argument_error("body", body, "a Body")
-    layers = check_layers(layers)
-    hull, density = body.loaded()
-    rest = body._replace(rotation=(1.0, 0.0, 0.0, 0.0)).afloat(layers).rotation
+    body.draft(layers)
+    loaded = Loaded(*body.loaded(), check_layers(layers))
+    return loaded, near_upright(loaded) or rest_of(loaded)
+
+
+def arms_of(loaded: Loaded, rest: Balance, angles: np.ndarray, axis: int) -> np.ndarray:
+    """Righting arms (n,) [m] at angles (n,) [rad] about the world's x, or y, from rest without its heading."""
     found = []
     for angle in angles:
-        x, y, _ = displaced_arm(hull, density, layers, product(tilted(angle * np.eye(2)[axis]), rest))
+        x, y, _ = displaced_arm(*loaded, product(tilted(angle * np.eye(2)[axis]), rest.rotation))
         found.append(0.0 - y if axis == 0 else x)
     return np.array(found)
 
@@ -75,53 +126,108 @@ def arms_of(body: "Body", angles: np.ndarray, layers: Layers, axis: int) -> np.n
 def displaced_arm(hull: Hull, density: float, layers: Layers, rotation: Quaternion) -> tuple[float, float, float]:
     """x, y [m] of the centre of buoyancy from that of gravity in this pose, and its height over the surface [m].
 
-    The height, by bisection, is the one at which the displaced fluids weigh as much as the body.
+    The height, by Newton's method within a bracket, is the one at which the displaced fluids weigh as much as the body.
     """
     steps, weight = density_steps(layers), density * hull.volume
-    heights = (hull.vertices @ rotation_matrix(np.array(rotation)).T)[:, 2]
+    x = np.ascontiguousarray(rotation_matrix(np.array(rotation)) @ hull.vertices.T)
+    faces, vertical = np.ascontiguousarray(hull.faces.T), np.ascontiguousarray(area_vectors(x.T, hull.faces)[:, 2])
 
-    def parts(level: float) -> list[tuple[float, np.ndarray]]:
-        """Density times volume, and the centre, of each step of the density, under a surface at this level."""
-        cuts = [(change, submerged(hull, rotation=rotation, surface=level - top)) for change, top in steps]
-        return [(change * cut.volume, cut.centre) for change, cut in cuts if cut.volume > 0.0]
+    def displaced(level: float) -> np.ndarray:
+        """The integrals (10,) of `add_displaced`, times density, under a surface at this level."""
+        total = np.zeros(10)
+        for change, top in steps:
+            part = np.zeros(10)
+            add_displaced(x, faces, vertical, level - top - x[2], part)
+            total += change * part
+        return total
 
-    low, high = float(heights.min()), float(heights.max()) + steps[-1][1]
-    while low < (middle := (low + high) / 2.0) < high:
-        low, high = (middle, high) if sum(m for m, _ in parts(middle)) < weight else (low, middle)
-    moment = sum((m * centre for m, centre in parts(high)), np.zeros(3)) / weight
-    return float(moment[0]), float(moment[1]), -high
+    low, high = float(x[2].min()), float(x[2].max()) + steps[-1][1]
+    level, resolved = (low + high) / 2.0, ROUND_OFF * (high - low)
+    while True:
+        found = displaced(level)
+        missing, area = weight - float(found[0]), float(found[4])
+        low, high = (level, high) if missing > 0.0 else (low, level)
+        after = level + missing / area if area > 0.0 else math.nan
+        if not low < after < high:
+            after = (low + high) / 2.0
+        if not low < after < high or abs(after - level) <= resolved:
+            break
+        level = after
+    return float(found[1]) / weight, float(found[2]) / weight, -level
 
 
-def rest_of(hull: Hull, density: float, layers: Layers, upright: float) -> tuple[float, Quaternion]:
-    """Height [m] of the centre of gravity over the surface, and the rotation without heading, of a body at rest.
+def balance_at(loaded: Loaded, rotation: Quaternion) -> Balance:
+    """The balance of a body in a pose."""
+    x, y, height = displaced_arm(*loaded, rotation)
+    restoring = np.empty((2, 2))
+    for i in range(2):
+        nudge = TILT * np.eye(2)[i]
+        ends = [displaced_arm(*loaded, product(tilted(turn), rotation)) for turn in (nudge, -nudge)]
+        restoring[:, i] = (ends[1][1] - ends[0][1]) / (2.0 * TILT), (ends[0][0] - ends[1][0]) / (2.0 * TILT)
+    return Balance(rotation, height, np.array([-y, x]), (restoring + restoring.T) / 2.0)
 
-    upright [m]: that height where it floats upright, which is the answer if no arm turns it then. Else by Newton's
-    method over the tilts about x and y. Raises ValueError where that finds no rest within MAX_TILT.
+
+def is_stable(hull: Hull, rest: Balance) -> bool:
+    """True unless a tilt from rest grows by itself; the one test of stability."""
+    return hull.shape.is_round or rest.least_height > -NEUTRAL * float(hull.size.max())
+
+
+def near_upright(loaded: Loaded) -> Balance | None:
+    """The balance next to upright in which no arm turns the body, stable or not; None without one within MAX_TILT."""
+    return settled(loaded, balance_at(loaded, UPRIGHT), lambda heights: heights)
+
+
+def rest_of(loaded: Loaded) -> Balance:
+    """The body at stable rest: next to upright, or where it comes to rest when it turns over from there.
+
+    Raises ValueError where that is none within MAX_TILT.
     """
-    tilt, size = np.zeros(2), float(hull.size.max())
-    still = (1.0, 0.0, 0.0, 0.0)
-    x, y, height = displaced_arm(hull, density, layers, still)
-    if max(abs(x), abs(y)) < LEVEL * size:
-        return upright, still
-    for _ in range(MAX_TURNS):
-        change = np.empty((2, 2))
-        for i in range(2):
-            nudge = TILT * np.eye(2)[i]
-            after, before = (displaced_arm(hull, density, layers, tilted(tilt + d))[:2] for d in (nudge, -nudge))
-            change[:, i] = (np.array(after) - before) / (2.0 * TILT)
-        arm = np.array([x, y])
-        if np.abs(arm).max() < 0.01 * LEVEL * size:
-            # a turn about x is righted by a buoyancy at lower y, one about y by one at higher x
-            if np.linalg.eigvals(np.stack([-change[1], change[0]])).real.min() > 0.0:
-                return height, tilted(tilt)
+    start = balance_at(loaded, UPRIGHT)
+    found = near_upright(loaded)
+    if found is not None and is_stable(loaded.hull, found):
+        return found
+    for _ in range(2):  # over an edge, and again over a corner
+        rest = settled(loaded, balance_at(loaded, leaning(found)) if found else start, np.abs)
+        if rest is None:
             break
-        step = np.linalg.lstsq(change, -arm, rcond=None)[0]
-        tilt = tilt + step * min(1.0, 0.2 / max(float(np.abs(step).max()), 1e-30))
-        if np.abs(tilt).max() > MAX_TILT:
-            break
-        x, y, height = displaced_arm(hull, density, layers, tilted(tilt))
-    allowed = "one with which the body finds a stable rest within 60 degrees"
-    raise argument_error("center_of_gravity", hull.centre.tolist(), allowed)
+        if is_stable(loaded.hull, rest):
+            return rest
+        found = rest
+    allowed = "a body that is stable within 60 degrees of upright: one with a lower center_of_gravity, or a wider one"
+    raise argument_error("body", f"GM = {start.least_height:.3g} m", allowed)
+
+
+def leaning(balance: Balance) -> Quaternion:
+    """The pose a little off an unstable balance, in the direction in which it turns over.
+
+    Where it turns over both ways, that is with a positive turn about x, or about y.
+    """
+    heights, axes = np.linalg.eigh(balance.restoring)
+    over = axes[:, heights < heights[0] + 0.01 * abs(heights[0])]
+    turns = over @ over.T  # towards the axes over which it turns: of a square body, over any
+    turn = turns[:, 0] if turns[0, 0] > 0.01 else turns[:, 1]
+    return product(tilted(FIRST_LEAN * turn / np.linalg.norm(turn)), balance.rotation)
+
+
+def settled(loaded: Loaded, start: Balance, over: Callable[[np.ndarray], np.ndarray]) -> Balance | None:
+    """The balance in which no arm turns the body, by Newton's method over the tilts about x and y; None without one.
+
+    over: of the metacentric heights (2,), those that a step divides by. As they are, it leads to the next balance;
+    their sizes lead downhill, to a stable one.
+    """
+    size, found = float(loaded.hull.size.max()), start
+    for turn in range(MAX_TURNS):
+        if np.abs(found.arm).max() < (LEVEL if turn == 0 else 0.01 * LEVEL) * size:
+            return found
+        heights, axes = np.linalg.eigh(found.restoring)
+        divided = over(heights)
+        divided = np.copysign(np.maximum(np.abs(divided), LEVEL * size), divided)
+        step = -axes @ (axes.T @ found.arm / divided)
+        step *= min(1.0, MAX_TURN / float(np.linalg.norm(step)))
+        found = balance_at(loaded, without_heading(product(tilted(step), found.rotation)))
+        if found.tilt > MAX_TILT:
+            return None
+    return None
 
 
 def tilted(tilt: np.ndarray) -> Quaternion:
@@ -141,9 +247,16 @@ def product(a: Quaternion, b: Quaternion) -> Quaternion:
     )
 
 
+def without_heading(rotation: Quaternion) -> Quaternion:
+    """The rotation before a turn about the vertical: one about a level axis alone."""
+    w, x, y, z = rotation
+    size = math.hypot(w, z)
+    return size, (w * x + z * y) / size, (w * y - z * x) / size, 0.0
+
+
 def with_heading(turn: Quaternion, rotation: Quaternion) -> Quaternion:
     """`turn` after a turn about the vertical by the heading of another rotation."""
-    size = math.hypot(rotation[0], rotation[3])
-    if size == 0.0:
-        return turn
-    return product((rotation[0] / size, 0.0, 0.0, rotation[3] / size), turn)
+    q = np.array([rotation], dtype=float)
+    cosine, sine = heading_of(q / np.linalg.norm(q), 0)
+    angle = math.atan2(sine, cosine)
+    return product((math.cos(angle / 2.0), 0.0, 0.0, math.sin(angle / 2.0)), turn)

@@ -20,8 +20,8 @@ from sim.floating import (
     step,
     still_water,
 )
-from sim.floating.excitation import HullExcitation, WaveExcitation, plane_force
-from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange
+from sim.floating.excitation import WaveExcitation
+from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange, plane_force
 from sim.floating.linear_table import table_of
 from sim.floating.prediction import predict
 from sim.ocean.gerstner import Waves
@@ -135,7 +135,7 @@ def test_response_in_regular_waves_is_that_of_the_coefficients(name: str, direct
         one = np.ones(1)
         sea = RadialSea(Waves(k * math.cos(direction) * one, k * math.sin(direction) * one, amplitude * one, 0 * one))
         excitation = WaveExcitation([body], width, WATER)
-        X = 1025.0 * 9.81 * at_direction(excitation.kinds[0].tabulate(k * one)[0], direction)
+        X = 1025.0 * 9.81 * at_direction(excitation.kinds[0].around(k * one)[0], direction)
         xi = linear_response(linear, solid(hull, density), C, X, w)
         velocity = amplitude * -1j * w * xi
         fleet = make_fleet([body], WATER)
@@ -185,7 +185,7 @@ def test_the_hemisphere_has_the_added_mass_of_hulme() -> None:
 def test_forces_fade_over_the_hull_s_length_beyond_the_highest_frequency() -> None:
     linear = afloat(Hull.sphere(1.0), 512.5, WATER).linear
     last = linear.frequency[-1] ** 2
-    at, beyond = HullExcitation(Hull.sphere(1.0), linear, 0.0).tabulate(np.array([last, last + 1.5 / linear.length]))
+    at, beyond = linear.around(np.array([last, last + 1.5 / linear.length]))
     np.testing.assert_allclose(beyond, math.exp(-1.5) * at, rtol=1e-9, atol=1e-12)
 
 

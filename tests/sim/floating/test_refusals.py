@@ -100,7 +100,7 @@ REFUSED: list[Row] = [
     ("density", lambda: Body(BOX, density=2000.0).afloat(), "at most 1025 kg/m3, or it sinks"),
     ("mass", lambda: Body(BOX, mass=2000.0).afloat(), "at most 1025 kg, or it sinks"),
     ("bodies", lambda: make_fleet(Body(BOX)), "a list of bodies"),
-    ("center_of_gravity", lambda: Body(BOX, mass=500.0, center_of_gravity=(0.4, 0.0, 3.0)).afloat(), "60 degrees"),
+    ("body", lambda: Body(BOX, mass=500.0, center_of_gravity=(0.4, 0.0, 3.0)).afloat(), "60 degrees"),
     *each(partial(metacentric_height, Body(BOX)), axis=[2, True, "roll"]),
     *each(partial(righting_arm, Body(BOX)), heel=[30.0, [0.1, NAN]]),
     *each(partial(response_amplitude, Body(BOX)), frequency=[1.0, [0.0], [NAN], "fast"]),

@@ -1,6 +1,8 @@
 """Loaded bodies at rest and heeled: closed forms, clipped rectangles, and the pressure on the hull."""
 
 import math
+import re
+import warnings
 
 import numpy as np
 import pytest
@@ -12,11 +14,13 @@ from sim.floating import (
     make_fleet,
     metacentric_height,
     pressure_force,
+    response_amplitude,
     righting_arm,
     roll_period,
     step,
     still_water,
 )
+from sim.floating.stability import product
 
 LENGTH, WIDTH, HEIGHT, DRAFT = 60.0, 16.0, 6.0, 3.0  # [m]
 MASS = 1025.0 * LENGTH * WIDTH * DRAFT
@@ -76,12 +80,15 @@ def test_gm_and_gz_of_a_box_are_those_of_a_wall_sided_hull():
 def test_gz_of_a_box_beyond_its_deck_is_that_of_a_clipped_rectangle(kg):
     heel = np.radians(np.linspace(0.0, 60.0, 25))
     wanted = [arm_of_a_rectangle(one, kg) for one in heel]
-    assert righting_arm(barge(kg), heel) == pytest.approx(wanted, abs=1e-6)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore" if kg == 9.0 else "error")
+        assert righting_arm(barge(kg), heel) == pytest.approx(wanted, abs=1e-6)
 
 
 def test_a_body_that_is_top_heavy_has_a_negative_gm():
     assert metacentric_height(barge(9.5)) == pytest.approx(DRAFT / 2 + WIDTH**2 / (12 * DRAFT) - 9.5, abs=1e-6)
-    assert righting_arm(barge(9.5), [0.05])[0] < 0.0
+    with pytest.warns(UserWarning, match=r"^GM = -0\.889 m"):
+        assert righting_arm(barge(9.5), [0.05])[0] < 0.0
 
 
 def test_gm_in_two_fluids_is_that_of_the_sum_of_both():
@@ -144,3 +151,98 @@ def test_heel_of_any_shape_and_a_heading_that_does_not_matter():
     heel = np.array([[0.1, 0.2], [0.3, -0.4]])
     assert righting_arm(turned, heel) == pytest.approx(righting_arm(barge(), heel), abs=1e-12)
     assert turned.afloat().rotation == pytest.approx((0.8, 0.0, 0.0, 0.6))
+
+
+def unstable() -> list[Body]:
+    """50 bodies that are not stable upright: tall boxes and cylinders with high loads, and uniform logs."""
+    rng, found = np.random.default_rng(41), []
+    while len(found) < 50:
+        x, y, z = np.exp(rng.uniform(math.log(0.5), math.log(60.0), 3))
+        hull = Hull.cylinder(y, z) if len(found) % 5 == 4 else Hull.box(x, y, z)
+        load = (0.0, 0.0, rng.uniform(-0.2, 0.5) * hull.size[2])
+        if len(found) % 2 == 1:
+            hull, load = Hull.box(x * y, y, y * rng.uniform(0.8, 1.1)), (0.0, 0.0, 0.0)
+        body = Body(hull, mass=rng.uniform(0.1, 0.9) * 1025.0 * hull.volume, center_of_gravity=load)
+        if min(metacentric_height(body), metacentric_height(body, axis=1)) < -2e-3 * hull.size.max():
+            found.append(body)
+    return found
+
+
+def moved(body: Body, by: float = 1e-6) -> Body:
+    """The body with one vertex moved along y [m]: no real mesh is symmetric."""
+    points = body.hull.vertices + body.hull.centre
+    points[3, 1] += by
+    return body._replace(hull=Hull.from_arrays(points, body.hull.faces))
+
+
+def answers(body: Body) -> tuple[float | str, str]:
+    """The tilt [degrees] of rest, or the words of its refusal; and those of the refused response."""
+    try:
+        rest: float | str = math.degrees(2.0 * math.asin(math.hypot(*body.afloat().rotation[1:3])))
+    except ValueError as error:
+        rest = str(error)
+    with pytest.raises(ValueError, match=r"^body: 'GM = -") as refused:
+        response_amplitude(body, [1.0])
+    return rest, str(refused.value)
+
+
+def test_an_unstable_body_is_at_rest_where_it_turns_over_to_or_refused_with_its_gm():
+    """And its response is refused, and GZ about the upright position warned of; the same for a mesh that is moved."""
+    leaning, refused = 0, 0
+    for body in unstable():
+        (rest, words), (rest_of_moved, words_of_moved) = answers(body), answers(moved(body))
+        assert words == words_of_moved
+        if isinstance(rest, str):
+            refused += 1
+            assert re.match(r"body: 'GM = -\d.* m' is not allowed; allowed: .*stable within 60 degrees", rest)
+            assert rest_of_moved == rest
+        else:
+            leaning += 1
+            assert 1.0 < rest < 60.0
+            assert rest_of_moved == pytest.approx(rest, abs=0.01)
+        with pytest.warns(UserWarning, match=r"^GM = -\d.*: the body is not stable upright"):
+            arms = righting_arm(body, [-0.02, 0.02, 0.3])
+        with pytest.warns(UserWarning, match="GM"):
+            assert righting_arm(moved(body), [-0.02, 0.02, 0.3]) == pytest.approx(arms, abs=1e-3)
+    assert leaning >= 10
+    assert refused >= 10
+
+
+def test_a_square_log_of_half_the_density_of_water_floats_on_its_edge():
+    """Its diagonal in the water: the rest of a square section at half the density (Gilbert 1991, section 4)."""
+    rest = Body(Hull.box(10.0, 1.0, 1.0), density=512.5).afloat()
+    assert rest.rotation == pytest.approx((math.cos(math.pi / 8), math.sin(math.pi / 8), 0.0, 0.0), abs=1e-6)
+    assert rest.position[2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_leaning_body_stays_at_rest_in_still_water():
+    body = Body(Hull.box(10.0, 1.0, 1.1), density=450.0).afloat()
+    assert abs(body.rotation[1]) > 0.3
+    fleet = make_fleet([body])
+    for _ in range(60):
+        step(fleet, still_water(fleet), 1 / 60)
+    assert fleet.position[0] == pytest.approx(body.position, abs=1e-6)
+    assert fleet.rotation[0] == pytest.approx(body.rotation, abs=1e-6)
+
+
+def test_a_ball_of_any_mesh_is_neither_stable_nor_unstable_and_floats_upright():
+    for frequency in (1, 3, 5):
+        for density in (100.0, 300.0, 800.0):
+            ball = Body(Hull.sphere(1.0, frequency), density=density)
+            assert ball.afloat().rotation == (1.0, 0.0, 0.0, 0.0)
+            assert abs(response_amplitude(ball, [0.1])[0, 2]) == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_stable_mesh_that_is_not_quite_symmetric_has_a_response():
+    body, w = Body(Hull.box(8.0, 4.0, 2.0), density=500.0), [0.5, 1.5]
+    np.testing.assert_allclose(
+        response_amplitude(moved(body), w, 0.3)[:, 2:5], response_amplitude(body, w, 0.3)[:, 2:5], atol=0.02
+    )
+
+
+def test_a_capsized_body_keeps_its_heading_at_rest():
+    """Upside down with its x axis along y, it is at rest upright with the x axis along y."""
+    half = math.sqrt(0.5)
+    inverted = product((half, 0.0, 0.0, half), (0.0, 1.0, 0.0, 0.0))
+    rest = barge(rotation=inverted).afloat()
+    assert rest.rotation == pytest.approx((half, 0.0, 0.0, half))

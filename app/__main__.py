@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
-from app.bench import places
+from app.commands.checkout import ELSEWHERE, in_checkout, of_checkout
 from app.scenes import NAMES, scene_named
 from sim.quantities import read_number
 from sim.validation import ConvergenceError
@@ -27,7 +27,10 @@ def main(argv: list[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # A file name that the terminal cannot show is printed with replacements.
         sys.stdout.reconfigure(errors="backslashreplace")
-    arguments = make_parser().parse_args(complete(sys.argv[1:] if argv is None else argv))
+    words = complete(sys.argv[1:] if argv is None else argv)
+    if words[:1] == ["bench"] and not in_checkout():
+        return print_error(f"bench: {ELSEWHERE}", 2)
+    arguments = make_parser().parse_args(words)
     try:
         with cleaning_up_at_sigterm():
             status: int = arguments.command(arguments)
@@ -120,22 +123,10 @@ def make_parser() -> argparse.ArgumentParser:
 
     add_recording(commands)
 
-    bench = commands.add_parser("bench", help="measure run time against error, frames and start-up")
-    names = f"the benchmarks to run (default: all): {', '.join(places())}"
-    bench.add_argument("names", nargs="*", metavar="NAME", help=names)
-    bench.add_argument("--quick", action="store_true", help="fewer and shorter runs: a minute each")
-    bench.add_argument(
-        "--peers",
-        nargs="*",
-        metavar="PEER",
-        help="in a checkout: compare with the other programs that are installed; with words of names: only with those",
-    )
-    bench.add_argument("--out", type=Path, metavar="DIR", help="write tables (CSV) and figures to this folder")
-    bench.add_argument("--students", type=int, metavar="N", help="of the benchmark class: 1 to 100 (default: 8)")
-    bench.add_argument(
-        "--compare", nargs=2, metavar=("A", "B"), help="measure two commits of this repository in turns instead"
-    )
-    bench.set_defaults(command=run_bench)
+    if in_checkout():
+        bench = commands.add_parser("bench", help="measure run time against error, frames and start-up")
+        of_checkout("bench", "options").add_options(bench)
+        bench.set_defaults(command=run_bench)
 
     stability = commands.add_parser("stability", help="measure stability maps and energy drift beside theory")
     stability.add_argument("--quick", action="store_true", help="coarse maps: within a minute")
@@ -395,12 +386,10 @@ def run_export(arguments: argparse.Namespace) -> int:
 
 def run_bench(arguments: argparse.Namespace) -> int:
     """`springtide bench`."""
-    from app.bench.command import of_checkout, run
-
-    if arguments.compare:
-        compare = of_checkout("--compare", "compare").compare
-        return compare(arguments.names, tuple(arguments.compare), arguments.quick, arguments.out)
-    return run(arguments.names, arguments.quick, arguments.peers, arguments.out, arguments.students)
+    a = arguments
+    if a.compare:
+        return of_checkout("bench", "compare").compare(a.names, tuple(a.compare), a.quick, a.out)
+    return of_checkout("bench", "command").run(a.names, a.quick, a.peers, a.out, a.students)
 
 
 def run_stability(arguments: argparse.Namespace) -> int:
@@ -466,8 +455,6 @@ def run_hydrodynamics(arguments: argparse.Namespace) -> int:
     if arguments.compare == (arguments.hull is not None):
         raise ValueError("HULL: give a mesh file, or --compare without one")
     if arguments.compare:
-        from app.bench.command import of_checkout
-
         return of_checkout("--compare", "hydrodynamics").compare()
     from app.commands.hydrodynamics import make
 

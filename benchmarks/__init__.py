@@ -1,6 +1,7 @@
-"""Benchmarks of parts of Springtide, and other programs given the same tasks. In a checkout only: not installed.
+"""Benchmarks of Springtide, and other programs given the same tasks. In a checkout only: not installed.
 
-`springtide bench` finds it beside the package: cases/ as further benchmarks, command.py for `--peers`, compare.py for
-`--compare`. `springtide hydrodynamics --compare` finds hydrodynamics.py. native/ holds the loops in C, tasks/ the tasks
-with our own runs of them, peers/ the other programs.
+`python -m benchmarks`, or `springtide bench`, runs them: command.py holds their contract, cases/ the benchmarks,
+peers/ the other programs, tasks/ their tasks with our own runs of them, native/ the loops in C, compare.py the
+comparison of two commits, labs.py and pupil.py labs with clients. `springtide hydrodynamics --compare` runs
+hydrodynamics.py.
 """

@@ -1,37 +1,62 @@
-"""`springtide bench --peers`: the ladders of other programs in the tasks of rope, cloth, sea and mooring."""
+"""`springtide bench`: every module in cases/ is a benchmark, found by being there.
+
+A benchmark has `rows(quick)`, its table. It may have `findings(rows)`, a second table drawn from the first, and
+`figures(rows)`, figures by file name.
+"""
 
 import functools
+import importlib
 from collections.abc import Sequence
 from pathlib import Path
+from types import ModuleType
 
-from app.bench.command import keep
+from app.experiments import tables
+from app.files import make_out_folder
 from app.formats import text_tables
-from benchmarks.peers import ladder
-from benchmarks.tasks import cloth, mooring, rope, sea
+from benchmarks.options import places
+from benchmarks.peers.command import measure_peers
+from sim.parameters import choice_error
 from sim.validation import argument_error
 
-TASKS = {"cloth": cloth, "mooring": mooring, "rope": rope, "sea": sea}
+
+def benchmarks() -> dict[str, ModuleType]:
+    """Name -> module, in alphabetical order."""
+    return {name: importlib.import_module(place) for name, place in places().items()}
 
 
-def run(names: Sequence[str], quick: bool, words: Sequence[str], out: Path | None) -> None:
-    """Measure the ladders of the named tasks, or of all; print their tables and, with `out`, write them there.
+def run(
+    names: list[str],
+    quick: bool = False,
+    peers: Sequence[str] | None = None,
+    out: Path | None = None,
+    students: int | None = None,
+) -> int:
+    """Run the named benchmarks, or all; print their tables and, with `out`, write tables and figures there.
 
-    words: if there are any, only ladders with one of them in the names of task and peer. In `out`, rows of other
-    ladders stay as an earlier run left them. Raises ValueError for words that no ladder has.
+    peers: None, or words; then the ladders of other programs are measured too; with words only those that have one of
+    them in the names of task and peer, and nothing else. students: of the benchmark "class". Returns the exit status,
+    0. Raises ValueError for an unknown benchmark, students without "class", words that no ladder has, and an `out`
+    that is not a folder.
     """
-    measured = False
-    for name, task in TASKS.items():
-        rows = task.peer_rows(quick, words) if name in names or not names else []
-        if not rows:
-            continue
-        measured = True
+    known = benchmarks()
+    for name in names:
+        if name not in known:
+            raise choice_error("bench", name, known)
+    if students is not None and "class" not in names:
+        raise argument_error("--students", students, "a number together with the benchmark class")
+    make_out_folder("--out", out)
+    print(tables.machine())
+    for name in (names or known) if not peers else ():
+        case = known[name]
+        found = {name: case.rows(quick, students) if name == "class" else case.rows(quick)}
+        if hasattr(case, "findings"):
+            found[f"{name}_findings"] = case.findings(found[name])
+        for title, rows in found.items():
+            text_tables.show(title, rows)
         if out is not None:
-            rows = ladder.merged(out / f"{name}_peers.csv", rows)
-        summary = ladder.summary(rows)
-        text_tables.show(f"{name}_peers", ladder.shown(rows))
-        text_tables.show(f"{name}_peers_summary", summary)
-        if out is not None:
-            found = {f"{name}_peers": rows, f"{name}_peers_summary": summary}
-            keep(found, functools.partial(ladder.figures, f"{name}_peers", rows), out)
-    if words and not measured:
-        raise argument_error("--peers", " ".join(words), "words of a task or peer, as 'R(16)' or 'scipy'")
+            tables.keep(found, functools.partial(case.figures, found[name]) if hasattr(case, "figures") else dict, out)
+    if peers is not None:
+        measure_peers(names, quick, peers, out)
+    if out is not None:
+        tables.keep_machine(out)
+    return 0

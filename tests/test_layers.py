@@ -11,7 +11,6 @@ ROOT = Path(__file__).parent.parent
 SOURCES = sorted(path for top in ("sim", "app", "assets", "benchmarks", "tests") for path in (ROOT / top).rglob("*.py"))
 # Folders of app/ from left to right: none imports a folder to its left. Those of one entry do not import each other.
 ORDER = (
-    ("bench",),
     ("sweep", "stability", "export"),
     ("experiments",),
     ("commands", "notebook"),
@@ -177,11 +176,11 @@ def test_the_spine_is_typed():
     assert not offences(paths, "typing.Any")
 
 
-def test_nothing_that_ships_imports_the_tests_or_the_comparisons():
+def test_nothing_that_ships_imports_the_tests_or_the_benchmarks():
     assert not offences([*below("sim"), *below("app"), *below("assets")], "tests", "benchmarks")
 
 
-def test_the_comparisons_import_neither_the_tests_nor_viser():
+def test_the_benchmarks_import_neither_the_tests_nor_viser():
     assert not offences(below("benchmarks"), "tests", "viser")
 
 

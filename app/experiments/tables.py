@@ -3,7 +3,7 @@
 import csv
 import os
 import platform
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -52,6 +52,23 @@ def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
             with replacing(paths[-1]) as draft:
                 figure.savefig(draft, dpi=150, bbox_inches="tight")
     return paths
+
+
+def keep(found: dict[str, Rows], figures: Callable[[], dict[str, Any]], out: Path) -> None:
+    """Write tables and their figures to a folder; figures only if matplotlib is installed."""
+    for title, rows in found.items():
+        save_table(rows, out / f"{title}.csv")
+    try:
+        save_figures(figures(), out)
+    except ModuleNotFoundError as missing:
+        print(f"no figures of {', '.join(found)}: {missing.name} is not installed (pip install '.[plot]')")
+
+
+def keep_machine(out: Path) -> None:
+    """Write the machine that the tables of a folder were measured on, and print where they are."""
+    with replacing(out / "machine.txt") as draft:
+        draft.write_text(machine() + "\n", encoding="utf-8")
+    print(f"kept in {out}")
 
 
 def front(rows: Rows) -> list[str]:

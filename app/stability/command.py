@@ -1,5 +1,6 @@
 """`springtide stability`: measure, print tables, and write tables and figures."""
 
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,6 @@ from app.experiments import tables
 from app.files import make_out_folder
 from app.formats import text_tables
 from app.stability import damping, drift, figures, linear, rope
-from sim.files import replacing
 
 PARTS: tuple[tuple[str, str, Any, Callable[[Any], Any], Callable[[Any], Any]], ...] = (
     ("linear", "Linear oscillator, h ω and ζ", linear, linear.boundary_rows, figures.linear_figure),
@@ -33,14 +33,13 @@ def run(quick: bool = False, out: Path | None = None, workers: int = 0) -> int:
         text_tables.show(title, table)
         if out is None:
             continue
-        tables.save_table(table, out / f"{name}.csv")
-        tables.save_table(details(found), out / f"{name}_curves.csv")
-        try:
-            tables.save_figures({name: figure(found)}, out)
-        except ModuleNotFoundError as missing:
-            print(f"no figure of {name}: {missing.name} is not installed (pip install '.[plot]')")
+        kept = {name: table, f"{name}_curves": details(found)}
+        tables.keep(kept, functools.partial(named_figure, name, figure, found), out)
     if out is not None:
-        with replacing(out / "machine.txt") as draft:
-            draft.write_text(tables.machine() + "\n", encoding="utf-8")
-        print(f"kept in {out}")
+        tables.keep_machine(out)
     return 0
+
+
+def named_figure(name: str, figure: Callable[[Any], Any], found: Any) -> dict[str, Any]:
+    """The figure of a map, by its name."""
+    return {name: figure(found)}

@@ -1,1 +1,1 @@
-"""Benchmarks of parts, some against C. Every module in this folder is one; `app/bench/command.py` has the contract."""
+"""The benchmarks: every module in this folder is one. `benchmarks/command.py` has their contract."""

@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 from rich.progress import track
 
-from app.bench.reference import RESOLUTION, Positions, Reference, largest_distances
 from app.experiments.tables import front
+from benchmarks.reference import RESOLUTION, Positions, Reference, largest_distances
 from benchmarks.timing import processor_time
 from sim.springs import INTEGRATORS, Net, cloth
 from sim.springs.stability import critical_step

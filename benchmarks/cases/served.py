@@ -3,7 +3,7 @@
 import time
 from typing import Any
 
-from app.bench.labs import listened_to, viewer_here
+from benchmarks.labs import listened_to, viewer_here
 
 PRESETS = {
     "square_sea": ("Earth breeze", "Storm arriving", "Rain shower"),

@@ -5,9 +5,9 @@ import shutil
 import time
 from typing import Any
 
-from app.bench.labs import viewer_here
 from app.messages import Pause, Play, Reset
 from app.scenes import NAMES
+from benchmarks.labs import viewer_here
 
 BROWSER_FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 STATES = ("nobody looking", "paused", "running", "running with plots")

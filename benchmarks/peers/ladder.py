@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 
 from rich.progress import track
 
-from app.bench.reference import RESOLUTION, largest_distances
 from app.formats.text_tables import Rows
 from benchmarks.peers.own_runs import OwnRuns
 from benchmarks.peers.record import Peer
+from benchmarks.reference import RESOLUTION, largest_distances
 from sim.springs.stability import critical_step
 
 FRACTIONS = (0.8, 0.4, 0.2, 0.1)  # over leapfrog's critical step, for peers that take steps

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from app.bench.reference import RESOLUTION, Positions, Reference, largest_distances
+from benchmarks.reference import RESOLUTION, Positions, Reference, largest_distances
 from benchmarks.timing import processor_time
 
 CANDIDATES = 4  # runs that are timed again before the quickest is chosen

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.bench.reference import Positions, Reference
 from app.formats.text_tables import Rows
 from benchmarks.peers.ladder import Task, tables
 from benchmarks.peers.own_runs import OwnRun, OwnRuns
 from benchmarks.peers.rope import PEERS
+from benchmarks.reference import Positions, Reference
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, steps_for

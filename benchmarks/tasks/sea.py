@@ -5,11 +5,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.bench.reference import Reference
 from app.formats.text_tables import Rows
 from benchmarks.peers.ladder import Task, tables
 from benchmarks.peers.own_runs import OwnRun, OwnRuns
 from benchmarks.peers.sea import PEERS, PRECISIONS, TIME, extended
+from benchmarks.reference import Reference
 from sim.ocean import Sea
 
 

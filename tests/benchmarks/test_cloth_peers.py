@@ -3,13 +3,13 @@ import math
 import numpy as np
 import pytest
 
-from app.bench.reference import largest_distances
 from benchmarks.cases import cloth
 from benchmarks.peers import cloth as cloth_peers
 from benchmarks.peers import cloth_engines
 from benchmarks.peers.ladder import rungs
 from benchmarks.peers.own_runs import OwnRuns
 from benchmarks.peers.record import is_installed
+from benchmarks.reference import largest_distances
 from benchmarks.tasks.cloth import ladders
 from sim.springs.forces.acceleration import set_acceleration
 

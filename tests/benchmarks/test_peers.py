@@ -5,16 +5,16 @@ import time
 import numpy as np
 import pytest
 
-from app.bench import command
-from app.bench.cases import rope as rope_case
-from app.bench.reference import Reference, largest_distances
 from app.experiments import tables
+from benchmarks import command
+from benchmarks.cases import rope as rope_case
 from benchmarks.peers import ladder as peer_ladder
 from benchmarks.peers.ladder import Task, compared, rungs, summary, undisturbed_time
 from benchmarks.peers.own_runs import OwnRun, OwnRuns, Result
 from benchmarks.peers.record import Peer, is_installed
 from benchmarks.peers.rope import PEERS
 from benchmarks.peers.sea import PRECISIONS, student
+from benchmarks.reference import Reference, largest_distances
 from benchmarks.tasks import rope, sea
 from sim.springs.stability import critical_step
 from tests.sim.springs.reference import exact

@@ -11,10 +11,10 @@ from unittest import mock
 import pytest
 
 from app.__main__ import make_parser
-from app.bench.command import benchmarks
 from app.notebook.server_proxy import LAB_VARIABLE
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import FILE_KEYS, read_file
+from benchmarks.command import benchmarks
 from sim.parameters import parameters_of
 from sim.springs import INTEGRATORS
 from tests.docs.pages import PAGES, ROOT, TEST, commands, links, named_tests, paths, prose_of, text_of

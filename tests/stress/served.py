@@ -17,7 +17,7 @@ import msgspec
 import viser
 from websockets.sync.client import ClientConnection, connect
 
-from app.bench.pupil import decoded
+from benchmarks.pupil import decoded
 from tests.stress.clients import CAMERA
 
 STATUS_WORDS = 'class="springtide-panel"'  # in the panel's status line, and nowhere else

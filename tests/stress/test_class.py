@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from app.bench.pupil import STIFFNESS, Pupil
 from app.lab.answers import read_answers
 from app.lab.folder import make_folder
 from app.lab.task import load_tasks
 from app.scenes.last_setup import read_last
+from benchmarks.pupil import STIFFNESS, Pupil
 
-CLASS = importlib.import_module("app.bench.cases.class_")
+CLASS = importlib.import_module("benchmarks.cases.class_")
 TASKS = load_tasks(with_checks=False)
 LABS, ROUNDS = 30, 1
 MAX_LIFE = 4.0  # [s] of a lab from the first answer on

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from app.bench import command
-from app.bench.pupil import STIFFNESS, Pupil
+from benchmarks import command
+from benchmarks.pupil import STIFFNESS, Pupil
 
-CLASS = importlib.import_module("app.bench.cases.class_")
+CLASS = importlib.import_module("benchmarks.cases.class_")
 
 
 def test_spread_is_median_95_percent_and_worst_from_either_end() -> None:

@@ -1,12 +1,17 @@
 import csv
+import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
-from app.bench import command
-from app.bench.cases import rope
+from app.__main__ import main
+from app.commands.checkout import ELSEWHERE
 from app.experiments import tables
 from app.formats import text_tables
+from benchmarks import command
+from benchmarks.cases import rope
 
 
 def ladder(order: int, method: str) -> text_tables.Rows:
@@ -33,12 +38,19 @@ def test_an_unknown_benchmark_is_refused_with_the_known_ones():
         command.run(["ropes"])
 
 
-def test_an_installed_program_says_in_one_line_where_its_comparisons_are(tmp_path, monkeypatch):
-    assert {"kernels", "cloth_forces", "wave_sum"} <= set(command.benchmarks())
-    monkeypatch.setattr("app.bench.CHECKOUT", tmp_path)
-    for names, peers in ((["kernels"], None), (["rope"], ["dop999"])):
-        with pytest.raises(ValueError, match=r"^.*work in a checkout, where benchmarks/ lies$"):
-            command.run(names, peers=peers)
+def test_an_installed_program_says_in_one_line_where_its_benchmarks_are(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("app.commands.checkout.CHECKOUT", tmp_path)
+    for words in (["bench"], ["bench", "rope", "--quick"], ["bench", "--peers", "dop999"]):
+        assert main(words) == 2
+        assert capsys.readouterr().err == f"springtide: bench: {ELSEWHERE}\n"
+    assert main(["hydrodynamics", "--compare"]) == 2
+    assert "--compare: works only in a checkout" in capsys.readouterr().err
+
+
+def test_the_module_is_the_command():
+    done = subprocess.run([sys.executable, "-m", "benchmarks", "ropes"], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert re.match(r"springtide: bench: 'ropes' is not allowed; allowed: one of .*rope", done.stderr)
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):

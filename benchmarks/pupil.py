@@ -16,7 +16,7 @@ import msgspec
 import zstandard
 from websockets.asyncio.client import ClientConnection
 
-from app.bench.labs import connected
+from benchmarks.labs import connected
 
 STATUS = re.compile(r'data-state="(\w+)".*? t = ([\d.]+) s')
 SLOW_MOTION = "Slow motion"  # in the status line while a run that left its bounds is shown again

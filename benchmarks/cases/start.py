@@ -10,8 +10,8 @@ import time
 import urllib.request
 from typing import Any
 
-from app.bench.labs import connected, served
 from app.scenes import NAMES
+from benchmarks.labs import connected, served
 
 STEPS = {
     "numpy and numba alone": "import numpy, numba",

@@ -20,10 +20,10 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from app.bench.labs import served
-from app.bench.pupil import Pupil
 from app.lab.folder import make_folder
 from app.lab.task import load_tasks
+from benchmarks.labs import served
+from benchmarks.pupil import Pupil
 from sim.validation import argument_error
 
 STUDENTS, QUICK_STUDENTS, MAX_STUDENTS = 8, 2, 100

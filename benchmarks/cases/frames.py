@@ -4,8 +4,8 @@ import statistics
 import time
 from typing import Any
 
-from app.bench.labs import viewer_here
 from app.scenes import NAMES
+from benchmarks.labs import viewer_here
 
 FRAME_INTERVAL = 1 / 30  # [s] of simulated time in a frame, for every scene
 

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import track
 
-from app.bench.reference import RESOLUTION, Reference, largest_distances
 from app.experiments.tables import front
+from benchmarks.reference import RESOLUTION, Reference, largest_distances
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.state import State, advance
 

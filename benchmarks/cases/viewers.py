@@ -3,7 +3,7 @@
 import time
 from typing import Any
 
-from app.bench.labs import listened_to, viewer_here
+from benchmarks.labs import listened_to, viewer_here
 
 NAMES = ("square_sea", "radial_sea")
 SETTLING = 8.0  # [s] until all clients have the scene

@@ -1,6 +1,6 @@
 """Labs and their clients, for benchmarks. Clients read all messages and draw nothing.
 
-`python -m app.bench.labs PORT CLIENTS` is a separate process of clients, so that their time is not counted for the lab.
+`python -m benchmarks.labs PORT CLIENTS` is a process of clients, so that their time is not counted for the lab.
 """
 
 import asyncio
@@ -64,7 +64,7 @@ def viewer_here(*, shaders: bool = False) -> Iterator[Any]:
 @contextlib.contextmanager
 def listened_to(viewer: Any, clients: int = 1) -> Iterator[None]:
     """Inside, so many clients of a separate process listen to the lab. Raises RuntimeError if they do not connect."""
-    listeners = subprocess.Popen([sys.executable, "-m", "app.bench.labs", str(viewer.port), str(clients)])
+    listeners = subprocess.Popen([sys.executable, "-m", "benchmarks.labs", str(viewer.port), str(clients)])
     try:
         end = time.monotonic() + MAX_WAIT
         while len(viewer.server.get_clients()) < clients:

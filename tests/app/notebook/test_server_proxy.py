@@ -40,9 +40,7 @@ def test_the_students_folder_is_made_once_and_run(
     assert capsys.readouterr().err.startswith("springtide: SPRINGTIDE_LAB: ")
 
 
-def test_exercises_are_made_beside_other_files_and_change_none(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_exercises_are_made_beside_other_files_and_change_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "untitled.txt").write_text("")
     (tmp_path / ".data").mkdir()
     (tmp_path / "rope.py").write_text("mine")

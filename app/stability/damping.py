@@ -84,7 +84,7 @@ def limits(net_name: str, name: str, damping: float) -> tuple[float, float]:
 
 def measure(quick: bool = False, workers: int = 0) -> list[DampingRow]:
     """All integrators and networks. workers: processes, 0 for one on each core."""
-    dampings = np.array([0.0, *np.geomspace(10.0, MAX_DAMPING, 3 if quick else 9)])
+    dampings = np.array([0.0, *(np.geomspace(10.0, MAX_DAMPING, 3) if quick else np.geomspace(1.0, MAX_DAMPING, 11))])
     pairs = [(net, name) for net in networks() for name in INTEGRATORS]
     found = spread(limits, [(*pair, float(b)) for pair in pairs for b in dampings], "step and damping", workers)
     table = np.array(found).reshape(len(pairs), len(dampings), 2)

@@ -14,6 +14,7 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
+from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.html import stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, SPHERE
 from app.scenes.springs.tracking import CriticallyDampedTracker
@@ -378,6 +379,16 @@ def test_the_stability_bar_has_the_step_in_the_colour_of_its_verdict(h_omega: fl
     bar = stability_bar(Gauge(h_omega / 1e-3, 0.0, h_omega, 2.0, 2e-3, 1e-3 * h_omega, h_omega / 1e-3))
     assert coloured(f"{share}\u00a0%", colour) in bar
     assert f"width:{min(50.0 * h_omega, 100.0):.0f}%;background:{colour}" in bar
+
+
+def test_the_panel_says_what_limits_a_step_that_only_damping_limits() -> None:
+    """The mode nearest to the limit is not stiff; leapfrog's limit is that of the stiffest, 2/50 s."""
+    gauge = Gauge(0.0, math.inf, 0.0, 0.0, 1e-3, 2e-3, 50.0)
+    assert "(damping alone limits it)" in stability_bar(gauge)
+    assert "200\u00a0%" in stability_bar(gauge)
+    assert leapfrog_alternative(INTEGRATORS["rk4"], gauge) == "leapfrog with one up to 1/25 s (40 ms)"
+    text = divergence_text(1.0, INTEGRATORS["rk4"], 2e-3, gauge, "")
+    assert "200\u00a0% of the largest stable one for Runge-Kutta 4 (damping alone limits it)" in text
 
 
 def test_a_rope_has_left_its_bounds_at_three_times_the_length_it_hangs_at() -> None:

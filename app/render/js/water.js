@@ -24,7 +24,7 @@ function uniformsOf(base, mesh) {
   if (!uniformsByName.has(base)) {
     const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
-    for (const name of ["wavePlaces", "waveSlopes"]) uniforms[name] = { value: null };
+    for (const name of ["wavePlaces", "waveSlopes", "skyTable"]) uniforms[name] = { value: null };
     uniforms.waterlines = { value: Array.from({ length: 4 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
     uniformsByName.set(base, uniforms);
   }
@@ -214,6 +214,7 @@ shaders.push({
     }
     if (!applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array)) return null;
     readMaterial(sea, data);
+    drawSkyTable(base, sea, renderer, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);
     const lines = meshOf(`${base}/water_lines`);
     if (lines) {
@@ -234,7 +235,7 @@ shaders.push({
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
       shader.vertexShader = waterVertex(false);
-      shader.fragmentShader = withDetails(WATER_FRAGMENT);
+      shader.fragmentShader = withSky(WATER_FRAGMENT, sea.uniforms);
     };
     if (!replaceShader(mesh.material, keyWithDetails(`springtide-water${base}`), edit)) {
       disposeSea(sea);
@@ -264,7 +265,7 @@ shaders.push({
         const farDepth = { value: renderer.state.buffers.depth.getReversed() ? 0 : 1 };
         Object.assign(shader.uniforms, sea.uniforms, { farDepth });
         shader.vertexShader = DOME_VERTEX;
-        shader.fragmentShader = withDetails(DOME_FRAGMENT);
+        shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
       });
     }
     if (wireframe && !sea.wire) sea.wire = makeWire(sea);

@@ -4,6 +4,16 @@
 // and positions are those of the sea's node, z up; "world" is three's own frame. DETAILS (quality.js): 2 all, 1 less,
 // 0 least. What is not shown makes the water rough instead, so that its light stays the same.
 
+// The table of the sky: SKY_ROWS elevations at each of these blurs, the same of the sky as it is seen, then the haze at the
+// horizon, its mean and that of the sky.
+const SKY_BLUR = [0.08, 0.2, 0.33, 0.55, 0.8], SKY_ROWS = 64, SKY_COLUMNS = 256;
+const SKY_TABLE = `
+  #define SKY_TABLE
+  #define SKY_ROWS ${SKY_ROWS}
+  #define SKY_BLURS ${SKY_BLUR.length}
+  #define SKY_HEIGHT ${(SKY_BLUR.length + 1) * SKY_ROWS + 3}
+  const float[SKY_BLURS] SKY_BLUR = float[](${SKY_BLUR.map((blur) => blur.toFixed(2))});`;
+
 const WATER_GLSL = {
   // The waves of a periodic tile, as textures. Near the eye the sea is that tile, which the simulation moves. Farther
   // away than a tile is long it is made of pieces of the tile that lie at random places, as a tile that repeats is seen
@@ -151,8 +161,8 @@ const WATER_GLSL = {
       return vec4(mix(c, cloud, cover * 0.92 * smoothstep(0.0, 0.09, d.z)), cover);
     }
 
-    // Radiance of the sky without clouds in the direction d.
-    vec3 sky(vec3 d, float blur) {
+    // Radiance of the photograph as it is drawn in the direction d.
+    vec3 drawnPhotograph(vec3 d, float blur) {
       vec3 c = photograph(photographDirection(d, 1.0), blur);
       // Opposite to the sun the two ends of the spread photograph meet. There each is blended with its mirror image.
       if (skyFold.x < 1.0) {
@@ -163,25 +173,51 @@ const WATER_GLSL = {
       return c;
     }
 
-    // Mean radiance of the sky.
-    vec3 ambientLight() { return photograph(vec3(0.0, 0.0, 1.0), 1.0); }
-
     uniform vec3 rainVeil; // extinction of light by rain [1/m], height from which it falls [m], unused
+    vec3 levelOf(vec3 d) { return vec3(d.xy / max(length(d.xy), 1e-4), 0.0); }
 
-    // Radiance of the haze in the direction d.
-    vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }
+    // sky: radiance of the sky without clouds in the direction d. ambientLight: its mean. horizon: of the haze in the
+    // direction d. meanHorizon: the mean of both sides, which is scattered where the direction is steep, and lights from
+    // around. clearSky: the sky as it is seen. With a table (sky_table.js) they are looked up in it.
+    #if defined(SKY_TABLE) && defined(USE_ENVMAP)
+      uniform highp sampler2D skyTable;
+      vec3 skyRow(vec3 d, float row) {
+        return textureLod(skyTable, vec2(atan(d.y, d.x + 1e-9) / 6.2831853, (row + 0.5) / float(SKY_HEIGHT)), 0.0).rgb;
+      }
+      float skyElevation(vec3 d) { return sqrt(asin(clamp(d.z, 0.0, 1.0)) / 1.5707963) * float(SKY_ROWS - 1); }
+      vec3 sky(vec3 d, float blur) {
+        float row = skyElevation(d), block = 0.0;
+        for (int k = 1; k < SKY_BLURS; k++) block += clamp((blur - SKY_BLUR[k - 1]) / (SKY_BLUR[k] - SKY_BLUR[k - 1]), 0.0, 1.0);
+        float low = min(floor(block), float(SKY_BLURS - 2));
+        vec3 sharp = skyRow(d, low * float(SKY_ROWS) + row), soft = skyRow(d, (low + 1.0) * float(SKY_ROWS) + row);
+        return mix(sharp, soft, block - low);
+      }
+      vec3 clearSky(vec3 d) { return skyRow(d, float(SKY_BLURS * SKY_ROWS) + skyElevation(d)); }
+      vec3 horizon(vec3 d) { return skyRow(d, float(SKY_HEIGHT - 3)); }
+      vec3 meanHorizon() { return texelFetch(skyTable, ivec2(0, SKY_HEIGHT - 2), 0).rgb; }
+      vec3 ambientLight() { return texelFetch(skyTable, ivec2(0, SKY_HEIGHT - 1), 0).rgb; }
+    #else
+      vec3 sky(vec3 d, float blur) { return drawnPhotograph(d, blur); }
+      vec3 ambientLight() { return photograph(vec3(0.0, 0.0, 1.0), 1.0); }
+      vec3 horizon(vec3 d) { return sky(levelOf(d), skyFold.y); }
+      vec3 meanHorizon() { return 0.5 * (horizon(sunDirection) + horizon(-sunDirection)); }
+      // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
+      vec3 clearSky(vec3 d) {
+        vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
+        vec3 w = vec3(0.3, 0.5, 0.2);
+        float light = dot(sharp, w), even = dot(soft, w);
+        float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
+        return mix(soft * (light / even), sharp, detail);
+      }
+    #endif
 
     // The glow of the air around the sun, at a distance from its direction.
     float sunGlow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0) + 2.4 * lens.z * exp(-off * 60.0); }
 
     // Radiance at the horizon in the direction d, which sea and sky have in common there.
     vec3 horizonGlow(vec3 d) {
-      vec3 level = vec3(d.xy / max(length(d.xy), 1e-4), 0.0);
-      return horizon(d) + sunLight * sunGlow(length(level - sunDirection));
+      return horizon(d) + sunLight * sunGlow(length(levelOf(d) - sunDirection));
     }
-
-    // The mean of both sides: what is scattered where the direction is steep, and what lights from around.
-    vec3 meanHorizon() { return 0.5 * (horizon(sunDirection) + horizon(-sunDirection)); }
 
     // Radiance c of the sky in the direction d as it is seen through the rain.
     vec3 behindRain(vec3 c, vec3 d) {
@@ -637,14 +673,6 @@ const WATER_GLSL = {
   dome: `
     // The sun's disc, twice as wide as the true one.
     float sunDisc(float off) { return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)); }
-    // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
-    vec3 clearSky(vec3 d) {
-      vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
-      vec3 w = vec3(0.3, 0.5, 0.2);
-      float light = dot(sharp, w), even = dot(soft, w);
-      float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
-      return mix(soft * (light / even), sharp, detail);
-    }
     // The light from the sky in the direction d, above the horizon.
     vec3 skyLight(vec3 d) {
       float off = length(d - sunDirection);

@@ -232,12 +232,13 @@ shaders.push({
         makeTiles(sea, count, length);
       }
     }
+    const isCut = sea.uniforms.cutout.value.z > 0;
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
       shader.vertexShader = waterVertex(false);
-      shader.fragmentShader = withSky(WATER_FRAGMENT, sea.uniforms);
+      shader.fragmentShader = withSky(isCut ? `#define CUTOUT\n${WATER_FRAGMENT}` : WATER_FRAGMENT, sea.uniforms);
     };
-    if (!replaceShader(mesh.material, keyWithDetails(`springtide-water${base}`), edit)) {
+    if (!replaceShader(mesh.material, keyWithDetails(`springtide-water${base}${isCut ? " cut" : ""}`), edit)) {
       disposeSea(sea);
       delete mesh.geometry.computeVertexNormals;
       showPhotograph(scene, true);

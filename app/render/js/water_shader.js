@@ -741,9 +741,12 @@ const WATER_FRAGMENT = `
   uniform vec3 cutout; // middle x, y of a side of the rectangle without surface, half its length [m] (0: no cutout)
   uniform vec3 cutoutDirection; // unit vector from that side to the opposite one, and their distance [m]
   void main() {
-    vec2 from = vSea.xy - cutout.xy;
-    float across = dot(from, cutoutDirection.xy), along = dot(from, vec2(-cutoutDirection.y, cutoutDirection.x));
-    if (across > 0.0 && across < cutoutDirection.z && abs(along) < cutout.z) discard;
+    // A shader with "discard" shades the waves that are hidden, too.
+    #ifdef CUTOUT
+      vec2 from = vSea.xy - cutout.xy;
+      float across = dot(from, cutoutDirection.xy), along = dot(from, vec2(-cutoutDirection.y, cutoutDirection.x));
+      if (across > 0.0 && across < cutoutDirection.z && abs(along) < cutout.z) discard;
+    #endif
     // Waves of a mesh that is no grid become flat towards its rim, as the sea beyond it is flat.
     float flatness = extent.y > 0.0 && grid.x == 0.0 ? smoothstep(0.8, 1.0, length(vSea.xy) / grid.z) : 0.0;
     gl_FragColor = vec4(shadeSea(vSea, vRest, vSlopeAndFoam * vec3(1.0, 1.0, 1.0 - flatness), flatness), 1.0);

@@ -3,6 +3,7 @@
 import functools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,8 +18,8 @@ RAIN_HEIGHT = 350.0  # [m] of the clouds from which rain falls
 # here; `js/water_shader.js` declares each of them with its meaning.
 WATER_UNIFORMS = (
     "deepColor", "scatterColor", "foamColor", "sunDirection", "sunLight", "optics", "lens", "ripple", "skyline",
-    "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "extent", "wireColor", "slick", "slickOptics",
-    "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection", "rainRings", "rainVeil",
+    "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "ringLaw", "gridMiddle", "shown", "wireColor", "slick",
+    "slickOptics", "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection", "rainRings", "rainVeil",
     "firePlace", "fireLight", "gaugePlace",
 )  # fmt: skip
 MAX_WATERLINES = 13  # that the shader of the water mirrors, and draws foam and shade around
@@ -104,7 +105,7 @@ class Material:
     # reduced to its half, so that no place of the photograph is too bright.
     sky_fold: tuple[float, float, float] = (1.0, 0.3, 12.0)
     sky_tint: RGB = (1.0, 1.0, 1.0)  # colour filter on the photograph, linear, any value from 0
-    draw_sky: bool = True  # draw the sky, and the sea beyond the mesh
+    draw_sky: bool = True
 
     # Drops that make a ring [1/(m2 s)] (0: no rain), wavelength [m] and speed [m/s] of the rings.
     rain_rings: tuple[float, float, float] = (0.0, 0.017, 0.23)
@@ -115,7 +116,7 @@ class Material:
     # x, y [m] around which the waves drawn are those of the tile, and 1, or 0 where there is no such place.
     gauge_place: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    wireframe: bool = False  # draw the grid of the mesh
+    wireframe: bool = False  # draw the simulated grid
     wire_color: RGB = (0.95, 0.55, 0.1)
     oil: Oil | None = None
     slick: SlickRegion | None = None  # of that oil
@@ -168,13 +169,22 @@ def waterline_table(waterlines: Sequence[Waterline]) -> np.ndarray:
     return table
 
 
+class Grid(NamedTuple):
+    """The simulated grid of a sea, as the shader reads it."""
+
+    rows: int  # of vertices; of rings, with the middle
+    columns: int  # of vertices; spokes
+    size: float  # [m] side of the tile, or radius of the last ring
+    # Exponent of the radii of the rings (0: geometric), radius of the first [m] (0: a tile), ratio of their steps.
+    ring_law: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
 def uniform_table(
-    material: Material, sea_state: tuple[float, float, float], grid: tuple[int, int, float], tiles: int
+    material: Material, sea_state: tuple[float, float, float], grid: Grid, middle: tuple[float, float] = (0.0, 0.0)
 ) -> np.ndarray:
     """The uniforms of the water shader, (len(WATER_UNIFORMS), 3) float32, in their order.
 
-    sea_state: time [s], significant height [m], mean square slope. grid: rows and columns of vertices (0 for a mesh
-    that is no grid), and the side of a tile or the radius of the mesh [m]. tiles: along a side.
+    sea_state: time [s], significant height [m], mean square slope. middle: x, y [m] of the middle of the rings.
     """
     m, oil, slick, cutout = material, material.oil, material.slick, material.cutout
     sun = np.asarray(m.sun_direction, float)
@@ -194,8 +204,10 @@ def uniform_table(
         "clouds": (m.clouds, m.cloud_size, m.cloud_darkness),
         "wind": (m.ripple_direction, m.gravity, m.foam_scale),
         "seaState": sea_state,
-        "grid": grid,
-        "extent": (tiles, float(m.draw_sky), float(m.wireframe)),
+        "grid": grid[:3],
+        "ringLaw": grid.ring_law,
+        "gridMiddle": (*middle, 0.0),
+        "shown": (float(m.draw_sky), float(m.wireframe), 0.0),
         "wireColor": linear(m.wire_color),
         "slick": nothing if slick is None else (*slick.centre, slick.radius),
         "slickOptics": nothing if slick is None else (slick.thickness, slick.roughness, slick.ripple_factor),

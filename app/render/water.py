@@ -8,7 +8,7 @@ slick and grid.
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import viser
@@ -16,69 +16,66 @@ import viser
 from app.formats.surface_fields import SurfaceNumbers, pack_fields, set_surface_fields
 from app.render.cameras import lowest_camera
 from app.render.injection import add_data_mesh, injector_of
-from app.render.material import WATER_UNIFORMS, Material, Waterline, as_bytes, uniform_table, waterline_table
+from app.render.material import WATER_UNIFORMS, Grid, Material, Waterline, as_bytes, uniform_table, waterline_table
 from app.render.skies import CAMERA_RANGE
 from app.render.viser_inside import set_arrays
-from sim.validation import argument_error
+from sim.ocean.radial_grid import RadialGrid
 
 RIPPLE_PERIOD = 1024.0  # [s] after which ripples start again: their phases are single precision in the browser
 MIN_STEP, MAX_STEP = 2.5e-4, 4e-3  # [m] to which displacements are rounded before they are sent
 RECORDED_STEP = 2e-3  # [m] the same where there is no camera: in a replay
 STEP_ANGLE = 7e-4  # the step over the height of the lowest camera: half a pixel at 1080 rows and 75 degrees
-SEA_STATE = WATER_UNIFORMS.index("seaState")  # row of the table of uniforms that changes in each frame
+SEA_STATE, GRID_MIDDLE = map(WATER_UNIFORMS.index, ("seaState", "gridMiddle"))  # rows that change in each frame
 PLAIN_FOAM_COLOUR = (235, 240, 242)
 PLAIN_MESH_DEPTH = 0.5  # [m] below the water at which a plain mesh is hidden
 PLAIN_MESH_HEIGHT = 0.02  # [m] above the water at which it shows
 PLAIN_FOAM_LIMIT = 0.35  # foam above which the plain foam mesh shows
 
 
-class Water:
-    """A sea of rows x cols points that changes every frame.
+class Tile(NamedTuple):
+    """A square periodic tile of sea."""
 
-    Without `faces` the points are a square periodic tile of side length [m]: [i, j] rests at x = i length/rows,
-    y = j length/cols, the row and column that close the tile are added here, and tiles x tiles (odd) copies of it are
-    drawn from the same buffers. With `faces`, (m, 3) indices into the rows * cols points, it is a mesh of any shape
-    around the origin, drawn once, with radius length [m]; its points rest about `rest`, (rows * cols, 3) [m], which
-    lies in rows of `columns` neighbours.
-    Raises ValueError for an even number of tiles.
+    rows: int  # of points along x
+    cols: int  # along y
+    length: float  # [m] of a side
+
+
+class Water:
+    """A sea that changes every frame, simulated on the points of `shape`; the browser draws it up to the horizon.
+
+    The points of a tile are (rows, cols): [i, j] rests at x = i length/rows, y = j length/cols. The tile is periodic;
+    the row and column that close it are added here. Those of a radial grid are (1, n), in the grid's order.
     """
 
     def __init__(
         self,
         server: viser.ViserServer,
         name: str,
-        rows: int,
-        cols: int,
-        length: float,
-        *,
-        tiles: int = 1,
-        faces: np.ndarray | None = None,
-        rest: np.ndarray | None = None,
-        columns: int = 1,
+        shape: Tile | RadialGrid,
         material: Material | None = None,
     ) -> None:
-        if tiles < 1 or tiles % 2 == 0:
-            raise argument_error("tiles", tiles, "an odd number")
         self.name = name
         self._server = server
-        self._shape = (rows, cols)
-        self._length = length
-        self._grid = faces is None
-        self._tiles = tiles if self._grid else 1
         self._material = material or Material()
         self._sea_state = (0.0, 1.0, 0.0)  # time [s], significant height [m], mean square slope
-        if faces is None:
+        self._middle = (0.0, 0.0)  # [m] of the rings
+        self._is_tile = isinstance(shape, Tile)
+        if isinstance(shape, Tile):
+            rows, cols, length = shape
             i, j = np.meshgrid(np.arange(rows + 1), np.arange(cols + 1), indexing="ij")
             rest = np.stack([i * length / rows, j * length / cols, 0.0 * i], axis=-1)
             corner = (i * (cols + 1) + j)[:-1, :-1].ravel()
             a, b, c, d = corner, corner + cols + 1, corner + cols + 2, corner + 1
             self._faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]).astype(np.uint32)
+            self._grid, self._columns = Grid(rows + 1, cols + 1, length), cols + 1
         else:
-            rest = np.zeros((rows, cols, 3)) if rest is None else rest.reshape(rows, cols, 3)
-            self._faces = np.asarray(faces, np.uint32)
+            rows, cols = 1, len(shape)
+            rest = np.column_stack([shape.x, shape.y, np.zeros(len(shape))])[None]
+            self._faces = shape.faces
+            self._grid = Grid(shape.rings + 1, shape.spokes, float(shape.radii[-1]), shape.ring_law)
+            self._columns = shape.spokes
         points = rest.reshape(-1, 3).astype(np.float32)
         self._rest = np.ascontiguousarray(points[:, :2].T)
-        self._columns = cols + 1 if self._grid else columns
         self._fields = np.empty((6, self._rest.shape[1]), np.float32)  # displacement, slopes and foam
         self.mesh = server.scene.add_mesh_simple(
             name, points, self._faces, color=self._plain_color(), cast_shadow=False, receive_shadow=False
@@ -96,14 +93,19 @@ class Water:
             self._injector.watch(name)
 
     def set_surface(
-        self, vertices: np.ndarray, slopes: np.ndarray, foam: np.ndarray, time: float = 0.0
+        self,
+        vertices: np.ndarray,
+        slopes: np.ndarray,
+        foam: np.ndarray,
+        time: float = 0.0,
+        middle: tuple[float, float] = (0.0, 0.0),
     ) -> np.ndarray | None:
         """Draw this surface; call it where a picture is handed over as one. Arrays are copied.
 
         Returns what `pack_fields` made of it for the browsers, to be read only; None where none of them has shaders.
 
         vertices: (rows, cols, 3) [m]. slopes: (rows, cols, 2), dz/dx and dz/dy of the displaced surface. foam:
-        (rows, cols), 0..1. time [s] moves ripples and clouds.
+        (rows, cols), 0..1. time [s] moves ripples and clouds. middle: x, y [m] of the middle of a radial grid.
         """
         active, packed = self.has_shader, None
         surface = self._set_fields(vertices, slopes, foam)
@@ -118,6 +120,8 @@ class Water:
             height = 4.0 * math.sqrt(surface.height_variance)
             self._sea_state = float(time) % RIPPLE_PERIOD, height, surface.square_slope
             self._uniforms[SEA_STATE] = self._sea_state
+            self._middle = middle
+            self._uniforms[GRID_MIDDLE, :2] = middle
             set_arrays(self._material_mesh, vertices=self._uniforms)
         return packed
 
@@ -169,8 +173,7 @@ class Water:
 
     def _uniform_table(self) -> np.ndarray:
         """The uniforms of the shader, as `material.uniform_table` orders them."""
-        rows, cols = (self._shape[0] + 1, self._shape[1] + 1) if self._grid else (0, 0)
-        return uniform_table(self._material, self._sea_state, (rows, cols, self._length), self._tiles)
+        return uniform_table(self._material, self._sea_state, self._grid, self._middle)
 
     def _draw_plain(self, points: np.ndarray) -> None:
         """Draw foam, slick, grid and far sea by viser's public API, for browsers without the shader.
@@ -189,7 +192,7 @@ class Water:
         if self._material.wireframe or "plain_wire" in self._plain_meshes:
             wire = self._set_plain_mesh("plain_wire", points, self._faces, wireframe=True)
             wire.visible = self._material.wireframe
-        if self._grid and "plain_sea" not in self._plain_meshes:
+        if self._is_tile and "plain_sea" not in self._plain_meshes:
             x, y = np.array([[-1, 1, 1, -1], [-1, -1, 1, 1]]) * CAMERA_RANGE / 4
             corners = np.stack([x, y, np.full(4, 2 * float(z.min()) - PLAIN_MESH_DEPTH)], 1)
             self._set_plain_mesh("plain_sea", corners, np.array([[0, 1, 2], [0, 2, 3]]), color=self.mesh.color)

@@ -14,6 +14,7 @@ class RadialGrid:
     """Rings of `spokes` points about a centre: ring r is points r spokes to (r + 1) spokes.
 
     The last point is the centre; `start` (rings + 2,) cuts the points into bands: the rings, then the centre alone.
+    `ring_law`: exponent of the radii (0: geometric), the first radius [m], ratio of the steps from ring to ring.
     """
 
     def __init__(
@@ -42,10 +43,12 @@ class RadialGrid:
         index = np.arange(1, rings + 1)
         if law == "power":
             self.radii = radius * (index / rings) ** power
+            self.ring_law = (float(power), float(self.radii[0]), 1.0)
         else:
             # r_i = inner (q^i - 1)/(q - 1), so that steps grow by q; q from r_n = radius
             q = step_ratio(radius / inner, rings)
             self.radii = inner * index if q - 1.0 < 1e-9 else inner * (q**index - 1.0) / (q - 1.0)
+            self.ring_law = (0.0, float(inner), float(q))
         angle = np.arange(spokes) * (2.0 * math.pi / spokes)
         ring = self.radii[:, None]
         # Every other ring is turned by half a spoke: triangles are nearer to equilateral.

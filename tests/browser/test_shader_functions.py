@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from app.render.material import WATER_UNIFORMS, Waterline, uniform_table, waterline_table
+from app.render.material import WATER_UNIFORMS, Grid, Waterline, uniform_table, waterline_table
 from app.render.skies import set_sky
 from sim.ocean.oil_film import APPEARANCES, EXTINCTION, light_through, mirrored_light
+from sim.ocean.radial_grid import RadialGrid
 from sim.particles.rain_rings import ring_wave
 from tests.browser.glsl import SHADER, evaluate
 
@@ -130,13 +131,31 @@ def test_normals_drawn_and_filtered_have_the_spectrum_s_slope_variance(page: Any
     wave = np.fft.fft2(noise) * np.exp(-(((np.hypot(*k) - 0.12) / 0.08) ** 2))
     slopes = np.stack([np.fft.ifft2(1j * one * wave).real for one in k], -1)
     tile = np.dstack([slopes, np.zeros((n, n)), (slopes**2).sum(-1)])
-    grid = {"grid": (n + 1, n + 1, length), "extent": (5.0, 1.0, 0.0)}
+    grid = {"grid": (n + 1, n + 1, length)}
     level = max(np.log2(footprint * n / length), 0.0)
     for share in (0.0, 0.5, 1.0):
         points[:, 2] = share
         drawn = evaluate(page, f"wavesAt(waveSlopes, p.xy, p.z, {level:.3f}, true)", points, grid, tile)
         total = (drawn[:, :2] ** 2).sum(-1).mean() + drawn[:, 3].mean()
         assert total == pytest.approx((slopes**2).sum(-1).mean(), rel=0.05), share
+
+
+@pytest.mark.parametrize("law", ["geometric", "power"])
+def test_a_texture_of_rings_has_at_each_vertex_what_was_written_there(page: Any, law: str) -> None:
+    n = 32
+    grid = RadialGrid(rings=n - 1, spokes=n, inner=0.4, radius=5000.0, law=law)
+    table = Grid(n, n, 5000.0, grid.ring_law)
+    uniforms = {"grid": table[:3], "ringLaw": table.ring_law, "gridMiddle": (30.0, -20.0, 0.0)}
+    numbers = np.random.default_rng(4).uniform(-1.0, 1.0, len(grid))
+    texels = np.zeros((n, n, 4))
+    texels[0, :, 0], texels[1:, :, 0] = numbers[-1], numbers[:-1].reshape(n - 1, n)
+    points = np.column_stack([grid.x, grid.y]).astype(float) + (30.0, -20.0)
+    points[-n - 1 : -1] = 30.0, -20.0  # the last ring is where the texture ends
+    expected = np.concatenate([numbers[: -n - 1], np.full(n + 1, numbers[-1])])
+    found = evaluate(page, "ringsAt(wavePlaces, p.xy)", points, uniforms, texels)[:, 0]
+    np.testing.assert_allclose(found, expected, atol=3e-3)
+    rings = evaluate(page, "vec4(ringAt(p.x), 0.0, 0.0, 0.0)", grid.radii[:, None], uniforms)[:, 0]
+    np.testing.assert_allclose(rings, np.arange(1, n), atol=2e-3)
 
 
 def test_foam_and_rings_have_the_shares_that_they_are_told(page: Any) -> None:
@@ -175,13 +194,13 @@ def test_sea_and_sky_meet_at_the_horizon_without_a_line(page: Any, name: str) ->
     Without the photographs, which this program does not have: what is compared is haze and glow around the sun.
     """
     material = set_sky(MagicMock(), name)
-    table = uniform_table(material, (0.0, 1.0, 0.03), (0, 0, 100.0), 1)
+    table = uniform_table(material, (0.0, 1.0, 0.03), Grid(9, 9, 100.0))
     uniforms: dict[str, Any] = dict(zip(WATER_UNIFORMS, table, strict=True))
     bearing = np.linspace(-np.pi, np.pi, 361) + 0.004
     rays = np.column_stack([np.cos(bearing), np.sin(bearing), np.full(len(bearing), 0.001)])
     sky = evaluate(page, "vec4(skyLight(normalize(p.xyz)), 0.0)", rays, uniforms)[:, :3]
     far = "1e6 * normalize(vec3(p.xy, -p.z))"
-    sea = evaluate(page, f"vec4(shadeSea({far}, vec2(0.0), vec3(0.0), 1.0), 0.0)", rays, uniforms)[:, :3]
+    sea = evaluate(page, f"vec4(shadeSea({far}, vec2(0.0)), 0.0)", rays, uniforms)[:, :3]
     assert sea.min() > 0.01
     np.testing.assert_allclose(sky, sea, rtol=0.03)
 

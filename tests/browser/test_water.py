@@ -15,7 +15,8 @@ from PIL import Image
 
 from app.render.injection import disable_shaders, injector_of
 from app.render.skies import set_sky
-from app.render.water import Water
+from app.render.water import Tile, Water
+from sim.ocean.radial_grid import RadialGrid
 from tests.browser.conftest import NO_NOTES, new_page, vertices_of
 
 SIZE = 32
@@ -81,9 +82,9 @@ def surface(phase: float = 0.0, foam: float = 0.0) -> tuple[np.ndarray, np.ndarr
     return vertices, slopes, np.full((SIZE, SIZE), foam)
 
 
-def make_water(server: viser.ViserServer, **arguments) -> Water:
+def make_water(server: viser.ViserServer) -> Water:
     material = dataclasses.replace(set_sky(server, "park"), draw_sky=False)
-    water = Water(server, "/sea", SIZE, SIZE, LENGTH, material=material, **arguments)
+    water = Water(server, "/sea", Tile(SIZE, SIZE, LENGTH), material)
     water.set_surface(*surface())
     return water
 
@@ -98,7 +99,7 @@ def materials(page) -> dict[str, str]:
 
 
 def test_the_script_answers_and_what_is_drawn_is_where_it_should_be(chromium, server):
-    water = make_water(server, tiles=3)
+    water = make_water(server)
     page, errors = visit(chromium, server, drawn=False)
     assert wait(page, lambda: water.has_shader is True)
     assert materials(page) == {"/sea": "springtide-water/sea"}
@@ -156,7 +157,7 @@ def test_sizes_change_live_and_nothing_is_left_behind(chromium, server):
 
     empty: dict[str, int] | None = None
     for size in (64, 16, 64, 16):
-        water = Water(server, "/sea", size, size, LENGTH, tiles=3, material=material)
+        water = Water(server, "/sea", Tile(size, size, LENGTH), material)
         x = np.arange(size) * LENGTH / size
         x, y = np.meshgrid(x, x, indexing="ij")
         water.set_surface(np.stack([x, y, 0 * x], -1), np.zeros((size, size, 2)), np.zeros((size, size)))
@@ -175,20 +176,14 @@ def test_sizes_change_live_and_nothing_is_left_behind(chromium, server):
     page.close()
 
 
-def test_a_mesh_of_any_shape_is_water_too(chromium, server):
-    rings, spokes = 8, 24
-    r, a = np.meshgrid(np.linspace(1, 60, rings), np.arange(spokes) * 2 * np.pi / spokes, indexing="ij")
-    i, j = (index.ravel() for index in np.meshgrid(np.arange(rings - 1), np.arange(spokes), indexing="ij"))
-    near, far, turn = i * spokes, (i + 1) * spokes, (j + 1) % spokes
-    faces = np.concatenate(
-        [np.stack([near + j, far + j, far + turn], 1), np.stack([near + j, far + turn, near + turn], 1)]
-    )
-    water = Water(server, "/disc", rings, spokes, 60.0, faces=faces, material=set_sky(server, "park"))
-    vertices = np.stack([r * np.cos(a), r * np.sin(a), 0 * r], -1)
-    water.set_surface(vertices, np.zeros((rings, spokes, 2)), np.ones((rings, spokes)))
+def test_a_sea_of_rings_is_water_too(chromium, server):
+    grid = RadialGrid(rings=8, spokes=24, inner=1.0, radius=60.0)
+    water = Water(server, "/disc", grid, set_sky(server, "park"))
+    vertices = np.column_stack([grid.x, grid.y, 0.0 * grid.x])[None]
+    water.set_surface(vertices, np.zeros((1, len(grid), 2)), np.ones((1, len(grid))))
     page, errors = visit(chromium, server, drawn=False)
     assert wait(page, lambda: water.has_shader is True)
-    assert materials(page) == {"/disc": "springtide-water/disc"}
+    assert materials(page) == {"/disc": "springtide-water/disc RINGS"}
     assert errors == []
     page.close()
 
@@ -246,7 +241,7 @@ def test_plain_water_sends_no_script(chromium, server):
 
 
 def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_path):
-    make_water(server, tiles=3)
+    make_water(server)
     file = tmp_path / "sea.html"
     file.write_text(server.get_scene_serializer().as_html(), encoding="utf-8")
     page = new_page(chromium, 320, 200, drawn=False)

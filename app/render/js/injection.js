@@ -98,7 +98,7 @@ function report() {
 }
 
 function beforeRender(renderer, scene, camera) {
-  window.__springtide = { memory: () => ({ ...renderer.info.memory }), quality: QUALITY }; // tests read it
+  window.__springtide = { memory: () => ({ ...renderer.info.memory }), quality: QUALITY, skiesDrawn }; // tests read it
   QUALITY.beforeRender(renderer);
   const nodes = window.__viserMutable.nodeRefFromName;
   const active = [];

@@ -77,7 +77,7 @@ shaders.push({
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms, uniforms);
       shader.vertexShader = RAIN_VERTEX;
-      shader.fragmentShader = withDetails(RAIN_FRAGMENT);
+      shader.fragmentShader = withSky(RAIN_FRAGMENT, sea.uniforms);
     };
     return replaceShader(mesh.material, keyWithDetails(`springtide-rain${base}`), edit) ? mesh.material : null;
   },

@@ -1,9 +1,10 @@
 // The shader of water, for "<name>" where there is a "<name>/water_material".
 //
 // "<name>/water_surface" carries displacement, slope x, slope y and foam of each vertex, packed (packed.js), and
-// "<name>/water_rest" where the vertices rest; "<name>/water_lines" what stands in the water. The vertices of "<name>/water_material" are the uniforms, in the order of
-// WATER_UNIFORMS (app/render/material.py). "Sea" in a name means the frame of the node,
-// z up; three's world is rotated against it.
+// "<name>/water_rest" where the vertices rest; "<name>/water_lines" what stands in the water. The vertices of
+// "<name>/water_material" are the uniforms, in the order of WATER_UNIFORMS (app/render/material.py). "Sea" in a name means
+// the frame of the node, z up; three's world is rotated against it. viser's own mesh is not drawn: its vertices fill
+// textures, which the polar grid (polar_grid.js) and the fragment shader read.
 
 const seas = new Map(); // name of the node -> what this file has made for it
 // Name of the node -> its uniforms. They are kept for good, because viser may keep a material for a new geometry.
@@ -24,7 +25,9 @@ function uniformsOf(base, mesh) {
   if (!uniformsByName.has(base)) {
     const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
-    for (const name of ["wavePlaces", "waveSlopes"]) uniforms[name] = { value: null };
+    for (const name of ["wavePlaces", "waveSlopes", "skyTable"]) uniforms[name] = { value: null };
+    for (const name of ["polarPlace", "polarSteps"]) uniforms[name] = { value: [0, 0, 0, 0] };
+    for (const name of ["polarTurn", "farDepth"]) uniforms[name] = { value: 0 };
     uniforms.waterlines = { value: Array.from({ length: 4 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
     uniformsByName.set(base, uniforms);
   }
@@ -32,12 +35,14 @@ function uniformsOf(base, mesh) {
 }
 
 function makeSea(mesh, uniforms) {
-  return { mesh, geometry: mesh.geometry, uniforms, tiles: [], levels: [], shape: "", filled: -1, dome: null, wire: null };
+  // widest, highest: greatest displacement [m] along the level and upwards; cell: of the simulated grid [m]
+  return { mesh, geometry: mesh.geometry, uniforms, filled: -1, polar: null, dome: null, widest: 0, highest: 0, cell: 1 };
 }
 
-// Fill a texture with n x n x 4 numbers, and its smaller copies with their means. three binds it but does not fill it:
-// its own class is not in scope, and it takes any object with this version for one whose data needs no upload.
-function filledTexture(renderer, texture, n, numbers) {
+// Fill a texture with width x height x 4 numbers, and its smaller copies with their means where it repeats both ways.
+// three binds it but does not fill it: its own class is not in scope, and it takes any object with this version for one
+// whose data needs no upload.
+function filledTexture(renderer, texture, width, height, numbers, repeats) {
   const gl = renderer.getContext();
   texture ??= { isTexture: true, version: 0 };
   const name = (renderer.properties.get(texture).__webglTexture ??= gl.createTexture());
@@ -46,34 +51,44 @@ function filledTexture(renderer, texture, n, numbers) {
   const flags = [gl.UNPACK_FLIP_Y_WEBGL, gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL];
   const kept = flags.map((flag) => gl.getParameter(flag));
   for (const flag of flags) gl.pixelStorei(flag, false);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, n, n, 0, gl.RGBA, gl.FLOAT, numbers);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, width, height, 0, gl.RGBA, gl.FLOAT, numbers);
   flags.forEach((flag, k) => gl.pixelStorei(flag, kept[k]));
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, repeats ? gl.LINEAR_MIPMAP_LINEAR : gl.LINEAR);
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
-  gl.generateMipmap(gl.TEXTURE_2D);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, repeats ? gl.REPEAT : gl.CLAMP_TO_EDGE);
+  if (repeats) gl.generateMipmap(gl.TEXTURE_2D);
   return texture;
 }
 
-// The waves of a square tile as the textures that the shader reads (WATER_GLSL.waves), where they have changed.
+// The waves as the textures that the shader reads (WATER_GLSL.waves), where they have changed. The vertices of a tile are
+// rows and columns, of which the last ones close it; those of rings are the rings one after the other, and the middle.
 function fillWaves(sea, renderer, rest) {
-  const [rows, columns] = sea.uniforms.grid.value.toArray();
-  const { position, slopeAndFoam } = sea.geometry.attributes;
-  if (rows === 0 || sea.filled === slopeAndFoam.version) return;
+  const { position, slopeAndFoam } = sea.geometry.attributes, { grid, ringLaw, gridMiddle } = sea.uniforms;
+  const [rows, columns, length] = grid.value.toArray(), isRings = ringLaw.value.y > 0;
+  if (sea.filled === slopeAndFoam.version) return;
   sea.filled = slopeAndFoam.version;
-  const n = rows - 1;
-  const [places, slopes] = [new Float32Array(4 * n * n), new Float32Array(4 * n * n)];
-  for (let i = 0, to = 0; i < n; i++) {
-    for (let j = 0; j < n; j++, to += 4) {
-      const from = 3 * (i * columns + j);
+  const [height, width] = isRings ? [rows, columns] : [rows - 1, columns - 1], middle = gridMiddle.value.toArray();
+  const vertexAt = isRings ? (i, j) => (i === 0 ? rest.length / 3 - 1 : (i - 1) * width + j) : (i, j) => i * columns + j;
+  const [places, slopes] = [new Float32Array(4 * width * height), new Float32Array(4 * width * height)];
+  let [widest, highest] = [0, 0];
+  for (let i = 0, to = 0; i < height; i++) {
+    for (let j = 0; j < width; j++, to += 4) {
+      const from = 3 * vertexAt(i, j);
       for (let axis = 0; axis < 3; axis++) {
-        places[to + axis] = position.array[from + axis] - rest[from + axis];
+        places[to + axis] = position.array[from + axis] - rest[from + axis] - (axis < 2 ? middle[axis] : 0);
         slopes[to + axis] = slopeAndFoam.array[from + axis];
       }
       slopes[to + 3] = slopes[to] ** 2 + slopes[to + 1] ** 2;
+      widest = Math.max(widest, Math.abs(places[to]), Math.abs(places[to + 1]));
+      highest = Math.max(highest, Math.abs(places[to + 2]));
     }
   }
+  // Pieces of a tile that are blended with the same variance may be higher than any of them.
+  [sea.widest, sea.highest] = [1.5 * widest, (isRings ? 1 : 1.5) * highest];
+  sea.cell = isRings ? ringLaw.value.y : length / (rows - 1);
   for (const [name, numbers] of [["wavePlaces", places], ["waveSlopes", slopes]]) {
-    sea.uniforms[name].value = filledTexture(renderer, sea.uniforms[name].value, n, numbers);
+    const { uniforms } = sea;
+    uniforms[name].value = filledTexture(renderer, uniforms[name].value, width, height, numbers, !isRings);
   }
 }
 
@@ -81,59 +96,6 @@ function readMaterial(sea, data) {
   readUniforms(sea.uniforms, WATER_UNIFORMS, data);
   sea.uniforms.fromSea.value.copy(sea.mesh.matrixWorld);
   sea.uniforms.toSea.value.copy(sea.mesh.matrixWorld).invert();
-}
-
-// Triangles of a grid at every stride-th vertex, but at every vertex of its rim, so that tiles of different strides
-// meet without a gap. Vertex (i, j) has the number i * columns + j.
-function levelIndex(rows, columns, stride) {
-  const index = [];
-  for (let i = 0; i < rows - 1; i += stride) {
-    for (let j = 0; j < columns - 1; j += stride) {
-      const rim = [];
-      const side = (i0, j0, di, dj, onRim) => {
-        const step = onRim ? 1 : stride;
-        for (let s = 0; s < stride; s += step) rim.push((i0 + di * s) * columns + j0 + dj * s);
-      };
-      const low = i + stride, right = j + stride;
-      side(i, j, 1, 0, j === 0);
-      side(low, j, 0, 1, low === rows - 1);
-      side(low, right, -1, 0, right === columns - 1);
-      side(i, right, 0, -1, i === 0);
-      // A fan from the corner that is farthest from the rim has no degenerate triangle.
-      const corner = (i === 0 ? low : i) * columns + (j === 0 ? right : j);
-      const at = rim.indexOf(corner);
-      for (let k = 1; k < rim.length - 1; k++) {
-        index.push(rim[at], rim[(at + k) % rim.length], rim[(at + k + 1) % rim.length]);
-      }
-    }
-  }
-  return index;
-}
-
-// Coarser geometries on the same vertex buffers: only their index is uploaded.
-function makeLevels(sea, rows, columns) {
-  const Geometry = sea.geometry.constructor;
-  const Attribute = sea.geometry.index.constructor;
-  for (const stride of [2, 4, 8]) {
-    if ((rows - 1) % stride || (columns - 1) % stride || (rows - 1) / stride < 4 || (columns - 1) / stride < 4) break;
-    const geometry = new Geometry();
-    geometry.setIndex(new Attribute(new Uint32Array(levelIndex(rows, columns, stride)), 1));
-    sea.levels.push({ stride, geometry });
-  }
-}
-
-function makeTiles(sea, count, length) {
-  const half = (count - 1) / 2;
-  for (let i = -half; i <= half; i++) {
-    for (let j = -half; j <= half; j++) {
-      if (i === 0 && j === 0) continue;
-      const tile = sea.mesh.clone(false);
-      tile.position.set(i * length, j * length, 0);
-      tile.raycast = () => {}; // clicks are handled by the mesh itself and by the scene
-      sea.mesh.parent.add(tile);
-      sea.tiles.push(tile);
-    }
-  }
 }
 
 function makeDome(sea) {
@@ -150,40 +112,20 @@ function makeDome(sea) {
   return dome;
 }
 
-function makeWire(sea) {
-  const material = new sea.mesh.material.constructor();
-  material.wireframe = true;
-  const wire = sea.mesh.clone(false);
-  wire.material = material;
-  wire.raycast = () => {};
-  sea.mesh.parent.add(wire);
-  return wire;
+function disposePolar(sea) {
+  if (!sea.polar) return;
+  sea.polar.removeFromParent();
+  sea.polar.geometry.dispose(); // the material is viser's
+  sea.polar = null;
 }
 
 function disposeSea(sea) {
-  for (const made of [...sea.tiles, sea.dome, sea.wire]) if (made) made.removeFromParent();
-  for (const level of sea.levels) {
-    level.geometry.attributes = {}; // they belong to viser's geometry
-    level.geometry.dispose();
-  }
-  if (sea.dome) sea.dome.geometry.dispose(), sea.dome.material.dispose();
-  if (sea.wire) sea.wire.material.dispose();
-  sea.tiles = [];
-  sea.levels = [];
-  sea.dome = sea.wire = null;
-}
-
-function chooseLevels(sea, camera) {
-  const [length, cell] = [sea.uniforms.grid.value.z, sea.uniforms.grid.value.z / (sea.uniforms.grid.value.x - 1)];
-  const eye = camera.getWorldPosition(sea.mesh.position.clone()).applyMatrix4(sea.uniforms.toSea.value);
-  for (const tile of sea.tiles) {
-    const dx = Math.max(0, Math.abs(eye.x - tile.position.x - length / 2) - length / 2);
-    const dy = Math.max(0, Math.abs(eye.y - tile.position.y - length / 2) - length / 2);
-    const far = Math.hypot(dx, dy, eye.z);
-    let geometry = sea.geometry;
-    for (const level of sea.levels) if ((level.stride * cell) / far < 0.012) geometry = level.geometry;
-    tile.geometry = geometry;
-  }
+  disposePolar(sea);
+  if (!sea.dome) return;
+  sea.dome.removeFromParent();
+  sea.dome.geometry.dispose();
+  sea.dome.material.dispose();
+  sea.dome = null;
 }
 
 // Until a sea's programs are compiled, and where its mesh is made anew, the photograph behind it would show its land. The
@@ -214,67 +156,45 @@ shaders.push({
     }
     if (!applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array)) return null;
     readMaterial(sea, data);
+    drawSkyTable(base, sea, renderer, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);
     const lines = meshOf(`${base}/water_lines`);
     if (lines) {
       const numbers = lines.geometry.attributes.position.array;
       sea.uniforms.waterlines.value.forEach((vector, k) => vector.fromArray(numbers, 3 * k));
     }
-    const [rows, columns, length] = sea.uniforms.grid.value.toArray();
-    const [count, drawSky, wireframe] = sea.uniforms.extent.value.toArray();
-    const shape = [rows, columns, length, count].join();
-    if (sea.shape !== shape) {
-      disposeSea(sea);
-      sea.shape = shape;
-      if (rows > 0 && count > 1) {
-        makeLevels(sea, rows, columns);
-        makeTiles(sea, count, length);
-      }
-    }
+    const [drawSky, wireframe] = sea.uniforms.shown.value.toArray();
+    const parts = { RINGS: sea.uniforms.ringLaw.value.y, CUTOUT: sea.uniforms.cutout.value.z, WIRE: wireframe };
+    const named = Object.keys(parts).filter((name) => parts[name] > 0);
+    const defines = named.map((name) => `#define ${name}\n`).join("");
+    // viser asks three for a reversed depth buffer; a browser without clip control has none.
+    sea.uniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
-      shader.vertexShader = waterVertex(false);
-      shader.fragmentShader = withDetails(WATER_FRAGMENT);
+      shader.vertexShader = defines + WATER_VERTEX;
+      shader.fragmentShader = withSky(defines + WATER_FRAGMENT, sea.uniforms);
     };
-    if (!replaceShader(mesh.material, keyWithDetails(`springtide-water${base}`), edit)) {
+    const key = keyWithDetails([`springtide-water${base}`, ...named].join(" "));
+    mesh.layers.mask = 1;
+    if (!replaceShader(mesh.material, key, edit)) {
       disposeSea(sea);
       delete mesh.geometry.computeVertexNormals;
       showPhotograph(scene, true);
       return null;
     }
-    for (const { geometry } of sea.levels) {
-      geometry.boundingSphere = mesh.geometry.boundingSphere;
-      for (const name of ["position", "slopeAndFoam"]) {
-        if (geometry.attributes[name] !== mesh.geometry.attributes[name]) {
-          geometry.setAttribute(name, mesh.geometry.attributes[name]);
-        }
-      }
-    }
-    for (const tile of sea.tiles) {
-      tile.material = mesh.material;
-      tile.updateMatrixWorld();
-    }
-    chooseLevels(sea, camera);
+    mesh.layers.mask = 0; // the polar grid is drawn in its place, with its material
+    if (sea.polar && sea.polar.userData.details !== QUALITY.details()) disposePolar(sea);
+    sea.polar ??= makePolar(sea, QUALITY.details());
+    sea.polar.material = mesh.material;
+    aimPolar(sea, camera);
 
     if (drawSky && !sea.dome) sea.dome = makeDome(sea);
     if (sea.dome) {
       sea.dome.visible = drawSky > 0;
       replaceShader(sea.dome.material, keyWithDetails("springtide-dome"), (shader) => {
-        // viser asks three for a reversed depth buffer; a browser without clip control has none.
-        const farDepth = { value: renderer.state.buffers.depth.getReversed() ? 0 : 1 };
-        Object.assign(shader.uniforms, sea.uniforms, { farDepth });
-        shader.vertexShader = DOME_VERTEX;
-        shader.fragmentShader = withDetails(DOME_FRAGMENT);
-      });
-    }
-    if (wireframe && !sea.wire) sea.wire = makeWire(sea);
-    if (sea.wire) {
-      sea.wire.visible = wireframe > 0;
-      sea.wire.updateMatrixWorld();
-      replaceShader(sea.wire.material, "springtide-wire", (shader) => {
         Object.assign(shader.uniforms, sea.uniforms);
-        shader.vertexShader = waterVertex(true);
-        shader.fragmentShader = WIRE_FRAGMENT;
+        shader.vertexShader = DOME_VERTEX;
+        shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
       });
     }
     // The server may add meshes for browsers without this shader (Water._draw_plain); here they are hidden.

@@ -4,6 +4,16 @@
 // and positions are those of the sea's node, z up; "world" is three's own frame. DETAILS (quality.js): 2 all, 1 less,
 // 0 least. What is not shown makes the water rough instead, so that its light stays the same.
 
+// The table of the sky: SKY_ROWS elevations at each of these blurs, the same of the sky as it is seen, then the haze at the
+// horizon, its mean and that of the sky.
+const SKY_BLUR = [0.08, 0.2, 0.33, 0.55, 0.8], SKY_ROWS = 64, SKY_COLUMNS = 256;
+const SKY_TABLE = `
+  #define SKY_TABLE
+  #define SKY_ROWS ${SKY_ROWS}
+  #define SKY_BLURS ${SKY_BLUR.length}
+  #define SKY_HEIGHT ${(SKY_BLUR.length + 1) * SKY_ROWS + 3}
+  const float[SKY_BLURS] SKY_BLUR = float[](${SKY_BLUR.map((blur) => blur.toFixed(2))});`;
+
 const WATER_GLSL = {
   // The waves of a periodic tile, as textures. Near the eye the sea is that tile, which the simulation moves. Farther
   // away than a tile is long it is made of pieces of the tile that lie at random places, as a tile that repeats is seen
@@ -12,8 +22,10 @@ const WATER_GLSL = {
   waves: `
     uniform highp sampler2D wavePlaces; // displacement [m] of the tile's vertices from where they rest
     uniform highp sampler2D waveSlopes; // slope x, slope y, foam, sum of the squares of the slopes
-    uniform vec3 grid; // rows and columns of vertices (0: no grid), side of a tile or radius of the mesh [m]
-    uniform vec3 extent; // tiles along a side, whether the sky is drawn, whether the wireframe is
+    uniform vec3 grid; // rows and columns of vertices, side of the tile or radius of the last ring [m]
+    uniform vec3 ringLaw; // rings: exponent of their radii (0: geometric), radius of the first [m], ratio of their steps
+    uniform vec3 gridMiddle; // x, y [m] of the middle of the rings, unused
+    uniform vec3 shown; // whether the sky is drawn, whether the lines of the grid are, unused
     uniform vec3 gaugePlace; // x, y [m] around which the sea is the tile however far it is, and whether there is such a place
     const float PIECE = 0.7; // side of the triangles that pieces are blended on, in sides of the tile
 
@@ -21,7 +33,7 @@ const WATER_GLSL = {
     // tile.
     float pieceShare(vec2 x, vec3 eye) {
       float near = gaugePlace.z * (1.0 - smoothstep(0.1, 0.4, distance(x, gaugePlace.xy) / grid.z));
-      return extent.x > 1.0 ? (1.0 - near) * smoothstep(0.5, 1.0, distance(vec3(x, 0.0), eye) / grid.z) : 0.0;
+      return (1.0 - near) * smoothstep(0.5, 1.0, distance(vec3(x, 0.0), eye) / grid.z);
     }
 
     // The corners of the triangle around x, and its weight at each; a piece belongs to each corner.
@@ -63,11 +75,25 @@ const WATER_GLSL = {
       return vec4(norm * sum.xy, isSlope ? foam : mean + norm * sum.z, norm * norm * sum.w);
     }
 
-    // How flat the water is drawn at x: 1 at the rim of the last tile, as the sea beyond it has no mesh.
-    float rimFlatness(vec2 x) {
-      vec2 outward = abs(x - 0.5 * grid.z) / (0.5 * grid.z * extent.x);
-      return extent.y > 0.0 ? smoothstep(0.8, 1.0, max(outward.x, outward.y)) : 0.0;
-    }`,
+    // The number of the ring at a distance [m] from the middle of the rings, which is ring 0.
+    float ringAt(float r) {
+      if (ringLaw.x > 0.0) return pow(r / ringLaw.y, 1.0 / ringLaw.x);
+      return ringLaw.z > 1.0001 ? log(1.0 + r * (ringLaw.z - 1.0) / ringLaw.y) / log(ringLaw.z) : r / ringLaw.y;
+    }
+
+    // What a texture of rings, a row each, has at x [m]. Rings of even number are turned by half a spoke.
+    vec4 ringsAt(sampler2D rings, vec2 x) {
+      vec2 p = x - gridMiddle.xy;
+      float ring = min(ringAt(length(p)), grid.x - 1.001), low = floor(ring), turned = 0.5 / grid.y * (1.0 - mod(low, 2.0));
+      float turn = atan(p.y, p.x + 1e-9) / 6.2831853 + 0.5 / grid.y;
+      vec4 inner = textureLod(rings, vec2(turn - turned, (low + 0.5) / grid.x), 0.0);
+      vec4 outer = textureLod(rings, vec2(turn + turned - 0.5 / grid.y, (low + 1.5) / grid.x), 0.0);
+      return mix(inner, outer, ring - low);
+    }
+
+    // How flat a sea of rings is drawn at x: 1 from the last ring on.
+    float ringFlatness(vec2 x) { return smoothstep(0.8, 1.0, distance(x, gridMiddle.xy) / grid.z); }`,
+
 
   // One function for the sky that is seen and the sky that is mirrored, so that sea and sky meet without a line.
   sky: `
@@ -151,8 +177,8 @@ const WATER_GLSL = {
       return vec4(mix(c, cloud, cover * 0.92 * smoothstep(0.0, 0.09, d.z)), cover);
     }
 
-    // Radiance of the sky without clouds in the direction d.
-    vec3 sky(vec3 d, float blur) {
+    // Radiance of the photograph as it is drawn in the direction d.
+    vec3 drawnPhotograph(vec3 d, float blur) {
       vec3 c = photograph(photographDirection(d, 1.0), blur);
       // Opposite to the sun the two ends of the spread photograph meet. There each is blended with its mirror image.
       if (skyFold.x < 1.0) {
@@ -163,25 +189,51 @@ const WATER_GLSL = {
       return c;
     }
 
-    // Mean radiance of the sky.
-    vec3 ambientLight() { return photograph(vec3(0.0, 0.0, 1.0), 1.0); }
-
     uniform vec3 rainVeil; // extinction of light by rain [1/m], height from which it falls [m], unused
+    vec3 levelOf(vec3 d) { return vec3(d.xy / max(length(d.xy), 1e-4), 0.0); }
 
-    // Radiance of the haze in the direction d.
-    vec3 horizon(vec3 d) { return sky(vec3(d.xy / max(length(d.xy), 1e-4), 0.0), skyFold.y); }
+    // sky: radiance of the sky without clouds in the direction d. ambientLight: its mean. horizon: of the haze in the
+    // direction d. meanHorizon: the mean of both sides, which is scattered where the direction is steep, and lights from
+    // around. clearSky: the sky as it is seen. With a table (sky_table.js) they are looked up in it.
+    #if defined(SKY_TABLE) && defined(USE_ENVMAP)
+      uniform highp sampler2D skyTable;
+      vec3 skyRow(vec3 d, float row) {
+        return textureLod(skyTable, vec2(atan(d.y, d.x + 1e-9) / 6.2831853, (row + 0.5) / float(SKY_HEIGHT)), 0.0).rgb;
+      }
+      float skyElevation(vec3 d) { return sqrt(asin(clamp(d.z, 0.0, 1.0)) / 1.5707963) * float(SKY_ROWS - 1); }
+      vec3 sky(vec3 d, float blur) {
+        float row = skyElevation(d), block = 0.0;
+        for (int k = 1; k < SKY_BLURS; k++) block += clamp((blur - SKY_BLUR[k - 1]) / (SKY_BLUR[k] - SKY_BLUR[k - 1]), 0.0, 1.0);
+        float low = min(floor(block), float(SKY_BLURS - 2));
+        vec3 sharp = skyRow(d, low * float(SKY_ROWS) + row), soft = skyRow(d, (low + 1.0) * float(SKY_ROWS) + row);
+        return mix(sharp, soft, block - low);
+      }
+      vec3 clearSky(vec3 d) { return skyRow(d, float(SKY_BLURS * SKY_ROWS) + skyElevation(d)); }
+      vec3 horizon(vec3 d) { return skyRow(d, float(SKY_HEIGHT - 3)); }
+      vec3 meanHorizon() { return texelFetch(skyTable, ivec2(0, SKY_HEIGHT - 2), 0).rgb; }
+      vec3 ambientLight() { return texelFetch(skyTable, ivec2(0, SKY_HEIGHT - 1), 0).rgb; }
+    #else
+      vec3 sky(vec3 d, float blur) { return drawnPhotograph(d, blur); }
+      vec3 ambientLight() { return photograph(vec3(0.0, 0.0, 1.0), 1.0); }
+      vec3 horizon(vec3 d) { return sky(levelOf(d), skyFold.y); }
+      vec3 meanHorizon() { return 0.5 * (horizon(sunDirection) + horizon(-sunDirection)); }
+      // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
+      vec3 clearSky(vec3 d) {
+        vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
+        vec3 w = vec3(0.3, 0.5, 0.2);
+        float light = dot(sharp, w), even = dot(soft, w);
+        float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
+        return mix(soft * (light / even), sharp, detail);
+      }
+    #endif
 
     // The glow of the air around the sun, at a distance from its direction.
     float sunGlow(float off) { return 0.30 * exp(-off * 16.0) + 0.07 * exp(-off * 4.0) + 2.4 * lens.z * exp(-off * 60.0); }
 
     // Radiance at the horizon in the direction d, which sea and sky have in common there.
     vec3 horizonGlow(vec3 d) {
-      vec3 level = vec3(d.xy / max(length(d.xy), 1e-4), 0.0);
-      return horizon(d) + sunLight * sunGlow(length(level - sunDirection));
+      return horizon(d) + sunLight * sunGlow(length(levelOf(d) - sunDirection));
     }
-
-    // The mean of both sides: what is scattered where the direction is steep, and what lights from around.
-    vec3 meanHorizon() { return 0.5 * (horizon(sunDirection) + horizon(-sunDirection)); }
 
     // Radiance c of the sky in the direction d as it is seen through the rain.
     vec3 behindRain(vec3 c, vec3 d) {
@@ -504,9 +556,8 @@ const WATER_GLSL = {
       return vec3(sqrt(-2.0 * variance * log(max(u.x, 1e-4))) * vec2(cos(turn), sin(turn)), light.x * light.y);
     }
 
-    // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; slopeAndFoam: of a
-    // mesh that is no grid; flatness: 1 where such a sea has no mesh.
-    vec3 shadeSea(vec3 at, vec2 rest, vec3 slopeAndFoam, float flatness) {
+    // The light from a point of the sea. at: the point [m]; rest: its position in still water [m].
+    vec3 shadeSea(vec3 at, vec2 rest) {
       float oil = slickCover(at.xy);
       float film = oilThickness(at.xy, oil);
       vec3 clear = lightThrough(film);
@@ -528,25 +579,29 @@ const WATER_GLSL = {
 
       // Waves finer than a pixel no longer tilt it; they make it rough instead.
       vec2 slope;
-      float rough, height = at.z;
-      if (grid.x > 0.0) {
-        float level = max(log2(footprint * (grid.x - 1.0) / grid.z), 0.0), share = pieceShare(rest, eye);
-        vec4 waves = wavesAt(waveSlopes, rest, share, level, true);
+      float rough, height = at.z, foamShare;
+      #ifdef RINGS
+        vec3 drawn = ringsAt(waveSlopes, rest).xyz;
+        float cell = grid.z / 64.0, flatness = ringFlatness(rest);
+        float blur = max(flatness, smoothstep(cell * 1.5, cell * 12.0, footprint));
+        slope = drawn.xy * (1.0 - blur);
+        rough = (1.0 - (1.0 - blur) * (1.0 - blur)) * seaState.z;
+        foamShare = drawn.z * (1.0 - flatness);
+      #else
+        float coarse = max(log2(footprint * (grid.x - 1.0) / grid.z), 0.0), share = pieceShare(rest, eye);
+        vec4 waves = wavesAt(waveSlopes, rest, share, coarse, true);
         slope = waves.xy;
         rough = waves.w;
-        slopeAndFoam.z = waves.z;
-        height = wavesAt(wavePlaces, rest, share, level, false).z;
-      } else {
-        float cell = grid.z / 64.0, blur = max(flatness, smoothstep(cell * 1.5, cell * 12.0, footprint));
-        slope = slopeAndFoam.xy * (1.0 - blur);
-        rough = (1.0 - (1.0 - blur) * (1.0 - blur)) * seaState.z;
-      }
-      slopeAndFoam.z *= 1.0 - oil;
+        foamShare = waves.z;
+        height = wavesAt(wavePlaces, rest, share, coarse, false).z;
+      #endif
+      foamShare *= 1.0 - oil;
       vec4 fine = ripples(at.xy, footprint);
       float calm = mix(1.0, slickOptics.z, min(2.5 * oil, 1.0)); // a sheen calms ripples as a thick layer does
       fine.xyz *= vec3(calm, calm, calm * calm);
       slope += fine.xy;
-      // Beyond a mesh that is no grid, noise of the same slope continues the swell while a pixel can show it.
+      // Beyond the last ring, noise of the same slope continues the swell while a pixel can show it.
+      #ifdef RINGS
       if (flatness > 0.0) {
         float wave = max(grid.z, 16.0) * 0.35;
         for (int k = 0; k < 3; k++) {
@@ -562,15 +617,16 @@ const WATER_GLSL = {
         }
         rough = max(rough, 0.0);
       }
+      #endif
       // Water that washes around a hull foams, the wider the higher the waves; close to it less light comes in.
       float hull = distanceToHull(at.xy);
       float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
       wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
-      float foamShare = clamp(max(slopeAndFoam.z, 0.8 * wash * wash), 0.0, 1.0);
-      vec4 bubbles = foamCover(rest, foamShare, footprint);
+      float whitened = clamp(max(foamShare, 0.8 * wash * wash), 0.0, 1.0);
+      vec4 bubbles = foamCover(rest, whitened, footprint);
       // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816): their bubbles are
       // a thin layer, and half of what is seen there is the water.
-      float foam = bubbles.x * mix(0.5, 1.0, smoothstep(0.1, 0.7, foamShare));
+      float foam = bubbles.x * mix(0.5, 1.0, smoothstep(0.1, 0.7, whitened));
       vec4 rings = rainSlopes(rest, footprint);
       slope += rings.xy;
       float variance = optics.y * optics.y + 0.5 * (rough + fine.z + rings.z);
@@ -616,7 +672,7 @@ const WATER_GLSL = {
       body += scatter * (ambient * (0.10 + 0.35 * crest * crest) * facing
                         + sunLight * 0.3183 * crest * through * (0.15 + 0.5 * (1.0 - facing)));
       // Water full of air under and around foam is bright.
-      body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, slopeAndFoam.z);
+      body += scatter * lit * 0.5 * smoothstep(0.0, 0.7, foamShare);
 
       vec3 color = mix(body, mirrored, mirror) + sunLight * glitter + fire * image;
       // As in the photograph of the sky, radiances far above the rest are compressed.
@@ -637,14 +693,6 @@ const WATER_GLSL = {
   dome: `
     // The sun's disc, twice as wide as the true one.
     float sunDisc(float off) { return 30.0 * (1.0 - smoothstep(0.006, 0.014, off)); }
-    // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
-    vec3 clearSky(vec3 d) {
-      vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
-      vec3 w = vec3(0.3, 0.5, 0.2);
-      float light = dot(sharp, w), even = dot(soft, w);
-      float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
-      return mix(soft * (light / even), sharp, detail);
-    }
     // The light from the sky in the direction d, above the horizon.
     vec3 skyLight(vec3 d) {
       float off = length(d - sunDirection);
@@ -656,49 +704,53 @@ const WATER_GLSL = {
     }`,
 };
 
-// nearer: a little nearer to the camera than the water, so that the water does not hide it.
-const waterVertex = (nearer) => `
-  attribute vec3 slopeAndFoam;
+// The vertices of the polar grid (polar_grid.js): ring and spoke, counted from the first that are drawn.
+const WATER_VERTEX = `
   uniform mat4 toSea;
+  uniform mat4 fromSea;
+  uniform vec4 polarPlace; // x, y of the middle of the grid, its distance from below the eye, height that sets steps [m]
+  uniform vec4 polarSteps; // of rings: the first, step, the last with waves; angle between spokes [rad]
+  uniform float polarTurn; // [rad] of the first spoke
+  uniform float farDepth;
   varying vec3 vSea;
   varying vec2 vRest;
-  varying vec3 vSlopeAndFoam;
   ${WATER_GLSL.noise}
   ${WATER_GLSL.waves}
-  const float MEAN_LEVEL = 0.006; // cells [m] that are averaged in heights, over the distance from the eye
   void main() {
-    vec3 transformed = position;
-    vSea = (toSea * modelMatrix * vec4(position, 1.0)).xyz;
-    vSlopeAndFoam = slopeAndFoam;
-    // The position of this vertex in still water. Foam noise is a function of it, so that foam moves with the water.
-    vRest = vSea.xy;
-    if (grid.x > 0.0) {
-      int columns = int(grid.y);
-      vec2 cell = vec2(grid.z) / (grid.xy - 1.0);
-      vec3 tile = (toSea * modelMatrix * vec4(0.0, 0.0, 0.0, 1.0)).xyz;
-      vRest = tile.xy + vec2(gl_VertexID / columns, gl_VertexID % columns) * cell;
-      vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz, moved = vSea - vec3(vRest, 0.0);
-      float share = pieceShare(vRest, eye);
-      if (share > 0.0) {
-        // Coarser meshes of far tiles take means of as many cells as a triangle is wide.
-        float level = max(log2(MEAN_LEVEL * distance(vec3(vRest, 0.0), eye) / cell.x), 0.0);
-        vec3 pieces = wavesAt(wavePlaces, vRest, 1.0, level, false).xyz;
-        moved = ((1.0 - share) * moved + share * pieces) * inversesqrt(1.0 - 2.0 * share * (1.0 - share));
-      }
-      vSea = vec3(vRest, 0.0) + moved * (1.0 - rimFlatness(vRest));
-      transformed = vSea - tile;
-    }
-    #include <project_vertex>
-    ${nearer ? "gl_Position = projectionMatrix * (mvPosition * vec4(vec3(0.998), 1.0));" : ""}
-  }`;
-const WIRE_FRAGMENT = `
-  uniform vec3 wireColor;
-  void main() {
-    gl_FragColor = vec4(wireColor, 1.0);
-    #include <tonemapping_fragment>
-    #include <colorspace_fragment>
+    float last = polarSteps.z, s = polarSteps.x + polarSteps.y * position.x, angle = polarTurn + polarSteps.w * position.y;
+    float reach = polarPlace.z + polarPlace.w * sinh(last);
+    float far = s > last + 0.5 * polarSteps.y ? reach * exp2((s - last) / polarSteps.y) : polarPlace.z + polarPlace.w * sinh(s);
+    vRest = polarPlace.xy + far * vec2(cos(angle), sin(angle));
+    vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
+    // Heights are means over about half a triangle, so that waves do not flicker where the grid moves over them.
+    #ifdef RINGS
+      vec3 moved = ringsAt(wavePlaces, vRest).xyz * (1.0 - ringFlatness(vRest));
+    #else
+      float wide = max(polarSteps.y * polarPlace.w * cosh(min(s, last)), polarSteps.w * far);
+      float level = max(log2(0.5 * wide * (grid.x - 1.0) / grid.z), 0.0);
+      vec3 moved = wavesAt(wavePlaces, vRest, pieceShare(vRest, eye), level, false).xyz;
+      moved *= 1.0 - smoothstep(0.7, 1.0, far / reach);
+    #endif
+    vSea = vec3(vRest, 0.0) + moved;
+    gl_Position = projectionMatrix * viewMatrix * fromSea * vec4(vSea, 1.0);
+    // What is beyond the camera's range is drawn at its end, as the sea reaches the horizon.
+    float end = (farDepth > 0.5 ? 1.0 - 1e-6 : 1e-9) * gl_Position.w;
+    gl_Position.z = farDepth > 0.5 ? min(gl_Position.z, end) : max(gl_Position.z, end);
   }`;
 
+// A line over the sides of the cells of the simulated grid.
+const WIRE_GLSL = `
+  uniform vec3 wireColor;
+  float wireAt(vec2 rest) {
+    #ifdef RINGS
+      vec2 p = rest - gridMiddle.xy, cell = vec2(ringAt(length(p)), atan(p.y, p.x + 1e-9) / 6.2831853 * grid.y);
+    #else
+      vec2 cell = rest * (grid.xy - 1.0) / grid.z;
+    #endif
+    vec2 wide = fwidth(cell), off = abs(fract(cell - 0.5) - 0.5) / max(wide, 1e-6);
+    vec2 line = (1.0 - smoothstep(0.4, 1.1, off)) * (1.0 - smoothstep(0.2, 0.6, wide));
+    return max(line.x, line.y);
+  }`;
 const WATER_FRAGMENT = `
   #define STANDARD
   #define MAX_WATERLINES ${MAX_WATERLINES}
@@ -707,18 +759,25 @@ const WATER_FRAGMENT = `
   ${WATER_GLSL.waves}
   ${WATER_GLSL.sky}
   ${WATER_GLSL.surface}
+  ${WIRE_GLSL}
   varying vec3 vSea;
   varying vec2 vRest;
-  varying vec3 vSlopeAndFoam;
   uniform vec3 cutout; // middle x, y of a side of the rectangle without surface, half its length [m] (0: no cutout)
   uniform vec3 cutoutDirection; // unit vector from that side to the opposite one, and their distance [m]
   void main() {
-    vec2 from = vSea.xy - cutout.xy;
-    float across = dot(from, cutoutDirection.xy), along = dot(from, vec2(-cutoutDirection.y, cutoutDirection.x));
-    if (across > 0.0 && across < cutoutDirection.z && abs(along) < cutout.z) discard;
-    // Waves of a mesh that is no grid become flat towards its rim, as the sea beyond it is flat.
-    float flatness = extent.y > 0.0 && grid.x == 0.0 ? smoothstep(0.8, 1.0, length(vSea.xy) / grid.z) : 0.0;
-    gl_FragColor = vec4(shadeSea(vSea, vRest, vSlopeAndFoam * vec3(1.0, 1.0, 1.0 - flatness), flatness), 1.0);
+    // A shader with "discard" shades the waves that are hidden, too.
+    #ifdef CUTOUT
+      vec2 from = vSea.xy - cutout.xy;
+      float across = dot(from, cutoutDirection.xy), along = dot(from, vec2(-cutoutDirection.y, cutoutDirection.x));
+      if (across > 0.0 && across < cutoutDirection.z && abs(along) < cutout.z) discard;
+    #endif
+    // The middle of a pixel at the horizon may lie beyond the mesh, where places have passed through infinity.
+    vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz, at = vSea;
+    if (gl_FragCoord.w < 1e-6) at = eye + 1e6 * normalize((vSea - eye) * (gl_FragCoord.w < 0.0 ? -1.0 : 1.0));
+    gl_FragColor = vec4(shadeSea(at, vRest), 1.0);
+    #ifdef WIRE
+      gl_FragColor.rgb = mix(gl_FragColor.rgb, wireColor, wireAt(vRest));
+    #endif
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
   }`;
@@ -735,28 +794,15 @@ const DOME_VERTEX = `
   }`;
 const DOME_FRAGMENT = `
   #define STANDARD
-  #define MAX_WATERLINES ${MAX_WATERLINES}
   uniform mat4 toSea;
   ${WATER_GLSL.noise}
-  ${WATER_GLSL.waves}
   ${WATER_GLSL.sky}
-  ${WATER_GLSL.surface}
   ${WATER_GLSL.dome}
   varying vec3 vRay;
   void main() {
     vec3 d = normalize(vRay);
-    vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
-    float down = max(-d.z, 1e-5);
-    vec3 at = vec3(eye.xy + d.xy * min(max(eye.z, 0.0) / down, 1e5), 0.0);
-    // Below the horizon is the sea beyond the mesh.
-    vec3 c;
-    if (d.z < 0.0) {
-      c = shadeSea(at, at.xy, vec3(0.0), 1.0);
-    } else {
-      c = skyLight(d);
-    }
-    gl_FragColor = vec4(c, 1.0);
+    // Below the horizon, where the mesh of the sea ends, is haze.
+    gl_FragColor = vec4(d.z < 0.0 ? horizonGlow(d) * lens.y : skyLight(d), 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
   }`;
-

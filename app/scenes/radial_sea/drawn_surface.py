@@ -58,6 +58,7 @@ class DrawnSurface:
 
     surface: RadialSurface
     foam: NDArray[np.float32]  # (n,) 0 to 1
+    middle: tuple[float, float]  # x, y [m] of the middle of the grid
     cutaway: Cutaway | None
     sent: SentSurface
 
@@ -79,7 +80,7 @@ class DrawnSurface:
         key = (scene.time, p, scene.camera)
         if key == self.drawn:
             return
-        centre = scene.camera if p.centre == "camera" else (0.0, 0.0)
+        centre = self.middle = scene.camera if p.centre == "camera" else (0.0, 0.0)
         self.surface = self.timed_surface(p.surface, scene.sea, scene, centre)
         if p.compare:
             self.compare(scene, centre)

@@ -34,6 +34,7 @@ class RadialFrame(NamedTuple):
     params: Params
     time: float  # [s]
     grid: RadialGrid
+    grid_middle: tuple[float, float]  # x, y [m]
     surface: RadialSurface
     foam: NDArray[np.float32]  # (n,) 0 to 1
     slick: Slick | None  # only on clean water: on a layer of oil it would not be seen

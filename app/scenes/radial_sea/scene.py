@@ -347,6 +347,7 @@ class RadialSeaScene:
             params=p,
             time=self.time,
             grid=self.grid,
+            grid_middle=drawing.middle,
             surface=drawing.surface,
             foam=drawing.foam,
             slick=self.well_blowout.slick(self.column) if self.column.kind == "water" else None,

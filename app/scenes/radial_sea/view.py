@@ -31,7 +31,6 @@ from app.scenes.radial_sea.frame import RadialFrame, RadialReadings
 from app.scenes.radial_sea.materials import material_of, waterlines_of
 from app.scenes.radial_sea.parameters import Params
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
-from app.scenes.radial_sea.scene import GRID_RADIUS
 from app.scenes.radial_sea.stain_view import Stains
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
 from sim.floating.shapes import Appearance
@@ -147,19 +146,16 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
             if self.water is not None:
                 self.water.remove()
             self.grid = frame.grid
-            grid = frame.grid
-            rest = np.column_stack([grid.x, grid.y, np.zeros(len(grid))])
-            self.water = Water(
-                self.server, "/sea", 1, len(grid), GRID_RADIUS,
-                faces=grid.faces, rest=rest, columns=grid.spokes, material=material,
-            )  # fmt: skip
+            self.water = Water(self.server, "/sea", frame.grid, material)
         elif material != self.material:
             self.water.set_material(material)
         self.material = material
         s = frame.surface
         if s is not self.surface:
             self.surface = s
-            frame.sent.numbers = self.water.set_surface(s.vertices[None], s.slope[None], frame.foam[None], frame.time)
+            frame.sent.numbers = self.water.set_surface(
+                s.vertices[None], s.slope[None], frame.foam[None], frame.time, frame.grid_middle
+            )
             self.water.set_waterlines(waterlines_of(frame))
 
     def show_fire(self, frame: RadialFrame) -> None:

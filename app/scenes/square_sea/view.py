@@ -19,7 +19,7 @@ from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_byte
 from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
-from app.render.water import Water
+from app.render.water import Tile, Water
 from app.scenes.contract import Pieces
 from app.scenes.contract import View as SceneView
 from app.scenes.square_sea import report
@@ -39,7 +39,6 @@ TARGETS = {  # [m] of each view: how far ahead its target is, and the target's h
 }
 CAMERA_SETBACK = 0.14  # of the tile's side: how far the camera stands behind the middle of the tile,
 MAX_CAMERA_SETBACK = 20.0  # [m] but no farther than this, so that it is near the rain
-TILES = 5  # copies of the tile along a side
 WATER_DENSITY = 1000.0  # [kg/m3]
 OVERCAST_TINT = (0.80, 0.92, 1.02)  # colour filter on the sky where clouds cover all of it
 OVERCAST_DEEP = (0.15, 0.33, 0.35)  # colour of deep water there: foam and bubbles make it paler
@@ -117,7 +116,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             if self.water is not None:
                 self.water.remove()
                 self.move_cameras(self.mesh_shape[1], length)
-            self.water = Water(self.server, "/sea", n, n, length, tiles=TILES, material=material)
+            self.water = Water(self.server, "/sea", Tile(n, n, length), material)
             self.mesh_shape = mesh_shape
         elif material is not self.material and material != self.material:
             self.water.set_material(material)

@@ -17,7 +17,7 @@ import pytest
 
 from app.render import injection
 from app.render.injection import SCRIPTS, ShaderInjector
-from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Material, Oil, SlickRegion, uniform_table
+from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Grid, Material, Oil, SlickRegion, uniform_table
 from sim.ocean.oil_film import BAND_WIDTH, BANDS
 
 
@@ -146,10 +146,11 @@ def test_the_script_takes_the_order_of_the_uniforms_from_python(server: FakeServ
     for name, value in (("WATER_UNIFORMS", WATER_UNIFORMS), ("RAIN_UNIFORMS", RAIN_UNIFORMS)):
         (found,) = re.findall(rf"const {name} = (.*);", sent)
         assert tuple(json.loads(found)) == value
-    # No file repeats the order: it would have names of uniforms in quotes. "slick" is also the name of a plain mesh.
+    # No file repeats the order: it would have names of uniforms in quotes. "slick" is also the name of a plain mesh,
+    # and the table of the sky depends on some.
     for name in SCRIPTS:
         quoted = set(re.findall(r"[\"'](\w+)[\"']", source_of(name)))
-        assert quoted & {*WATER_UNIFORMS, *RAIN_UNIFORMS} <= {"slick"}
+        assert quoted & {*WATER_UNIFORMS, *RAIN_UNIFORMS} <= {"slick", "skyline", "skyFold", "skyTint", "sunDirection"}
 
 
 def test_each_program_that_depends_on_the_details_has_three_variants() -> None:
@@ -158,13 +159,13 @@ def test_each_program_that_depends_on_the_details_has_three_variants() -> None:
     assert variants == {0, 1, 2}
     scripts = source_of("water.js") + source_of("rain.js")
     sources = re.findall(r"fragmentShader = (.*);", scripts)
-    assert sorted(s for s in sources if "withDetails" in s) == [
-        "withDetails(DOME_FRAGMENT)",
-        "withDetails(RAIN_FRAGMENT)",
-        "withDetails(WATER_FRAGMENT)",
+    assert sorted(sources) == [
+        "withSky(DOME_FRAGMENT, sea.uniforms)",
+        "withSky(RAIN_FRAGMENT, sea.uniforms)",
+        "withSky(defines + WATER_FRAGMENT, sea.uniforms)",
     ]
-    names = [line for line in scripts.splitlines() if "replaceShader(" in line and "wire" not in line]
-    assert ["keyWithDetails(" in name for name in names] == [True] * 3
+    assert scripts.count("replaceShader(") == scripts.count("keyWithDetails(") == 3
+    assert "withDetails(" in source_of("sky_table.js")
     assert "DETAILS" in source_of("water_shader.js")
 
 
@@ -182,7 +183,7 @@ def test_every_field_of_a_material_reaches_the_uniforms() -> None:
     plain = Material()
 
     def table(material: Material) -> np.ndarray:
-        return uniform_table(material, (1.0, 2.0, 3.0), (4, 5, 6.0), 7)
+        return uniform_table(material, (1.0, 2.0, 3.0), Grid(4, 5, 6.0))
 
     assert table(plain).shape == (len(WATER_UNIFORMS), 3)
     for field in dataclasses.fields(Material):

@@ -1,0 +1,69 @@
+// The photograph of the sky as a table by azimuth, elevation and blur, which the shaders of water, sky and rain look up.
+// It is drawn anew when the photograph or a uniform that it depends on changes. A browser that cannot draw into half
+// floats has no table: there each pixel looks at the photograph itself.
+
+const SKY_UNIFORMS = ["skyline", "skyFold", "skyTint", "sunDirection"]; // of which it is a function
+const HALF_FLOAT = 1016, RGBA = 1023, LINEAR = 1006, REPEAT = 1000, CLAMP = 1001; // three's constants
+const SKY_TABLE_VERTEX = "void main() { gl_Position = vec4(position.xy, 0.5, 1.0); }";
+const SKY_TABLE_FRAGMENT = `
+  ${SKY_TABLE.replace("#define SKY_TABLE", "")}
+  #define STANDARD
+  #define DETAILS 0
+  uniform mat4 toSea;
+  ${WATER_GLSL.noise}
+  ${WATER_GLSL.sky}
+  void main() {
+    int row = int(gl_FragCoord.y), block = row / SKY_ROWS;
+    float a = 6.2831853 * gl_FragCoord.x / float(${SKY_COLUMNS}), up = float(row - block * SKY_ROWS) / float(SKY_ROWS - 1);
+    float e = 1.5707963 * up * up;
+    vec3 d = vec3(cos(e) * vec2(cos(a), sin(a)), sin(e)), c;
+    if (block < SKY_BLURS) c = sky(d, SKY_BLUR[block]);
+    else if (block == SKY_BLURS) c = clearSky(d);
+    else if (row == SKY_HEIGHT - 3) c = horizon(d);
+    else if (row == SKY_HEIGHT - 2) c = meanHorizon();
+    else c = ambientLight();
+    gl_FragColor = vec4(c, 1.0);
+  }`;
+
+const skyTables = new Map(); // name of the node -> { target, dome, key }, kept for good as its uniforms
+let skiesDrawn = 0; // tests read it
+
+// Draw the table of the sea `base` if it is not that of this photograph and these uniforms.
+function drawSkyTable(base, sea, renderer, scene) {
+  const photograph = scene.environment, Target = photograph?.renderTarget?.constructor;
+  if (!Target || !renderer.extensions.has("EXT_color_buffer_float")) return;
+  const { uniforms } = sea, { environmentIntensity, environmentRotation } = scene;
+  const numbers = [...SKY_UNIFORMS, "fromSea"].flatMap((name) => uniforms[name].value.toArray());
+  const key = [photograph.uuid, photograph.version, environmentIntensity, ...environmentRotation.toArray(), ...numbers].join();
+  if (!skyTables.has(base)) {
+    const how = { type: HALF_FLOAT, format: RGBA, minFilter: LINEAR, magFilter: LINEAR, wrapS: REPEAT, wrapT: CLAMP };
+    const target = new Target(SKY_COLUMNS, (SKY_BLUR.length + 1) * SKY_ROWS + 3, { ...how, depthBuffer: false });
+    const dome = makeDome(sea);
+    dome.removeFromParent();
+    skyTables.set(base, { target, dome, key: "" });
+  }
+  const table = skyTables.get(base);
+  if (table.key === key) return;
+  table.key = key;
+  skiesDrawn += 1;
+  const { material } = table.dome;
+  material.envMap = photograph;
+  material.envMapIntensity = environmentIntensity;
+  material.envMapRotation.copy(environmentRotation);
+  material.fog = material.toneMapped = material.depthTest = false;
+  replaceShader(material, "springtide-sky-table", (shader) => {
+    Object.assign(shader.uniforms, uniforms);
+    shader.vertexShader = SKY_TABLE_VERTEX;
+    shader.fragmentShader = SKY_TABLE_FRAGMENT;
+  });
+  const before = renderer.getRenderTarget();
+  renderer.setRenderTarget(table.target);
+  renderer.render(table.dome, window.__viserMutable.camera);
+  renderer.setRenderTarget(before);
+  uniforms.skyTable.value = table.target.texture;
+}
+
+// The text of a fragment shader that shows the sky of these uniforms.
+function withSky(source, uniforms) {
+  return withDetails(uniforms.skyTable.value ? `${SKY_TABLE}\n${source}` : source);
+}

@@ -27,6 +27,7 @@ from app.lab.runner import Runner
 from app.lab.runners import Runners
 from app.lab.saved import Saved, keep, read_files
 from app.lab.task import Task, load_tasks
+from app.lab.versions import stamps
 from tests.waiting import wait_for
 
 TASKS = tuple(task for task in load_tasks() if task.item.startswith("3.2"))
@@ -254,6 +255,22 @@ def test_a_function_that_could_not_be_checked_is_checked_again(
         revision = classroom.revision
         wait_for(lambda: classroom.revision == revision)
     assert len(asked) == 2 * len(set(asked))
+
+
+def test_a_folder_that_is_as_it_was_changes_nothing_on_the_page(
+    folders: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks: list[Path] = []
+    monkeypatch.setattr("app.lab.versions.stamps", lambda *of: looks.append(of[0]) or stamps(*of))
+    monkeypatch.setattr("app.lab.classroom.LOOK_INTERVAL", 0.02)
+    with Classroom(folders[:1], TASKS) as classroom:
+        wait_for(lambda: classroom.students[folders[0]].results)
+        for _ in range(2):  # while the files are read at each look, and for the rewritten answers
+            revision, before = classroom.revision, len(looks)
+            answers = (folders[0] / "answers.toml").read_bytes()
+            (folders[0] / "answers.toml").write_bytes(answers)
+            wait_for(lambda before=before: len(looks) > before + 20)
+            assert classroom.revision == revision
 
 
 def test_a_broken_file_is_where_its_line_is(folders: list[Path], tmp_path: Path) -> None:

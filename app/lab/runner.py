@@ -212,7 +212,7 @@ class Runner:
             try:
                 if answer[0] == "result":
                     used = processor_time(process.pid)[1]
-                    self.effort += used - self._used if used else time.monotonic() - start
+                    self.effort += used - self._used if sys.platform == "linux" else time.monotonic() - start
                     return unpack(answer[1], lambda _: None)
                 if answer[0] == "loaded":
                     self._loaded.add(file)

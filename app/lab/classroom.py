@@ -150,7 +150,8 @@ class Classroom:
         with self.runners.runner(saved.folder) as runner:
             after = checked(student, saved, self.tasks, runner)
         desk.is_open = after.is_open
-        return after
+        same = after.saved is student.saved and after.rope is student.rope
+        return student if same and (after.results, after.error) == (student.results, student.error) else after
 
 
 def checked(before: Student, saved: Saved, tasks: Sequence[Task], runner: Runner) -> Student:

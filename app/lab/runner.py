@@ -174,7 +174,9 @@ class Runner:
             raise RunError("missing", "there is no such file", file)
         if file in self._broken:
             raise self._broken[file]
-        self._check_syntax(file)
+        if file not in self._parsed:
+            check_syntax(self.folder / file)
+            self._parsed.add(file)
         try:
             for _ in range(MAX_TRIES):
                 functions: list[Callable[..., Any]] = []
@@ -210,7 +212,7 @@ class Runner:
             try:
                 if answer[0] == "result":
                     used = processor_time(process.pid)[1]
-                    self.effort += used - self._used if used else time.monotonic() - start
+                    self.effort += used - self._used if sys.platform == "linux" else time.monotonic() - start
                     return unpack(answer[1], lambda _: None)
                 if answer[0] == "loaded":
                     self._loaded.add(file)
@@ -278,19 +280,6 @@ class Runner:
         self._load_limit = LOAD_LIMIT
         self.is_fresh = True
         return process
-
-    def _check_syntax(self, file: str) -> None:
-        """Raises RunError for a file that cannot be parsed, in the words of the process, which is not needed for it."""
-        if file in self._parsed:
-            return
-        try:
-            ast.parse(decoded((self.folder / file).read_bytes()))
-        except SyntaxError as error:
-            text = f"{type(error).__name__}: {error.msg}"
-            raise RunError("syntax", text, file, error.lineno, loading=True) from None
-        except (OSError, ValueError, RecursionError, MemoryError):  # which the process meets as well
-            return
-        self._parsed.add(file)
 
     def _started(self, surroundings: dict[str, str]) -> Process:
         """A new process; these are the environment variables of one that is not forked. Raises OSError."""
@@ -377,6 +366,17 @@ class Runner:
             how = f"signal {-status}" if status is not None and status < 0 else f"exit status {status}"
             raise RunError("ended", f"{file if loading else function} ended its process ({how})", file, loading=loading)
         return answer
+
+
+def check_syntax(path: Path) -> None:
+    """Raises RunError for a file that cannot be parsed, in the words of the process, which is not needed for it."""
+    try:
+        ast.parse(decoded(path.read_bytes()))
+    except SyntaxError as error:
+        text = f"{type(error).__name__}: {error.msg}"
+        raise RunError("syntax", text, path.name, error.lineno, loading=True) from None
+    except (OSError, ValueError, RecursionError, MemoryError):  # which the process meets as well
+        pass
 
 
 def read_answers(process: Process, answers: "queue.SimpleQueue[list[Any] | None]") -> None:

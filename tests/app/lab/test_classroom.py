@@ -27,6 +27,7 @@ from app.lab.runner import Runner
 from app.lab.runners import Runners
 from app.lab.saved import Saved, keep, read_files
 from app.lab.task import Task, load_tasks
+from app.lab.versions import stamps
 from tests.waiting import wait_for
 
 TASKS = tuple(task for task in load_tasks() if task.item.startswith("3.2"))
@@ -159,12 +160,13 @@ def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.M
     for folder in folders:
         folder.mkdir(parents=True)
         (folder / "rope.py").write_text("version 000")
-    busy: dict[Path, str] = {}
-    rng, checks = np.random.default_rng(7), []
+    busy: dict[Path, int] = {}
+    rng, checks, overlaps = np.random.default_rng(7), [], []
 
     def check(copies: Path, runner: Runner, task: Task) -> Verdict:
         owner = copies.parent
-        assert busy.setdefault(owner, threading.current_thread().name) == threading.current_thread().name
+        if busy.setdefault(owner, threading.get_ident()) != threading.get_ident():
+            overlaps.append(owner)
         time.sleep(rng.uniform(0.0, 0.05))
         checks.append(owner)
         return Verdict("wrong", (copies / task.file).read_text())
@@ -190,6 +192,7 @@ def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.M
         wait_for(lambda: all(shown(folder) == {"version 100"} for folder in folders))
     assert not any("could not be checked" in student.error for student in classroom.students.values())
     assert len(set(checks)) == 2
+    assert overlaps == []  # one thread has a folder until it is done
 
 
 def test_a_folder_that_is_removed_and_made_again_is_followed(folders: list[Path]) -> None:
@@ -256,15 +259,35 @@ def test_a_function_that_could_not_be_checked_is_checked_again(
     assert len(asked) == 2 * len(set(asked))
 
 
+def test_a_folder_that_is_as_it_was_changes_nothing_on_the_page(
+    folders: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks: list[Path] = []
+    monkeypatch.setattr("app.lab.versions.stamps", lambda *of: looks.append(of[0]) or stamps(*of))
+    monkeypatch.setattr("app.lab.classroom.LOOK_INTERVAL", 0.02)
+    with Classroom(folders[:1], TASKS) as classroom:
+        wait_for(lambda: classroom.students[folders[0]].results)
+        for _ in range(2):  # while the files are read at each look, and for the rewritten answers
+            revision, before = classroom.revision, len(looks)
+            answers = (folders[0] / "answers.toml").read_bytes()
+            (folders[0] / "answers.toml").write_bytes(answers)
+            wait_for(lambda before=before: len(looks) > before + 20)
+            assert classroom.revision == revision
+
+
 def test_a_broken_file_is_where_its_line_is(folders: list[Path], tmp_path: Path) -> None:
     save(folders[0], "-")
+    (folders[0] / "rope.py").write_text((folders[0] / "rope.py").read_text().replace("    ...\n", "    return 1\n", 1))
     first = state_of(folders[0], tmp_path)
+    begun = [name for name, verdict in first.programs.items() if verdict.state != "not begun"]
+    assert begun[0] == "spring_force"
+    assert len(begun) == 2
     text = (folders[0] / "rope.py").read_text().replace("(length - rest_length)", "(length - rest_length")
     (folders[0] / "rope.py").write_text(text)
     second = state_of(folders[0], tmp_path, first)
     assert second.at == "spring_force"
     states = {name: verdict.state for name, verdict in second.programs.items()}
-    assert states.pop("spring_force") == "failed"
+    assert {states.pop(name) for name in begun} == {"failed"}
     assert set(states.values()) == {"not begun"}
     page = rows([second])
     line = text[: text.index("(length - rest_length")].count("\n") + 1

@@ -62,6 +62,10 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             r = x2 - x1
             stretch = max(np.linalg.norm(r) - rest_length, 0)
             return stiffness * stretch * r / np.linalg.norm(r) - damping * (v1 - v2)"""),
+        ("", """
+            r = x2 - x1
+            stretch = max(np.linalg.norm(r) - rest_length, 0)
+            return stiffness * stretch * r / np.linalg.norm(r) - 1.5 * damping * (v1 - v2)"""),
         ("NaN", """
             r, dv = x2 - x1, v1 - v2
             speed = np.linalg.norm(dv)

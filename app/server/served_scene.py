@@ -15,7 +15,7 @@ from app.render.cameras import fit_cameras, place_cameras, place_client_camera
 from app.render.html import note
 from app.scenes import NAMES, view_named
 from app.scenes.compiling import describe
-from app.scenes.contract import AnyKind
+from app.scenes.contract import AnyKind, AnyScene
 from app.server.compile_gate import CompileGate
 from app.server.loop import ALONE_INTERVAL, PATIENCE, SimLoop
 from app.server.replay_file import replay_html
@@ -37,8 +37,20 @@ class ServedScene:
     solve takes. Everything drawn is assigned on the viewer thread, everything simulated on the loop's.
     """
 
-    def __init__(self, viewer: "Viewer", kind: AnyKind, params: BaseParams, *, paused: bool) -> None:
-        """viewer: the server and the parts common to all scenes. `start` runs the threads."""
+    def __init__(
+        self,
+        viewer: "Viewer",
+        kind: AnyKind,
+        wanted: BaseParams,
+        scene: AnyScene,
+        commands: queue.SimpleQueue[Command],
+        *,
+        paused: bool,
+    ) -> None:
+        """viewer: the server and the parts common to all scenes. `start` runs the threads.
+
+        scene: has the parameters that are wanted, or others where it cannot begin with those. commands: for it.
+        """
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
         self.recorded: Kept | None = None  # the frame of the recording that is shown
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
@@ -46,10 +58,7 @@ class ServedScene:
         self.stop = threading.Event()
         self.is_open = True
         self.threads: list[threading.Thread] = []
-        self.commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
-        wanted = params
-        self.scene = viewer.make_scene(kind, params, self.commands.put)
-        params = self.scene.params  # others than the wanted ones where the scene cannot begin with those
+        self.commands, self.scene, params = commands, scene, scene.params
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = view_named(kind.name)(self.server, self.commands.put)
         place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)

@@ -36,6 +36,9 @@ from app.server.transport import Transport
 if TYPE_CHECKING:
     from app.lab.session import Session
 
+# [s] between the last update of a panel and its removal: viser's page takes the updates of a frame after its removals,
+# and says in the browser's console that there is nothing to update.
+SETTLING_TIME = 0.2
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
 PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled
 
@@ -123,9 +126,16 @@ class Viewer:
                 raise
 
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
-        """Make the scene and serve it."""
+        """Make the scene and serve it, with a line on the page meanwhile."""
+        self.cover(f"Opening {kind.title} …")
+        closed_at, commands = time.monotonic(), queue.SimpleQueue[Command]()
+        scene = self.make_scene(kind, params, commands.put)
+        if self.visitors():
+            time.sleep(max(0.0, SETTLING_TIME - (time.monotonic() - closed_at)))
         reset_page(self.server)
-        self.current = current = ServedScene(self, kind, params, paused=paused)
+        cover = self.cover(f"Opening {kind.title} …")
+        self.current = current = ServedScene(self, kind, params, scene, commands, paused=paused)
+        cover.remove()
         comparison = self.comparison
         if comparison is not None:
             comparison.seat(self)
@@ -133,6 +143,10 @@ class Viewer:
         if self.compile_ahead:
             ahead = self.compiling.go_on_with
             threading.Thread(target=ahead, args=(kind.name,), name="compile ahead", daemon=True).start()
+
+    def cover(self, words: str) -> viser.GuiHtmlHandle:
+        """A line that covers the page (`js/page.js`) until it is removed."""
+        return self.server.gui.add_html(note(fill('<span class="springtide-progress">{}</span>', words)))
 
     def make_scene(self, kind: AnyKind, params: BaseParams, post: PostCommand) -> AnyScene:
         """The simulation; with the parameters of its first view where it cannot begin with these.
@@ -171,7 +185,7 @@ class Viewer:
         cover = None
         if not self.is_open:
             reset_page(self.server)
-            cover = self.server.gui.add_html("")
+            cover = self.cover("")
         self.compiling.want(jobs)
         try:
             done = False

@@ -26,12 +26,19 @@
     cover.classList.toggle("springtide-hidden", hidden);
   }
 
+  let waiting = "Connecting to the lab …"; // while there is no panel
   function update() {
     if (lost) return say(`The lab has stopped. ${restart}`, false);
     const progress = document.querySelector(".springtide-progress");
-    if (progress) return say(progress.textContent, false);
-    if (document.querySelector(".springtide-panel")) return say(null, true);
-    return say("Connecting to the lab …", false);
+    if (progress) {
+      waiting = progress.textContent;
+      return say(waiting, false);
+    }
+    if (document.querySelector(".springtide-panel")) {
+      waiting = "Opening the scene …"; // the page is connected from now on
+      return say(null, true);
+    }
+    return say(waiting, false);
   }
 
   async function ask() {

@@ -1,6 +1,5 @@
 """The course lab under accidents: in every function, kills while answers are written, results of every kind."""
 
-import dataclasses
 import random
 import subprocess
 import sys
@@ -8,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from app.lab.answers import Answers, read_answers
 from app.lab.program_check import check_program
@@ -104,6 +104,6 @@ def test_no_odd_result_stops_the_check_or_is_taken_for_right(tmp_path: Path, tas
         for number, value in enumerate(made):
             file = f"try_{number}.py"
             (tmp_path / file).write_text(f"import numpy as np\n\ndef {task.name}(*arguments):\n    return {value}\n")
-            verdict = check_program(tmp_path, runner, dataclasses.replace(task, file=file))
+            verdict = check_program(tmp_path, runner, replace(task, file=file))
             assert verdict.state in ("failed", "wrong"), value
         assert runner.starts == 1

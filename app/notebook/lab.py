@@ -98,12 +98,8 @@ class Lab:
         before, and RuntimeError where it is begun again or another scene is opened meanwhile.
         """
         check_number("seconds", seconds, 0.0, MAX_WAIT, "s")
-        viewer = self._open
-        while viewer.loop.scene.params != viewer.panel.params:
-            time.sleep(POLL_INTERVAL)  # until what was set has been compiled and taken
-            self._check_open()
         answer: Future[float] = Future()
-        served = viewer.served
+        served = self._open.served
         served.commands.put(Advance(float(seconds), answer))
         return self._result_of(answer, served)
 

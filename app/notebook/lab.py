@@ -99,16 +99,8 @@ class Lab:
         """
         check_number("seconds", seconds, 0.0, MAX_WAIT, "s")
         answer: Future[float] = Future()
-        served, loop, panel = self._open.served, self._open.loop, self._open.panel
-
-        def begin() -> None:
-            """Run; on the simulation thread, which looks again in its next tick until it has what was set."""
-            if loop.scene.params == panel.params:
-                loop.handle(Advance(float(seconds), answer))
-            elif not answer.done():  # it is compiled first
-                served.commands.put(Ask(begin, Future()))
-
-        served.commands.put(Ask(begin, Future()))
+        served = self._open.served
+        served.commands.put(Advance(float(seconds), answer))
         return self._result_of(answer, served)
 
     def reset(self) -> None:

@@ -1,6 +1,5 @@
 """A picture of a browser's view."""
 
-import time
 from pathlib import Path
 
 from app.panel.picture import take_picture
@@ -10,7 +9,6 @@ from sim.validation import argument_error, is_whole_number
 MAX_SIDE = 8000  # [pixels]
 PAGE_TIMEOUT = 20.0  # [s] for a page to connect
 DRAW_TIMEOUT = 20.0  # [s] for a browser to draw a picture; it draws none of a page that is scrolled out of sight
-POLL_INTERVAL = 0.05  # [s]
 
 
 class Still:
@@ -36,12 +34,10 @@ def take_still(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TI
     for name, side in (("width", width), ("height", height)):
         if not is_whole_number(side) or not 1 <= side <= MAX_SIDE:
             raise argument_error(name, side, f"1 to {MAX_SIDE} pixels")
-    end = time.monotonic() + PAGE_TIMEOUT
-    while not (clients := viewer.server.get_clients()):
-        if time.monotonic() > end or viewer.ended:
-            raise RuntimeError("no browser shows this lab, so there is no picture of it; open its cell in a browser")
-        time.sleep(POLL_INTERVAL)
+    client = viewer.newest_visitor(PAGE_TIMEOUT)
+    if client is None:
+        raise RuntimeError("no browser shows this lab, so there is no picture of it; open its cell in a browser")
     try:
-        return Still(take_picture(clients[max(clients)], (int(width), int(height)), timeout=timeout))
+        return Still(take_picture(client, (int(width), int(height)), timeout=timeout))
     except TimeoutError:
         raise TimeoutError(f"the browser drew no picture within {timeout:g} s; the page has to be in sight") from None

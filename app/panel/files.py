@@ -6,10 +6,10 @@ Callbacks run on viser's event loop. Each file is made in a separate thread.
 import io
 import re
 import threading
-import time
 import traceback
 import zipfile
 from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from typing import TYPE_CHECKING
 
 import viser
@@ -62,7 +62,7 @@ class Files:
         """
         self.panel, self.recorder, self.wake = panel, panel.recorder, wake
         self.make_replay, self.say = make_replay, say
-        self.sent: Kept | None = None  # the frame of the recording that the viewer sent last
+        self.awaited: tuple[Kept, Future[None]] | None = None  # a frame of the recording that is to be sent
         self.busy = threading.Lock()  # one file at a time
         gui = panel.gui
         self.size = gui.add_dropdown("Picture size", tuple(PICTURE_SIZES))
@@ -143,13 +143,21 @@ class Files:
 
     def wait_until_sent(self, kept: Kept) -> None:
         """Wait until the viewer's thread has sent a frame of the recording. Raises TimeoutError."""
-        end = time.monotonic() + DRAWN_TIMEOUT
-        while self.sent is not kept:
-            if time.monotonic() > end:
-                raise TimeoutError("the recording could not be shown")
-            self.wake()
-            time.sleep(0.01)
+        sent: Future[None] = Future()
+        self.awaited = kept, sent
+        self.wake()
+        try:
+            sent.result(DRAWN_TIMEOUT)
+        except TimeoutError:
+            raise TimeoutError("the recording could not be shown") from None
         self.panel.server.flush()
+
+    def note_sent(self, shown: Kept | None) -> None:
+        """The viewer's thread has sent what is shown: a frame of the recording, or None for the present."""
+        if self.awaited is not None and self.awaited[0] is shown:
+            _, sent = self.awaited
+            self.awaited = None
+            sent.set_result(None)
 
     def replay_file(self) -> tuple[str, bytes]:
         """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""

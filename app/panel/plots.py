@@ -17,7 +17,7 @@ from viser import uplot
 from app.messages import Line, PlotRow
 from app.panel.round_step import round_step
 from app.render.viser_types import GuiHandle
-from app.scenes.charts import Chart, Columns, chart_of, lines_of
+from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
 from app.scenes.contract import AnyKind, AnySnapshot
 
 SEND_INTERVAL = 0.12  # [s] between two sends
@@ -197,6 +197,7 @@ class Plots:
             if kept:
                 lines = (*lines, *(kept_line(line) for line in lines))
                 columns += [at_times(times, before, row) for row in rows]
+            lines, columns = with_numbers(lines, columns)
             self.send(name, Chart("t [s]", lines, (times, *columns)))
 
     def send(self, name: str, chart: Chart) -> None:

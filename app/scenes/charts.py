@@ -71,6 +71,13 @@ def lines_of(names: Sequence[str]) -> tuple[Line, ...]:
     )
 
 
+def with_numbers(lines: Sequence[Line], columns: Sequence[Column]) -> tuple[tuple[Line, ...], tuple[Column, ...]]:
+    """The lines that have a number, and their columns, such as those of the moorings there are; all if none has one."""
+    there = [bool(np.isfinite(column).any()) for column in columns]
+    chosen = [i for i, has in enumerate(there) if has or not any(there)]
+    return tuple(lines[i] for i in chosen), tuple(columns[i] for i in chosen)
+
+
 def chart_of(axes: CurveAxes, columns: Chart | Columns) -> Chart:
     """The chart that a scene's columns are drawn as."""
     return columns if isinstance(columns, Chart) else Chart(axes.first, lines_of(axes.names), columns)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from app.messages import BaseParams, Command, Take
+from app.messages import Advance, BaseParams, Command, Take
 from app.scenes.compiling import Compiling, Job
 from app.scenes.contract import AnyKind
 from app.server.merging import merged
@@ -19,6 +19,7 @@ class CompileGate:
         self.compiling, self.kind = compiling, kind
         self.params = params  # those that were handed over last
         self.held: list[Take] = []  # wait for the compiler, in order
+        self.programs: list[Advance] = []  # wait for what was set before them
         self.jobs: dict[BaseParams, list[Job]] = {}  # still to be compiled, asked for once and not in each tick
         self.notice = ""  # pending compilation, in words
 
@@ -36,11 +37,14 @@ class CompileGate:
     def admit(self, commands: Iterable[Command]) -> list[Command]:
         """The commands that can be handled now, in order.
 
-        Parameters that cannot run yet wait, and come later by themselves. Newer ones that can run drop them, as those
-        are of no more interest: an undo, or another preset.
+        Parameters that cannot run yet wait, and come later by themselves, before a program's wait that was asked for
+        after them. Newer ones that can run drop them, as those are of no more interest: an undo, or another preset.
         """
         admitted: list[Command] = self.passed()
         for command in commands:
+            if isinstance(command, Advance) and self.held:
+                self.programs.append(command)
+                continue
             if not isinstance(command, Take):
                 admitted.append(command)
                 continue
@@ -62,4 +66,6 @@ class CompileGate:
         if ready and not self.held:
             self.jobs.clear()
             self.notice = ""
+            ready += self.programs
+            self.programs.clear()
         return ready

@@ -89,6 +89,7 @@ class Viewer:
         self.server.on_client_disconnect(self.release)
         self.questions = Questions(self.server)
         self.ended = False
+        self.came = threading.Event()  # a browser is connected, or the lab has ended
         self.current: ServedScene | None = None  # the scene that was opened last; it may be closed
         self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first given
         self.changing = threading.Lock()
@@ -275,6 +276,12 @@ class Viewer:
         """How many browsers are connected."""
         return len(self.server.get_clients())
 
+    def newest_visitor(self, timeout: float) -> viser.ClientHandle | None:
+        """The browser that connected last; waits at most `timeout` [s] for one, and not for a lab that has ended."""
+        self.came.wait(timeout)
+        clients = self.server.get_clients()
+        return clients[max(clients)] if clients else None
+
     def audience(self) -> int:
         """How many browsers look; at all labs, where several are side by side."""
         comparison = self.comparison
@@ -296,7 +303,8 @@ class Viewer:
             comparison.share(self, params)
 
     async def release(self, client: viser.ClientHandle) -> None:
-        """Release the objects that a browser drags."""
+        """Release the objects that a browser drags, as it comes or goes."""
+        (self.came.set if self.visitors() else self.came.clear)()
         if self.current is not None:
             self.current.commands.put(Release(client.client_id))
 
@@ -313,6 +321,7 @@ class Viewer:
     def shut(self) -> None:
         """End: stop the threads and the server. A scene that is being opened is not waited for."""
         self.ended = True
+        self.came.set()
         if self.current is not None:
             self.current.stop.set()
         if self.pane_of is not None:

@@ -78,6 +78,7 @@ class Pressed:
         monkeypatch.setattr(self.panel, "post", self.posted.append)
         monkeypatch.setattr(self.panel.head, "actions", self.panel.head.actions._replace(post=self.posted.append))
         monkeypatch.setattr(self.panel, "open_scene", lambda *scene: self.asked.append(scene))
+        monkeypatch.setattr(self.panel.share.files, "wake", self.update)
         assert self.panel.compare is not None
         asked = Beside(lambda *given: self.asked.append(given), lambda: self.asked.append("end"), lambda: ())
         monkeypatch.setattr(self.panel.compare, "beside", asked)
@@ -102,7 +103,7 @@ class Pressed:
         self.panel.status_at = self.panel.marks_at = 0.0
         self.panel.recorder.advance(time.monotonic())
         self.panel.update(self.viewer.loop.latest, [])
-        self.panel.share.files.sent = self.panel.recorder.shown
+        self.panel.share.files.note_sent(self.panel.recorder.shown)
 
     def shown(self) -> object:
         """All that a user may see of it: the panel's texts and values, what was sent, posted and asked for."""

@@ -9,7 +9,7 @@ import pytest
 from app.messages import Line, Snapshot
 from app.panel.plots import KEPT_DASH, MIN_FILLED, SHOWN_ROWS, Plots, at_times, beside, scale_of, with_kept
 from app.scenes import scene_named
-from app.scenes.charts import Chart
+from app.scenes.charts import Chart, lines_of, with_numbers
 
 
 @pytest.mark.parametrize(
@@ -84,3 +84,14 @@ def test_the_curves_of_a_race_are_kept_and_dropped() -> None:
     assert plots.kept_curves["plot_errors"] is chart
     assert plots.keep(False) is None
     assert not plots.kept_curves
+
+
+def test_a_line_without_a_number_is_in_no_key() -> None:
+    kind, lines = scene_named("mooring"), lines_of(scene_named("mooring").plots["plot_tension"].series)
+    scene: Any = kind.make(kind.params(lines=3, segments=10))
+    scene.advance(60)
+    table = np.array(scene.take_plot_rows()).T
+    columns = [table[1 + kind.series.index(line.label)] for line in lines]
+    shown, _ = with_numbers(lines, columns)
+    assert [line.label for line in shown] == ["line 1", "line 2", "line 3", "largest so far"]
+    assert with_numbers(lines, [column[:0] for column in columns])[0] == lines  # before there is any number

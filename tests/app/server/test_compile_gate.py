@@ -1,6 +1,8 @@
 """Parameters that need what is not compiled yet wait for it; the scene goes on with the old ones."""
 
-from app.messages import KeptState, Play, Reset, Take
+from concurrent.futures import Future
+
+from app.messages import Advance, KeptState, Play, Reset, Take
 from app.scenes.compiling import Compiling, Job
 from app.scenes.rope.parameters import Params
 from app.scenes.rope.scene import SCENE
@@ -114,3 +116,13 @@ def test_a_preset_that_can_run_since_a_moment_ago_is_not_dropped_for_a_newer_rec
     queue.finish("rk4")
     newer = Take(Params(integrator="rk4", gravity=3.0))
     assert gate.admit([newer]) == [preset, newer]
+
+
+def test_a_program_waits_for_the_time_after_what_it_has_set() -> None:
+    queue, gate = made()
+    change, wait = Take(Params(integrator="rk4")), Advance(1.0, Future())
+    assert gate.admit([change, wait, Play()]) == [Play()]
+    assert gate.admit([]) == []
+    queue.finish("rk4")
+    assert gate.admit([]) == [change, wait]
+    assert gate.admit([wait]) == [wait]

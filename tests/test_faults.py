@@ -109,7 +109,7 @@ def test_a_file_of_tests_lies_where_its_module_lies():
         files = files_for(module)
         assert files, module
         assert all(file.startswith(name) for file in files), (module, files)
-    assert all(files_for(listed.fault.module) for listed in read_list())
+    assert all(files_for(module) for module in {listed.fault.module for listed in read_list()})
 
 
 def test_untried_and_open_faults_count_as_not_found(monkeypatch, capsys):

@@ -3,6 +3,7 @@
 import functools
 import hashlib
 import json
+import math
 import re
 from collections import Counter
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any, NamedTuple
 
 from sim.files import replacing
 from tests.faults.calls import reached, read_source
-from tests.faults.drawing import ROOT, Listed
+from tests.faults.drawing import ROOT, Listed, modules
 from tests.faults.trial import OWN, Outcome
 from tests.test_layers import imports, module_of
 
@@ -19,7 +20,7 @@ PLAIN = ("sim/springs/", "sim/floating/", "sim/mooring/")
 FIRST_TESTS, FIRST_FILES, FIRST_SECONDS = 40, 6, 8.0  # of a first run, as it finds most faults
 NEXT_SECONDS = 60.0  # that the other tests took without a fault
 OTHER_SECONDS = 15.0  # that tests took that are not seen to reach the line
-FAR = 5.0  # times as expensive is a test that lies elsewhere, as it is less likely to look at the result
+FAR = 5.0  # times as expensive is a test that lies elsewhere: it is less likely to look at the result
 START = 0.05  # [s] of a test that takes no time
 
 
@@ -99,10 +100,17 @@ def all_files() -> list[str]:
     return [name for name in names if not name.startswith(("tests/stress/", "tests/browser/"))]
 
 
+@functools.cache
+def digest(name: str) -> str:
+    """Hash of a file of tests, and of all sources of the program."""
+    text = (ROOT / name).read_bytes()
+    return hashlib.sha256(text + b"".join((ROOT / module).read_bytes() for module in modules())).hexdigest()[:16]
+
+
 class Records:
     """How long each test takes, and what it calls, from one run of each file without a fault; kept in `work`.
 
-    A file is run again where its text is another.
+    A file is run again where its text or a source of the program is another. This compiles all kernels, too.
     """
 
     def __init__(self, work: Path) -> None:
@@ -110,11 +118,10 @@ class Records:
         self.files: dict[str, dict[str, Any]] = json.loads(self.path.read_text("utf-8")) if self.path.exists() else {}
 
     def key(self, name: str, plain: bool) -> str:
-        digest = hashlib.sha256((ROOT / name).read_bytes()).hexdigest()[:16]
-        return f"{'plain' if plain else 'compiled'} {name} {digest}"
+        return f"{'plain' if plain else 'compiled'} {name} {digest(name)}"
 
     def missing(self) -> list[tuple[str, bool]]:
-        """The files to run, and whether as plain Python; the longest ones first, as far as they are known."""
+        """The files to run, and whether as plain Python."""
         names = all_files()
         jobs = [(name, False) for name in names]
         jobs += [(name, True) for name in names if name.removeprefix("tests/").startswith(PLAIN)]
@@ -153,55 +160,60 @@ class Records:
         }
         functions, with_kernels = reached(module, line + 1, sources)
         near = files_for(module)
-        compiled = self.quick_first(functions, near, plain=False)
-        compiled += self.others(near, compiled)
-        in_python = with_kernels and module.startswith(PLAIN)
-        plain = self.quick_first(functions, near, plain=True) if in_python else []
-        parts = [*self.parts(plain, plain=True), *self.parts(compiled, plain=False)]
+
+        def calling(*, plain: bool) -> list[str]:
+            tests = {test for function in functions for test in self.by_function[plain].get(function, ())}
+            return self.quick_first(tests, module, near, plain=plain)
+
+        plain = calling(plain=True) if with_kernels and module.startswith(PLAIN) else []
+        compiled = calling(plain=False)
+        # What runs in another process is not seen to be called.
+        nearby = {test for name in near for test in self.durations(name, plain=False)} - set(compiled)
+        others = self.quick_first(nearby, module, near, plain=False)
+        parts = [*self.parts(plain, [], plain=True), *self.parts(compiled, others, plain=False)]
         return Trial(listed, [part for part in parts if part.tests], not with_kernels)
 
-    def others(self, near: list[str], calling: list[str]) -> list[str]:
-        """The other tests nearby, quick ones first, as what runs in another process is not seen to be called."""
-        times = {test: time for name in near for test, time in self.durations(name, plain=False).items()}
-        for test in calling:
-            times.pop(test, None)
-        found, left = [], OTHER_SECONDS if calling else NEXT_SECONDS
-        for test in sorted(times, key=times.__getitem__):
-            left -= times[test]
-            if left > 0.0:
-                found.append(test)
-        return found
-
-    def quick_first(self, functions: set[str], near: list[str], *, plain: bool) -> list[str]:
-        """The tests that call one of the functions; of those of one name a few first."""
-        tests = {test for function in functions for test in self.by_function[plain].get(function, ())}
+    def quick_first(self, tests: set[str], module: str, near: list[str], *, plain: bool) -> list[str]:
+        """Tests in the order in which to try them: those that look at the module, and a few of each name, first."""
         costs: dict[str, float] = {}
         same: Counter[str] = Counter()
-        durations = {test: self.durations(test.partition("::")[0], plain=plain).get(test) for test in tests}
-        passed = {test: seconds for test, seconds in durations.items() if seconds is not None}
-        for test in sorted(passed, key=lambda test: (passed[test], test)):
-            name = test.partition("[")[0]
-            far = 1.0 if test.partition("::")[0] in near else FAR
-            costs[test] = (passed[test] + START) * (1 + same[name] / 4) * far
+        times = {test: self.time(test, plain=plain) for test in tests}
+        for test in sorted(times, key=lambda test: (times[test], test)):
+            name, _, case = test.partition("[")
+            costs[test] = (times[test] + START) * (1 + same[name] / 4)
+            costs[test] *= 1.0 if test.partition("::")[0] in near else FAR
+            costs[test] /= FAR if Path(module).stem in case else 1.0
             same[name] += 1
-        return sorted(costs, key=costs.__getitem__)
+        return sorted((test for test in costs if costs[test] < math.inf), key=costs.__getitem__)
 
-    def parts(self, tests: list[str], *, plain: bool) -> list[Part]:
-        """A few quick tests, and the others up to NEXT_SECONDS, each by files, as these share their fixtures."""
+    def time(self, test: str, *, plain: bool) -> float:
+        """Time of a test without a fault [s]; infinite where it did not pass."""
+        return self.durations(test.partition("::")[0], plain=plain).get(test, math.inf)
+
+    def parts(self, tests: list[str], others: list[str], *, plain: bool) -> list[Part]:
+        """A few quick tests, and the rest up to NEXT_SECONDS, each by files, as these share their fixtures.
+
+        others: tests that are less likely to notice; up to OTHER_SECONDS, where there are any `tests`.
+        """
         first: list[str] = []
         rest: list[str] = []
         files: set[str] = set()
         spent = 0.0
-        times = {test: self.durations(test.partition("::")[0], plain=plain).get(test, 0.0) for test in tests}
-        for test in tests:
+        for test in tests or others:
             files.add(test.partition("::")[0])
-            spent += times[test]
+            spent += self.time(test, plain=plain)
             few = len(first) < FIRST_TESTS and len(files) <= FIRST_FILES and spent < FIRST_SECONDS
             if not first or (few and not rest):
                 first.append(test)
             elif spent < NEXT_SECONDS:
                 rest.append(test)
-        return [Part(plain, by_files(part), max(map(times.__getitem__, part), default=0.0)) for part in (first, rest)]
+        spent = 0.0
+        for test in others if tests else []:
+            spent += self.time(test, plain=plain)
+            if spent < OTHER_SECONDS:
+                rest.append(test)
+        parts = [by_files(part) for part in (first, rest)]
+        return [Part(plain, part, max((self.time(test, plain=plain) for test in part), default=0.0)) for part in parts]
 
 
 def by_files(tests: list[str]) -> list[str]:

@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import functools
 import hashlib
 import multiprocessing
 import os
@@ -18,7 +19,7 @@ from sim.cache import own_folder
 from sim.files import replacing
 from tests.faults.choosing import Records, Trial
 from tests.faults.drawing import ROOT, SEED, Listed, read_list
-from tests.faults.trial import Mode, Outcome, run_tests
+from tests.faults.trial import DIED, Mode, Outcome, run_tests
 
 RESULTS = ROOT / "assets" / "bench" / "faults.csv"
 COLUMNS = ("module", "kind", "before", "occurrence", "after", "result", "by", "seconds")
@@ -43,29 +44,43 @@ def copy_of_checkout(work: Path, name: str) -> Path:
 
 
 def link_cache(source: Path, target: Path) -> None:
-    """The compiled kernels in a cache, as links, so that what a fault compiles is not kept beside them."""
-    for folder in (source / "kernels").glob("*/*"):
-        link = target / folder.relative_to(source)
-        link.parent.mkdir(parents=True, exist_ok=True)
-        if folder.is_dir() and not link.exists():
-            shutil.copytree(folder, link, copy_function=os.link)
-        elif folder.is_file():
-            shutil.copy2(folder, link)
+    """The compiled kernels in a cache, as links: what is compiled or removed beside them leaves it as it is."""
+    if source.is_dir():
+        shutil.copytree(source, target, copy_function=link, dirs_exist_ok=True)
+
+
+def link(source: str, target: str) -> None:
+    """A link, or a copy on another file system; a file that is there stays."""
+    if not os.path.exists(target):
+        try:
+            os.link(source, target)
+        except OSError:
+            shutil.copy2(source, target)
 
 
 class Worker:
-    """One process of the pool: its own copies of the checkout, and its own links to the compiled kernels."""
+    """One process of the pool: its own copies of the checkout, and its own links to the compiled kernels.
+
+    Tests without a fault compile into the cache of all workers.
+    """
 
     def __init__(self, work: Path, number: int, limit: float) -> None:
-        self.work, self.limit = work / f"worker-{number}", limit
+        self.work, self.shared, self.limit = work / f"worker-{number}", work / "cache", limit
         self.work.mkdir(parents=True, exist_ok=True)
         self.tree = copy_of_checkout(self.work, "tree")
         self.sound = copy_of_checkout(self.work, "sound")
-        link_cache(own_folder(), self.work / "cache")
+
+    @functools.cached_property
+    def cache(self) -> Path:
+        """Links to what has been compiled when the first fault is tried; what a fault compiles is removed."""
+        folder = self.work / "cache"
+        shutil.rmtree(folder, ignore_errors=True)
+        link_cache(self.shared, folder)
+        return folder
 
     def record(self, name: str, plain: bool) -> Outcome:
         """The tests of a file without a fault."""
-        mode = Mode(plain, until_failure=False, with_calls=True)
+        mode = Mode(plain, self.shared, until_failure=False, with_calls=True)
         return self.run([name], RECORDING_LIMIT, mode, PLAIN_TEST if plain else RECORDING_LIMIT)
 
     def try_fault(self, trial: Trial) -> tuple[str, str]:
@@ -75,8 +90,7 @@ class Worker:
         sound = path.read_text("utf-8")
         wrong = fault.planted(sound)
         assert wrong is not None
-        cache = self.work / "cache" / "kernels"
-        known = {folder.name for folder in cache.glob("*/*")}
+        known = {folder.name for folder in self.cache.glob("kernels/*/*")}
         end = time.monotonic() + self.limit
         try:
             path.write_text(wrong, "utf-8")
@@ -84,7 +98,7 @@ class Worker:
                 left = end - time.monotonic()
                 if left < 1.0:
                     return "open", f"no end within {self.limit:g} s"
-                mode = Mode(part.plain, self.sound if trial.same_kernels and not part.plain else None)
+                mode = Mode(part.plain, self.cache, self.sound if trial.same_kernels and not part.plain else None)
                 if part.plain:  # what that does not find is for the compiled kernels
                     left /= 2
                 # Where kernels are compiled, nobody knows how long a test takes.
@@ -97,7 +111,7 @@ class Worker:
             return "not found", "" if trial.parts else "no test"
         finally:
             path.write_text(sound, "utf-8")
-            for folder in cache.glob("*/*"):
+            for folder in self.cache.glob("kernels/*/*"):
                 if folder.is_dir() and folder.name not in known:
                     shutil.rmtree(folder)
 
@@ -129,6 +143,7 @@ def try_one(trial: Trial) -> tuple[Listed, str, str, float]:
 @contextlib.contextmanager
 def processes(work: Path, number: int, limit: float) -> Iterator[Any]:
     """A pool of processes, forked so that what tests import is there at once. It is terminated at the end."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     context = multiprocessing.get_context("fork")
     numbers = context.Queue()
     for i in range(number):
@@ -182,12 +197,14 @@ def run_faults(work: Path, start: str, only: str, *, workers: int, limit: float,
     """
     print(f"seed {SEED}", flush=True)
     work.mkdir(parents=True, exist_ok=True)
+    link_cache(own_folder(), work / "cache")
     records, results = Records(work), read_results()
     chosen = [listed for listed in in_random_order(read_list()) if wanted(listed, results, start, only)][:most]
     with processes(work, workers, limit) as pool:
         missing = records.missing()
         for number, ((name, plain), outcome) in enumerate(pool.imap_unordered(record_one, missing), 1):
-            records.keep(name, plain, outcome)
+            if outcome.ended and outcome.failed != DIED:
+                records.keep(name, plain, outcome)
             how = "plain" if plain else "compiled"
             print(f"({number} of {len(missing)}, {how}: {len(outcome.durations)} tests of {name})", flush=True)
 

@@ -21,6 +21,7 @@ import viser  # noqa: F401
 import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread
 from tests.faults.calls import CallRecorder
 
+DIED = "the process died"
 USAGE = 99  # exit status of a run that had no tests
 OWN = ("app", "assets", "sim", "tests")
 CRASHES = ("IndexError", "ZeroDivisionError", "OverflowError", "RuntimeWarning", "Timeout")
@@ -69,6 +70,7 @@ class Mode(NamedTuple):
     """How tests are run."""
 
     plain: bool  # kernels as plain Python
+    cache: Path  # folder of compiled kernels
     sound: Path | None = None  # a checkout of which the compiled kernels are taken, where no kernel is different
     until_failure: bool = True  # end at the first failure
     with_calls: bool = False  # record which functions each test calls
@@ -98,7 +100,7 @@ def run_tests(tree: Path, tests: list[str], seconds: float, mode: Mode, timeout:
     if ended and os.waitstatus_to_exitcode(status) == USAGE:
         raise RuntimeError(f"pytest did not find the tests; its output is in {log}")
     if not report.exists():
-        return Outcome({}, "the process died" if ended else "", False, ended)
+        return Outcome({}, DIED if ended else "", False, ended)
     return Outcome(**json.loads(report.read_text("utf-8")))
 
 
@@ -119,7 +121,7 @@ def in_child(tree: Path, tests: list[str], report: Path, mode: Mode, timeout: fl
     os.chdir(tree)
     sys.path[:] = [str(tree), *(path for path in sys.path if path not in ("", os.getcwd()))]
     os.environ["PYTHONPATH"] = str(tree)
-    os.environ["SPRINGTIDE_CACHE"] = str(tree.parent / "cache")
+    os.environ["SPRINGTIDE_CACHE"] = str(mode.cache)
     numba.config.DISABLE_JIT = mode.plain  # type: ignore[attr-defined]
     if mode.sound is not None:
         use_kernels_of(mode.sound, tree)

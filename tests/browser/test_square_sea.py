@@ -48,6 +48,30 @@ def test_the_wind_changes_the_sea_and_a_calm_flattens_it(shown: tuple[Viewer, Ta
     assert tab.errors == []
 
 
+def test_the_table_of_the_sky_is_drawn_where_the_sky_changes_and_not_where_the_waves_do(
+    shown: tuple[Viewer, Tab],
+) -> None:
+    lab, tab = shown
+    tab.wait(lambda: has_shader(lab))
+
+    def drawn() -> int:
+        return tab.page.evaluate("window.__springtide.skiesDrawn")
+
+    def still() -> bool:
+        before = drawn()
+        tab.page.wait_for_timeout(1000)
+        return before == drawn() > 0
+
+    tab.wait(still)
+    count, first = drawn(), heights(tab)
+    set_parameters(lab, transition=0.5, wind_speed=15.0)
+    tab.wait(lambda: heights(tab).std() > 1.5 * first.std())
+    assert drawn() == count
+    set_parameters(lab, clouds=1.0)  # they tint the photograph
+    tab.wait(lambda: drawn() > count)
+    assert tab.errors == []
+
+
 def test_rain_draws_drops_and_makes_rings(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.wait(lambda: has_shader(lab))

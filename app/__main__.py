@@ -14,6 +14,7 @@ from typing import Any, NoReturn
 from app.bench import places
 from app.scenes import NAMES, scene_named
 from sim.quantities import read_number
+from sim.validation import ConvergenceError
 
 LIVE = "live"  # the command of the lab that need not be named
 MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
@@ -30,7 +31,7 @@ def main(argv: list[str] | None = None) -> int:
             return arguments.command(arguments)
     except ValueError as error:
         return print_error(str(error), 2)
-    except OSError as error:
+    except (OSError, ConvergenceError) as error:
         return print_error(str(error), 1)
     except MemoryError as error:
         return print_error(f"not enough memory ({error})", 1)

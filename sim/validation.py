@@ -1,4 +1,7 @@
-"""Checks of arguments: every error names the argument, the value given and the allowed values, in one line."""
+"""Checks of arguments: every error names the argument, the value given and the allowed values, in one line.
+
+A solver that fails has no argument to name: it raises `ConvergenceError`.
+"""
 
 import dataclasses
 import math
@@ -13,6 +16,19 @@ MAX_WAVENUMBER = 1e20  # [rad/m]: its powers are still finite
 MAX_SHOWN = 200  # characters of a value in an error
 
 Kind = TypeVar("Kind")
+
+
+class ConvergenceError(RuntimeError):
+    """A solver that ended without a solution, although its arguments are allowed; its message is one line."""
+
+    def __init__(self, solver: str, residual: str, iterations: int) -> None:
+        """solver: what was sought. residual: what is left, its unit and its place. iterations: how many were done."""
+        super().__init__(f"{solver}: no solution after {iterations} iterations; {residual} left")
+        self.solver, self.residual, self.iterations = solver, residual, iterations
+
+    def __reduce__(self) -> tuple[type["ConvergenceError"], tuple[str, str, int]]:
+        """Its arguments, so that it passes between processes."""
+        return ConvergenceError, (self.solver, self.residual, self.iterations)
 
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:

@@ -1,6 +1,7 @@
 """Checks of arguments: what passes, what does not, and what the error says."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -115,3 +116,11 @@ def test_an_array_holds_real_numbers():
     assert v.as_array("a", [], "numbers").shape == (0,)
     for bad in ([1j], ["1"], [True], [[1.0], [1.0, 2.0]], [None]):
         assert refused(v.as_array, bad, "numbers") == "numbers"
+
+
+def test_a_solver_that_fails_says_what_is_left_and_no_argument():
+    error = v.ConvergenceError("rest of a mooring", "3 N at node 7", 40)
+    assert str(error) == "rest of a mooring: no solution after 40 iterations; 3 N at node 7 left"
+    again = pickle.loads(pickle.dumps(error))
+    assert (again.solver, again.residual, again.iterations) == ("rest of a mooring", "3 N at node 7", 40)
+    assert not isinstance(error, ValueError)

@@ -6,6 +6,7 @@ import os
 import pytest
 
 from app.__main__ import main
+from sim.validation import ConvergenceError
 
 RUN = ("run", "rope", "--out", "a.npz", "--seconds", "1")
 SEA = ("export", "square_sea", "--out", "a", "--seconds", "1")
@@ -86,3 +87,14 @@ def test_a_hostile_preset_is_refused(text, tmp_path, capsys):
     (tmp_path / "p.json").write_bytes(text)
     refused(capsys, *RUN, "--preset", "p.json")
     assert [path.name for path in tmp_path.iterdir()] == ["p.json"]
+
+
+def test_a_solver_that_fails_is_one_line_and_status_1(monkeypatch, capsys):
+    def fail(_):
+        raise ConvergenceError("a state of rest", "3 N at node 7", 40)
+
+    monkeypatch.setattr("app.__main__.run_sweep", fail)
+    assert main(["sweep", "a.toml", "--out", "a.nc"]) == 1
+    assert (
+        capsys.readouterr().err == "springtide: a state of rest: no solution after 40 iterations; 3 N at node 7 left\n"
+    )

@@ -64,8 +64,8 @@ PLOTS = {
 }
 CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}
 CHANGING = (
-    "state", "system", "places", "tensions", "path", "most_offset", "rest_place", "anchors", "fairleads", "rest_scale",
-    "body", "sea", "nodes", "links", "step_modes",
+    "state", "system", "places", "tensions", "path", "path_count", "most_offset", "rest_place", "anchors",
+    "fairleads", "rest_scale", "body", "sea", "nodes", "links", "step_modes",
 )  # fmt: skip
 
 
@@ -114,7 +114,7 @@ class MooringScene:
         self.rest_place = self.body_place()
         self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
         self.hold: tuple[int, Vector] | None = None
-        self.path: list[tuple[float, float]] = []
+        self.path, self.path_count = np.empty((0, 2), np.float32), 0
         self.most_offset = 0.0
         self.assess_stability()
         self.tensions = Tensions(p.lines)
@@ -269,8 +269,9 @@ class MooringScene:
         place = self.body_place()
         self.offset = float(np.linalg.norm((place - self.rest_place)[:2]))
         self.most_offset = max(self.most_offset, self.offset)
-        if state.t >= PATH_INTERVAL * len(self.path):
-            self.path.append((float(place[0]), float(place[1])))
+        if state.t >= PATH_INTERVAL * self.path_count:
+            self.path = np.concatenate((self.path[1 - MAX_PATH :], place[None, :2].astype(np.float32)))
+            self.path_count += 1
 
     def add_plot_row(self) -> None:
         """Add tensions and offset at the scene's time."""
@@ -308,8 +309,8 @@ class MooringScene:
             full_scale=MAX_TENSION_SCALE * self.rest_scale,
             surface=self.surface(),
             side=SURFACE_SIDE * extent(p),
-            path=np.array(self.path[-MAX_PATH:], np.float32),
-            rest=(float(self.rest_place[0]), float(self.rest_place[1])),
+            path=self.path,
+            rest=vector_of(self.rest_place),
             offset=self.most_offset,
             uplift=self.tensions.uplift > 0.0,
             pull=None if self.hold is None else self.hold[1],

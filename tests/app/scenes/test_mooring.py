@@ -1,5 +1,6 @@
 """The mooring scene: its statics, what the panel says of tension and slack, drags, and the restoring curve."""
 
+import dataclasses
 import math
 from typing import Any
 
@@ -10,10 +11,10 @@ from app.messages import DivergenceError, Grab, Place, Release, vector_of
 from app.scenes import scene_named
 from app.scenes.mooring.arrangement import DENSITY, heights, hull_of, line_types, sea_of
 from app.scenes.mooring.parameters import PRESETS, Params
-from app.scenes.mooring.restoring import force_of_lines, static_curve
-from app.scenes.mooring.scene import FADE, MooringScene
+from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_curve
+from app.scenes.mooring.scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.tensions import Tensions
-from app.scenes.mooring.view import BED_ROWS, bed_colours
+from app.scenes.mooring.view import BED_ROWS, View, bed_colours
 from sim.mooring import critical_step
 from sim.mooring.catenary import catenary
 from sim.parameters import check_record
@@ -33,7 +34,7 @@ def test_a_frame_turns_the_body_as_its_state_and_draws_the_watch_circle_about_it
     scene.rest_place = np.array([3.0, -1.0, 0.0])
     frame = scene.frame()
     np.testing.assert_allclose(frame.rotation, [math.cos(0.35), *(math.sin(0.35) * turn / 0.7)], atol=1e-6)
-    assert frame.rest == (3.0, -1.0)
+    assert frame.rest == (3.0, -1.0, 0.0)
 
 
 def test_the_mouse_pulls_with_its_largest_force_at_most():
@@ -148,7 +149,7 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
 
 def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed_one():
     pushed, free = (MooringScene(Params(segments=20, wave_height=0.0, steady_force=f)) for f in (15.0, 0.0))
-    offset, force = static_curve(free)
+    offset, force = static_curve(StaticInputs.of(free))
     assert np.interp(0.0, offset, force) == pytest.approx(0.0, abs=400.0)
     assert (np.diff(force) > 0.0).all()
     moved = float(pushed.body_place()[0] - free.body_place()[0])
@@ -201,3 +202,43 @@ def test_the_bed_is_darker_and_bluer_with_depth_and_is_lost_towards_the_sides():
     assert shallow[middle, middle].std(axis=(0, 1)).min() > 0.01
     # `js/underwater.js` takes what is redder than blue for oil.
     assert (shallow[..., 2] - shallow[..., 0] > 0.02).all()
+
+
+@pytest.mark.parametrize(
+    "changed", [{"steady_force": 400.0}, {"density": 900.0}, {"direction": 90.0}, {"length": 99.0}]
+)
+def test_the_restoring_curve_is_that_of_the_rest_now(changed):
+    scene = MooringScene(Params(plot_restoring=True, segments=12, wave_height=0.0))
+    scene.curves()
+    scene.params = dataclasses.replace(scene.params, **changed)
+    scene.reset()
+    charts = scene.curves()
+    assert charts is not None
+    offset, static, _ = charts["plot_restoring"].columns
+    expected = static_curve(StaticInputs.of(scene, 2.0 ** math.ceil(math.log2(max(scene.most_offset, 1e-3)))))
+    assert np.interp(expected[0], offset, static) == pytest.approx(1e-3 * expected[1], abs=1e-6)
+
+
+def test_the_painted_waterline_is_that_of_the_rest():
+    light, heavy = (MooringScene(Params(**SMALL, density=density)) for density in (450.0, 850.0))
+    assert View.shape_of(light.frame()) != View.shape_of(heavy.frame())
+    before = View.shape_of(light.frame())
+    light.state.x[2, light.system.node_count] += 0.7  # heave
+    light.measure()
+    assert light.frame().body[2] != pytest.approx(light.frame().rest[2])
+    assert View.shape_of(light.frame()) == before
+
+
+def test_the_path_is_bounded_and_its_last_place_is_that_of_the_body():
+    scene = MooringScene(Params(**SMALL))
+    for i in range(1, MAX_PATH + 300):
+        scene.state.t = PATH_INTERVAL * i
+        scene.state.x[0, scene.system.node_count] = 1e-3 * i
+        scene.measure()
+        scene.measure()  # no second place at the same time
+    assert scene.path.shape == (MAX_PATH, 2)
+    steps = np.diff(scene.path[:, 0])
+    assert steps == pytest.approx(np.full(len(steps), 1e-3), abs=1e-6)
+    assert scene.path[-1] == pytest.approx(scene.body_place()[:2], abs=1e-6)
+    kept: Any = scene.keep()
+    assert kept["path"].nbytes == MAX_PATH * 8

@@ -37,10 +37,11 @@ from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.mooring import at_rest
 from sim.mooring.gauge import modes
 from sim.mooring.simulate import LineState
-from sim.mooring.statics import Rest
+from sim.mooring.statics import Rest, first_guess, rest_of
 from sim.springs import INTEGRATORS
 from sim.springs.lines.energy import set_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of
+from sim.validation import ConvergenceError
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
@@ -65,7 +66,7 @@ PLOTS = {
 CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}
 CHANGING = (
     "state", "system", "places", "tensions", "path", "path_count", "most_offset", "rest_place", "anchors",
-    "fairleads", "rest_scale", "body", "sea", "nodes", "links", "step_modes",
+    "fairleads", "rest_scale", "failure", "body", "sea", "nodes", "links", "step_modes",
 )  # fmt: skip
 
 
@@ -107,8 +108,7 @@ class MooringScene:
         self.sea = sea_of(p)
         self.body = body_of(p, self.sea)
         self.system = build(p, self.places, self.body, self.sea)
-        # Still water: a current would carry away what lies, which only friction holds.
-        rest = at_rest(dataclasses.replace(self.system, current=(0.0, 0.0, 0.0)))
+        rest = self.rest()
         self.state = LineState(self.system, rest)
         self.nodes, self.links = nodes_and_links(self.system, p)
         self.rest_place = self.body_place()
@@ -121,6 +121,19 @@ class MooringScene:
         self.measure()
         self.plot_rows.restart()
         self.last_moments.clear()
+
+    def rest(self) -> Rest:
+        """The state of rest in still water: a current would carry away what lies, which only friction holds.
+
+        If none is found, the shape that the search begins with: the panel stays, and `advance` says why nothing moves.
+        """
+        still = dataclasses.replace(self.system, current=(0.0, 0.0, 0.0))
+        try:
+            rest, self.failure = at_rest(still), ""
+        except ConvergenceError as error:
+            self.failure = f"The lines find no state of rest ({error}). Change their length, their anchors or EA."
+            rest = rest_of(still, first_guess(still, {})[0], still.kernel_view(self.step))
+        return rest
 
     def change_forces(self, params: Params) -> None:
         """Take parameters; the motion goes on."""
@@ -232,6 +245,8 @@ class MooringScene:
 
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the state leaves its bounds, and keeps the last good one."""
+        if self.failure:
+            raise DivergenceError(self.failure)
         method, h = INTEGRATORS[self.params.integrator], self.step
         piece = max(1, round(SAMPLE / h))
         for first in range(0, steps, piece):

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import random
 from typing import Any
 
 import numpy as np
@@ -9,15 +10,17 @@ import pytest
 
 from app.messages import DivergenceError, Grab, Place, Release, vector_of
 from app.scenes import scene_named
-from app.scenes.mooring.arrangement import DENSITY, heights, hull_of, line_types, sea_of
+from app.scenes.mooring.arrangement import DENSITY, body_of, build, first_places, heights, hull_of, line_types, sea_of
 from app.scenes.mooring.parameters import PRESETS, Params
 from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_curve
 from app.scenes.mooring.scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import BED_ROWS, View, bed_colours
 from sim.mooring import critical_step
+from sim.mooring.balance import what_is_left
 from sim.mooring.catenary import catenary
 from sim.parameters import check_record
+from sim.validation import ConvergenceError
 
 SMALL: dict[str, Any] = {"segments": 12, "lines": 1, "steady_force": 10.0, "time_step": 1 / 120}
 
@@ -242,3 +245,66 @@ def test_the_path_is_bounded_and_its_last_place_is_that_of_the_body():
     assert scene.path[-1] == pytest.approx(scene.body_place()[:2], abs=1e-6)
     kept: Any = scene.keep()
     assert kept["path"].nbytes == MAX_PATH * 8
+
+
+def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
+    def fail(system):
+        raise ConvergenceError("static state of the mooring", "3 N", 40)
+
+    monkeypatch.setattr("app.scenes.mooring.scene.at_rest", fail)
+    scene = MooringScene(Params(**SMALL))
+    assert np.isfinite(scene.frame().points).all()
+    with pytest.raises(DivergenceError, match=r"no state of rest .*3 N left.* Change their length"):
+        scene.advance(1)
+    monkeypatch.undo()
+    scene.params = dataclasses.replace(scene.params, length=97.0)
+    scene.reset()
+    scene.advance(1)
+    assert scene.time > 0.0
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"line_mass": 1.0, "diameter": 0.03}, {"line_mass": 0.35, "diameter": 0.02},
+        {"line_mass": 5.0, "diameter": 0.08, "axial_stiffness": 1e8},
+        {"line_mass": 2.0, "diameter": 0.03, "axial_stiffness": 3e8}, {"axial_stiffness": 1e10},
+        {"line_mass": 10.0, "diameter": 0.05, "axial_stiffness": 1e9}, {"axial_stiffness": 1e10, "segments": 100},
+        {"axial_stiffness": 1e8, "segments": 100, "line_mass": 1.0, "diameter": 0.03},
+    ],
+)  # fmt: skip
+def test_light_ropes_and_stiff_lines_rest(changed):
+    assert not MooringScene(Params(**changed)).failure
+
+
+def random_params(rng: random.Random) -> Params:
+    """A mooring anywhere inside the sliders."""
+    values = {}
+    for field in dataclasses.fields(Params):
+        one = field.metadata["parameter"]
+        if field.name in STATIC:
+            low = math.log(one.log_from) if one.log_from else 0.0
+            number = math.exp(rng.uniform(low, math.log(one.high))) if one.log_from else rng.uniform(one.low, one.high)
+            values[field.name] = round(number) if isinstance(one.default, int) else number
+    return Params(**values, body=rng.choice(["buoy", "box"]), floats=rng.random() < 0.5, wave_height=0.0)
+
+
+STATIC = (
+    "lines", "length", "reach", "depth", "diameter", "line_mass", "axial_stiffness", "lift", "segments", "size",
+    "density", "direction", "steady_force",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [20, pytest.param(2000, marks=pytest.mark.stress)])
+def test_random_moorings_rest_or_say_what_is_left(count):
+    rng, failed = random.Random(4), 0
+    for _ in range(count):
+        params = random_params(rng)
+        system = build(params, first_places(params), body_of(params, None), None)
+        try:
+            rest = system.at_rest()
+        except ConvergenceError:
+            failed += 1
+            continue
+        assert what_is_left(rest.nodes, system.kernel_view(1.0))[1]
+    assert failed <= 0.12 * count

@@ -49,7 +49,7 @@ def exponential(x):
 
 @kernel(inline=True)
 def flow_at(x, y, z, t, waves, depth):
-    """(u, v, w) [m/s], (du, dv, dw)/dt [m/s2] and the pressure over the density [m2/s2] at a place.
+    """(u, v, w) [m/s], (du, dv, dw)/dt [m/s2], pressure over density [m2/s2], and elevation [m] at a place.
 
     Above z = 0 and below the bottom are the values there.
     waves (9, n): kx, ky [turns/m], phase [turns], omega [turns/s], cos and sin of the bearing, a omega/(1 - q) [m/s],
@@ -57,7 +57,7 @@ def flow_at(x, y, z, t, waves, depth):
     """
     turn = 2.0 * math.pi
     z = min(max(z, -depth), 0.0)
-    u = v = w = du = dv = dw = pushed = 0.0
+    u = v = w = du = dv = dw = pushed = elevation = 0.0
     for i in range(waves.shape[1]):
         kx, ky, nx, ny, speed = waves[0, i], waves[1, i], waves[4, i], waves[5, i], waves[6, i]
         c, s = sincos_turns(kx * x + ky * y + waves[2, i] - waves[3, i] * t)
@@ -72,4 +72,5 @@ def flow_at(x, y, z, t, waves, depth):
         dv += ny * omega * level * s
         dw -= omega * upward * c
         pushed += omega / k * level * c
-    return u, v, w, du, dv, dw, pushed
+        elevation += waves[8, i] * c
+    return u, v, w, du, dv, dw, pushed, elevation

@@ -150,7 +150,7 @@ def simulate(
     with_account: also integrate what damping takes and what moved points and water put in.
     A run that diverges ends there: later frames are NaN, and a RuntimeWarning says so.
 
-    Raises ValueError, naming the argument, its value and what is allowed.
+    Raises ValueError, naming the argument, its value and what is allowed, and ConvergenceError without a state of rest.
     """
     if not isinstance(system, System):
         raise argument_error("system", type(system), "a System, as `read_moordyn` makes it")

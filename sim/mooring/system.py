@@ -16,9 +16,20 @@ from numpy.typing import NDArray
 from sim.interruption import stop_request
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
+from sim.ocean.kinematics import Components
 from sim.springs.laws import LAWS
-from sim.springs.lines.arrays import BODY_MASS, DAMPING, INVERSE_MASS, PLACE, STIFFNESS, LineArrays
-from sim.validation import argument_error, check_choice, check_number, check_vector, is_whole_number
+from sim.springs.lines.arrays import (
+    BODY_MASS,
+    DAMPING,
+    DECAY_PARTS,
+    DECAY_RATES,
+    DECAY_SHAPES,
+    INVERSE_MASS,
+    PLACE,
+    STIFFNESS,
+    LineArrays,
+)
+from sim.validation import argument_error, check_choice, check_kind, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
 
@@ -26,6 +37,7 @@ KINDS = ("fixed", "coupled", "free", "body")
 FARTHEST = 1e5  # [m] from the origin
 MOST_SEGMENTS = 2000  # of a line
 MOST_DAMPING = 100.0  # ratio, of a segment
+MAX_DISPERSION_ERROR = 0.02  # of omega: what surface tension and rounded numbers may make
 
 
 class LineType(NamedTuple):
@@ -100,8 +112,8 @@ class System:
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
     bed_damping: float = 3e5  # [Pa s/m]
     friction: float = 0.0  # Coulomb coefficient
-    current: Vector = (0.0, 0.0, 0.0)  # [m/s]
-    waves: Any = None  # `sim.ocean.kinematics.Components`, None: still water
+    current: Vector = (0.0, 0.0, 0.0)  # [m/s]; it pushes lines and points, but no body
+    waves: Components | None = None  # in the same water, None: still water
 
     def __post_init__(self) -> None:
         """Raises ValueError with the name of the value that cannot be: kernels check no index."""
@@ -117,6 +129,7 @@ class System:
         ):
             check_number(name, getattr(self, name), 0, math.inf, unit)
         check_vector("current", self.current, "m/s")
+        self.check_waves()
         check_ids("bodies", self.bodies)
         for body in self.bodies:
             check_body(body, 0 if self.waves is None else len(self.waves.kx))
@@ -132,6 +145,27 @@ class System:
         for point in self.points:
             if point.kind == "free" and point.id not in ended and point.mass == 0.0:
                 raise argument_error(f"point {point.id}", "free, without a line", "a mass, or a line that ends there")
+
+    def check_waves(self) -> None:
+        """Raises ValueError for waves in another water: kernels have one depth and one density."""
+        waves = self.waves
+        if waves is None:
+            return
+        check_kind(
+            "waves", waves, Components, "Components, as `sim.ocean.kinematics.components_of` makes them, or None"
+        )
+        for name in ("depth", "density"):
+            value = getattr(waves, name)
+            if not math.isclose(value, getattr(self, name), rel_tol=1e-6):
+                raise argument_error(f"waves: {name}", value, f"that of the system, {getattr(self, name):g}")
+        k = np.hypot(waves.kx, waves.ky)
+        expected = np.sqrt(self.gravity * k * np.tanh(k * self.depth))
+        wrong = np.abs(waves.omega - expected) > MAX_DISPERSION_ERROR * expected
+        if wrong.any():
+            allowed = (
+                f"{float(expected[wrong][0]):g} rad/s, as waves of that length have in gravity {self.gravity:g} m/s^2"
+            )
+            raise argument_error("waves: omega", float(waves.omega[wrong][0]), allowed)
 
     def check_point(self, point: Point) -> None:
         name = f"point {point.id}"
@@ -212,6 +246,7 @@ class System:
                 parts.append((
                     share * kind.mass, share * self.density * kind.volume, kind.added_across, kind.added_along,
                     share * drag * kind.drag_across, share * drag * math.pi * kind.drag_along, share * kind.diameter,
+                    volume_height(kind.volume, kind.diameter),
                 ))  # fmt: skip
                 mass[at[i]] += share * kind.mass
         for i, point in enumerate(self.points):
@@ -219,7 +254,8 @@ class System:
             if point.mass > 0.0 or point.volume > 0.0 or point.drag_area > 0.0:
                 places.append((i, i, i))
                 added, drag = point.added_mass, 0.5 * self.density * point.drag_area
-                parts.append((point.mass, self.density * point.volume, added, added, drag, 0.0, 0.0))
+                height = volume_height(point.volume, math.pi / 4.0 * (6.0 * point.volume / math.pi) ** (2 / 3))
+                parts.append((point.mass, self.density * point.volume, added, added, drag, 0.0, 0.0, height))
         free = np.array([point.kind == "free" for point in self.points] + [True] * (nodes - len(self.points)))
         inverse = np.zeros(n)
         inverse[:nodes][free] = 1.0 / np.maximum(mass[:nodes][free], 1e-12)
@@ -279,7 +315,7 @@ class System:
                 body = self.bodies[index[point.body]]
                 carried.append((i, index[point.body]))
                 arms.append(np.subtract(point.position, body.place))
-        rows = np.zeros((len(self.bodies), PLACE + 3))
+        rows = np.zeros((len(self.bodies), DECAY_RATES + 6))
         for b, body in enumerate(self.bodies):
             full = np.array(body.mass, dtype=np.float64)
             for (node, owner), arm in zip(carried, arms, strict=True):
@@ -289,13 +325,26 @@ class System:
             rows[b, INVERSE_MASS:BODY_MASS] = np.linalg.inv(full).ravel()
             rows[b, BODY_MASS:STIFFNESS] = full.ravel()
             rows[b, STIFFNESS:DAMPING] = np.ravel(body.stiffness)
-            rows[b, DAMPING:PLACE] = 0.0 if body.damping is None else np.ravel(body.damping)
-            rows[b, PLACE:] = body.place
+            damping = np.zeros((6, 6)) if body.damping is None else np.array(body.damping, dtype=np.float64)
+            rows[b, DAMPING:PLACE] = damping.ravel()
+            rows[b, PLACE:DECAY_SHAPES] = body.place
+            # M^-1 B = M^-1/2 U diag(rates) U^T M^1/2 with M^-1/2 B M^-1/2 = U diag(rates) U^T
+            squares, axes = np.linalg.eigh(full)
+            root, inverse_root = (axes * squares**power @ axes.T for power in (0.5, -0.5))
+            rates, shapes = np.linalg.eigh(inverse_root @ damping @ inverse_root)
+            rows[b, DECAY_SHAPES:DECAY_PARTS] = (inverse_root @ shapes).ravel()
+            rows[b, DECAY_PARTS:DECAY_RATES] = (shapes.T @ root).ravel()
+            rows[b, DECAY_RATES:] = np.maximum(rates, 0.0)
         return (
             np.array(carried, dtype=np.int64).reshape(-1, 2),
             np.array(arms, dtype=np.float64).reshape(-1, 3),
             rows,
         )
+
+
+def volume_height(volume: float, area: float) -> float:
+    """Height [m] of a volume over its area in the plane of water that cuts it in the middle; a point's is next to 0."""
+    return max(volume / max(area, 1e-300), 1e-9)
 
 
 def check_ids(name: str, items: Sequence[Any]) -> None:

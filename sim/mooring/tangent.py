@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.springs.lines.arrays import BED_AREA, DAMPING, STIFFNESS, LineArrays
+from sim.springs.lines.arrays import BED_AREA, DAMPING, DISPLACED, HEIGHT, STIFFNESS, LineArrays
 from sim.springs.lines.forces import link_state
 
 Array = NDArray[np.float64]
@@ -52,11 +52,26 @@ def links_matrix(x: Array, p: LineArrays, along: Array, across: Array) -> Array:
     return found.reshape(3 * m, 3 * m)
 
 
-def add_bed(matrix: Array, x: Array, p: LineArrays, by_area: float) -> None:
-    """Add the bed's vertical resistance by the plan area of the nodes on it."""
-    node = p.places[:, 0]
-    upwards = 2 * p.nodes + node
-    np.add.at(matrix, (upwards, upwards), np.where(x[2, node] <= p.bed, p.parts[:, BED_AREA] * by_area, 0.0))
+def on_bed(x: Array, p: LineArrays) -> Array:
+    """Plan area (nodes,) [m^2] of each node that lies on the bed, else 0."""
+    node, found = p.places[:, 0], np.zeros(p.nodes)
+    np.add.at(found, node, np.where(x[2, node] <= p.bed, p.parts[:, BED_AREA], 0.0))
+    return found
+
+
+def upright_stiffness(x: Array, p: LineArrays) -> Array:
+    """Vertical stiffness (nodes,) [N/m] of each node: the bed's, and that of buoyancy at the surface of still water."""
+    node, height = p.places[:, 0], p.parts[:, HEIGHT]
+    found = p.bed_stiffness * on_bed(x, p)
+    lift = p.gravity * p.parts[:, DISPLACED] / height
+    np.add.at(found, node, np.where(np.abs(x[2, node]) < 0.5 * height, lift, 0.0))
+    return found
+
+
+def add_upright(matrix: Array, p: LineArrays, resistance: Array) -> None:
+    """Add a vertical resistance (nodes,) to `matrix` (3 nodes, 3 nodes)."""
+    upwards = np.arange(2 * p.nodes, 3 * p.nodes)
+    matrix[upwards, upwards] += resistance
 
 
 def with_bodies(matrix: Array, p: LineArrays, start: int) -> Array:
@@ -73,28 +88,34 @@ def with_bodies(matrix: Array, p: LineArrays, start: int) -> Array:
 
 
 def stiffness_matrix(x: Array, p: LineArrays) -> Array:
-    """The matrix K [N/m] of links, bed and bodies about x (3, n), in free coordinates; slack links have none."""
+    """The matrix K [N/m] of links, bed, surface and bodies about x (3, n), in free coordinates."""
     length, tension, slope, _ = links_at(x, p)
     found = links_matrix(x, p, slope, tension / length)
-    add_bed(found, x, p, p.bed_stiffness)
+    add_upright(found, p, upright_stiffness(x, p))
     return with_bodies(found, p, STIFFNESS)
 
 
 def damping_matrix(x: Array, p: LineArrays) -> Array:
     """The matrix D [N s/m] of links, bed and bodies about x (3, n), in free coordinates; drag is none at rest."""
     found = links_matrix(x, p, links_at(x, p)[3], np.zeros(len(p.links)))
-    add_bed(found, x, p, p.bed_damping)
+    add_upright(found, p, p.bed_damping * on_bed(x, p))
     return with_bodies(found, p, DAMPING)
+
+
+def moves_on_free(forces: Array, p: LineArrays) -> Array:
+    """Forces (3, nodes) on all nodes in free coordinates."""
+    flat = forces.reshape(-1)
+    carried, moves = carried_coordinates(p)
+    return np.concatenate((flat[free_coordinates(p)], moves.T @ flat[carried]))
 
 
 def forces_on_free(forces: Array, x: Array, p: LineArrays) -> Array:
     """Forces (3, nodes) on all nodes in free coordinates, with the bodies' own stiffness and steady forces."""
-    flat = forces.reshape(-1)
-    carried, moves = carried_coordinates(p)
-    six = moves.T @ flat[carried]
+    found = moves_on_free(forces, p)
+    six = found[len(found) - 6 * len(p.bodies) :]
     for b, row in enumerate(p.bodies):
         six[6 * b : 6 * b + 6] += p.steady[b] - row[STIFFNESS : STIFFNESS + 36].reshape(6, 6) @ six_of(x, p, b)
-    return np.concatenate((flat[free_coordinates(p)], six))
+    return found
 
 
 def moved(x: Array, step: Array, p: LineArrays) -> Array:

@@ -136,7 +136,7 @@ def set_flow(points, t, waves, depth, density, wheeler, velocity, acceleration, 
                 c, _ = sincos_turns(waves[0, i] * x + waves[1, i] * y + waves[2, i] - waves[3, i] * t)
                 eta += waves[8, i] * c
             z = (z - eta) / (1.0 + eta / depth)
-        u, v, w, du, dv, dw, pushed = flow_at(x, y, z, t, waves, depth)
+        u, v, w, du, dv, dw, pushed, _ = flow_at(x, y, z, t, waves, depth)
         velocity[p, 0], velocity[p, 1], velocity[p, 2] = u, v, w
         acceleration[p, 0], acceleration[p, 1], acceleration[p, 2] = du, dv, dw
         pressure[p] = density * pushed

@@ -67,7 +67,9 @@ def sea_of(params: Params) -> Components | None:
     if params.wave_height == 0.0:
         return None
     spectrum = SPECTRA["sea_state"]
-    conditions = spectrum.conditions(hs=params.wave_height, tp=params.wave_period, depth=params.depth)
+    conditions = spectrum.conditions(
+        hs=params.wave_height, tp=params.wave_period, depth=params.depth, density=DENSITY, gravity=GRAVITY
+    )
     c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
     if params.regular:
         k = conditions.wavenumber(2.0 * math.pi / params.wave_period)

@@ -23,7 +23,7 @@ class MooringFrame(NamedTuple):
     surface: NDArray[np.float32]  # (m, m) [m] heights of the water
     side: float  # [m] of the square that it covers, about the origin
     path: NDArray[np.float32]  # (k, 2) [m] where the body has been
-    rest: tuple[float, float]  # [m] where it rests
+    rest: Vector  # [m] where the body's centre rests
     offset: float  # [m] largest level distance from there
     uplift: NDArray[np.bool_]  # (lines,) whether the anchor is pulled upwards
     pull: Vector | None  # [m] where the mouse pulls the body to

@@ -1,13 +1,15 @@
 """The static restoring curve: the force of all lines over the offset along the waves, and the force now."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Line as ChartLine
+from app.messages import Vector, vector_of
 from app.scenes.charts import PALETTE, Chart
+from app.scenes.mooring.arrangement import Places
 from sim.interruption import raise_if_stopped
 from sim.mooring import Line, Point, System, at_rest
 
@@ -22,6 +24,30 @@ LEAST_SHARE = 0.03  # of the distance of the anchors, of lines that are straight
 STATIC_LINE, NOW_LINE = ChartLine("static", PALETTE[0], 2.0), ChartLine("now", PALETTE[1], 5.0)
 
 
+class StaticInputs(NamedTuple):
+    """Everything that the curve depends on."""
+
+    places: Places
+    lines: tuple[Line, ...]
+    rest_place: Vector  # [m] of the body's centre
+    wave: tuple[float, float]  # unit vector along the waves
+    length: float  # [m] of each line
+    reach: float  # [m] distance of the anchors
+    far: float  # [m] offset to which the curve goes at least
+    depth: float  # [m]
+    gravity: float  # [m/s2]
+    density: float  # [kg/m3]
+
+    @classmethod
+    def of(cls, scene: "MooringScene", far: float = 0.0) -> "StaticInputs":
+        """Those of a scene as it is arranged now."""
+        system, (x, y) = scene.system, direction_of(scene).tolist()
+        return cls(
+            scene.places, system.lines, vector_of(scene.rest_place), (x, y), scene.params.length, scene.params.reach,
+            far, system.depth, system.gravity, system.density,
+        )  # fmt: skip
+
+
 class RestoringCurve:
     """The curve of the arrangement as it was last asked for."""
 
@@ -30,12 +56,12 @@ class RestoringCurve:
         self.curve: tuple[NDArray[np.float64], NDArray[np.float64]] = (np.zeros(0), np.zeros(0))  # [m], [N]
 
     def chart(self, scene: "MooringScene") -> Chart:
-        """The chart; the curve is found again where anchors, fairleads or lines are others."""
+        """The chart; the curve is found again where anything that it depends on is another."""
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
         far = 2.0 ** math.ceil(math.log2(max(scene.most_offset, 1e-3)))
-        key = scene.places, scene.params.direction, scene.system.lines, far
+        key = StaticInputs.of(scene, far)
         if key != self.made_of:
-            self.curve = static_curve(scene, far)
+            self.curve = static_curve(key)
             self.made_of = key
         offset, force = self.curve
         wave = direction_of(scene)
@@ -63,35 +89,35 @@ def force_of_lines(scene: "MooringScene") -> NDArray[np.float64]:
     return (scene.tension[:, -1:] * unit[:, :2]).sum(axis=0)
 
 
-def static_curve(scene: "MooringScene", far: float = 0.0) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Offsets [m] along the waves, at least to `far` [m], and the force [N] against each: of each line by its span."""
-    wave, system, p = direction_of(scene), scene.system, scene.params
-    ways = scene.rest_place + np.array(scene.places.fairleads) - np.array(scene.places.anchors)
-    straight = np.sqrt(np.maximum(p.length**2 - ways[:, 2] ** 2, 0.0))
+def static_curve(inputs: StaticInputs) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Offsets [m] along the waves, and the force [N] against each: of each line by its span."""
+    wave, rest_place = np.array(inputs.wave), np.array(inputs.rest_place)
+    ways = rest_place + np.array(inputs.places.fairleads) - np.array(inputs.places.anchors)
+    straight = np.sqrt(np.maximum(inputs.length**2 - ways[:, 2] ** 2, 0.0))
     slack = float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
-    offset = max(SHARE * slack, LEAST_SHARE * p.reach, far) * np.linspace(-1.0, 1.0, POINTS)
+    offset = max(SHARE * slack, LEAST_SHARE * inputs.reach, inputs.far) * np.linspace(-1.0, 1.0, POINTS)
     force = np.zeros(POINTS)
-    for i, (anchor, arm) in enumerate(zip(scene.places.anchors, scene.places.fairleads, strict=True)):
-        fairlead = scene.rest_place + arm
+    for i, (anchor, arm) in enumerate(zip(inputs.places.anchors, inputs.places.fairleads, strict=True)):
+        fairlead = rest_place + arm
         away = np.array(anchor)[:2] - fairlead[:2] - offset[:, None] * wave  # from the fairlead to the anchor
         span = np.linalg.norm(away, axis=1)
         at = np.linspace(span.min(), span.max() + 1e-6, SPANS)
-        lines = tuple(line for line in system.lines if line.id // 10 == i + 1)
-        level = np.array([level_tension(system, lines, one, float(fairlead[2] - anchor[2])) for one in at])
+        lines = tuple(line for line in inputs.lines if line.id // 10 == i + 1)
+        level = np.array([level_tension(inputs, lines, one, float(fairlead[2] - anchor[2])) for one in at])
         force -= np.interp(span, at, level) * (away @ wave) / np.maximum(span, 1e-9)
     return offset, force
 
 
-def level_tension(system: System, lines: tuple[Line, ...], span: float, rise: float) -> float:
+def level_tension(inputs: StaticInputs, lines: tuple[Line, ...], span: float, rise: float) -> float:
     """Level part [N] of a line's tension at the fairlead, which is `rise` [m] over its anchor and `span` [m] away."""
     raise_if_stopped()
     first, last = lines[0].start, lines[-1].end
     points = [
-        Point(first, "fixed", (0.0, 0.0, -system.depth)),
-        Point(last, "coupled", (span, 0.0, rise - system.depth)),
+        Point(first, "fixed", (0.0, 0.0, -inputs.depth)),
+        Point(last, "coupled", (span, 0.0, rise - inputs.depth)),
     ]
-    points += [Point(line.end, "free", (0.5 * span, 0.0, 0.5 * rise - system.depth)) for line in lines[:-1]]
-    rest = at_rest(System(lines, tuple(points), system.depth, (), system.gravity, system.density))
+    points += [Point(line.end, "free", (0.5 * span, 0.0, 0.5 * rise - inputs.depth)) for line in lines[:-1]]
+    rest = at_rest(System(lines, tuple(points), inputs.depth, (), inputs.gravity, inputs.density))
     end = rest.x[lines[-1].id]
     way = end[-1] - end[-2]
     return float(rest.tension[lines[-1].id][-1] * way[0] / np.linalg.norm(way))

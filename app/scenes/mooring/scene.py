@@ -37,10 +37,11 @@ from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.mooring import at_rest
 from sim.mooring.gauge import modes
 from sim.mooring.simulate import LineState
-from sim.mooring.statics import Rest
+from sim.mooring.statics import Rest, first_guess, rest_of
 from sim.springs import INTEGRATORS
 from sim.springs.lines.energy import set_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of
+from sim.validation import ConvergenceError
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
@@ -64,8 +65,8 @@ PLOTS = {
 }
 CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}
 CHANGING = (
-    "state", "system", "places", "tensions", "path", "most_offset", "rest_place", "anchors", "fairleads", "rest_scale",
-    "body", "sea", "nodes", "links", "step_modes",
+    "state", "system", "places", "tensions", "path", "path_count", "most_offset", "rest_place", "anchors",
+    "fairleads", "rest_scale", "failure", "body", "sea", "nodes", "links", "step_modes",
 )  # fmt: skip
 
 
@@ -107,20 +108,32 @@ class MooringScene:
         self.sea = sea_of(p)
         self.body = body_of(p, self.sea)
         self.system = build(p, self.places, self.body, self.sea)
-        # Still water: a current would carry away what lies, which only friction holds.
-        rest = at_rest(dataclasses.replace(self.system, current=(0.0, 0.0, 0.0)))
+        rest = self.rest()
         self.state = LineState(self.system, rest)
         self.nodes, self.links = nodes_and_links(self.system, p)
         self.rest_place = self.body_place()
         self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
         self.hold: tuple[int, Vector] | None = None
-        self.path: list[tuple[float, float]] = []
+        self.path, self.path_count = np.empty((0, 2), np.float32), 0
         self.most_offset = 0.0
         self.assess_stability()
         self.tensions = Tensions(p.lines)
         self.measure()
         self.plot_rows.restart()
         self.last_moments.clear()
+
+    def rest(self) -> Rest:
+        """The state of rest in still water: a current would carry away what lies, which only friction holds.
+
+        If none is found, the shape that the search begins with: the panel stays, and `advance` says why nothing moves.
+        """
+        still = dataclasses.replace(self.system, current=(0.0, 0.0, 0.0))
+        try:
+            rest, self.failure = at_rest(still), ""
+        except ConvergenceError as error:
+            self.failure = f"The lines find no state of rest ({error}). Change their length, their anchors or EA."
+            rest = rest_of(still, first_guess(still, {})[0], still.kernel_view(self.step))
+        return rest
 
     def change_forces(self, params: Params) -> None:
         """Take parameters; the motion goes on."""
@@ -232,6 +245,8 @@ class MooringScene:
 
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the state leaves its bounds, and keeps the last good one."""
+        if self.failure:
+            raise DivergenceError(self.failure)
         self.add_due_row()  # of the start
         method, h = INTEGRATORS[self.params.integrator], self.step
         piece = max(1, round(SAMPLE / h))
@@ -274,8 +289,9 @@ class MooringScene:
         place = self.body_place()
         self.offset = float(np.linalg.norm((place - self.rest_place)[:2]))
         self.most_offset = max(self.most_offset, self.offset)
-        if state.t >= PATH_INTERVAL * len(self.path):
-            self.path.append((float(place[0]), float(place[1])))
+        if state.t >= PATH_INTERVAL * self.path_count:
+            self.path = np.concatenate((self.path[1 - MAX_PATH :], place[None, :2].astype(np.float32)))
+            self.path_count += 1
 
     def add_plot_row(self) -> None:
         """Add tensions and offset at the scene's time."""
@@ -313,8 +329,8 @@ class MooringScene:
             full_scale=MAX_TENSION_SCALE * self.rest_scale,
             surface=self.surface(),
             side=SURFACE_SIDE * extent(p),
-            path=np.array(self.path[-MAX_PATH:], np.float32),
-            rest=(float(self.rest_place[0]), float(self.rest_place[1])),
+            path=self.path,
+            rest=vector_of(self.rest_place),
             offset=self.most_offset,
             uplift=self.tensions.uplift > 0.0,
             pull=None if self.hold is None else self.hold[1],

@@ -159,7 +159,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             )  # fmt: skip
         hull = hull_of(p)
         width, low, high = p.size, *(float(edge) for edge in hull.extents[2])
-        line = min(max(-float(frame.body[2]), low + 2 * STRIPE * width), high - 2 * STRIPE * width)  # as it floats
+        line = min(max(-frame.rest[2], low + 2 * STRIPE * width), high - 2 * STRIPE * width)  # as it floats
         edges = [low, line, line + STRIPE * width, high, *(high + width * np.cumsum([part for _, part, _ in ON_DECK]))]
         self.slices = np.array(edges[:-1]) + 0.5 * np.diff(edges)  # heights [m] of their middles over the body's centre
         wide = [part for part, *_ in (*PAINTS, *ON_DECK)]
@@ -218,9 +218,9 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
 
     @staticmethod
     def shape_of(frame: MooringFrame) -> Shape:
-        """What a drawing is made for."""
+        """What a drawing is made for: all that `build` reads, but for what `show` assigns."""
         p = frame.params
-        return frame.points.shape, p.reach, p.depth, p.body, p.size, frame.surface.shape
+        return frame.points.shape, p.reach, p.depth, p.body, p.size, frame.surface.shape, frame.rest[2]
 
     def balls(self, name: str, places: NDArray[np.float32], radius: float, colour: tuple[int, int, int]) -> Any:
         """A ball at each place (n, 3) [m]."""
@@ -313,7 +313,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         if not frame.params.watch:
             return
         turn = 2 * np.pi * np.arange(CIRCLE_POINTS + 1) / CIRCLE_POINTS
-        ring = np.array(frame.rest) + frame.offset * np.column_stack([np.cos(turn), np.sin(turn)])
+        ring = np.array(frame.rest[:2]) + frame.offset * np.column_stack([np.cos(turn), np.sin(turn)])
         lines = {"circle": ring, "path": frame.path[-MAX_DRAWN_PATH:]}
         for part, handle, height in self.watch:
             line = lines[part]

@@ -21,7 +21,7 @@ from sim.springs.forces.contact import surface_velocity, touches, touching
 from sim.springs.forces.links import TINY
 from sim.springs.forces.self_contact import damp_self_contacts
 from sim.springs.laws import by_damping, damps
-from sim.springs.lines.damping import damp_lines, no_decay
+from sim.springs.lines.damping import damp_lines, make_lines_decay
 from sim.springs.net import by_net, link_ratio
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
@@ -250,7 +250,7 @@ def choose_shares(law, x, decay, p):
 set_shares = by_damping(always=kernel(lambda law, x, decay, p: None, inline=True), at_some_lengths=choose_shares)
 
 # Factors of `damp` for a time s [s].
-make_decay = by_net(rope=make_net_decay, grid=make_net_decay, lines=no_decay)
+make_decay = by_net(rope=make_net_decay, grid=make_net_decay, lines=make_lines_decay)
 
 
 @kernel(noalias=True, inline=True)

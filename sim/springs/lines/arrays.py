@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 # Columns of `parts`.
-MASS, DISPLACED, ACROSS, ALONG, DRAG_ACROSS, DRAG_ALONG, BED_AREA = range(7)
-# Where a row of `bodies` holds its (6, 6) matrices, flat, and its place.
+MASS, DISPLACED, ACROSS, ALONG, DRAG_ACROSS, DRAG_ALONG, BED_AREA, HEIGHT = range(8)
+# Where a row of `bodies` holds its (6, 6) matrices, flat, and its place. With its mass M and damping B,
+# M^-1 B = DECAY_SHAPES diag(DECAY_RATES) DECAY_PARTS.
 INVERSE_MASS, BODY_MASS, STIFFNESS, DAMPING, PLACE = 0, 36, 72, 108, 144
+DECAY_SHAPES, DECAY_PARTS, DECAY_RATES = 147, 183, 219
 
 
 class LineArrays(NamedTuple):
@@ -30,7 +32,8 @@ class LineArrays(NamedTuple):
     ends: NDArray[np.int64]  # (links, 2) nodes
     links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m]
     places: NDArray[np.int64]  # (parts, 3): node, and the nodes before and after it along the line
-    parts: NDArray[np.float64]  # (parts, 7): mass, displaced mass [kg], added masses and drags over speed, bed area
+    # (parts, 8): mass, displaced mass [kg], added masses and drags over speed, bed area, height [m] of its volume
+    parts: NDArray[np.float64]
     bed: float  # height [m]
     bed_stiffness: float  # [Pa/m]
     bed_damping: float  # [Pa s/m]
@@ -43,7 +46,8 @@ class LineArrays(NamedTuple):
     paths: NDArray[np.float64]  # (pins, 5, 3): four coefficients, and the start time in [4, 0]
     carried: NDArray[np.int64]  # (fairleads, 2): node, body
     arms: NDArray[np.float64]  # (fairleads, 3) [m] from the body's reference point
-    bodies: NDArray[np.float64]  # (bodies, 147): inverse mass, mass, stiffness and damping matrix; place at rest [m]
+    # (bodies, 225): inverse mass, mass, stiffness and damping matrix; place at rest [m]; how damping decays
+    bodies: NDArray[np.float64]
     steady: NDArray[np.float64]  # (bodies, 6) [N, N m] steady forces on bodies
     excitation: NDArray[np.float64]  # (bodies, 12, waves) [N/m, N]: real, then imaginary part of X, see `wave_force`
     stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption

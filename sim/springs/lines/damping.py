@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.lines.arrays import BED_AREA, DAMPING, DRAG_ACROSS, DRAG_ALONG, INVERSE_MASS
+from sim.springs.lines.arrays import BED_AREA, DECAY_PARTS, DECAY_RATES, DECAY_SHAPES, DRAG_ACROSS, DRAG_ALONG
 from sim.springs.lines.forces import (
     damping_of,
     lines_scratch_size,
@@ -22,6 +22,7 @@ from sim.springs.lines.forces import (
     set_six,
     six,
     span_of,
+    submerged,
     tangent_at,
     water_at,
 )
@@ -86,14 +87,15 @@ def damp_part(x, v, t, s, p, f, i, reverse):
     """Drag across and along part i."""
     n, j = p.cols, p.places[i, 0]
     qx, qy, qz = tangent_at(x, p, i)
-    u, w, c, _, _, _ = water_at(x, t, p, j)
+    u, w, c, _, _, _, z = water_at(x, t, p, j)
+    wet = submerged(p, i, z)
     for turn in range(2):
         rx, ry, rz = u - v[j], w - v[n + j], c - v[2 * n + j]
         along = rx * qx + ry * qy + rz * qz
         if (turn == 0) != reverse:
-            drag_along(v, s, p, f, j, p.parts[i, DRAG_ACROSS], rx - along * qx, ry - along * qy, rz - along * qz)
+            drag_along(v, s, p, f, j, wet * p.parts[i, DRAG_ACROSS], rx - along * qx, ry - along * qy, rz - along * qz)
         else:
-            drag_along(v, s, p, f, j, p.parts[i, DRAG_ALONG], along * qx, along * qy, along * qz)
+            drag_along(v, s, p, f, j, wet * p.parts[i, DRAG_ALONG], along * qx, along * qy, along * qz)
 
 
 @kernel(allocates=False)
@@ -118,26 +120,19 @@ def damp_on_bed(x, v, s, p, f, i):
 
 
 @kernel(allocates=False)
-def damp_body(v, s, p, b):
-    """A body's linear damping for a time s, to second order in s."""
+def damp_body(v, decay, p, b):
+    """A body's linear damping: its six velocities times exp(-M^-1 B s), which row b of `decay` holds."""
     n, j = p.cols, p.nodes + 2 * b
-    q = six(v, n, j)
-    d = matrix_times(p, b, INVERSE_MASS, *matrix_times(p, b, DAMPING, *q))
-    e = matrix_times(p, b, INVERSE_MASS, *matrix_times(p, b, DAMPING, *d))
-    c = 0.5 * s * s
-    set_six(
-        v, n, j,
-        (
-            q[0] - s * d[0] + c * e[0], q[1] - s * d[1] + c * e[1], q[2] - s * d[2] + c * e[2],
-            q[3] - s * d[3] + c * e[3], q[4] - s * d[4] + c * e[4], q[5] - s * d[5] + c * e[5],
-        ),
-    )  # fmt: skip
+    set_six(v, n, j, matrix_times(decay, b, 0, *six(v, n, j)))
     set_carried(v, p)
 
 
 @kernel
 def damp_lines(x, v, t, s, decay, p, reverse):
-    """All damping for a time s [s]; `reverse` runs through it backwards. Returns 0: there is no sphere to do work."""
+    """All damping for a time s [s], with decay = make_lines_decay(p, s); `reverse` runs through it backwards.
+
+    Returns 0: there is no sphere to do work.
+    """
     f = np.empty(lines_scratch_size(p))
     set_inverse_masses(x, p, f)
     links, parts, bodies = p.ends.shape[0], p.places.shape[0], p.bodies.shape[0]
@@ -153,11 +148,19 @@ def damp_lines(x, v, t, s, decay, p, reverse):
             elif kind == 2:
                 damp_on_bed(x, v, s, p, f, i)
             else:
-                damp_body(v, s, p, i)
+                damp_body(v, decay, p, i)
     return 0.0
 
 
 @kernel
-def no_decay(p, s):
-    """Nothing is known beforehand: masses in water change with the tangents."""
-    return np.zeros((1, 1))
+def make_lines_decay(p, s):
+    """exp(-M^-1 B s) (bodies, 36) of each body. Of nodes nothing is known: masses in water change with the tangents."""
+    found = np.zeros((p.bodies.shape[0], 36))
+    for b in range(p.bodies.shape[0]):
+        row = p.bodies[b]
+        for k in range(6):
+            keep = math.exp(-row[DECAY_RATES + k] * s)
+            for i in range(6):
+                for j in range(6):
+                    found[b, 6 * i + j] += row[DECAY_SHAPES + 6 * i + k] * keep * row[DECAY_PARTS + 6 * k + j]
+    return found

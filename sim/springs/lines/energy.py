@@ -1,7 +1,8 @@
 """The account of lines under water: stored energies, and the power of damping, pins and water.
 
 The water's inertia belongs to the water: kinetic energy is that of lines and bodies alone (a body's with its constant
-added mass), and what the water's added mass, waves and current give or take is work.
+added mass), and what the water's added mass, waves and current give or take is work. Buoyancy stores energy about still
+water; that of the elevation of waves is work too.
 """
 
 import math
@@ -17,6 +18,7 @@ from sim.springs.lines.arrays import (
     DISPLACED,
     DRAG_ACROSS,
     DRAG_ALONG,
+    HEIGHT,
     MASS,
     STIFFNESS,
 )
@@ -29,6 +31,7 @@ from sim.springs.lines.forces import (
     rate_of,
     six,
     span_of,
+    submerged,
     tangent_at,
     tension_of,
     water_at,
@@ -38,7 +41,7 @@ from sim.springs.lines.forces import (
 @kernel(inline=True)
 def half_form(p, b, start, q):
     """1/2 q M q of a body's matrix."""
-    m = matrix_times(p, b, start, *q)
+    m = matrix_times(p.bodies, b, start, *q)
     return 0.5 * (q[0] * m[0] + q[1] * m[1] + q[2] * m[2] + q[3] * m[3] + q[4] * m[4] + q[5] * m[5])
 
 
@@ -64,6 +67,14 @@ def is_moving(p, j):
     return found
 
 
+@kernel(inline=True)
+def lift_height(p, i, z):
+    """Integral [m] of the submerged share of part i in still water over its height, from the surface to z [m]."""
+    h = p.parts[i, HEIGHT]
+    wet = submerged(p, i, z)
+    return z if wet == 1.0 else -0.5 * h * wet * wet
+
+
 @kernel(allocates=False)
 def lines_energies(x, v, t, p):
     """(kinetic, elastic, gravity, contact) [J]; gravity holds buoyancy, and elastic the stiffness of bodies."""
@@ -77,7 +88,8 @@ def lines_energies(x, v, t, p):
     for i in range(p.places.shape[0]):
         j = p.places[i, 0]
         if is_moving(p, j):
-            gravity += (p.parts[i, MASS] - p.parts[i, DISPLACED]) * p.gravity * x[2 * n + j]
+            z = x[2 * n + j]
+            gravity += p.gravity * (p.parts[i, MASS] * z - p.parts[i, DISPLACED] * lift_height(p, i, z))
             depth = max(0.0, p.bed - x[2 * n + j])
             contact += 0.5 * p.parts[i, BED_AREA] * p.bed_stiffness * depth * depth
     return lines_kinetic_energy(v, p), elastic, gravity, contact
@@ -96,8 +108,8 @@ def stored_rate(x, v, a, p):
         rate += tension_of(p, q, length) * rate_of(v, p, q, rx, ry, rz, length)
     for b in range(p.bodies.shape[0]):
         j = p.nodes + 2 * b
-        u, k = six(v, n, j), matrix_times(p, b, STIFFNESS, *six(x, n, j))
-        m = matrix_times(p, b, BODY_MASS, *six(a, n, j))
+        u, k = six(v, n, j), matrix_times(p.bodies, b, STIFFNESS, *six(x, n, j))
+        m = matrix_times(p.bodies, b, BODY_MASS, *six(a, n, j))
         for e in range(6):
             rate += u[e] * (m[e] + k[e])
     for i in range(p.places.shape[0]):
@@ -105,7 +117,8 @@ def stored_rate(x, v, a, p):
         if is_moving(p, j):
             depth = max(0.0, p.bed - x[2 * n + j])
             lift = p.parts[i, BED_AREA] * p.bed_stiffness * depth
-            rate += ((p.parts[i, MASS] - p.parts[i, DISPLACED]) * p.gravity - lift) * v[2 * n + j]
+            wet = submerged(p, i, x[2 * n + j])
+            rate += ((p.parts[i, MASS] - wet * p.parts[i, DISPLACED]) * p.gravity - lift) * v[2 * n + j]
     return rate
 
 
@@ -127,11 +140,12 @@ def lost_in_water(x, v, t, p):
     for i in range(p.places.shape[0]):
         j = p.places[i, 0]
         qx, qy, qz = tangent_at(x, p, i)
-        u, w, s, _, _, _ = water_at(x, t, p, j)
+        u, w, s, _, _, _, z = water_at(x, t, p, j)
+        wet = submerged(p, i, z)
         u, w, s = u - v[j], w - v[n + j], s - v[2 * n + j]
         along = u * qx + w * qy + s * qz
         across = math.sqrt(max(0.0, u * u + w * w + s * s - along * along))
-        lost += p.parts[i, DRAG_ACROSS] * across**3 + p.parts[i, DRAG_ALONG] * abs(along) ** 3
+        lost += wet * (p.parts[i, DRAG_ACROSS] * across**3 + p.parts[i, DRAG_ALONG] * abs(along) ** 3)
         if is_moving(p, j):
             bx, by, bz = bed_force(x, v, p, i, j, p.parts[i, MASS], True)
             _, _, lift = bed_force(x, v, p, i, j, p.parts[i, MASS], False)

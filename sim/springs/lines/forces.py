@@ -7,7 +7,8 @@ tangent, along r_{i+1} - r_{i-1}, and u, du/dt the water's velocity and accelera
       + m_w [(1 + C_an) (du/dt - (du/dt . q) q) + (1 + C_at) (du/dt . q) q]
   drag = D_n |w_n| w_n + D_t |w_t| w_t, w = u - v; D_n = rho/2 C_dn d l, D_t = rho/2 C_dt pi d l
 
-and the bed's d l (k_b depth - c_b dz/dt) upwards, with Coulomb friction. Above still water nodes are as wet as below.
+and the bed's d l (k_b depth - c_b dz/dt) upwards, with Coulomb friction. Of a node at the surface the water pushes the
+submerged share of its volume: from 1 to 0 over the HEIGHT of a part about the elevation. Its added mass stays.
 """
 
 import math
@@ -25,6 +26,7 @@ from sim.springs.lines.arrays import (
     DISPLACED,
     DRAG_ACROSS,
     DRAG_ALONG,
+    HEIGHT,
     INVERSE_MASS,
     MASS,
     PLACE,
@@ -79,13 +81,19 @@ def tangent_at(x, p, i):
 
 @kernel(inline=True)
 def water_at(x, t, p, j):
-    """Velocity [m/s] and acceleration [m/s^2] of the water at node j."""
-    u, v, w, du, dv, dw = p.current[0], p.current[1], p.current[2], 0.0, 0.0, 0.0
+    """Velocity [m/s] and acceleration [m/s^2] of the water at node j, and the node's height [m] over its surface."""
+    u, v, w, du, dv, dw, z = p.current[0], p.current[1], p.current[2], 0.0, 0.0, 0.0, x[2 * p.cols + j]
     if p.waves.shape[1] > 0:
         n = p.cols
-        wu, wv, ww, du, dv, dw, _ = flow_at(x[j], x[n + j], x[2 * n + j], t, p.waves, p.depth)
-        u, v, w = u + wu, v + wv, w + ww
-    return u, v, w, du, dv, dw
+        wu, wv, ww, du, dv, dw, _, elevation = flow_at(x[j], x[n + j], z, t, p.waves, p.depth)
+        u, v, w, z = u + wu, v + wv, w + ww, z - elevation
+    return u, v, w, du, dv, dw, z
+
+
+@kernel(inline=True)
+def submerged(p, i, z):
+    """Submerged share of part i, of which the middle is z [m] over the water's surface."""
+    return min(max(0.5 - z / p.parts[i, HEIGHT], 0.0), 1.0)
 
 
 @kernel(noalias=True, allocates=False)
@@ -156,13 +164,13 @@ def moment_of(p, i, fx, fy, fz):
 @kernel(inline=True)
 def pushed_body(p, i, fx, fy, fz):
     """The six accelerations of a body by a force at its fairlead i."""
-    return matrix_times(p, p.carried[i, 1], INVERSE_MASS, fx, fy, fz, *moment_of(p, i, fx, fy, fz))
+    return matrix_times(p.bodies, p.carried[i, 1], INVERSE_MASS, fx, fy, fz, *moment_of(p, i, fx, fy, fz))
 
 
 @kernel(allocates=False)
-def matrix_times(p, body, start, a, b, c, d, e, g):
-    """A (6, 6) matrix of a body's row, from column `start`, times six numbers."""
-    m, numbers = p.bodies, (a, b, c, d, e, g)
+def matrix_times(m, body, start, a, b, c, d, e, g):
+    """A (6, 6) matrix of a body's row in m, from column `start`, times six numbers."""
+    numbers = (a, b, c, d, e, g)
     s0 = s1 = s2 = s3 = s4 = s5 = 0.0
     for k in range(6):
         u = numbers[k]
@@ -229,9 +237,10 @@ def add_water_and_bed(x, v, t, p, with_damping, f):
     n = p.cols
     for i in range(p.places.shape[0]):
         j = p.places[i, 0]
-        m, md = p.parts[i, MASS], p.parts[i, DISPLACED]
         qx, qy, qz = tangent_at(x, p, i)
-        u, w, s, du, dw, ds = water_at(x, t, p, j)
+        u, w, s, du, dw, ds, z = water_at(x, t, p, j)
+        wet = submerged(p, i, z)
+        m, md = p.parts[i, MASS], wet * p.parts[i, DISPLACED]
         along = du * qx + dw * qy + ds * qz
         c, d = md * (1.0 + p.parts[i, ACROSS]), md * (p.parts[i, ALONG] - p.parts[i, ACROSS]) * along
         fx, fy, fz = c * du + d * qx, c * dw + d * qy, c * ds + d * qz - (m - md) * p.gravity
@@ -239,8 +248,8 @@ def add_water_and_bed(x, v, t, p, with_damping, f):
             u, w, s = u - v[j], w - v[n + j], s - v[2 * n + j]
             along = u * qx + w * qy + s * qz
             nx, ny, nz = u - along * qx, w - along * qy, s - along * qz
-            c = p.parts[i, DRAG_ACROSS] * math.sqrt(nx * nx + ny * ny + nz * nz)
-            d = p.parts[i, DRAG_ALONG] * abs(along) * along
+            c = wet * p.parts[i, DRAG_ACROSS] * math.sqrt(nx * nx + ny * ny + nz * nz)
+            d = wet * p.parts[i, DRAG_ALONG] * abs(along) * along
             fx, fy, fz = fx + c * nx + d * qx, fy + c * ny + d * qy, fz + c * nz + d * qz
         bx, by, bz = bed_force(x, v, p, i, j, m, with_damping)
         f[j] += fx + bx
@@ -297,7 +306,7 @@ def accelerate_bodies(x, v, t, p, with_damping, f, a):
     n = p.cols
     for b in range(p.bodies.shape[0]):
         j, s = p.nodes + 2 * b, 1.0 if with_damping else 0.0
-        k, d = matrix_times(p, b, STIFFNESS, *six(x, n, j)), matrix_times(p, b, DAMPING, *six(v, n, j))
+        k, d = matrix_times(p.bodies, b, STIFFNESS, *six(x, n, j)), matrix_times(p.bodies, b, DAMPING, *six(v, n, j))
         e = wave_force(x, t, p, b)
         set_six(
             f, n, j,
@@ -318,7 +327,7 @@ def accelerate_bodies(x, v, t, p, with_damping, f, a):
         f[2 * n + j + 1] += mz
     for b in range(p.bodies.shape[0]):
         j = p.nodes + 2 * b
-        set_six(a, n, j, matrix_times(p, b, INVERSE_MASS, *six(f, n, j)))
+        set_six(a, n, j, matrix_times(p.bodies, b, INVERSE_MASS, *six(f, n, j)))
     set_carried(a, p)
 
 

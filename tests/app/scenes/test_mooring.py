@@ -1,6 +1,8 @@
 """The mooring scene: its statics, what the panel says of tension and slack, drags, and the restoring curve."""
 
+import dataclasses
 import math
+import random
 from typing import Any
 
 import numpy as np
@@ -8,15 +10,17 @@ import pytest
 
 from app.messages import DivergenceError, Grab, Place, Release, vector_of
 from app.scenes import scene_named
-from app.scenes.mooring.arrangement import DENSITY, heights, hull_of, line_types, sea_of
+from app.scenes.mooring.arrangement import DENSITY, body_of, build, first_places, heights, hull_of, line_types, sea_of
 from app.scenes.mooring.parameters import PRESETS, Params
-from app.scenes.mooring.restoring import force_of_lines, static_curve
-from app.scenes.mooring.scene import FADE, MooringScene
+from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_curve
+from app.scenes.mooring.scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.tensions import Tensions
-from app.scenes.mooring.view import BED_ROWS, bed_colours
+from app.scenes.mooring.view import BED_ROWS, View, bed_colours
 from sim.mooring import critical_step
+from sim.mooring.balance import what_is_left
 from sim.mooring.catenary import catenary
 from sim.parameters import check_record
+from sim.validation import ConvergenceError
 
 SMALL: dict[str, Any] = {"segments": 12, "lines": 1, "steady_force": 10.0, "time_step": 1 / 120}
 
@@ -33,7 +37,7 @@ def test_a_frame_turns_the_body_as_its_state_and_draws_the_watch_circle_about_it
     scene.rest_place = np.array([3.0, -1.0, 0.0])
     frame = scene.frame()
     np.testing.assert_allclose(frame.rotation, [math.cos(0.35), *(math.sin(0.35) * turn / 0.7)], atol=1e-6)
-    assert frame.rest == (3.0, -1.0)
+    assert frame.rest == (3.0, -1.0, 0.0)
 
 
 def test_the_mouse_pulls_with_its_largest_force_at_most():
@@ -148,7 +152,7 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
 
 def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed_one():
     pushed, free = (MooringScene(Params(segments=20, wave_height=0.0, steady_force=f)) for f in (15.0, 0.0))
-    offset, force = static_curve(free)
+    offset, force = static_curve(StaticInputs.of(free))
     assert np.interp(0.0, offset, force) == pytest.approx(0.0, abs=400.0)
     assert (np.diff(force) > 0.0).all()
     moved = float(pushed.body_place()[0] - free.body_place()[0])
@@ -201,3 +205,106 @@ def test_the_bed_is_darker_and_bluer_with_depth_and_is_lost_towards_the_sides():
     assert shallow[middle, middle].std(axis=(0, 1)).min() > 0.01
     # `js/underwater.js` takes what is redder than blue for oil.
     assert (shallow[..., 2] - shallow[..., 0] > 0.02).all()
+
+
+@pytest.mark.parametrize(
+    "changed", [{"steady_force": 400.0}, {"density": 900.0}, {"direction": 90.0}, {"length": 99.0}]
+)
+def test_the_restoring_curve_is_that_of_the_rest_now(changed):
+    scene = MooringScene(Params(plot_restoring=True, segments=12, wave_height=0.0))
+    scene.curves()
+    scene.params = dataclasses.replace(scene.params, **changed)
+    scene.reset()
+    charts = scene.curves()
+    assert charts is not None
+    offset, static, _ = charts["plot_restoring"].columns
+    expected = static_curve(StaticInputs.of(scene, 2.0 ** math.ceil(math.log2(max(scene.most_offset, 1e-3)))))
+    assert np.interp(expected[0], offset, static) == pytest.approx(1e-3 * expected[1], abs=1e-6)
+
+
+def test_the_painted_waterline_is_that_of_the_rest():
+    light, heavy = (MooringScene(Params(**SMALL, density=density)) for density in (450.0, 850.0))
+    assert View.shape_of(light.frame()) != View.shape_of(heavy.frame())
+    before = View.shape_of(light.frame())
+    light.state.x[2, light.system.node_count] += 0.7  # heave
+    light.measure()
+    assert light.frame().body[2] != pytest.approx(light.frame().rest[2])
+    assert View.shape_of(light.frame()) == before
+
+
+def test_the_path_is_bounded_and_its_last_place_is_that_of_the_body():
+    scene = MooringScene(Params(**SMALL))
+    for i in range(1, MAX_PATH + 300):
+        scene.state.t = PATH_INTERVAL * i
+        scene.state.x[0, scene.system.node_count] = 1e-3 * i
+        scene.measure()
+        scene.measure()  # no second place at the same time
+    assert scene.path.shape == (MAX_PATH, 2)
+    steps = np.diff(scene.path[:, 0])
+    assert steps == pytest.approx(np.full(len(steps), 1e-3), abs=1e-6)
+    assert scene.path[-1] == pytest.approx(scene.body_place()[:2], abs=1e-6)
+    kept: Any = scene.keep()
+    assert kept["path"].nbytes == MAX_PATH * 8
+
+
+def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
+    def fail(system):
+        raise ConvergenceError("static state of the mooring", "3 N", 40)
+
+    monkeypatch.setattr("app.scenes.mooring.scene.at_rest", fail)
+    scene = MooringScene(Params(**SMALL))
+    assert np.isfinite(scene.frame().points).all()
+    with pytest.raises(DivergenceError, match=r"no state of rest .*3 N left.* Change their length"):
+        scene.advance(1)
+    monkeypatch.undo()
+    scene.params = dataclasses.replace(scene.params, length=97.0)
+    scene.reset()
+    scene.advance(1)
+    assert scene.time > 0.0
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"line_mass": 1.0, "diameter": 0.03}, {"line_mass": 0.35, "diameter": 0.02},
+        {"line_mass": 5.0, "diameter": 0.08, "axial_stiffness": 1e8},
+        {"line_mass": 2.0, "diameter": 0.03, "axial_stiffness": 3e8}, {"axial_stiffness": 1e10},
+        {"line_mass": 10.0, "diameter": 0.05, "axial_stiffness": 1e9}, {"axial_stiffness": 1e10, "segments": 100},
+        {"axial_stiffness": 1e8, "segments": 100, "line_mass": 1.0, "diameter": 0.03},
+    ],
+)  # fmt: skip
+def test_light_ropes_and_stiff_lines_rest(changed):
+    assert not MooringScene(Params(**changed)).failure
+
+
+def random_params(rng: random.Random) -> Params:
+    """A mooring anywhere inside the sliders."""
+    values = {}
+    for field in dataclasses.fields(Params):
+        one = field.metadata["parameter"]
+        if field.name in STATIC:
+            low = math.log(one.log_from) if one.log_from else 0.0
+            number = math.exp(rng.uniform(low, math.log(one.high))) if one.log_from else rng.uniform(one.low, one.high)
+            values[field.name] = round(number) if isinstance(one.default, int) else number
+    return Params(**values, body=rng.choice(["buoy", "box"]), floats=rng.random() < 0.5, wave_height=0.0)
+
+
+STATIC = (
+    "lines", "length", "reach", "depth", "diameter", "line_mass", "axial_stiffness", "lift", "segments", "size",
+    "density", "direction", "steady_force",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("count", [20, pytest.param(2000, marks=pytest.mark.stress)])
+def test_random_moorings_rest_or_say_what_is_left(count):
+    rng, failed = random.Random(4), 0
+    for _ in range(count):
+        params = random_params(rng)
+        system = build(params, first_places(params), body_of(params, None), None)
+        try:
+            rest = system.at_rest()
+        except ConvergenceError:
+            failed += 1
+            continue
+        assert what_is_left(rest.nodes, system.kernel_view(1.0))[1]
+    assert failed <= 0.12 * count

@@ -11,6 +11,7 @@ from sim.mooring import Line, LineType, Point, System, moored, simulate
 from sim.mooring.statics import Rest, first_guess
 from sim.ocean.kinematics import Components
 from sim.springs.forces.acceleration import set_acceleration
+from tests.refusals import assert_refused
 
 RATE, AMPLITUDE = 0.8, 0.5  # [rad/s], [m] of the wave
 THREAD = LineType("thread", 1e-3, 1e-3, 10.0)  # a line that does not matter
@@ -20,7 +21,7 @@ def wave(heading: float) -> Components:
     k = RATE**2 / 9.81
     one = np.ones(1)
     return Components(
-        k * math.cos(heading) * one, k * math.sin(heading) * one, AMPLITUDE * one, RATE * one, 0.1 * one, math.inf,
+        k * math.cos(heading) * one, k * math.sin(heading) * one, AMPLITUDE * one, RATE * one, 0.1 * one, 300.0,
         1025.0,
     )  # fmt: skip
 
@@ -46,7 +47,7 @@ def test_a_body_answers_a_wave_by_its_response_amplitude(heading):
 def test_a_wave_pushes_a_body_where_it_is(place):
     system = box_in_waves(0.7)
     m, waves, t = system.bodies[0], system.waves, 2.3
-    x = first_guess(system, {})
+    x = first_guess(system, {})[0]
     x[:2, system.node_count] = place
     x[:2, 1] += place  # the end of the thread
     a = np.empty(x.size)
@@ -59,7 +60,7 @@ def test_a_wave_pushes_a_body_where_it_is(place):
 
 def test_the_account_balances_of_a_body_in_waves():
     system = box_in_waves(0.7)
-    start = Rest({}, {}, {}, first_guess(system, {}))
+    start = Rest({}, {}, {}, first_guess(system, {})[0])
     run = simulate(system, duration=60.0, frames=61, step=0.01, start=start, with_account=True)
     error = run.energy.total + run.energy.dissipated - run.energy.work
     assert np.abs(error - error[0]).max() < 1e-3 * np.ptp(run.energy.total)
@@ -79,3 +80,24 @@ def test_forces_that_are_not_those_of_the_waves_are_refused(field, value):
     system = box_in_waves(0.0)
     with pytest.raises(ValueError, match=f"body 1: {field}: .* is not allowed; allowed: "):
         dataclasses.replace(system, bodies=(system.bodies[0]._replace(**{field: value}),))
+
+
+@pytest.mark.parametrize(
+    ("name", "waves"),
+    [
+        ("waves", "sea"),
+        ("waves: depth", wave(0.0)._replace(depth=math.inf)),
+        ("waves: density", wave(0.0)._replace(density=1000.0)),
+        ("waves: omega", wave(0.0)._replace(omega=np.array([1.1 * RATE]))),
+    ],
+)
+def test_waves_in_another_water_are_refused(name, waves):
+    still = dataclasses.replace(
+        box_in_waves(0.0),
+        bodies=(),
+        waves=None,
+        points=(Point(1, "fixed", (0.0, 0.0, -300.0)), Point(2, "fixed", (0.0, 0.0, 0.0))),
+    )
+    assert_refused(name, lambda: dataclasses.replace(still, waves=waves))
+    with pytest.raises(ValueError, match="waves: omega"):
+        dataclasses.replace(still, waves=wave(0.0), gravity=1.62)

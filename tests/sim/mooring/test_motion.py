@@ -6,14 +6,15 @@ import warnings
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from sim import springs
-from sim.mooring import Line, LineType, Point, System, critical_step, simulate
+from sim.mooring import Body, Line, LineType, Point, System, critical_step, simulate
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
 from sim.ocean.kinematics import Components
 from sim.springs.forces.acceleration import set_acceleration
-from sim.springs.lines.damping import damp_lines
+from sim.springs.lines.damping import damp_lines, make_lines_decay
 from sim.springs.lines.energy import lines_energies, lines_power
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope
 
@@ -271,3 +272,58 @@ def test_a_moved_point_needs_no_velocity_and_one_without_motion_stays():
     still = simulate(system, duration=1.0, frames=3)
     assert np.abs(still.x[1][:, -1] - (0.0, 0.0, -1.0)).max() == 0.0
     assert np.abs(still.tension[1] - still.tension[1][0]).max() < 1e-3
+
+
+@pytest.mark.parametrize("rate", [0.3, 20.0, 2e3, 2e5])
+def test_damping_of_a_body_decays_exactly_and_limits_no_step(rate):
+    """By a full damping matrix, against the closed form exp(-M^-1 B t) (scipy's expm), in one step of any length."""
+    rng = np.random.default_rng(3)
+    square = rng.normal(size=(6, 6))
+    mass, damping = np.diag([2e4, 2e4, 3e4, 8e4, 8e4, 9e4]), rate * 1e4 * (square @ square.T)
+    body = Body(1, (0.0, 0.0, 0.0), mass, np.zeros((6, 6)), damping)
+    hair = LineType("hair", 1e-9, 1e-9, 1e-9, 0.0)
+    points = Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "body", (0.0, 0.0, 0.0), body=1)
+    system = System((Line(1, hair, 1, 2, 80.0, 1),), points, 50.0, (body,), gravity=0.0, density=0.0)
+    p, s = system.kernel_view(1.0), 0.4
+    x, v = np.zeros((3, 4)), np.zeros((3, 4))
+    v[:, 2:] = rng.normal(size=(3, 2))
+    expected = expm(-s * np.linalg.solve(mass, damping)) @ v[:, 2:].T.reshape(-1)
+    damp_lines(x.reshape(-1), v.reshape(-1), 0.0, s, make_lines_decay(p, s), p, False)
+    assert v[:, 2:].T.reshape(-1) == pytest.approx(expected, abs=1e-8)
+    assert v[:, 1] == pytest.approx(v[:, 2], abs=1e-12)  # the fairlead moves with the body
+
+
+def damped(rate: float) -> System:
+    """A body on two wires whose damping is `rate` [1/s] times its mass, pushed by 10 kN."""
+    wire = LineType("wire", 0.01, 0.5, 1e5, 0.0)
+    points = (
+        Point(1, "fixed", (-40.0, 0.0, 0.0)), Point(2, "body", (-1.0, 0.0, 0.0), body=1),
+        Point(3, "body", (1.0, 0.0, 0.0), body=1), Point(4, "fixed", (40.0, 0.0, 0.0)),
+    )  # fmt: skip
+    lines = (Line(1, wire, 1, 2, 38.9, 8), Line(2, wire, 3, 4, 38.9, 8))
+    body = Body(1, (0.0, 0.0, 0.0), 1e4 * np.eye(6), 1e4 * np.eye(6), rate * 1e4 * np.eye(6))
+    return System(lines, points, 100.0, (body,), gravity=0.0, density=0.0, bed_stiffness=0.0)
+
+
+@pytest.mark.parametrize("rate", [0.5, 200.0, 2e3, 2e5])
+def test_leapfrog_holds_up_to_its_critical_step_at_any_damping_of_a_body(rate):
+    still = damped(rate)
+    rest = still.at_rest()
+    pushed = dataclasses.replace(still, bodies=(still.bodies[0]._replace(steady=(1e4, 0.0, 0.0, 0.0, 0.0, 0.0)),))
+    h = critical_step(still, "leapfrog", rest)
+    run = simulate(pushed, duration=4.0, frames=5, step=0.98 * h, start=rest)
+    assert run.diverged_at is None
+    assert np.abs(run.bodies[1][:, 0]).max() < 1.5
+
+
+def test_a_strongly_damped_body_creeps_as_rk4_has_it():
+    still = damped(200.0)
+    rest = still.at_rest()
+    pushed = dataclasses.replace(still, bodies=(still.bodies[0]._replace(steady=(1e4, 0.0, 0.0, 0.0, 0.0, 0.0)),))
+    expected = 0.02451  # [m] after 5 s, rk4 in steps of 1 ms
+    errors = [
+        abs(simulate(pushed, duration=5.0, frames=2, step=step, start=rest).bodies[1][-1, 0] - expected)
+        for step in (4e-3, 2e-3)
+    ]
+    assert errors[0] < 0.06 * expected
+    assert errors[1] < 0.3 * errors[0]

@@ -1,0 +1,110 @@
+"""Floats, and lines that float, at the surface: buoyancy ends where the water does, in force, energy and tangent."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from sim.mooring import Line, LineType, Point, System, simulate
+from sim.mooring.simulate import LineState, paths_of
+from sim.mooring.statics import Rest
+from sim.mooring.tangent import stiffness_matrix, upright_stiffness
+from sim.ocean.kinematics import Components
+from sim.springs import INTEGRATORS
+from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.lines.energy import lines_energies, lines_power
+
+CHAIN = LineType("chain", 0.05, 50.0, 1.674e9)
+HAIR = LineType("hair", 1e-9, 1e-9, 1.0)  # slack, and nothing beside the float
+
+
+def float_on_chain(segments: int = 40) -> System:
+    points = (Point(1, "fixed", (0.0, 0.0, -200.0)), Point(2, "free", (5.0, 0.0, -150.0), mass=1000.0, volume=20.0))
+    return System((Line(1, CHAIN, 1, 2, 400.0, segments),), points, 200.0)
+
+
+def test_a_float_on_a_slack_line_rests_at_the_surface():
+    """MoorPy 1.3.0 has it at z = -0.03 m."""
+    rest = float_on_chain().at_rest()
+    assert rest.x[1][-1, 2] == pytest.approx(0.0, abs=0.1)
+    # Its submerged share carries itself and its line's last link.
+    height = 2.0 / 3.0 * (6.0 * 20.0 / math.pi) ** (1.0 / 3.0)
+    share = 0.5 - rest.x[1][-1, 2] / height
+    half = 0.5 * 10.0 * (50.0 - 1025.0 * CHAIN.volume)
+    assert 1025.0 * 20.0 * share * 9.81 == pytest.approx((1000.0 + half) * 9.81 + rest.tension[1][-1], rel=1e-3)
+
+
+def test_a_line_that_floats_lies_on_the_water_as_deep_as_it_is_heavy():
+    kind = LineType("float", 0.2, 20.0, 1e8)
+    points = (Point(1, "fixed", (0.0, 0.0, -30.0)), Point(2, "fixed", (10.0, 0.0, 0.0)))
+    rest = System((Line(1, kind, 1, 2, 80.0, 40),), points, 30.0).at_rest()
+    level = (0.5 - 20.0 / (1025.0 * kind.volume)) * math.pi / 4.0 * 0.2
+    afloat = rest.x[1][:, 2] > -0.2
+    assert afloat.sum() > 15
+    assert np.median(rest.x[1][afloat, 2]) == pytest.approx(level, abs=1e-6)
+
+
+def one_float(z: float, waves: Components | None = None) -> tuple[System, np.ndarray]:
+    """A float of 0.6 m3 and 300 kg on a hair, at a height z [m]."""
+    points = [Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "free", (0.0, 0.0, z), 300.0, 0.6, 0.8, 0.5)]
+    system = System([Line(1, HAIR, 1, 2, 200.0, 1)], points, 50.0, bed_stiffness=0.0, waves=waves)
+    return system, np.array([0.0, 0.0, 0.0, 0.0, -50.0, z])
+
+
+HEIGHT = 2.0 / 3.0 * (6.0 * 0.6 / math.pi) ** (1.0 / 3.0)
+
+
+@pytest.mark.parametrize("z", [-2.0, -0.3, -0.1, 0.0, 0.25, 0.6])
+def test_force_energy_and_tangent_of_a_float_agree(z):
+    share = min(max(0.5 - z / HEIGHT, 0.0), 1.0)
+    system, x = one_float(z)
+    p, v, a = system.kernel_view(1.0), np.zeros(6), np.empty(6)
+    v[1::2] = (0.3, 0.0, 0.4)
+    set_acceleration(x, v, 0.0, p, a)
+    drag = share * 0.5 * 1025.0 * 0.8 * 0.5
+    force = np.array([-drag * 0.3, 0.0, -drag * 0.4 + 9.81 * (share * 1025.0 * 0.6 - 300.0)])
+    assert a[1::2] == pytest.approx(force / (300.0 + 0.5 * 1025.0 * 0.6), rel=1e-6, abs=1e-9)
+    h = 1e-4
+    energies = [lines_energies(x + (0.0, 0.0, 0.0, 0.0, 0.0, d), v, 0.0, p)[2] for d in (h, -h)]
+    assert (energies[1] - energies[0]) / (2.0 * h) == pytest.approx(9.81 * (share * 1025.0 * 0.6 - 300.0), rel=1e-5)
+    assert lines_power(x, v, 0.0, p, True)[0] == pytest.approx(drag * 0.5**2, rel=1e-6)
+    slope = 9.81 * 1025.0 * 0.6 / HEIGHT if 0.0 < share < 1.0 else 0.0
+    assert upright_stiffness(x.reshape(3, 2), p)[1] == pytest.approx(slope)
+    assert stiffness_matrix(x.reshape(3, 2), p)[2, 2] == pytest.approx(slope, rel=1e-6, abs=0.1)
+
+
+def test_energy_of_buoyancy_ends_above_the_water():
+    (low, _), (high, x) = one_float(-9.0), one_float(3.0)
+    v = np.zeros(6)
+    energies = [
+        lines_energies(one_float(z)[1], v, 0.0, low.kernel_view(1.0))[2] - 300.0 * 9.81 * z for z in (-9.0, 3.0, 4.0)
+    ]
+    assert energies == pytest.approx([9.0 * 1025.0 * 0.6 * 9.81, 0.0, 0.0], abs=1e-3)
+    assert high.kernel_view(1.0).parts[:, -1] == pytest.approx([0.0, 0.0, HEIGHT], abs=1e-8)
+    assert x[-1] == 3.0
+
+
+def test_a_float_bobs_with_the_period_of_its_cut_through_the_water():
+    system, _ = one_float(0.0)
+    level = (0.5 - 300.0 / (1025.0 * 0.6)) * HEIGHT
+    free = dataclasses.replace(system, points=(system.points[0], system.points[1]._replace(drag_area=0.0)))
+    nodes = np.array([[0.0, 0.0], [0.0, 0.0], [-50.0, level + 0.05]])
+    run = simulate(free, duration=8.0, frames=401, step=1e-3, start=Rest({}, {}, {}, nodes))
+    omega = math.sqrt(9.81 * 1025.0 * 0.6 / HEIGHT / (300.0 + 0.5 * 1025.0 * 0.6))
+    expected = level + 0.05 * np.cos(omega * run.t)
+    assert run.x[1][:, -1, 2] == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_float_rides_on_long_waves():
+    period, amplitude = 12.0, 1.5
+    omega = 2.0 * math.pi / period
+    k = omega**2 / 9.81
+    one = np.ones(1)
+    waves = Components(k * one, 0.0 * one, amplitude * one, omega * one, 0.0 * one, 5000.0, 1025.0)
+    system, x = one_float(0.0)
+    system = dataclasses.replace(system, depth=5000.0, waves=waves)
+    state = LineState(system, Rest({}, {}, {}, x.reshape(3, 2)))
+    state.advance(INTEGRATORS["leapfrog"], 5e-3, 6000, paths_of(system, {}, 0.0, 30.0))
+    height = state.x[2, 1] - amplitude * math.cos(k * state.x[0, 1] - omega * state.t)
+    assert abs(height - (0.5 - 300.0 / (1025.0 * 0.6)) * HEIGHT) < 0.1 * amplitude

@@ -264,7 +264,10 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     )
     names = "set parameters of the scene; `springtide run SCENE --list` lists presets and parameters"
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help=names)
-    parser.add_argument("--hull", type=Path, metavar="FILE", help="add a closed mesh to the bodies of the radial sea")
+    parser.add_argument(
+        "--hull", type=Path, metavar="FILE",
+        help="add a closed mesh in metres to the radial sea: STL, OBJ or PLY with z up, glTF or GLB with y up",
+    )  # fmt: skip
 
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:

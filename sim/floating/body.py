@@ -84,7 +84,8 @@ class Body(NamedTuple):
         """The body at rest in these fluids, the surface at z = 0: upright where no arm turns it, or with its trim.
 
         Its x, y and heading stay. A body that is not stable upright leans as far as it turns over. Raises ValueError
-        for a body that sinks, and for one that finds no stable rest within 60 degrees, with its GM.
+        for a body that sinks, and for one that finds no stable rest within 60 degrees, with its GM. Raises
+        ConvergenceError where the search for rest does not end.
         """
         check_pose(self)
         draft = self.draft(layers)

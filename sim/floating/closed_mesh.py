@@ -77,7 +77,7 @@ def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -
     size = np.ptp(vertices, axis=0)
     if not (size >= MIN_LENGTH).all() or not (size <= MAX_LENGTH).all():
         raise argument_error(name, tuple(size.tolist()), f"extents of {MIN_LENGTH:g} to {MAX_LENGTH:g} m")
-    volume = solid(vertices, faces).volume
+    volume = enclosed_volume(vertices - vertices.mean(axis=0), faces)
     if abs(volume) < 1e-9 * size.prod():
         raise argument_error(name, f"volume {volume:g} m3", "a mesh that encloses a volume")
     if volume < 0:
@@ -158,6 +158,12 @@ def open_edges(faces: np.ndarray) -> int:
     backward = np.unique(edges[:, 1] * width + edges[:, 0])
     single = forward[count == 1]
     return len(forward) - int(np.isin(single, backward, assume_unique=True).sum())
+
+
+def enclosed_volume(vertices: np.ndarray, faces: np.ndarray) -> float:
+    """Volume [m3] of the closed mesh of vertices (n, 3) [m] and faces (m, 3); negative where they face inward."""
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum()) / 6
 
 
 def solid(vertices: np.ndarray, faces: np.ndarray) -> Solid:

@@ -17,10 +17,11 @@ import numpy as np
 from sim.floating.closed_mesh import check_hull
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, submerged
+from sim.ocean.dispersion import SEA_DENSITY
 from sim.validation import argument_error, as_float, check_positive
 
 Layers = Sequence[tuple[float, float]]
-SEA_WATER: Layers = ((1025.0, math.inf),)  # the default fluid of the package
+SEA_WATER: Layers = ((SEA_DENSITY, math.inf),)  # the default fluid of the package
 
 
 def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = 9.81) -> float:

@@ -26,6 +26,8 @@ from sim.validation import argument_error, as_array, check_kind, check_positive,
 
 FILE_SHAPE = "hull"  # name of the shape that is made of a mesh file, and of its one appearance
 FILE_TITLE = "From file"
+Y_UP = (".glb", ".gltf")  # +y up and metres (glTF 2.0, section 3.4)
+WITH_UNITS = (".dae", ".zae", ".3mf")  # which have a unit and an axis of their own, that trimesh does not apply
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -75,8 +77,9 @@ class Hull(ClosedMesh):
 
     @staticmethod
     def load(path: str | Path, own_table: bool = True) -> "Hull":
-        """A hull from a mesh file (STL, OBJ, PLY, GLB...), all of its parts in one, units read as metres.
+        """A hull from a mesh file (STL, OBJ, PLY, OFF, GLB, glTF), all of its parts in one, units read as metres.
 
+        glTF and GLB have y up, as their specification says, and are turned; all others are read with z up.
         own_table: with the table of linear coefficients that lies beside the file, if there is one. Raises ValueError
         where the file cannot be read, its mesh is not closed, oriented and finite, or its table is that of another one.
         """
@@ -104,6 +107,9 @@ def shape_from_file(path: str | Path, own_table: bool = True) -> Shape:
     """
     if not Path(check_kind("path", path, str | os.PathLike, "the name of a file")).exists():
         raise unreadable("path", path, FileNotFoundError())
+    ending = Path(path).suffix.lower()
+    if ending in WITH_UNITS:
+        raise argument_error("path", str(path), "STL, OBJ, PLY, OFF, GLB or glTF, in metres: convert it")
     import trimesh  # reading meshes is rare and the import is slow
 
     try:
@@ -112,6 +118,8 @@ def shape_from_file(path: str | Path, own_table: bool = True) -> Shape:
         faces = np.asarray(loaded.faces, dtype=np.int64).reshape(-1, 3)  # type: ignore[union-attr]
     except Exception as error:  # trimesh's readers raise errors of many types
         raise argument_error("path", str(path), f"a mesh file that can be read ({error})") from error
+    if ending in Y_UP:
+        vertices = vertices[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
     mesh = checked_mesh(vertices, faces, str(path))
     place = place_of_table(path)
     table = read_table(place, mesh) if own_table and place.is_file() else None

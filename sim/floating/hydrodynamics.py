@@ -30,6 +30,7 @@ from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, add_pressure
 from sim.floating.linear_table import LinearTable, table_of
 from sim.interruption import pieces, raise_if_stopped
+from sim.validation import ConvergenceError
 
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
 POLES = np.array([-0.362 + 0.419j, -0.408 + 0.850j, -0.311 + 1.274j, -1.344 + 1.128j, -1.127 + 4.227j])
@@ -350,7 +351,8 @@ def natural_frequency(linear: LinearHull, axis: int, mass: float, stiffness: flo
     """omega/sqrt(g) [1/sqrt(m)] of a free oscillation along or about an axis (0 to 5).
 
     mass [m3 or m5]: of the solid over the fluid's density; stiffness [m2 or m4]: over the weight density. Roll and
-    pitch carry the sway and surge that come with them. added scales the added mass. 0 where no force restores.
+    pitch carry the sway and surge that come with them. added scales the added mass. 0 where no force restores. Raises
+    ConvergenceError where the search does not end.
     """
     if stiffness <= 0.0:
         return 0.0
@@ -364,9 +366,9 @@ def natural_frequency(linear: LinearHull, axis: int, mass: float, stiffness: flo
             inertia -= (added * a[axis, partner]) ** 2 / (linear.volume + added * a[partner, partner])
         new = math.sqrt(stiffness / inertia)
         if abs(new - frequency) < 1e-9 * new:
-            break
+            return frequency
         frequency = 0.5 * (frequency + new)
-    return frequency
+    raise ConvergenceError("natural frequency", f"{abs(new / frequency - 1.0):.1g} of it", MAX_TURNS)
 
 
 def memory_of(linear: LinearHull, own_frequencies: np.ndarray) -> Memory:

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from sim.floating.closed_mesh import ClosedMesh, area_vectors, check_hull
 from sim.floating.rotation import rotation_matrix
 from sim.jit import kernel
+from sim.ocean.dispersion import SEA_DENSITY
 from sim.validation import argument_error, as_array, check_not_negative
 
 
@@ -199,7 +200,7 @@ def pressure_force(
     position: ArrayLike = (0.0, 0.0, 0.0),
     rotation: ArrayLike = (1.0, 0.0, 0.0, 0.0),
     surface: ArrayLike = 0.0,
-    density: float = 1025.0,
+    density: float = SEA_DENSITY,
     gravity: float = 9.81,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force (3,) [N] and moment (3,) [N m] about the centre of mass of a fluid of `density` [kg/m3] below `surface`.

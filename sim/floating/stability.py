@@ -28,7 +28,7 @@ from sim.floating.hull import Hull
 from sim.floating.hydrostatics import add_displaced
 from sim.floating.rigid import heading_of
 from sim.floating.rotation import rotation_matrix
-from sim.validation import argument_error, as_array, is_whole_number
+from sim.validation import ConvergenceError, argument_error, as_array, is_whole_number
 
 if TYPE_CHECKING:
     from sim.floating.body import Body
@@ -174,13 +174,16 @@ def is_stable(hull: Hull, rest: Balance) -> bool:
 
 def near_upright(loaded: Loaded) -> Balance | None:
     """The balance next to upright in which no arm turns the body, stable or not; None without one within MAX_TILT."""
-    return settled(loaded, balance_at(loaded, UPRIGHT), lambda heights: heights)
+    try:
+        return settled(loaded, balance_at(loaded, UPRIGHT), lambda heights: heights)
+    except ConvergenceError:  # there need not be one
+        return None
 
 
 def rest_of(loaded: Loaded) -> Balance:
     """The body at stable rest: next to upright, or where it comes to rest when it turns over from there.
 
-    Raises ValueError where that is none within MAX_TILT.
+    Raises ValueError where that is none within MAX_TILT, ConvergenceError where the search does not end.
     """
     start = balance_at(loaded, UPRIGHT)
     found = near_upright(loaded)
@@ -210,7 +213,9 @@ def leaning(balance: Balance) -> Quaternion:
 
 
 def settled(loaded: Loaded, start: Balance, over: Callable[[np.ndarray], np.ndarray]) -> Balance | None:
-    """The balance in which no arm turns the body, by Newton's method over the tilts about x and y; None without one.
+    """The balance in which no arm turns the body, by Newton's method over the tilts about x and y.
+
+    None without one within MAX_TILT. Raises ConvergenceError where the arms do not vanish.
 
     over: of the metacentric heights (2,), those that a step divides by. As they are, it leads to the next balance;
     their sizes lead downhill, to a stable one.
@@ -227,7 +232,7 @@ def settled(loaded: Loaded, start: Balance, over: Callable[[np.ndarray], np.ndar
         found = balance_at(loaded, without_heading(product(tilted(step), found.rotation)))
         if found.tilt > MAX_TILT:
             return None
-    return None
+    raise ConvergenceError("rest of a floating body", f"arms of {np.abs(found.arm).max():.3g} m", MAX_TURNS)
 
 
 def tilted(tilt: np.ndarray) -> Quaternion:

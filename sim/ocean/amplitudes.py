@@ -6,6 +6,7 @@ n = 0 ... N/2 - 1, -N/2 ... -1. The mean and the two Nyquist lines, which cannot
 """
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -68,12 +69,19 @@ def with_line(S: np.ndarray, unit: np.ndarray, line: tuple[float, float, float],
     """Give the energy of one regular wave to the tile's wave that is nearest to it, which is drawn as high as that.
 
     S [m4] and unit amplitudes, (size, size); S is changed, and returned are the other amplitudes. line: kx, ky [rad/m]
-    and m0 [m2]. A wave that is longer than the tile, or too short for its grid, is left out.
+    and m0 [m2]. Of a wave that is longer than the tile, or too short for its grid, the nearest is the longest, or
+    the shortest, of about its direction, and a UserWarning says so.
     """
     kx, ky, m0 = line
-    i, j = round(kx / dk), round(ky / dk)
-    if max(abs(i), abs(j)) >= len(S) // 2 or i == j == 0:
-        return unit
+    longest, shortest = 1.0, len(S) // 2 - 1.0
+    n = max(abs(kx), abs(ky)) / dk
+    beyond = "longer than the tile" if n < 0.5 else "too short for the grid" if n > shortest + 0.5 else ""
+    if beyond and m0 > 0.0:
+        own, tile = 2.0 * math.pi / math.hypot(kx, ky), 2.0 * math.pi / dk
+        words = f"a wave of {own:.3g} m is {beyond} of {tile:.6g} m and {len(S)} cells a side"
+        warnings.warn(f"{words}; the sea has the nearest that fits", UserWarning, stacklevel=2)
+    fitted = min(max(n, longest), shortest) / n
+    i, j = round(fitted * kx / dk), round(fitted * ky / dk)
     S[i, j] += m0 / dk**2
     unit = unit.copy()
     unit[i, j] *= math.sqrt(0.5) / abs(unit[i, j])

@@ -16,13 +16,14 @@ from sim.ocean.viscous_layers import Layers, surface_roots
 from sim.validation import argument_error, check_kind, check_not_negative, check_positive, check_wavenumbers
 
 INF = math.inf
+SEA_DENSITY = 1025.0  # [kg/m3] of the water where none is named
 CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
 CRITICAL_FILM = 1.2703246811008881  # the same under a film
 LONG = 1e-6  # kd that stands for 0 in the ratios of modes
 EVANESCENT = 18.0  # kd beyond which the far mode is under 2e-8 of the near one and lost in rounding
 
 
-def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0) -> Any:
+def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY) -> Any:
     """Angular frequency [rad/s] of waves of wavenumber k [rad/m], any shape.
 
     gravity [m/s2] and density [kg/m3] above 0; depth [m] above 0 or inf; tension [N/m] 0 or above.
@@ -37,7 +38,7 @@ def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.
 
 
 def phase_speed(
-    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
+    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
 ) -> Any:
     """Phase speed omega/k [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`.
 
@@ -51,7 +52,7 @@ def phase_speed(
 
 
 def group_speed(
-    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = 1000.0
+    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
 ) -> Any:
     """Group speed d omega/dk [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`.
 

@@ -31,6 +31,7 @@ from sim.validation import argument_error, check_choice, check_finite, check_pos
 from sim.wave_motion import flow_at, sincos_turns
 
 STRETCHINGS = ("constant", "wheeler")
+LONGEST = 1e-12  # [rad/m] in place of a wavenumber of 0
 
 
 class Kinematics(NamedTuple):
@@ -72,10 +73,13 @@ class Components(NamedTuple):
         """Rows (9, n) for `set_flow`: kx, ky [turns/m], phase [turns], omega [turns/s], cos and sin of the bearing,
         a omega/(1 - q) [m/s], q = e^(-2kh), a [m]."""
         k = np.hypot(self.kx, self.ky)
-        q = np.exp(-2.0 * k * self.depth) if math.isfinite(self.depth) else np.zeros_like(k)
+        level = k == 0.0  # no wave: it moves no water, and stands here as a long one without speed
+        kx, k = np.where(level, LONGEST, self.kx), np.where(level, LONGEST, k)
+        double = -2.0 * k * self.depth
+        speed = np.where(level, 0.0, self.amplitude * self.omega) / -np.expm1(double)
         turn = 2.0 * math.pi
-        rows = (self.kx / turn, self.ky / turn, self.phase, self.omega / turn, self.kx / k, self.ky / k)
-        return np.array([*rows, self.amplitude * self.omega / (1.0 - q), q, self.amplitude])
+        rows = (kx / turn, self.ky / turn, self.phase, self.omega / turn, kx / k, self.ky / k)
+        return np.array([*rows, speed, np.exp(double), self.amplitude])
 
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
         """The water at points (n, 3) [m], z up from still water, at time t [s].

@@ -76,7 +76,7 @@ class Sea:
     ) -> None:
         """size: cells a side, even, 8 to 4096; length [m] of the tile; the wind is U10, U19.5 for pierson_moskowitz.
 
-        spectrum: a name in `SPECTRA`, or a custom record.
+        spectrum: a name in `SPECTRA`, or a custom record; a regular wave that does not fit the tile is warned of.
 
         amplitudes: "random" (Gaussian) or "fixed" (random phase only); choppiness: factor on the displacement;
         viscosity [m2/s]: waves decay at their exact rate from t = 0. More: the fields of the spectrum's conditions

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.ocean.dispersion import group_speed
+from sim.ocean.dispersion import SEA_DENSITY, group_speed
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import Fluid
 from sim.validation import argument_error, check_not_negative, check_positive
@@ -36,7 +36,7 @@ def slick_radius(
     volume: float,
     time: float,
     oil: float,
-    water: float = 1025.0,
+    water: float = SEA_DENSITY,
     viscosity: float = 1.19e-6,
     gravity: float = 9.81,
     spreading: float = 0.0,

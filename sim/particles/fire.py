@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from sim.jit import kernel
 from sim.particles.plume import DRAG_TIME, flame_height, track
 from sim.particles.random import uniform
-from sim.validation import argument_error
+from sim.validation import argument_error, check_not_negative, check_positive, check_vector, is_whole_number
 
 LEAST_LIFE, LIFE_RANGE = 0.12, 2.64  # of the mean life: most parcels are flame, few are old smoke
 LONGEST_LIFE = LEAST_LIFE + LIFE_RANGE  # of the mean life
@@ -40,20 +40,15 @@ class Fire:
         Parcels start spread over their lives, as if the fire had burnt for long. Raises ValueError for a value that is
         not allowed.
         """
-        for name, value in (("power", power), ("diameter", diameter), ("life", life)):
-            if not (math.isfinite(value) and value > 0.0):
-                raise argument_error(name, value, "a finite number above 0")
-        for name, values, length in (("position", position, 3), ("wind", wind, 2)):
-            if len(values) != length or not all(math.isfinite(v) for v in values):
-                raise argument_error(name, values, f"{length} finite numbers")
-        if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+        power, diameter = check_positive("power", power, "W"), check_positive("diameter", diameter, "m")
+        life = check_positive("life", life, "s")
+        if not is_whole_number(count) or count < 1:
             raise argument_error("count", count, "a whole number from 1")
-        if not (math.isfinite(eddies) and eddies >= 0.0):
-            raise argument_error("eddies", eddies, "0 or above, finite")
-        self.place, self.diameter, self.wind, self.eddies = position, diameter, wind, eddies
+        self.place, self.wind = check_vector("position", position, "m"), check_vector("wind", wind, "m/s", 2)
+        self.diameter, self.eddies = diameter, check_not_negative("eddies", eddies, "")
         self.height = flame_height(power, diameter)
         self.longest_life = LONGEST_LIFE * life  # [s]
-        self.track = track(power, diameter, math.hypot(*wind), self.longest_life)
+        self.track = track(power, diameter, math.hypot(*self.wind), self.longest_life)
         self.puffs = 1.5 / math.sqrt(diameter)  # [1/s]
         self.time = 0.0  # [s]
         self.position = np.zeros((3, count), np.float32)
@@ -63,13 +58,12 @@ class Fire:
         self.turn = np.zeros(count, np.uint32)  # how often each parcel has started
         # Before the first start a parcel waits its share of a life: `age` counts up from it.
         self.age = (-(np.arange(count) + 0.5) / count * life).astype(np.float32)
-        self.mean_life = float(life)
+        self.mean_life = life
         self.started = 0
 
     def step(self, dt: float) -> None:
         """Let dt [s] pass. Raises ValueError for a negative or infinite one."""
-        if not 0.0 <= dt < math.inf:
-            raise argument_error("dt", dt, "0 or above, finite s")
+        dt = check_not_negative("dt", dt, "s")
         x, y, z = self.place
         self.time += dt
         self.started += burn(

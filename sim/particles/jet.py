@@ -12,7 +12,7 @@ import numpy as np
 from sim.jit import kernel
 from sim.particles.rain import bilinear
 from sim.particles.random import uniform
-from sim.validation import argument_error
+from sim.validation import argument_error, check_not_negative, check_positive, check_vector, is_whole_number
 
 
 class Landed(NamedTuple):
@@ -42,20 +42,13 @@ class Jet:
         most parcels in the air, which, spread over `flight` [s], sets how many leave a second; drag_time [s] or inf.
         Raises ValueError for a value that is not allowed.
         """
-        for name, values, length in (("nozzle", nozzle, 3), ("velocity", velocity, 3), ("wind", wind, 2)):
-            if len(values) != length or not all(math.isfinite(v) for v in values):
-                raise argument_error(name, values, f"{length} finite numbers")
-        for name, value in (("flow", flow), ("gravity", gravity), ("flight", flight)):
-            if not (math.isfinite(value) and value > 0.0):
-                raise argument_error(name, value, "a finite number above 0")
-        if not drag_time > 0.0:
-            raise argument_error("drag_time", drag_time, "above 0 s, or inf")
-        if not (math.isfinite(spread) and spread >= 0.0):
-            raise argument_error("spread", spread, "0 or above, finite")
-        if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+        if not is_whole_number(count) or count < 1:
             raise argument_error("count", count, "a whole number from 1")
-        self.nozzle, self.axis, self.flow, self.spread = nozzle, velocity, float(flow), float(spread)
-        self.gravity, self.drag_time, self.wind = float(gravity), float(drag_time), wind
+        self.nozzle, self.axis = check_vector("nozzle", nozzle, "m"), check_vector("velocity", velocity, "m/s")
+        self.flow, self.spread = check_positive("flow", flow, "m3/s"), check_not_negative("spread", spread, "")
+        self.gravity, self.wind = check_positive("gravity", gravity, "m/s2"), check_vector("wind", wind, "m/s", 2)
+        self.drag_time = check_positive("drag_time", drag_time, "s", allow_infinite=True)
+        flight = check_positive("flight", flight, "s")
         self.rate = count / flight  # [1/s] parcels
         self.position = np.zeros((3, count))
         self.velocity = np.zeros((3, count))
@@ -77,8 +70,7 @@ class Jet:
 
         Beyond that patch the surface counts as it is at its edge. Raises ValueError for a bad dt.
         """
-        if not 0.0 <= dt < math.inf:
-            raise argument_error("dt", dt, "0 or above, finite s")
+        dt = check_not_negative("dt", dt, "s")
         fly(self.position, self.velocity, self.flying, dt, self.gravity, self.drag_time, *self.wind)
         self._emit(dt)
         m = height.shape[0]

@@ -12,7 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
-from sim.validation import argument_error, as_array, check_positive
+from sim.validation import (
+    argument_error,
+    as_array,
+    check_not_negative,
+    check_positive,
+    check_vector,
+    is_whole_number,
+)
 
 SMALLEST, LARGEST = 0.5e-3, 6.0e-3  # [m] drops outside are not counted: mist below, broken up above
 FASTEST = 9.17  # [m/s] where Gunn and Kinzer's table ends: large drops flatten and gain no more
@@ -94,15 +101,13 @@ class Rain:
         """rate [mm/h]; length [m] of the tile; ceiling [m]: height drops start from; count: most drops to draw;
         wind (x, y) [m/s]: the speed drops drift with. Raises ValueError for a value that is not allowed.
         """
-        for name, value in (("rate", rate), ("length", length), ("ceiling", ceiling), ("gravity", gravity)):
-            if not (math.isfinite(value) and value > 0.0):
-                raise argument_error(name, value, "a finite number above 0")
-        if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+        self.rate, self.length = check_positive("rate", rate, "mm/h"), check_positive("length", length, "m")
+        self.ceiling, self.gravity = check_positive("ceiling", ceiling, "m"), check_positive("gravity", gravity, "m/s2")
+        if not is_whole_number(count) or count < 1:
             raise argument_error("count", count, "a whole number from 1")
-        if len(wind) != 2 or not all(math.isfinite(w) for w in wind):
-            raise argument_error("wind", wind, "two finite numbers [m/s]")
-        self.rate, self.length, self.ceiling, self.gravity = float(rate), float(length), float(ceiling), float(gravity)
-        self.wind = float(wind[0]), float(wind[1])
+        if not is_whole_number(seed):
+            raise argument_error("seed", seed, "a whole number")
+        self.wind = check_vector("wind", wind, "m/s", 2)
         self.rainfall = rainfall(rate, gravity)
         in_the_air = self.rainfall.concentration * length**2 * ceiling
         drawn = max(min(int(count), round(in_the_air)), 1)
@@ -131,8 +136,7 @@ class Rain:
         height (m, m) [m]; displacement (m, m, 2) [m] or None: of the mesh as drawn. Drops that hit start again on top.
         Raises ValueError for a dt that is negative or not finite.
         """
-        if not 0.0 <= dt < math.inf:
-            raise argument_error("dt", dt, "0 or above, finite s")
+        dt = check_not_negative("dt", dt, "s")
         if displacement is None:
             displacement = np.zeros((1, 1, 2), height.dtype)
         moved = fall(

@@ -21,8 +21,8 @@ class RingWave(NamedTuple):
     speed: float  # [m/s]
 
 
-def ring_wave(gravity: float, tension: float = 0.0728, density: float = 1000.0) -> RingWave:
-    """The slowest wave on deep fluid; gravity [m/s2], tension [N/m], density [kg/m3].
+def ring_wave(gravity: float, tension: float = 0.0728, density: float = 1025.0) -> RingWave:
+    """The slowest wave on deep fluid; gravity [m/s2], tension [N/m], density [kg/m3], that of sea water.
 
     Raises ValueError where one is not above 0.
     """

@@ -14,8 +14,10 @@ from sim.ocean import SPECTRA, RadialSea, Sea, dispersion, draw_waves, zero_cros
 from sim.ocean.planets import gravity_of
 from sim.ocean.statistics import beaufort
 from sim.ocean.weathering import Spill, weather
+from sim.particles.fire import Fire
+from sim.particles.jet import Jet
 from sim.particles.plume import flame_height
-from sim.particles.rain import rainfall, terminal_speed
+from sim.particles.rain import Rain, rainfall, terminal_speed
 from sim.springs.statics import catenary, equilibrium
 
 
@@ -77,6 +79,8 @@ CALLS = (
     call(SEA.significant_height_at, t=0.0), call(POND.change, t=0.0),
     call(POND.ripples.add, t=0.0, points=[[1.0, 1.0]], width=1.0),
     call(JONSWAP.frequency_density, omega=1.0), call(JONSWAP.moments), call(JONSWAP.conditions),
+    call(Rain, rate=5.0, length=10.0, ceiling=20.0), call(Fire, position=ORIGIN),
+    call(Jet, nozzle=ORIGIN, velocity=(1.0, 0.0, 3.0)),
     call(zero_crossings, t=[0.0, 1.0], height=[0.0, 1.0]),
     call(draw_waves, spectrum=JONSWAP, conditions=JONSWAP.conditions(), count=4),
     call(WAVES.at, points=[[0.0, 0.0]], t=0.0), call(WAVES.kinematics, points=[[0.0, 0.0, 0.0]], t=0.0),

@@ -81,7 +81,7 @@ def test_what_is_no_sea_is_refused_by_name(bad: dict, words: str, tally: Tally) 
 def test_frequencies_over_forty_decades() -> None:
     k = 10.0 ** np.arange(-20.0, 20.5)
     for depth, tension in itertools.product(DEPTHS, (0.0, 0.0728)):
-        w = omega(k, depth=depth, tension=tension)
+        w = omega(k, depth=depth, tension=tension, density=1000.0)
         assert np.isfinite(w).all()
         assert (np.diff(w) > 0.0).all()
 

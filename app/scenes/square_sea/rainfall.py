@@ -26,7 +26,7 @@ TROUGH_COEFFICIENT = 0.160
 RING_DECAY_RATE = 0.5  # [1/s]: it stands for the waves that would have left the tile
 SPLASH_DURATION = 0.22  # [s] for which a splash is drawn
 MAX_SPLASHES = 150  # drawn at the same time
-WATER_DENSITY = 1000.0  # [kg/m3]
+DROP_DENSITY = 1000.0  # [kg/m3] of rain, which falls on sea water
 
 
 class RainFrame(NamedTuple):
@@ -67,8 +67,8 @@ class Rainfall:
         self.splashes = np.full((MAX_SPLASHES, 4), -1.0, np.float32)
         self.next_splash = 0
         mean_cube = float((self.rain.diameter**3 * self.rain.speed).mean())
-        self.momentum = WATER_DENSITY * math.pi / 6.0 * mean_cube  # [kg m/s] of an average drawn drop
-        per_depth = WATER_DENSITY * self.ring_width**2.5 * math.sqrt(gravity) / TROUGH_COEFFICIENT  # [N s/m]
+        self.momentum = DROP_DENSITY * math.pi / 6.0 * mean_cube  # [kg m/s] of an average drawn drop
+        per_depth = sea.conditions.density * self.ring_width**2.5 * math.sqrt(gravity) / TROUGH_COEFFICIENT  # [N s/m]
         self.drops_per_ring = self.ring_strength * RING_STEEPNESS * self.ring_width * per_depth / self.momentum
 
     def advance(
@@ -88,7 +88,7 @@ class Rainfall:
         self.update_splashes(hits, dt)
         if self.ring_strength == 0.0 or not len(hits.label):
             return 0
-        momentum = WATER_DENSITY * math.pi / 6.0 * hits.diameter**3 * hits.speed
+        momentum = DROP_DENSITY * math.pi / 6.0 * hits.diameter**3 * hits.speed
         momentum = np.minimum(momentum, MAX_RING_STRENGTH * self.momentum)
         sea.ripples.leak = RING_DECAY_RATE
         sea.ripples.add(t, hits.label + self.corner, self.ring_width, impulse=self.drops_per_ring * momentum)

@@ -26,6 +26,7 @@ from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
 from app.scenes.square_sea.rain_view import RainMesh
+from sim.ocean.dispersion import SEA_DENSITY
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
 
@@ -39,7 +40,6 @@ TARGETS = {  # [m] of each view: how far ahead its target is, and the target's h
 }
 CAMERA_SETBACK = 0.14  # of the tile's side: how far the camera stands behind the middle of the tile,
 MAX_CAMERA_SETBACK = 20.0  # [m] but no farther than this, so that it is near the rain
-WATER_DENSITY = 1000.0  # [kg/m3]
 OVERCAST_TINT = (0.80, 0.92, 1.02)  # colour filter on the sky where clouds cover all of it
 OVERCAST_DEEP = (0.15, 0.33, 0.35)  # colour of deep water there: foam and bubbles make it paler
 OVERCAST_FROM = 0.6  # cloud cover from which the sun fades; it is gone where the cover is 1
@@ -64,7 +64,7 @@ def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
 @functools.lru_cache(maxsize=8)
 def rain_look(rate: float, gravity: float) -> tuple[tuple[float, float, float], float]:
     """The rings and the extinction [1/m] of `Material` in rain of this rate [mm/h]; they are asked for each frame."""
-    length, speed = ring_wave(gravity, SURFACE_TENSION, WATER_DENSITY)
+    length, speed = ring_wave(gravity, SURFACE_TENSION, SEA_DENSITY)
     # Half of what drops take away they diffract by less than a degree: that part hides nothing.
     return (ring_flux(rate, gravity), length, speed), 0.5 * rainfall(rate, gravity).extinction
 
@@ -136,7 +136,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         measured = min(0.003, 0.0015 * p.wind_speed) + 0.00512 * p.wind_speed
         missing = max(measured - frame.slope_resolved - 2.0 * self.sky_material.roughness**2, 0.001)
         cell, g = p.length / len(frame.vertices), gravity(p)
-        capillary = 2.0 * math.pi * math.sqrt(SURFACE_TENSION / (WATER_DENSITY * g))
+        capillary = 2.0 * math.pi * math.sqrt(SURFACE_TENSION / (SEA_DENSITY * g))
         overcast = min(max((p.clouds - OVERCAST_FROM) / (1.0 - OVERCAST_FROM), 0.0), 1.0)
         tint, deep = (
             blend(clear, grey, overcast)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.interruption import pieces
-from sim.ocean.dispersion import group_speed, omega
+from sim.ocean.dispersion import SEA_DENSITY, group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
@@ -39,7 +39,7 @@ class Conditions:
     gravity: float = 9.81  # [m/s2]
     depth: float = math.inf  # [m]
     tension: float = 0.0  # [N/m]
-    density: float = 1000.0  # [kg/m3]
+    density: float = SEA_DENSITY  # [kg/m3]
     low_pass: float = 0.0  # [m] l: S is multiplied by exp(-k^2 l^2); l = 2 sqrt(nu T) is fluid nu left for a time T
     second_height: float = parameter(
         0.0, 0.0, 20.0, "m", "Significant height of a second system of waves, as swell from afar; 0 is none",
@@ -234,7 +234,8 @@ class Spectrum(NamedTuple, Generic[C]):
         c = self.conditions_of(conditions, values)
         typical = self.peak(c) if self.peak is not None and not self.is_level(c) else c.gravity / 10.0
         own = [typical, *([2.0 * math.pi / c.second_period] if c.second_height > 0.0 else [])]
-        last = min(cut_off, max(own) * OMEGA_RANGE[1])
+        # waves that feel the bottom fall more slowly: the tail that decides begins where they no longer do
+        last = min(cut_off, max(*own, math.sqrt(c.gravity / c.depth)) * OMEGA_RANGE[1])
         first = min(min(own) * OMEGA_RANGE[0], 0.5 * last)
         found = moments_of(lambda omega: self.frequency_density(omega, c), first, last, c.gravity, cut_off)
         if self.line is None or typical > cut_off:

@@ -47,7 +47,7 @@ def test_a_small_buoy_follows_a_long_wave(kind):
     if kind == "radial":
         sea = regular(2.0 * math.pi / 80.0, 0.3)
     else:
-        sea = Sea(64, 80.0, "regular", wave_height=0.6, wave_period=7.16, wind_speed=0.0, density=1025.0)
+        sea = Sea(64, 80.0, "regular", wave_height=0.6, wave_period=7.16, wind_speed=0.0)
     run = float_in(sea, [body], 30.0, frames=301)
     assert run.t[-1] == 30.0
     rise = run.x[:, 0, 2] - body.position[2]
@@ -63,3 +63,20 @@ def test_in_still_layers_a_body_at_rest_stays():
     run = float_in(sea, [body], 2.0, frames=5)
     assert run.x[-1, 0] == pytest.approx(body.position, abs=1e-9)
     assert float_in(sea, [], 1.0, frames=3).x.shape == (3, 0, 3)
+
+
+@pytest.mark.parametrize("kind", ["square", "radial"])
+def test_a_body_at_rest_in_the_default_water_stays_at_rest(kind):
+    """One water: `afloat`, `Sea` and `RadialSea` have the same where none is named."""
+    ship = Body(Hull.box(10.0, 4.0, 2.0), mass=41000.0, center_of_gravity=(0.0, 0.0, 0.0))
+    sea = Sea(32, 100.0, "jonswap", wind_speed=0.0) if kind == "square" else regular(1.0, 0.0)
+    run = float_in(sea, [ship.afloat(), BUOY._replace(position=(30.0, 0.0, 0.0)).afloat()], duration=20.0, frames=101)
+    assert np.ptp(run.x[:, :, 2], axis=0) == pytest.approx(np.zeros(2), abs=1e-6)
+
+
+def test_a_body_that_is_not_stable_upright_is_warned_of_with_its_gm():
+    sea = Sea(32, 100.0, "jonswap", wind_speed=0.0)
+    cork, sinking = Body(Hull.cylinder(0.6, 1.0), density=450.0), Body(Hull.cylinder(0.6, 1.0), density=4500.0)
+    with pytest.warns(UserWarning, match=r"^bodies\[1\]: GM = -0.0755 m: it is not stable upright") as warned:
+        float_in(sea, [BUOY, cork, cork, sinking], 0.1, frames=3)
+    assert len([one for one in warned if "GM" in str(one.message)]) == 1

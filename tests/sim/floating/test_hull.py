@@ -1,16 +1,18 @@
 """Hulls: closed forms of volume, centre and inertia; what a mesh file must be."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 import trimesh
 
-from sim.floating import Hull
+from sim.floating import Hull, equilibrium_draft
 from sim.floating.shapes.box import box
 from sim.floating.shapes.record import Appearance, Shape
 from sim.floating.shapes.sphere import geodesic
 from tests.naive_floating import lumpy, quaternion
+from tests.refusals import assert_refused
 
 
 def test_box_has_its_closed_forms():
@@ -61,7 +63,39 @@ def test_mesh_files_load_as_what_was_saved(tmp_path, ending):
     hull = Hull.load(path)
     assert len(hull.faces) == 320
     assert hull.volume == pytest.approx(trimesh.creation.icosphere(subdivisions=2, radius=0.7).volume, rel=1e-5)
-    assert hull.centre == pytest.approx([1, 2, 3], abs=1e-5)
+    assert hull.centre == pytest.approx([1, -3, 2] if ending == "glb" else [1, 2, 3], abs=1e-5)
+
+
+@pytest.mark.parametrize("ending", ["glb", "gltf"])
+def test_a_hull_in_gltf_stands_upright_as_its_specification_says(tmp_path, ending):
+    """A wedge written as (x, z, -y), in a node that scales, moves and turns it, is that of the STL."""
+    deck = [(0.0, -3.0, 3.0), (20.0, -3.0, 3.0), (20.0, 3.0, 3.0), (0.0, 3.0, 3.0)]
+    keel = [(0.0, -1.0, 0.0), (20.0, -1.0, 0.0), (20.0, 1.0, 0.0), (0.0, 1.0, 0.0)]
+    faces = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6)]
+    for i in range(4):
+        j = (i + 1) % 4
+        faces += [(i, i + 4, j), (j, i + 4, j + 4)]
+    points = np.array(deck + keel)
+    trimesh.Trimesh(points, faces, process=False).export(tmp_path / "wedge.stl")
+    wedge = trimesh.Trimesh(1000.0 * points[:, [0, 2, 1]] * [1.0, 1.0, -1.0], faces, process=False)
+    scene, scale = trimesh.Scene(), np.diag([0.001, 0.001, 0.001, 1.0])
+    turn = trimesh.transformations.rotation_matrix(0.4, [0.0, 1.0, 0.0])  # about the glTF file's upward axis
+    scene.add_geometry(wedge, transform=trimesh.transformations.translation_matrix([5.0, 0.0, 0.0]) @ turn @ scale)
+    scene.export(str(tmp_path / f"wedge.{ending}"))
+    plain, hull = Hull.load(tmp_path / "wedge.stl"), Hull.load(tmp_path / f"wedge.{ending}")
+    assert hull.size[2] == pytest.approx(3.0)
+    assert equilibrium_draft(hull, 300.0) == pytest.approx(equilibrium_draft(plain, 300.0), abs=1e-4)
+    assert equilibrium_draft(hull, 300.0) == pytest.approx(1.242, abs=1e-3)
+    c, s = math.cos(0.4), math.sin(0.4)
+    wanted = points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + [5.0, 0.0, 0.0]
+    for corner in wanted:
+        assert np.abs(hull.vertices + hull.centre - corner).max(axis=1).min() < 1e-4
+
+
+@pytest.mark.parametrize("ending", ["dae", "3mf"])
+def test_a_file_with_a_unit_and_an_axis_of_its_own_is_refused(tmp_path, ending):
+    (tmp_path / f"hull.{ending}").write_text("")
+    assert_refused("path", lambda: Hull.load(tmp_path / f"hull.{ending}"), "in metres")
 
 
 def test_a_mesh_inside_out_is_turned():
@@ -113,3 +147,12 @@ def test_a_file_that_is_no_hull_is_refused(tmp_path):
     cap.export(tmp_path / "open.stl")
     with pytest.raises(ValueError, match=r"open\.stl.*closed mesh"):
         Hull.load(tmp_path / "open.stl")
+
+
+def test_a_mesh_with_one_of_two_parts_inside_out_is_refused_without_a_warning():
+    box = Hull.box(1.0, 1.0, 1.0)
+    points = np.concatenate([box.vertices, box.vertices + [3.0, 0.0, 0.0]])
+    faces = np.concatenate([box.faces, box.faces[:, ::-1] + len(box.vertices)])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert_refused("faces", lambda: Hull.from_arrays(points, faces), "encloses a volume")

@@ -211,7 +211,7 @@ def test_waves_on_a_layer_are_the_root_of_the_six_conditions():
 def test_a_layer_of_the_same_fluid_is_one_fluid():
     k = np.geomspace(0.05, 300.0, 40)
     for viscosity, film in ((1e-6, False), (2e-2, False), (1e-6, True), (2e-2, True)):
-        natural = omega(k, tension=0.05)
+        natural = omega(k, tension=0.05, density=1000.0)
         w, rate = viscous_two_layer(
             k, 1000.0, 1e3 * viscosity, 0.1, 1000.0, 1e3 * viscosity, surface_tension=0.05, film=film
         )

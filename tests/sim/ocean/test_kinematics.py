@@ -1,6 +1,7 @@
 """The water below waves: against the sum of potentials one by one, and by the laws that it must obey."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from sim.ocean import Sea
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.gerstner import draw_waves
-from sim.ocean.kinematics import components_of
+from sim.ocean.kinematics import Components, components_of
 from sim.ocean.radial import RadialSea
 from sim.ocean.spectra import SPECTRA
 from tests.naive_ocean import flow_of_waves, sum_of_waves
@@ -156,3 +157,26 @@ def test_a_change_of_the_wind_leaves_the_flow_continuous():
     assert 2.0 * math.sqrt(2.0) * np.linalg.norm(sea.components(60.0).amplitude) == pytest.approx(
         sea.significant_height_at(60.0)
     )
+
+
+def test_a_wave_without_a_wavenumber_moves_no_water():
+    two = np.array([0.0, 0.1])
+    waves = Components(two, 0.0 * two, np.array([0.5, 1.0]), np.array([0.3, 0.99]), 0.0 * two, 50.0, 1025.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        both = waves.kinematics([[3.0, 2.0, -4.0]], 1.0)
+    alone = waves._replace(**{name: getattr(waves, name)[1:] for name in ("kx", "ky", "amplitude", "omega", "phase")})
+    for found, known in zip(both, alone.kinematics([[3.0, 2.0, -4.0]], 1.0), strict=True):
+        assert found == pytest.approx(known, rel=1e-12)
+
+
+@pytest.mark.parametrize(("kh", "within"), [(1e-3, 1e-9), (1e-6, 2e-7), (1e-9, 1e-4)])
+def test_water_in_the_shallows_moves_as_long_waves_do(kh, within):
+    """u = a w/(k h), and w = a w (1 + z/h) sin."""
+    depth, one = 10.0, np.ones(1)
+    k, w = kh / depth, 0.01
+    waves = Components(k * one, 0.0 * one, one, w * one, 0.25 * one, depth, 1025.0)
+    flow = waves.kinematics([[0.0, 0.0, -5.0]], 0.0)
+    assert flow.velocity[0, 2] == pytest.approx(w * 0.5, rel=max(within, kh**2))
+    level = waves._replace(phase=0.0 * one).kinematics([[0.0, 0.0, -5.0]], 0.0).velocity[0, 0]
+    assert level == pytest.approx(w / kh, rel=max(1e-9, kh**2))

@@ -101,3 +101,13 @@ def test_a_level_sea_has_no_moments():
     assert found.m0 == 0.0
     assert math.isnan(found.zero_crossing_period)
     assert math.isnan(found.peak_period)
+
+
+def test_moments_of_the_shallows_converge_as_in_deep_water():
+    """S falls as w^-3 as long as waves feel the bottom, and as w^-5 beyond: m3 is finite, by quadrature, and m4 not."""
+    found = SPECTRA["tma"].moments(depth=1e-6)
+    c = SPECTRA["tma"].conditions(depth=1e-6)
+    omega = np.geomspace(1e-2, 1e8, 400_001)
+    S = SPECTRA["tma"].frequency_density(omega, c)
+    assert found.m3 == pytest.approx(np.trapezoid(S * omega**4, np.log(omega)), rel=1e-3)
+    assert math.isinf(found.m4)

@@ -2,6 +2,7 @@
 
 import contextvars
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -456,13 +457,28 @@ def test_a_regular_wave_on_a_tile_is_its_nearest_wave_as_high_as_given():
     assert np.unravel_index(spectrum.argmax(), spectrum.shape)[0] in (4, 60)
     assert expected_of(sea).significant_height == pytest.approx(sea.significant_height) == pytest.approx(math.sqrt(2.0))
     assert expected_of(sea).direction == pytest.approx(0.0)
-    # No wave is longer than the tile, or shorter than two cells: 1.56 m in 1 s, of cells of 0.74 m and of 0.82 m.
-    assert Sea(64, 20.0, "regular", wave_height=1.0, wave_period=9.0).significant_height == 0.0
-    fine, coarse = (Sea(64, length, "regular", wave_height=1.0, wave_period=1.0) for length in (47.0, 52.0))
-    assert fine.significant_height == pytest.approx(math.sqrt(2.0))
-    assert coarse.significant_height == 0.0
     crossing = Sea(64, 100.0, "regular", wave_height=1.0, wave_period=4.0, second_height=0.5, second_period=3.0)
     assert expected_of(crossing).significant_height == pytest.approx(math.hypot(math.sqrt(2.0), 0.5), rel=0.05)
+
+
+@pytest.mark.parametrize("direction", [0.0, 0.5, 2.4])
+def test_a_regular_wave_that_a_tile_cannot_hold_is_the_nearest_that_it_can_and_warned_of(direction):
+    """Waves of 126 m on a tile of 20 m, and of 1.56 m, which cells of 0.82 m are too large for: as high as given."""
+    given = {"wave_height": 1.0, "wind_speed": 0.0, "wind_direction": direction, "precision": "double"}
+    with pytest.warns(UserWarning, match=r"a wave of 126 m is longer than the tile of 20 m"):
+        long = Sea(64, 20.0, "regular", wave_period=9.0, **given)
+    with pytest.warns(UserWarning, match=r"a wave of 1\.56 m is too short for the grid of 54 m and 64 cells"):
+        short = Sea(64, 54.0, "regular", wave_period=1.0, **(given | {"wind_direction": 0.0}))
+    for sea, length in ((long, 20.0), (short, 54.0 / 31)):
+        assert sea.significant_height == pytest.approx(math.sqrt(2.0))
+        assert sea.surface(1.0).height.std() == pytest.approx(1.0 / math.sqrt(8.0), rel=1e-9)
+        waves = sea.components()
+        assert 2.0 * math.pi / max(abs(waves.kx[0]), abs(waves.ky[0])) == pytest.approx(length)
+    assert abs(expected_of(long).direction - direction) < math.radians(30.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Sea(64, 47.0, "regular", wave_period=1.0, **given)
+        Sea(64, 20.0, "regular", wave_period=9.0, **(given | {"wave_height": 0.0}))
 
 
 def test_the_low_pass_leaves_its_share_of_the_slopes():

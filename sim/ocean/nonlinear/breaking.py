@@ -46,8 +46,8 @@ class Eddies:
         """
         modes = self.expansion.modes
         damping = self.damping if self._set_damping() else out[:0]
-        return damp(u.view(float), out.view(float), damping.view(float), self.expansion.vertical, modes.gravity,
-                    decay, modes.weight, faded)  # fmt: skip
+        return damp(u.view(float), out.view(float), damping.view(float), modes.omega, modes.gravity, decay,
+                    modes.weight, faded)  # fmt: skip
 
     def _set_damping(self) -> bool:
         """Set `damping` to the eddies' rates of elevation and potential.
@@ -68,7 +68,7 @@ class Eddies:
 
 
 @kernel
-def damp(u, rates, damping, vertical, gravity, decay, weight, faded):
+def damp(u, rates, damping, omega, gravity, decay, weight, faded):
     """Set rates (2, rows, 2 columns) to faded rates + damping, and return the loss over the density [m3/s3].
 
     The energy H has dH/d eta = -psi_t and dH/d psi = eta_t, so that damping rates (a, b) of elevation and potential
@@ -78,8 +78,9 @@ def damp(u, rates, damping, vertical, gravity, decay, weight, faded):
     is_damped = damping.size > 0
     for i in range(decay.shape[0]):
         for j in range(decay.shape[1]):
+            ratio = omega[i, j] * omega[i, j] / gravity
             for part in range(2 * j, 2 * j + 2):
-                eta_rate = vertical[i, j] * u[1, i, part] + rates[0, i, part]
+                eta_rate = ratio * u[1, i, part] + rates[0, i, part]
                 psi_rate = -gravity * u[0, i, part] + rates[1, i, part]
                 a, b = -decay[i, j] * u[0, i, part], -decay[i, j] * u[1, i, part]
                 rates[0, i, part] *= faded

@@ -26,6 +26,7 @@ from sim.jit import kernel
 from sim.ocean.nonlinear.modes import Modes, make_modes
 from sim.ocean.nonlinear.padded_transforms import (
     PaddedTransforms,
+    add_multiple,
     aligned,
     padded_size,
     set_derivative,
@@ -46,16 +47,15 @@ class Expansion:
         self.widths = [min(j, order - j + 1) for j in range(1, order + 1)]  # of phi_j, over the sea's
         sizes = {width: (width * n, width * m if m > 1 else 1) for width in self.widths}
         self._transforms = {width: PaddedTransforms(shape, sizes[width][0] // 2) for width in sizes}
-        # d^j phi/dz^j at z = 0 is k^j phi, and for odd j times tanh(k depth).
+        # d^j phi/dz^j at z = 0 is k^j phi, and for odd j times tanh(k depth). Twice: for real and imaginary parts.
         self._factors = {}
         for width, size in sizes.items():
             wide = make_modes(size, modes.length, modes.depth, modes.gravity)
-            self._factors[width] = [wide.k**j * (wide.tanh if j % 2 else 1.0) for j in range(1, order + 1)]
-        self.vertical = self._factors[1][0]
-        self.one = np.ones_like(modes.k)
+            factors = [wide.k**j * (wide.tanh if j % 2 else 1.0) for j in range(order + 1)]
+            self._factors[width] = [np.repeat(factor, 2, axis=1) for factor in factors]
         rows, columns = np.ones_like(modes.ky), np.ones_like(modes.kx)
         self.axes = ((rows, modes.kx), (modes.ky, columns))[:axes]
-        self.phi = [np.zeros(self._factors[width][0].shape, complex) for width in self.widths]
+        self.phi = [np.zeros_like(self._factors[width][0]).view(complex) for width in self.widths]
         # Derivatives of phi_j follow each other; d phi_M/dz has no product and stays a spectrum.
         counts = [order - j for j in range(order)]
         self._first = np.cumsum([0, *counts[:-1]])
@@ -76,7 +76,7 @@ class Expansion:
 
     def set_surface(self, eta: np.ndarray) -> None:
         """Set the elevation, a spectrum."""
-        self.set_field(eta, self.one, self.eta)
+        self.set_field(eta, self.eta)
         for axis, plane in zip(self.axes, self.slope, strict=True):
             self._set_derivative(eta, axis, plane)
 
@@ -96,7 +96,7 @@ class Expansion:
                 set_potential(m, self.eta, self._derivatives, self._first, self._block[0], self._product)
                 self.set_spectrum(self._product, phi, width)
             for j in range(self.order - m + 1 if m < self.order else 0):
-                self.set_field(phi, self._factors[width][j], self._derivatives[self._first[m - 1] + j], width)
+                self.set_field(phi, self._derivatives[self._first[m - 1] + j], j + 1, width)
 
     def set_rates(self, eta: np.ndarray, psi: np.ndarray, out: np.ndarray) -> None:
         """Set out (2, rows, columns) to the rates of the spectra eta, psi without their linear part."""
@@ -107,12 +107,12 @@ class Expansion:
                           self._rate[0], self._rate[1])  # fmt: skip
         self.set_spectrum(self._rate[0], out[0])
         self.set_spectrum(self._rate[1], out[1])
-        out[0] += self.vertical * self.phi[-1]
+        add_multiple(self.phi[-1].view(float), self._factors[1][1], out[0].view(float))
         out[1, 0, 0] = 0.0  # a constant of the potential moves nothing
 
-    def set_field(self, spectrum: np.ndarray, factor: np.ndarray, plane: np.ndarray, width: int = 1) -> None:
-        """Set a plane to the field of a spectrum, `width` times as wide as the sea's, times a real factor."""
-        transforms = self._transforms[width]
+    def set_field(self, spectrum: np.ndarray, plane: np.ndarray, derivative: int = 0, width: int = 1) -> None:
+        """Set a plane to the field of a spectrum, `width` times as wide as the sea's, or to its vertical derivative."""
+        transforms, factor = self._transforms[width], self._factors[width][derivative]
         set_multiple(spectrum.view(float), factor, transforms.spectrum.view(float))
         transforms.set_grid(plane)
 

@@ -18,7 +18,7 @@ from sim.ocean.nonlinear.modes import Modes
 
 SAFETY, SHRINK, GROW = 0.9, 0.2, 2.0
 SMALLEST = 1e-6  # step over the first one, below which the search is given up
-MAX_GROWTH = 16.0  # of the linear energy in one step; a larger one is no solution
+MAX_GROWTH = 4.0  # of the waves in one step; a larger one is no solution
 
 
 class DivergenceError(ArithmeticError):
@@ -58,10 +58,9 @@ class Propagator:
         sine = np.sin(self.modes.omega * t)
         return np.array([np.cos(self.modes.omega * t), self._ratio * sine, self._inverse * sine])
 
-    def size(self, u: np.ndarray) -> float:
-        """Root of the linear energy, as an amplitude [m]."""
-        ratio = self._ratio * u[1]
-        return math.sqrt(max(self.modes.mean_product(u[0], u[0]) + self.modes.mean_product(ratio, ratio), 0.0))
+    def distance(self, u: np.ndarray, v: np.ndarray) -> float:
+        """Root of the linear energy of a difference, as an amplitude [m]."""
+        return math.sqrt(square_distance(real(u), real(v), self._ratio, self.modes.weight))
 
 
 class March:
@@ -83,7 +82,8 @@ class March:
         self.steps = self.evaluations = 0
         self._k = np.empty((3, *u.shape), complex)
         self._u = np.empty((2, *u.shape), complex)
-        self.start = self.end = End(t, u.copy(), np.zeros_like(u), 0.0, 0.0)
+        self._still = np.zeros_like(u)
+        self.start, self.end, self._new = (End(t, u.copy(), np.zeros_like(u), 0.0, 0.0) for _ in range(3))
         self.end.power = self._evaluate(t, self.end.u, self.end.rate)
 
     def advance(self, t: float) -> None:
@@ -124,13 +124,13 @@ class March:
 
     def _take_step(self) -> None:
         """One step that keeps the tolerance."""
-        before = self.propagator.size(self.end.u)
+        before = self.propagator.distance(self.end.u, self._still)
         while True:
             h = self.step
             new, error = self._tried(h)
             bound = self.rtol * before if self.rtol is not None else math.inf
             # Written so that a NaN fails both.
-            is_sane = self.propagator.size(new.u) <= MAX_GROWTH * before
+            is_sane = self.propagator.distance(new.u, self._still) <= MAX_GROWTH * before
             if self.rtol is not None:
                 ratio = error / bound if bound > 0.0 else 0.0
                 factor = min(GROW, SAFETY * ratio**-0.25) if ratio > 0.0 else GROW
@@ -142,7 +142,8 @@ class March:
                     f"the waves cannot be followed beyond {self.end.t:.6g} s: they are too steep for this order; "
                     "lower waves, a lower order or a coarser grid would hold"
                 )
-        self.start, self.end = self.end, new
+        # The arrays of the old start serve the next step.
+        self.start, self.end, self._new = self.end, new, self.start
         self.steps += 1
 
     def _tried(self, h: float) -> tuple[End, float]:
@@ -154,18 +155,19 @@ class March:
         propagate(table, u, k1, 0.5 * h, real(stage))
         power2 = self._evaluate(t + 0.5 * h, stage, k2)
         propagate(table, u, k1, 0.0, real(moved))
-        add_multiple(real(moved), real(k2), 0.5 * h, real(stage))
+        set_sum(real(moved), real(k2), 0.5 * h, real(stage))
         power3 = self._evaluate(t + 0.5 * h, stage, k3)
         propagate(table, real(moved), real(k3), h, real(stage))
         power4 = self._evaluate(t + h, stage, k4)
-        new = End(t + h, np.empty_like(a.u), np.empty_like(a.u), 0.0, 0.0)
+        new = self._new
+        new.t = t + h
         propagate(table, u, k1, h / 6.0, real(moved))
-        add_multiple(real(k2), real(k3), 1.0, real(stage))
+        set_sum(real(k2), real(k3), 1.0, real(stage))
         propagate(table, real(moved), real(stage), h / 3.0, real(moved))
-        add_multiple(real(moved), real(k4), h / 6.0, real(new.u))
+        set_sum(real(moved), real(k4), h / 6.0, real(new.u))
         new.power = self._evaluate(new.t, new.u, new.rate)
         new.lost = a.lost + h / 6.0 * (a.power + 2.0 * (power2 + power3) + power4)
-        return new, 0.1 * h * self.propagator.size(k4 - new.rate)
+        return new, 0.1 * h * self.propagator.distance(k4, new.rate)
 
 
 def real(spectra: np.ndarray) -> np.ndarray:
@@ -185,8 +187,22 @@ def propagate(table, u, v, factor, out):
                 out[1, i, part] = c * psi - down * eta
 
 
+@kernel
+def square_distance(u, v, ratio, weight):
+    """Weighted sum of squares of eta and ratio psi of u - v, (2, rows, 2 columns)."""
+    total = 0.0
+    for i in range(ratio.shape[0]):
+        for j in range(ratio.shape[1]):
+            square = 0.0
+            for part in range(2 * j, 2 * j + 2):
+                eta, psi = u[0, i, part] - v[0, i, part], ratio[i, j] * (u[1, i, part] - v[1, i, part])
+                square += eta * eta + psi * psi
+            total += weight[j] * square
+    return total
+
+
 @kernel(noalias=True)
-def add_multiple(u, v, factor, out):
+def set_sum(u, v, factor, out):
     """Set out to u + factor v, each (2, rows, 2 columns)."""
     for field in range(2):
         for i in range(u.shape[1]):

@@ -81,13 +81,20 @@ class PaddedTransforms:
 
 @kernel(noalias=True)
 def set_multiple(h, factor, out):
-    """Set the spectrum of a padded grid, (rows, 2 columns), to factor(k) h(k); both as real views."""
+    """Set the spectrum of a padded grid to factor(k) h(k), all (rows, 2 columns): real and imaginary parts."""
     rows, shift = h.shape[0], out.shape[0] - h.shape[0]
     for i in range(rows):
         o = i if 2 * i < rows else i + shift
-        for j in range(factor.shape[1]):
-            out[o, 2 * j] = factor[i, j] * h[i, 2 * j]
-            out[o, 2 * j + 1] = factor[i, j] * h[i, 2 * j + 1]
+        for j in range(h.shape[1]):
+            out[o, j] = factor[i, j] * h[i, j]
+
+
+@kernel(noalias=True)
+def add_multiple(h, factor, out):
+    """Add factor(k) h(k) to a spectrum of the same shape."""
+    for i in range(h.shape[0]):
+        for j in range(h.shape[1]):
+            out[i, j] += factor[i, j] * h[i, j]
 
 
 @kernel(noalias=True)

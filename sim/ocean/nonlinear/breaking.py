@@ -25,7 +25,7 @@ def tail_decay(modes: Modes) -> np.ndarray:
     limit_x = math.pi * modes.size[0] / modes.length[0]
     limit_y = math.pi * modes.size[1] / modes.length[1] if modes.size[1] > 1 else math.inf
     ratio = np.hypot(modes.kx[None, :] / limit_x, modes.ky[:, None] / limit_y)
-    return TAIL_RATE * modes.omega * ratio**TAIL_POWER
+    return TAIL_RATE * modes.omega * np.minimum(ratio, 1.0) ** TAIL_POWER
 
 
 class Eddies:

@@ -1,10 +1,14 @@
 """A periodic sea of nonlinear waves, by the high-order spectral method (see `expansion.py` for the equations).
 
-Choose it where waves steepen one another: groups, crests, rogue waves. `Sea` is cheaper and reaches any time at once.
-Limits: potential flow without overturning; a surface without overhangs; no tension, no viscosity. A single wave can be
-followed to k a = 0.4 at order 7, 0.35 at order 5, 0.3 at order 3; a sea to about k_p Hs/2 = 0.2, beyond which breaking
-takes the excess. The shortest wave of the grid should be no shorter than 1/(3 Hs) times ... of Taylor's series.
+Choose it where waves act on one another: groups that steepen, crests, rogue waves. `Sea` is cheaper and reaches any
+time at once. Limits:
+- Potential flow under a surface without overhangs: no overturning, no tension, no viscosity, level bottom.
+- Steepness by order. The speed of a wave of k a = 0.3 is off by 1.4e-3 at order 3, 1e-4 at 5 and 1e-5 at 7; k a = 0.35
+  needs order 7, k a = 0.4 breaks up at any order.
+- Short waves on high crests: the series in z diverges where k a of the shortest wave of the grid and the amplitude of
+  the sea is above about 5. `breaking` damps what grows there.
 
+    >>> from sim.ocean.nonlinear import stokes_wave
     >>> wave = stokes_wave(height=2.0, wavelength=100.0)
     >>> x = np.arange(64) * 200.0 / 64
     >>> sea = NonlinearSea(length=200.0, order=3, start=(wave.elevation(x), wave.potential(x)))
@@ -14,22 +18,21 @@ takes the excess. The shortest wave of the grid should be no shorter than 1/(3 H
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.ocean.kinematics import Kinematics
-from sim.ocean.medium import Medium
 from sim.ocean.nonlinear.breaking import Eddies, tail_decay
 from sim.ocean.nonlinear.expansion import Expansion
 from sim.ocean.nonlinear.flow import Flow
 from sim.ocean.nonlinear.march import March, Propagator, propagate, real
-from sim.ocean.nonlinear.modes import Modes, field_of, make_modes, spectrum_of
-from sim.ocean.sea import LENGTHS, SIZES, Sea
+from sim.ocean.nonlinear.modes import field_of
+from sim.ocean.nonlinear.start import mean_wavenumber, started
+from sim.ocean.sea import Sea
 from sim.validation import (
     argument_error,
-    as_array,
     check_finite,
     check_kind,
     check_not_negative,
@@ -40,7 +43,7 @@ from sim.validation import (
 )
 
 ORDERS = (1, 7)
-FADE_POWER = 4  # of time in the fade-in (Dommermuth 2000, eq. 19)
+FADE_POWER = 4  # of time in the fade-in
 FADE_PERIODS = 10.0  # of the mean wave, by default when a linear sea starts
 FADED = 40.0 ** (1.0 / FADE_POWER)  # times of the fade-in until the nonlinear part is whole to rounding
 FIRST_STEP = 0.05  # periods of the mean wave
@@ -73,25 +76,27 @@ class NonlinearSea:
         step: float | None = None,
         rtol: float = 1e-6,
     ) -> None:
-        """start: a linear `Sea`, whose waves begin at its time, or elevation [m] and surface potential [m2/s].
+        """start: a linear `Sea`, from its time on and without its rings, or elevation [m] and surface potential [m2/s].
 
         Both arrays are (n, m), or (n,) for waves along x alone. size: cells (n, m) or one number for both, by default
-        those of the start. length [m]: of both sides or (x, y); that of a sea by default. order: of the
-        nonlinearity, 1 to 7; 1 is linear. depth [m], gravity [m/s2], density [kg/m3]: those of the sea by default, else
-        inf, 9.81 and 1025. fade [s]: the nonlinear terms grow as 1 - exp(-(t/fade)^4) (Dommermuth 2000); by default 10
-        mean periods after a linear sea, else 0, at once. breaking: damp waves that would break. step [s]: of all steps;
-        by default steps keep their error below rtol of the waves' amplitude. Raises ValueError for a value that is not
-        allowed, or another length, depth or gravity than that of a given sea.
+        those of the start. length [m]: of both sides or (x, y). order: of nonlinearity, 1 to 7; 1 is linear. depth [m],
+        gravity [m/s2], density [kg/m3]: those of the sea by default, else inf, 9.81 and 1025. fade [s]: nonlinear terms
+        grow as 1 - exp(-(t/fade)^4) (Dommermuth 2000, Wave Motion 32:307); by default 10 mean periods after a linear
+        sea, else 0: they act at once. breaking: damp waves that would break (`breaking.py`). step [s]: of all steps; by
+        default the error of each stays below rtol of the waves' amplitude. Raises ValueError for a value that is not
+        allowed, or is not that of a given sea.
         """
         if not is_whole_number(order) or not ORDERS[0] <= order <= ORDERS[1]:
             raise argument_error("order", order, f"a whole number from {ORDERS[0]} to {ORDERS[1]}")
         check_kind("breaking", breaking, bool, "True or False")
         self.order = int(order)
         time = start.time if isinstance(start, Sea) else 0.0
-        modes, u, self.density = started(start, size, length, depth, gravity, density)
+        water = {"depth": depth, "gravity": gravity, "density": density}
+        modes, u, conditions = started(start, size, length, water)
         self._modes, self._time, self._start_time = modes, time, time
         self._first = self._u = u
         self.size, self.length, self.depth, self.gravity = modes.size, modes.length, modes.depth, modes.gravity
+        self.density = conditions.density
 
         k = mean_wavenumber(modes, u[0])
         period = 2.0 * math.pi / math.sqrt(self.gravity * k * math.tanh(min(k * self.depth, 100.0)))
@@ -236,94 +241,3 @@ class NonlinearSea:
     def _lost(self) -> float:
         """Energy [J/m2] lost to breaking so far."""
         return self._march.lost(self._time) if self._march else 0.0
-
-
-def started(
-    start: object, size: object, length: object, depth: object, gravity: object, density: object
-) -> tuple[Modes, np.ndarray, float]:
-    """Waves, spectra (2, rows, columns) and density [kg/m3] of a start; arguments as of `NonlinearSea`."""
-    if isinstance(start, Sea):
-        own = start.conditions
-        if start.medium != Medium() or own.tension != 0.0:
-            raise argument_error("start", start, "a sea without tension, viscosity, film or a dispersion of its own")
-        wanted = (start.length, start.length)
-        for name, given, value in (("depth", depth, own.depth), ("gravity", gravity, own.gravity)):
-            if given is not None and given != value:
-                raise argument_error(name, given, f"that of the sea it starts from, {value:g}")
-        if length is not None and pair("length", length) != wanted:
-            raise argument_error("length", length, f"that of the sea it starts from, {start.length:g} m")
-        cells = checked_size(start.size if size is None else size)
-        modes = make_modes(cells, wanted, own.depth, own.gravity)
-        return modes, linear_start(start, modes), own.density if density is None else check_density(density)
-    allowed = "a Sea, or elevation and potential, two finite arrays (n, m) or (n,) of one shape"
-    if not isinstance(start, tuple | list) or len(start) != 2:
-        raise argument_error("start", start, allowed)
-    elevation, potential = (as_array("start", field, allowed) for field in start)
-    if elevation.shape != potential.shape or elevation.ndim not in (1, 2):
-        raise argument_error("start", (elevation.shape, potential.shape), allowed)
-    if not (np.isfinite(elevation).all() and np.isfinite(potential).all()):
-        raise argument_error("start", start, allowed)
-    fields = [field.reshape(len(elevation), -1) for field in (elevation, potential)]
-    shape = checked_size(fields[0].shape)
-    if size is not None and checked_size(size) != shape:
-        raise argument_error("size", size, f"that of the arrays, {shape}")
-    sides = pair("length", length)
-    depth = math.inf if depth is None else check_positive("depth", depth, "m", allow_infinite=True)
-    gravity = 9.81 if gravity is None else check_positive("gravity", gravity, "m/s2")
-    u = np.array([spectrum_of(field) for field in fields])
-    u[1, 0, 0] = 0.0  # a constant of the potential moves nothing
-    return make_modes(shape, sides, depth, gravity), u, check_density(1025.0 if density is None else density)
-
-
-def check_density(density: object) -> float:
-    """`density` as a float. Raises ValueError unless it is above 0."""
-    return check_positive("density", density, "kg/m3")
-
-
-def checked_size(size: Any) -> tuple[int, int]:
-    """`size` as cells along x and y. Raises ValueError otherwise."""
-    low, high = SIZES
-    allowed = f"even whole numbers (n, m), n from {low} to {high}, m from 4 to {high} or 1, or one number for both"
-    cells = (size, size) if is_whole_number(size) else size
-    if not isinstance(cells, tuple | list) or len(cells) != 2 or not all(is_whole_number(c) for c in cells):
-        raise argument_error("size", size, allowed)
-    n, m = (int(c) for c in cells)
-    if n % 2 or not low <= n <= high or (m != 1 and (m % 2 or not 4 <= m <= high)):
-        raise argument_error("size", size, allowed)
-    return n, m
-
-
-def pair(name: str, value: object) -> tuple[float, float]:
-    """One length or two as two [m]. Raises ValueError otherwise."""
-    sides = value if isinstance(value, tuple | list) else (value, value)
-    if len(sides) != 2:
-        raise argument_error(name, value, "one length or two, along x and y")
-    return check_number(name, sides[0], *LENGTHS, "m"), check_number(name, sides[1], *LENGTHS, "m")
-
-
-def linear_start(sea: Sea, modes: Modes) -> np.ndarray:
-    """Spectra (2, rows, columns) of elevation and potential at z = 0 of a linear sea at its time, without its rings.
-
-    Waves that only one of the two grids has are left out.
-    """
-    waves = sea.components(sea.time)
-    n, m = modes.size
-    i, j = (np.rint(k * (sea.length / (2.0 * math.pi))).astype(int) for k in (waves.kx, waves.ky))
-    # a cos(k.x - omega t + 2 pi phase), and its potential (g/omega) a sin(...)
-    wave = 0.5 * waves.amplitude * np.exp(1j * (2.0 * math.pi * waves.phase - waves.omega * sea.time))
-    spectra = wave, -1j * modes.gravity / waves.omega * wave
-    u = np.zeros((2, m, n // 2), complex)
-    there = (np.abs(i) < n // 2) & (np.abs(j) < max(m // 2, 1))
-    for field, values in zip(u, spectra, strict=True):
-        # A real field has the conjugate at -k; the half plane has kx >= 0.
-        for column, row, value in ((i, j, values), (-i, -j, values.conj())):
-            inside = there & (column >= 0)
-            np.add.at(field, (row[inside], column[inside]), value[inside])
-    return u
-
-
-def mean_wavenumber(modes: Modes, eta: np.ndarray) -> float:
-    """Mean wavenumber [rad/m] by energy; the smallest of the tile for still water."""
-    weight = (np.abs(eta) ** 2 * modes.weight) * (modes.k > 0.0)
-    smallest = 2.0 * math.pi / max(modes.length)
-    return max(float((weight * modes.k).sum() / weight.sum()), smallest) if weight.sum() > 0.0 else smallest

@@ -1,5 +1,6 @@
 """Nonlinear seas against linear ones, against steep waves of constant form, and by what they conserve."""
 
+import contextlib
 import math
 
 import numpy as np
@@ -152,3 +153,109 @@ def test_too_steep_for_the_order_is_an_error_that_says_so():
     _, sea, period = steep(0.4, 3, 64, step=0.05)
     with pytest.raises(DivergenceError):
         sea.advance(20.0 * period)
+
+
+LINEAR = {"size": 16, "length": 100.0, "spectrum": "sea_state", "hs": 1.0, "tp": 5.0}
+LEVEL = np.zeros((16, 8))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"order": 8}, "order: 8.*from 1 to 7"),
+        ({"order": 2.0}, "order: 2.0"),
+        ({"size": 12}, r"size: 12.*that of the arrays, \(16, 8\)"),
+        ({"size": (16, 3)}, "size: .*even whole numbers"),
+        ({"length": None}, "length: None"),
+        ({"length": (10.0, 0.0)}, "length: 0.0"),
+        ({"length": (1.0, 2.0, 3.0)}, "length: "),
+        ({"depth": 0.0}, "depth: 0.0"),
+        ({"gravity": math.nan}, "gravity: nan"),
+        ({"density": -1.0}, "density: -1.0"),
+        ({"fade": -1.0}, "fade: -1.0"),
+        ({"step": 0.0}, "step: 0.0"),
+        ({"rtol": 1.0}, "rtol: 1.0"),
+        ({"breaking": 1}, "breaking: 1"),
+        ({"start": None}, "start: None.*a Sea, or elevation and potential"),
+        ({"start": (LEVEL, LEVEL[:8])}, "start: "),
+        ({"start": (LEVEL, LEVEL + math.nan)}, "start: "),
+        ({"start": (LEVEL[:, :3], LEVEL[:, :3])}, "size: "),
+        ({"start": ([], [])}, "size: "),
+        ({"start": Sea(**LINEAR), "length": 99.0}, "length: 99.0.*that of the sea it starts from, 100"),
+        ({"start": Sea(**LINEAR), "depth": 5.0}, "depth: 5.0.*that of the sea it starts from, inf"),
+        ({"start": Sea(**LINEAR, tension=0.07)}, "without tension, viscosity"),
+        ({"start": Sea(**LINEAR, viscosity=1e-6)}, "without tension, viscosity"),
+    ],
+)
+def test_refusals(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        NonlinearSea(**({"length": 100.0, "start": (LEVEL, LEVEL)} | arguments))
+
+
+def test_times_and_points_that_are_refused():
+    sea = NonlinearSea(start=Sea(**LINEAR))
+    sea.advance(2.0)
+    for t, message in ((1.0, "t: 1.0.*the time of the sea, 2 s, or later"), (math.nan, "t: nan")):
+        with pytest.raises(ValueError, match=message):
+            sea.advance(t)
+    with pytest.raises(ValueError, match="points"):
+        sea.kinematics([[0.0, 0.0]])
+
+
+def test_the_energy_account_of_a_linear_start():
+    """The fade-in brings what bound waves carry, of second order; afterwards breaking accounts for the rest."""
+    linear = Sea(32, 120.0, "sea_state", hs=1.6, tp=5.0, precision="double")
+    sea = NonlinearSea(start=linear, order=3, fade=8.0)
+    begun = sea.energy
+    sea.advance(15.0)
+    during = sea.energy
+    assert during.error == 0.0
+    assert during.kinetic + during.potential + during.breaking == pytest.approx(
+        begun.kinetic + begun.potential + during.fade_in
+    )
+    assert 0.0 < abs(during.fade_in) < 0.05 * begun.potential
+    sea.advance(40.0)
+    after = sea.energy
+    assert after.breaking > during.breaking > 0.0
+    assert abs(after.error) < 3e-5 * after.potential
+    fine = NonlinearSea(start=linear, order=3, fade=8.0, step=0.1)
+    fine.advance(40.0)
+    assert fine.energy.fade_in == pytest.approx(after.fade_in, rel=0.05)
+    assert fine.energy.breaking == pytest.approx(after.breaking, rel=1e-3)
+
+
+def test_breaking_takes_what_is_too_steep():
+    """A sea of k_p Hs/2 = 0.45, which cannot be: it loses energy until it can; the account holds."""
+    linear = Sea(32, 160.0, "sea_state", hs=8.0, tp=6.0, precision="double")
+    sea = NonlinearSea(start=linear, order=3, fade=6.0, rtol=1e-4)
+    steepest = np.abs(sea.slope).max()
+    sea.advance(30.0)
+    account = sea.energy
+    assert steepest > 0.9
+    assert np.abs(sea.slope).max() < 0.8
+    assert account.breaking > 0.2 * account.potential
+    assert abs(account.error) < 0.02 * (account.kinetic + account.potential)
+
+
+def test_breaking_leaves_a_wave_that_does_not_break():
+    wave, sea, period = steep(0.2, 5, 32, breaking=True)
+    sea.advance(10.0 * period)
+    assert form_error(wave, sea)[0] < 1e-3
+    assert sea.energy.breaking < 1e-6 * sea.energy.potential
+
+
+@pytest.mark.stress
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize(("hs", "tp"), [(0.0, 6.0), (3.0, 8.0), (4.0, 6.0), (8.0, 6.0), (20.0, 6.0)])
+@pytest.mark.parametrize("order", [2, 3, 5])
+@pytest.mark.parametrize("depth", [math.inf, 10.0])
+def test_seas_of_all_steepnesses_go_on_or_say_why(hs, tp, order, depth):
+    linear = Sea(48, 240.0, "sea_state", hs=hs, tp=tp, depth=depth, precision="double")
+    sea = NonlinearSea(start=linear, order=order, fade=2.0 * tp, rtol=1e-4)
+    steepness = hs / tp**2
+    with contextlib.suppress(DivergenceError) if steepness > 0.2 else contextlib.nullcontext():
+        sea.advance(15.0 * tp)
+    account = sea.energy
+    assert np.isfinite(sea.height).all()
+    assert account.breaking >= 0.0
+    assert abs(account.error) <= 0.03 * (account.kinetic + account.potential)

@@ -33,7 +33,7 @@ class Transforms:
         self.count = 0  # transforms run so far
         self.spectrum = pyfftw.zeros_aligned((size, size // 2 + 1), dtype=complex_)  # input; destroyed by each run
         self.grids = BufferPool(size, real)
-        self._plan = make_plan(self.spectrum, self.grids.take(1)[0])
+        self._plan = make_plan(self.spectrum, self.grids.take(1)[0], (0, 1), "FFTW_BACKWARD", "FFTW_DESTROY_INPUT")
         self.spectrum[...] = 0.0
 
     def set_grid(self, grid: np.ndarray) -> None:
@@ -49,8 +49,11 @@ class Transforms:
             grid[...] = aligned
 
 
-def make_plan(spectrum: np.ndarray, grid: np.ndarray) -> Any:
-    """The plan from wisdom if available, else one that is measured now (up to a second) and remembered."""
+def make_plan(source: np.ndarray, target: np.ndarray, axes: tuple[int, ...], direction: str, *flags: str) -> Any:
+    """The plan from wisdom if available, else one that is measured now (up to a second) and remembered.
+
+    Measuring overwrites both arrays. direction: FFTW_FORWARD or FFTW_BACKWARD; flags: FFTW's.
+    """
     import pyfftw
 
     path, *others = wisdom_paths()
@@ -58,12 +61,12 @@ def make_plan(spectrum: np.ndarray, grid: np.ndarray) -> Any:
         for each in (*others, path):
             load_wisdom(each)
         _loaded.add(path)
-    options: dict[str, Any] = {"axes": (0, 1), "direction": "FFTW_BACKWARD", "threads": 1}
-    flags = ("FFTW_MEASURE", "FFTW_DESTROY_INPUT")
+    options: dict[str, Any] = {"axes": axes, "direction": direction, "threads": 1}
+    flags = ("FFTW_MEASURE", *flags)
     try:
-        return pyfftw.FFTW(spectrum, grid, flags=(*flags, "FFTW_WISDOM_ONLY"), **options)
+        return pyfftw.FFTW(source, target, flags=(*flags, "FFTW_WISDOM_ONLY"), **options)
     except RuntimeError:  # pyfftw's way to say that there is no wisdom for this plan
-        plan = pyfftw.FFTW(spectrum, grid, flags=flags, **options)
+        plan = pyfftw.FFTW(source, target, flags=flags, **options)
         save_wisdom(path)
         return plan
 

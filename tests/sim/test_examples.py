@@ -25,6 +25,8 @@ FIRST = {
     "sim.ocean.dispersion": ("omega", "phase_speed", "group_speed"),
     "sim.ocean.gerstner": ("draw_waves",),
     "sim.ocean.kinematics": ("",),
+    "sim.ocean.nonlinear.sea": ("",),
+    "sim.ocean.nonlinear.stokes": ("",),
     "sim.ocean.planets": ("gravity_of",),
     "sim.ocean.radial": ("",),
     "sim.ocean.ripples": ("",),

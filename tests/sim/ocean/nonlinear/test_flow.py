@@ -1,0 +1,88 @@
+"""The water below nonlinear waves, against the flow of a steep wave of constant form."""
+
+import math
+
+import numpy as np
+import pytest
+
+from sim.ocean.nonlinear import NonlinearSea, stokes_wave
+
+LENGTH = 50.0  # [m]
+K = 2.0 * math.pi / LENGTH
+DENSITY = 1025.0
+
+
+def flow_of(wave, x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Velocity (n, 2), acceleration (n, 2) and dynamic pressure (n,) of the series; the pressure but for a constant."""
+    j = K * np.arange(1, len(wave.sines) + 1)
+    deep = math.isinf(wave.depth)
+    up = np.exp(np.outer(z, j))
+    down = 0.0 * up if deep else np.exp(-np.outer(z + 2.0 * wave.depth, j))
+    scale = 1.0 if deep else 1.0 + np.exp(-2.0 * j * wave.depth)
+    C, S, cos, sin = (up + down) / scale, (up - down) / scale, np.cos(np.outer(x, j)), np.sin(np.outer(x, j))
+    velocity = np.column_stack([(C * cos) @ (j * wave.sines), (S * sin) @ (j * wave.sines)])
+    along = np.column_stack([-(C * sin) @ (j * j * wave.sines), (S * cos) @ (j * j * wave.sines)])
+    pressure = DENSITY * (wave.speed * velocity[:, 0] - 0.5 * np.square(velocity).sum(1))
+    return velocity, -wave.speed * along, pressure
+
+
+def errors(order: int, depth: float, axis: int = 0) -> np.ndarray:
+    """Largest errors of velocity, acceleration and pressure over the largest values: from the bottom to the crest."""
+    wave = stokes_wave(0.2 / K, LENGTH, depth, order=15)
+    x = np.arange(32) * LENGTH / 32
+    start = [np.tile(f, (8, 1)) if axis else f for f in (wave.elevation(x), wave.potential(x))]
+    sea = NonlinearSea(length=(40.0, LENGTH) if axis else LENGTH, depth=depth, order=order, start=tuple(start))
+    along = np.linspace(0.0, LENGTH, 21)
+    surface = wave.elevation(along)
+    worst = []
+    for z in (surface, np.minimum(0.0, surface), np.minimum(-1.0, surface), np.full(21, -9.0)):
+        points = np.column_stack([along, np.full(21, 7.0), z])
+        flow = sea.kinematics(points[:, [1, 0, 2]] if axis else points)
+        velocity, acceleration, pressure = flow_of(wave, along, z)
+        found = flow.pressure - flow.pressure.mean() + pressure.mean()
+        pairs = (
+            (flow.velocity[:, [axis, 2]], velocity),
+            (flow.acceleration[:, [axis, 2]], acceleration),
+            (found, pressure),
+        )
+        worst.append([np.abs(a - b).max() / np.abs(b).max() for a, b in pairs])
+        assert not flow.velocity[:, 1 - axis].any()
+    return np.array(worst).max(axis=0)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 10.0])
+def test_the_flow_converges_with_the_order(depth):
+    # Measured on deep water at the velocity: 2.5e-3, 6e-5, 2e-6.
+    for order, bound in ((3, 5e-3), (5, 2e-4), (7, 1e-5)):
+        assert errors(order, depth).max() < bound
+
+
+def test_the_flow_along_y_is_the_same():
+    assert errors(5, 10.0, axis=1) == pytest.approx(errors(5, 10.0), rel=1e-6)
+
+
+def test_above_the_surface_and_below_the_bottom_are_the_values_there():
+    wave = stokes_wave(1.0, LENGTH, 10.0)
+    x = np.arange(32) * LENGTH / 32
+    sea = NonlinearSea(length=LENGTH, depth=10.0, start=(wave.elevation(x), wave.potential(x)))
+    crest = float(sea.height[0, 0])
+    above, on, bottom, below = sea.kinematics([[0, 0, 9.0], [0, 0, crest], [3, 0, -10.0], [3, 0, -50.0]]).velocity
+    assert above == pytest.approx(on, rel=1e-9)
+    assert below == pytest.approx(bottom, rel=1e-9)
+    assert bottom[2] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_flow_at_the_surface_makes_its_rise():
+    """eta_t = w - u eta_x - v eta_y, and the pressure there is rho g eta: the conditions that the method solves."""
+    random = np.random.default_rng(2)
+    x, y = np.arange(32)[:, None] * 2.5, np.arange(32) * 2.5
+    eta = potential = 0.0
+    for nx, ny in ((1, 0), (1, 1), (2, -1), (0, 1)):
+        phase = 2.0 * math.pi * (nx * x + ny * y) / 80.0 + random.uniform(0.0, 6.0)
+        eta, potential = eta + 0.3 * np.cos(phase), potential + 0.3 * 9.0 * np.sin(phase)
+    sea = NonlinearSea(length=80.0, order=6, start=(eta, potential))
+    points = np.column_stack([g.ravel() for g in (*np.broadcast_arrays(x, y), sea.height)])
+    flow, slope = sea.kinematics(points), sea.slope.reshape(-1, 2)
+    rise = flow.velocity[:, 2] - (flow.velocity[:, :2] * slope).sum(1)
+    assert rise == pytest.approx(sea.rise.ravel(), abs=2e-5 * np.abs(rise).max())
+    assert flow.pressure == pytest.approx(DENSITY * 9.81 * points[:, 2], abs=2e-5 * np.abs(flow.pressure).max())

@@ -127,8 +127,9 @@ def in_child(tree: Path, tests: list[str], report: Path, mode: Mode, timeout: fl
         use_kernels_of(mode.sound, tree)
     recorder, calls = Recorder(until_failure=mode.until_failure, plain=mode.plain), CallRecorder(tree)
     plugins = [recorder, calls] if mode.with_calls else [recorder]
-    # A test that fails once by chance has not found the fault.
-    options = ["-q", "-p", "no:cacheprovider", "--tb=native", "-m", "not stress and not browser", "--reruns", "1"]
+    options = ["-q", "-p", "no:cacheprovider", "--tb=native", "-m", "not stress and not browser"]
+    if mode.until_failure and not mode.plain:  # a test that fails once by chance has not found the fault
+        options += ["--reruns", "1"]
     status = pytest.main([*options, "--timeout", str(timeout), *tests], plugins=plugins)
     if recorder.failures or status in (pytest.ExitCode.OK, pytest.ExitCode.INTERRUPTED):
         failed = recorder.failures[0] if recorder.failures else ""

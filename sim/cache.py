@@ -23,10 +23,8 @@ from sim.validation import argument_error
 
 INSTALLED = Path(sys.prefix) / "share" / "springtide"  # the folder of the installation
 SHARED_VARIABLE = "SPRINGTIDE_KERNELS"
-
-
 # Intel's library of vector functions: kernels that call it do not load where it is absent.
-VECTOR_LIBRARY = "-svml" if getattr(numba.config, "USING_SVML", False) else ""
+VECTOR_LIBRARY = "-svml" if getattr(numba.config, "USING_SVML", False) else ""  # type: ignore[attr-defined]
 
 
 class Level(NamedTuple):

@@ -358,7 +358,7 @@ def natural_frequency(linear: LinearHull, axis: int, mass: float, stiffness: flo
         return 0.0
     partner = {3: 1, 4: 0}.get(axis)
     raise_if_stopped()
-    frequency = math.sqrt(stiffness / (mass + added * linear.infinite[axis, axis]))
+    frequency = new = math.sqrt(stiffness / (mass + added * linear.infinite[axis, axis]))
     for _ in range(MAX_TURNS):
         a, _ = linear.at(frequency)
         inertia = mass + added * a[axis, axis]

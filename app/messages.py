@@ -189,6 +189,7 @@ class Status(NamedTuple):
     starts: int = 0  # how often it was begun again, by a reset or a preset
     # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
     replayed: tuple[Vector, Vector] | None = None
+    unmade: bool = False  # the scene could not begin with its parameters
     faster: str = ""  # what would make a run that is capped faster, or ""
 
 

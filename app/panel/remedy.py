@@ -27,7 +27,7 @@ class Remedy:
     def show(self, snapshot: AnySnapshot) -> None:
         """Offer a step after a run diverged; take the offer back when the run goes on or has such a step."""
         step = 0.0
-        if snapshot.status.halted and self.kind.remedy is not None:
+        if snapshot.status.halted and not snapshot.status.unmade and self.kind.remedy is not None:
             step = self.kind.remedy(snapshot)
         if step == self.step:
             return

@@ -168,5 +168,6 @@ class Snapshots:
             halted=self.halted,
             faster=self.scene.faster if capped else "",
             starts=self.counts["starts"],
+            unmade=self.unmade,
             replayed=None if moment is None else (moment.low, moment.high),
         )

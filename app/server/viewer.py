@@ -36,9 +36,6 @@ from app.server.transport import Transport
 if TYPE_CHECKING:
     from app.lab.session import Session
 
-# [s] between the last update of a panel and its removal: viser's page takes the updates of a frame after its removals,
-# and says in the browser's console that there is nothing to update.
-SETTLING_TIME = 0.2
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
 PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled
 
@@ -129,10 +126,10 @@ class Viewer:
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
         """Make the scene and serve it, with a line on the page meanwhile."""
         self.cover(f"Opening {kind.title} …")
-        closed_at, commands = time.monotonic(), queue.SimpleQueue[Command]()
+        commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
+        # Before the old panel is removed: viser's page takes the updates of a frame after its removals, and says in the
+        # browser's console that there is nothing to update. Meanwhile it has taken the last updates.
         scene = self.make_scene(kind, params, commands.put)
-        if self.visitors():
-            time.sleep(max(0.0, SETTLING_TIME - (time.monotonic() - closed_at)))
         reset_page(self.server)
         cover = self.cover(f"Opening {kind.title} …")
         self.current = current = ServedScene(self, kind, params, scene, commands, paused=paused)

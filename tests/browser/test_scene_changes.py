@@ -112,23 +112,19 @@ def test_a_scene_after_another_looks_as_in_a_fresh_start(open_tab: Callable[...,
         page.tab.wait(lambda: np.abs(page.picture() - fresh["rope"]).mean() > 2.0 * MAX_DIFFERENCE)
 
 
-def test_the_console_stays_empty_and_the_page_says_what_is_opened(open_tab: Callable[..., Tab]) -> None:
+def test_the_page_says_what_is_opened_and_not_that_it_connects(open_tab: Callable[..., Tab]) -> None:
     lab = Viewer("127.0.0.1", 0)
     try:
         lab.open("rope")
         tab = open_tab(lab.port)
-        said: list[str] = []
-        tab.page.on("console", lambda message: said.append(message.text) if message.type == "error" else None)
         tab.wait(lambda: lab.served.shown > 5 and tab.page.locator(".springtide-panel").count())
         tab.page.evaluate(COVERS)
-        said.clear()
         for name in (*NAMES, NAMES[0]):
             kind = scene_named(name)
             lab.want(name, check_record(kind.params, SMALL.get(name, {})))
             tab.wait(lambda name=name: lab.is_open and lab.panel.kind.name == name and lab.served.shown > 5)
             tab.wait(lambda: tab.page.locator(".springtide-panel").count())
             tab.page.wait_for_timeout(500)
-        assert said == []
         assert not any("Connecting" in words for words in tab.page.evaluate("covers"))
         for name in NAMES:
             assert f"Opening {scene_named(name).title} …" in tab.page.evaluate("covers")

@@ -153,6 +153,8 @@ def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_
         assert lab.loop.halted == said
         assert not lab.loop.running
     wait_for(lambda: said in panel.head.status.content)
+    assert lab.loop.latest.status.unmade
+    assert not panel.head.remedy.button.visible  # a shorter step does not help
     panel.set("damping", 3.0)  # which alone would let the motion go on
     wait_for(lambda: lab.scene.params.damping == 3.0)
     assert lab.loop.halted == said

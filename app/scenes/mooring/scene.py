@@ -34,7 +34,7 @@ from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import LastMoments, divergence_text, holding_step, leapfrog_alternative
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.tracking import CriticallyDampedTracker
-from sim.mooring import at_rest
+from sim.mooring import System, at_rest
 from sim.mooring.gauge import modes
 from sim.mooring.simulate import LineState
 from sim.mooring.statics import Rest, first_guess, rest_of
@@ -108,7 +108,7 @@ class MooringScene:
         self.sea = sea_of(p)
         self.body = body_of(p, self.sea)
         self.system = build(p, self.places, self.body, self.sea)
-        rest = self.rest()
+        rest, self.failure = rest_or_start(self.system)
         self.state = LineState(self.system, rest)
         self.nodes, self.links = nodes_and_links(self.system, p)
         self.rest_place = self.body_place()
@@ -121,19 +121,6 @@ class MooringScene:
         self.measure()
         self.plot_rows.restart()
         self.last_moments.clear()
-
-    def rest(self) -> Rest:
-        """The state of rest in still water: a current would carry away what lies, which only friction holds.
-
-        If none is found, the shape that the search begins with: the panel stays, and `advance` says why nothing moves.
-        """
-        still = dataclasses.replace(self.system, current=(0.0, 0.0, 0.0))
-        try:
-            rest, self.failure = at_rest(still), ""
-        except ConvergenceError as error:
-            self.failure = f"The lines find no state of rest ({error}). Change their length, their anchors or EA."
-            rest = rest_of(still, first_guess(still, {})[0], still.kernel_view(self.step))
-        return rest
 
     def change_forces(self, params: Params) -> None:
         """Take parameters; the motion goes on."""
@@ -380,6 +367,19 @@ class MooringScene:
         self.measure()
         self.plot_rows.resume()
         self.last_moments.clear()
+
+
+def rest_or_start(system: System) -> tuple[Rest, str]:
+    """The state of rest in still water: a current would carry away what lies, which only friction holds.
+
+    If none is found, the shape that the search begins with, and the reason: the panel stays, and nothing moves.
+    """
+    still = dataclasses.replace(system, current=(0.0, 0.0, 0.0))
+    try:
+        return at_rest(still), ""
+    except ConvergenceError as error:
+        reason = f"The lines find no state of rest ({error}). Change their length, their anchors or EA."
+        return rest_of(still, first_guess(still, {})[0], still.kernel_view(1.0)), reason
 
 
 def compile_with(method: str) -> None:

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from sim.mooring import Line, LineType, Point, System
+from sim.mooring import Body, Line, LineType, Point, System
 from sim.ocean.kinematics import Components
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.lines.damping import damp_lines, make_lines_decay
-from sim.springs.lines.energy import lines_power, set_tensions
+from sim.springs.lines.energy import lines_pins_damping_power, lines_power, set_tensions
 
 ROPE = LineType("rope", 0.1, 12.0, 1.0, 0.0, 0.9, 1.3, 0.4, 0.07)  # so soft that it does not pull
 LENGTH, SPACING = 20.0, 10.0  # of the line and of its two links, which are slack
@@ -145,3 +145,31 @@ def test_tension_of_a_link_holds_its_damping_in_the_order_of_the_line():
     v[3:6] = (0.0, 0.0, 0.4)
     damp_lines(x, v, 0.0, 0.1, make_lines_decay(p, 0.1), p, False)
     assert v[5] == pytest.approx(0.4 * math.exp(-2.0 * 50.0 / 1.5 * 0.1 / 1.5))  # one link after the other
+
+
+def test_moved_ends_work_against_the_damping_of_their_links():
+    kind = LineType("wire", 0.02, 1.0, 4000.0, 50.0)
+    points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "fixed", (0.0, 4.0, 0.0)))
+    p = System((Line(1, kind, 1, 2, 3.0, 2),), points, 10.0, density=0.0, bed_stiffness=0.0).kernel_view(1.0)
+    x, v = np.zeros(9), np.zeros(9)
+    x[3:6], v[3:6] = (0.0, 4.0, 1.7), (-0.2, 0.3, 0.4)
+    expected = 50.0 / 1.5 * (0.6 * 0.2 - 0.1 * 0.3)
+    assert lines_pins_damping_power(x, v, p) == pytest.approx(expected)
+
+
+def test_the_pull_of_a_line_turns_a_body_about_its_reference_point():
+    arm, pull = np.array([1.5, -0.9, 2.0]), 4000.0 / 3.0  # stretched from 3 to 4 m
+    kind = LineType("wire", 1e-6, 1e-9, 4000.0, 0.0)
+    mass = np.diag([10.0, 20.0, 30.0, 40.0, 50.0, 60.0])
+    body = Body(1, (0.0, 0.0, 0.0), mass, np.zeros((6, 6)))
+    way = np.array([0.48, 0.6, 0.64])
+    points = Point(1, "body", tuple(arm.tolist()), body=1), Point(2, "fixed", tuple((arm + 4.0 * way).tolist()))
+    system = System((Line(1, kind, 1, 2, 3.0, 1),), points, 50.0, (body,), gravity=0.0, density=0.0, bed_stiffness=0.0)
+    x, a = np.zeros((3, 4)), np.empty(12)
+    x[:, 0], x[:, 1] = arm, arm + 4.0 * way
+    set_acceleration(x.reshape(-1), np.zeros(12), 0.0, system.kernel_view(1.0), a)
+    force = np.concatenate((pull * way, np.cross(arm, pull * way)))
+    found = a.reshape(3, 4)
+    assert found[:, 2:].T.reshape(-1) == pytest.approx(force / np.diag(mass), rel=1e-6, abs=1e-6)
+    turn, shift = found[:, 3], found[:, 2]
+    assert found[:, 0] == pytest.approx(shift + np.cross(turn, arm), rel=1e-6, abs=1e-6)

@@ -134,7 +134,7 @@ def test_the_damping_below_the_table_is_that_of_the_waves_and_fades() -> None:
 
 
 def test_between_the_first_frequencies_of_a_table_forces_are_those_of_one_with_more() -> None:
-    """A table without its second frequency finds that again: to 1 % of the greatest, yaw to 3, small roll to 6 %."""
+    """A table without its second frequency finds that again: to 1 % of the greatest, yaw to 0.5, small roll to 6 %."""
     linear = linear_hull(Hull.box(4.0, 1.0, 0.7), 0.35)
     keep = np.arange(len(linear.frequency)) != 1
     fewer = linear._replace(
@@ -145,7 +145,7 @@ def test_between_the_first_frequencies_of_a_table_forces_are_those_of_one_with_m
     found, known = fewer.around(k)[0], linear.excitation[1]
     for motion in range(6):
         greatest = np.abs(known[:, motion]).max()
-        within = {3: 0.06, 5: 0.03}.get(motion, 0.01) * greatest
+        within = {3: 0.06, 5: 0.005}.get(motion, 0.01) * greatest
         np.testing.assert_allclose(found[:, motion], known[:, motion], atol=within)
 
 

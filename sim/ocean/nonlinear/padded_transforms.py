@@ -70,6 +70,12 @@ class PaddedTransforms:
         self._rows_back.execute()
         self.count += 1
 
+    def field_of(self, spectrum: np.ndarray) -> np.ndarray:
+        """New field (cells, rows) [x, y] of a spectrum as high as the grid."""
+        self.spectrum[...] = spectrum
+        self.set_grid(self._grid.ravel())
+        return np.array(self._grid.T, order="C")
+
     def set_result(self, plane: np.ndarray) -> None:
         """Set `result` to the spectrum of a plane, not divided by the number of cells."""
         self._rows.update_arrays(plane.reshape(self.shape), self._other)

@@ -72,7 +72,7 @@ def damp(u, rates, damping, omega, gravity, decay, weight, faded):
     """Set rates (2, rows, 2 columns) to faded rates + damping, and return the loss over the density [m3/s3].
 
     The energy H has dH/d eta = -psi_t and dH/d psi = eta_t, so that damping rates (a, b) of elevation and potential
-    take mean(psi_t a - eta_t b) of it. damping may be empty.
+    take mean(psi_t a - eta_t b) of it; in the fade-in H is that of the faded terms. damping may be empty.
     """
     lost = 0.0
     is_damped = damping.size > 0
@@ -80,11 +80,11 @@ def damp(u, rates, damping, omega, gravity, decay, weight, faded):
         for j in range(decay.shape[1]):
             ratio = omega[i, j] * omega[i, j] / gravity
             for part in range(2 * j, 2 * j + 2):
+                rates[0, i, part] *= faded
+                rates[1, i, part] *= faded
                 eta_rate = ratio * u[1, i, part] + rates[0, i, part]
                 psi_rate = -gravity * u[0, i, part] + rates[1, i, part]
                 a, b = -decay[i, j] * u[0, i, part], -decay[i, j] * u[1, i, part]
-                rates[0, i, part] *= faded
-                rates[1, i, part] *= faded
                 if is_damped:
                     a += damping[0, i, part]
                     b += damping[1, i, part]

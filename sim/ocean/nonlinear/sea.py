@@ -111,7 +111,7 @@ class NonlinearSea:
         self._propagator = Propagator(modes, tail_decay(modes) if is_damped else np.zeros_like(modes.k))
         self._eddies: Eddies | None = None
         self._march: March | None = None
-        self._fade_in, self._is_faded = 0.0, self.fade == 0.0
+        self._lost, self._fade_in, self._is_faded = 0.0, 0.0, self.fade == 0.0
         self._rates: tuple[float, np.ndarray] = math.nan, u  # time, and the whole rates then
         self._flow: tuple[float, Flow | None] = math.nan, None
         if self._expansion is not None:
@@ -122,14 +122,14 @@ class NonlinearSea:
 
     def advance(self, t: float) -> None:
         """Move on to time t [s]. Raises ValueError for a time before the present one, DivergenceError if the waves
-        become too steep for the method; the sea then stays at its last time."""
+        become too steep for the method; the sea then stays at the last time that could be reached."""
         t = check_finite("t", t, "s")
         if t < self._time:
             raise argument_error("t", t, f"the time of the sea, {self._time:g} s, or later")
         faded = self._start_time + FADED * self.fade
         if not self._is_faded and t >= faded:
             self._move(faded)
-            self._fade_in, self._is_faded = sum(self._energies()) + self._lost() - self._begun, True
+            self._fade_in, self._is_faded = sum(self._energies()) + self._lost - self._begun, True
         self._move(t)
 
     @property
@@ -169,10 +169,9 @@ class NonlinearSea:
     def energy(self) -> Energy:
         """The energy account at the present time."""
         kinetic, potential = self._energies()
-        lost = self._lost()
-        change = kinetic + potential + lost - self._begun
+        change = kinetic + potential + self._lost - self._begun
         fade_in = self._fade_in if self._is_faded else change
-        return Energy(kinetic, potential, lost, fade_in, change - fade_in)
+        return Energy(kinetic, potential, self._lost, fade_in, change - fade_in)
 
     @property
     def steps(self) -> int:
@@ -200,14 +199,16 @@ class NonlinearSea:
     def _move(self, t: float) -> None:
         """The same as `advance` for a time that is allowed."""
         if self._march is not None:
-            self._march.advance(t)
-            self._u = self._march.at(t)
+            try:
+                self._march.advance(t)
+            finally:  # without the whole way: at the end of the last step
+                t = min(t, self._march.end.t)
+                self._u, self._lost, self._time = self._march.at(t), self._march.lost(t), t
         else:
             moved = np.empty_like(self._u)
             first = real(self._first)
             propagate(self._propagator.turn(t - self._start_time), first, first, 0.0, real(moved))
-            self._u = moved
-        self._time = t
+            self._u, self._time = moved, t
 
     def _evaluate(self, t: float, u: np.ndarray, out: np.ndarray) -> float:
         """Set the nonlinear rates, and return the loss to breaking [J/m2/s]."""
@@ -237,7 +238,3 @@ class NonlinearSea:
         eta, psi = self._u
         kinetic = 0.5 * self.density * self._modes.mean_product(psi, self._whole_rates()[0])
         return kinetic, 0.5 * self.density * self.gravity * self._modes.mean_product(eta, eta)
-
-    def _lost(self) -> float:
-        """Energy [J/m2] lost to breaking so far."""
-        return self._march.lost(self._time) if self._march else 0.0

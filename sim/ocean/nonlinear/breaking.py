@@ -1,9 +1,10 @@
 """Breaking, as damping of the waves that would overturn, which surfaces without overhangs cannot follow.
 
-Two parts (Chalikov, Babanin and Sanina 2014, Ocean Dyn. 64:1469, Sec. 2.3, have the same two). The shortest waves of
-the grid decay at a rate that rises steeply towards its limit: energy that reaches them by steepening leaves there.
-Where the surface is steeper than a limit, an eddy viscosity smooths elevation and potential (Tian, Perlin and Choi
-2010, Phys. Fluids 22:036602, eqs. 3-5, have its size). It rises from 0 at the limit.
+It has two parts, as in Chalikov, Babanin and Sanina (2014, Ocean Dyn. 64:1469). The shortest waves of the grid decay at
+a rate that rises steeply towards its limit: energy that reaches them by steepening leaves there. Where the surface is
+steeper than a limit, an eddy viscosity smooths elevation and potential. It rises from 0 at the limit to the size that
+Tian, Perlin and Choi (2010, Phys. Fluids 22:036602) measured: 0.02 times height, length and frequency of the breaker.
+Limits and sizes are choices; the energy that one breaker loses was not compared with experiments.
 """
 
 import math

@@ -6,12 +6,12 @@ With psi(x, t) the velocity potential on the surface z = eta(x, t) and W the ver
   psi_t = -g eta - |grad psi|^2/2 + (1 + |grad eta|^2) W^2/2
 
 The potential is a sum phi_1 + ... + phi_M; phi_m is of order m in steepness and harmonic below z = 0. Taylor's series
-about z = 0 gives each from those before (Dommermuth and Yue 1987, eqs. 2.8-2.9; West et al. 1987, eqs. 12-14):
+about z = 0 gives each from those before (Dommermuth and Yue 1987, J. Fluid Mech. 184:267):
 
   phi_1 = psi,  phi_m = -sum_{j=1}^{m-1} eta^j/j! d^j phi_{m-j}/dz^j
   W_m = sum_{j=0}^{m-1} eta^j/j! d^{j+1} phi_{m-j}/dz^{j+1}       at z = 0
 
-Products of series are cut at order M (West's consistent expansion, 1987, eqs. 18-19): (1 + |grad eta|^2) W becomes
+Products of series are cut at order M (West et al. 1987, J. Geophys. Res. 92:11803): (1 + |grad eta|^2) W becomes
 W_1 + ... + W_M + |grad eta|^2 (W_1 + ... + W_{M-2}), W^2 the sum of W_i W_j with i + j <= M, or <= M - 2. These are
 Hamilton's equations of an energy that is cut at the same order, which is therefore conserved.
 

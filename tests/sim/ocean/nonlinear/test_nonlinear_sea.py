@@ -171,6 +171,7 @@ LEVEL = np.zeros((16, 8))
         ({"order": 2.0}, "order: 2.0"),
         ({"size": 12}, r"size: 12.*that of the arrays, \(16, 8\)"),
         ({"size": (16, 3)}, "size: .*even whole numbers"),
+        ({"size": (16, 8, 1)}, "size: .*even whole numbers"),
         ({"length": None}, "length: None"),
         ({"length": (10.0, 0.0)}, "length: 0.0"),
         ({"length": (1.0, 2.0, 3.0)}, "length: "),

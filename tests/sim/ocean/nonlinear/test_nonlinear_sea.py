@@ -220,8 +220,11 @@ def test_the_energy_account_of_a_linear_start():
         begun.kinetic + begun.potential + during.fade_in
     )
     assert 0.0 < abs(during.fade_in) < 0.05 * begun.potential
+    sea.advance(25.0)
+    fixed = sea.energy.fade_in
     sea.advance(40.0)
     after = sea.energy
+    assert after.fade_in == fixed
     assert after.breaking > during.breaking > 0.0
     assert abs(after.error) < 3e-5 * after.potential
     fine = NonlinearSea(start=linear, order=3, fade=8.0, step=0.1)

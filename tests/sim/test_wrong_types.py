@@ -11,6 +11,7 @@ import pytest
 
 from sim import floating, springs
 from sim.ocean import SPECTRA, RadialSea, Sea, dispersion, draw_waves, zero_crossings
+from sim.ocean.nonlinear import NonlinearSea, stokes_wave
 from sim.ocean.planets import gravity_of
 from sim.ocean.statistics import beaufort
 from sim.ocean.weathering import Spill, weather
@@ -36,6 +37,8 @@ BODY = floating.Body(BOX)
 FLEET = floating.make_fleet([BODY])
 SEA = Sea(16, 50.0)
 POND = Sea(16, 50.0, wind_speed=0.0)
+LEVEL = np.zeros((8, 1)), np.zeros((8, 1))
+STEEP = NonlinearSea(length=50.0, start=LEVEL)
 JONSWAP = SPECTRA["jonswap"]
 WAVES = RadialSea(draw_waves(JONSWAP, JONSWAP.conditions(), 4))
 ORIGIN, UPRIGHT, STILL = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), ((1025.0, math.inf),)
@@ -78,6 +81,8 @@ CALLS = (
     call(SEA.kinematics, points=[[0.0, 0.0, -1.0]], t=0.0), call(SEA.expose, duration=0.0), call(SEA.resized, size=16),
     call(SEA.significant_height_at, t=0.0), call(POND.change, t=0.0),
     call(POND.ripples.add, t=0.0, points=[[1.0, 1.0]], width=1.0),
+    call(NonlinearSea, length=50.0, start=LEVEL), call(stokes_wave, height=1.0, wavelength=50.0),
+    call(STEEP.advance, t=0.0), call(STEEP.kinematics, points=[[0.0, 0.0, -1.0]]),
     call(JONSWAP.frequency_density, omega=1.0), call(JONSWAP.moments), call(JONSWAP.conditions),
     call(Rain, rate=5.0, length=10.0, ceiling=20.0), call(Fire, position=ORIGIN),
     call(Jet, nozzle=ORIGIN, velocity=(1.0, 0.0, 3.0)),

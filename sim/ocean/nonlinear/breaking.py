@@ -1,9 +1,10 @@
 """Breaking, as damping of the waves that would overturn, which surfaces without overhangs cannot follow.
 
-Two parts (Chalikov, Babanin and Sanina 2014, Ocean Dyn. 64:1469, Sec. 2.3, have the same two). The shortest waves of
-the grid decay at a rate that rises steeply towards its limit: energy that reaches them by steepening leaves there.
-Where the surface is steeper than a limit, an eddy viscosity smooths elevation and potential (Tian, Perlin and Choi
-2010, Phys. Fluids 22:036602, eqs. 3-5, have its size). It rises from 0 at the limit.
+It has two parts, as in Chalikov, Babanin and Sanina (2014, Ocean Dyn. 64:1469). The shortest waves of the grid decay at
+a rate that rises steeply towards its limit: energy that reaches them by steepening leaves there. Where the surface is
+steeper than a limit, an eddy viscosity smooths elevation and potential. It rises from 0 at the limit to the size that
+Tian, Perlin and Choi (2010, Phys. Fluids 22:036602) measured: 0.02 times height, length and frequency of the breaker.
+Limits and sizes are choices; the energy that one breaker loses was not compared with experiments.
 """
 
 import math
@@ -72,7 +73,7 @@ def damp(u, rates, damping, omega, gravity, decay, weight, faded):
     """Set rates (2, rows, 2 columns) to faded rates + damping, and return the loss over the density [m3/s3].
 
     The energy H has dH/d eta = -psi_t and dH/d psi = eta_t, so that damping rates (a, b) of elevation and potential
-    take mean(psi_t a - eta_t b) of it. damping may be empty.
+    take mean(psi_t a - eta_t b) of it; in the fade-in H is that of the faded terms. damping may be empty.
     """
     lost = 0.0
     is_damped = damping.size > 0
@@ -80,11 +81,11 @@ def damp(u, rates, damping, omega, gravity, decay, weight, faded):
         for j in range(decay.shape[1]):
             ratio = omega[i, j] * omega[i, j] / gravity
             for part in range(2 * j, 2 * j + 2):
+                rates[0, i, part] *= faded
+                rates[1, i, part] *= faded
                 eta_rate = ratio * u[1, i, part] + rates[0, i, part]
                 psi_rate = -gravity * u[0, i, part] + rates[1, i, part]
                 a, b = -decay[i, j] * u[0, i, part], -decay[i, j] * u[1, i, part]
-                rates[0, i, part] *= faded
-                rates[1, i, part] *= faded
                 if is_damped:
                     a += damping[0, i, part]
                     b += damping[1, i, part]

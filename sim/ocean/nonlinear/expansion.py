@@ -6,12 +6,12 @@ With psi(x, t) the velocity potential on the surface z = eta(x, t) and W the ver
   psi_t = -g eta - |grad psi|^2/2 + (1 + |grad eta|^2) W^2/2
 
 The potential is a sum phi_1 + ... + phi_M; phi_m is of order m in steepness and harmonic below z = 0. Taylor's series
-about z = 0 gives each from those before (Dommermuth and Yue 1987, eqs. 2.8-2.9; West et al. 1987, eqs. 12-14):
+about z = 0 gives each from those before (Dommermuth and Yue 1987, J. Fluid Mech. 184:267):
 
   phi_1 = psi,  phi_m = -sum_{j=1}^{m-1} eta^j/j! d^j phi_{m-j}/dz^j
   W_m = sum_{j=0}^{m-1} eta^j/j! d^{j+1} phi_{m-j}/dz^{j+1}       at z = 0
 
-Products of series are cut at order M (West's consistent expansion, 1987, eqs. 18-19): (1 + |grad eta|^2) W becomes
+Products of series are cut at order M (West et al. 1987, J. Geophys. Res. 92:11803): (1 + |grad eta|^2) W becomes
 W_1 + ... + W_M + |grad eta|^2 (W_1 + ... + W_{M-2}), W^2 the sum of W_i W_j with i + j <= M, or <= M - 2. These are
 Hamilton's equations of an energy that is cut at the same order, which is therefore conserved.
 
@@ -128,20 +128,35 @@ class Expansion:
         transforms.set_grid(plane)
 
 
+@kernel(noalias=True, inline=True)
+def set_to(value, out):
+    for i in range(out.size):
+        out[i] = value
+
+
+@kernel(noalias=True, inline=True)
+def scale_by(factor, x, out):
+    for i in range(out.size):
+        out[i] *= factor * x[i]
+
+
+@kernel(noalias=True, inline=True)
+def add_product(x, y, out):
+    for i in range(out.size):
+        out[i] += x[i] * y[i]
+
+
 @kernel(noalias=True)
 def set_potential(m, eta, derivatives, first, power, out):
     """Set phi_m on the grid: -sum_{j=1}^{m-1} eta^j/j! d^j phi_{m-j}/dz^j. power: scratch (BLOCK,)."""
     for start in range(0, eta.size, BLOCK):
-        size = min(BLOCK, eta.size - start)
-        for i in range(size):
-            power[i] = -1.0
-            out[start + i] = 0.0
+        stop = min(start + BLOCK, eta.size)
+        term, here = power[: stop - start], out[start:stop]
+        set_to(-1.0, term)
+        set_to(0.0, here)
         for j in range(1, m):
-            scale = 1.0 / j
-            plane = first[m - j - 1] + j - 1
-            for i in range(size):
-                power[i] *= scale * eta[start + i]
-                out[start + i] += power[i] * derivatives[plane, start + i]
+            scale_by(1.0 / j, eta[start:stop], term)
+            add_product(term, derivatives[first[m - j - 1] + j - 1, start:stop], here)
 
 
 @kernel(noalias=True)
@@ -150,41 +165,54 @@ def set_surface_rates(order, eta, slope, flow, derivatives, first, scratch, elev
 
     slope, flow (axes, points): grad eta, grad psi; scratch (2 order + 4, BLOCK).
     """
-    M = order
-    W, total = scratch[:M], scratch[M : 2 * M + 1]  # W_1 ... W_M, and the sums of the first 0 ... M of them
-    power, square, outer = scratch[2 * M + 1], scratch[2 * M + 2], scratch[2 * M + 3]
+    # Rows of scratch: W_1 ... W_M, the sums S of the first 0 ... M of them, and three more. One-dimensional rows only:
+    # loops over them are vectorised.
+    M = S = order
     for start in range(0, eta.size, BLOCK):
-        size = min(BLOCK, eta.size - start)
-        for i in range(size):
-            power[i] = 1.0
-            total[0, i] = square[i] = outer[i] = 0.0
+        stop = min(start + BLOCK, eta.size)
+        n = stop - start
+        power, square, outer = scratch[2 * M + 1, :n], scratch[2 * M + 2, :n], scratch[2 * M + 3, :n]
+        set_to(1.0, power)
+        for row in range(2 * M + 4):
+            if row <= S or row > 2 * M + 1:
+                set_to(0.0, scratch[row, :n])
+        for j in range(M):
+            if j > 0:
+                scale_by(1.0 / j, eta[start:stop], power)
+            # d phi_M/dz is left out.
+            for m in range(j, M if j > 0 else M - 1):
+                add_product(power, derivatives[first[m - j] + j, start:stop], scratch[m, :n])
         for m in range(M):
-            for i in range(size):
-                W[m, i] = derivatives[first[m], start + i] if m < M - 1 else 0.0
-        for j in range(1, M):
-            scale = 1.0 / j
-            for i in range(size):
-                power[i] *= scale * eta[start + i]
-            for m in range(j, M):
-                plane = first[m - j] + j
-                for i in range(size):
-                    W[m, i] += power[i] * derivatives[plane, start + i]
-        for m in range(M):
-            for i in range(size):
-                total[m + 1, i] = total[m, i] + W[m, i]
+            set_sum(scratch[S + m, :n], scratch[m, :n], scratch[S + m + 1, :n])
         # Sums of W_i W_j with i + j <= M, and with i + j <= M - 2.
         for m in range(M - 1):
-            for i in range(size):
-                square[i] += W[m, i] * total[M - 1 - m, i]
+            add_product(scratch[m, :n], scratch[S + M - 1 - m, :n], square)
         for m in range(M - 3):
-            for i in range(size):
-                outer[i] += W[m, i] * total[M - 3 - m, i]
-        lower = max(M - 2, 0)
-        for i in range(size):
-            steepness, along, speed = 0.0, 0.0, 0.0
-            for a in range(slope.shape[0]):
-                steepness += slope[a, start + i] * slope[a, start + i]
-                along += slope[a, start + i] * flow[a, start + i]
-                speed += flow[a, start + i] * flow[a, start + i]
-            elevation[start + i] = total[M, i] - W[0, i] - along + steepness * total[lower, i]
-            potential[start + i] = 0.5 * (square[i] - speed + steepness * outer[i])
+            add_product(scratch[m, :n], scratch[S + M - 3 - m, :n], outer)
+        rise, push = elevation[start:stop], potential[start:stop]
+        set_linear(scratch[S + M, :n], scratch[0, :n], square, rise, push)
+        for a in range(slope.shape[0]):
+            add_axis(scratch[S + max(M - 2, 0), :n], outer, slope[a, start:stop], flow[a, start:stop], rise, push)
+
+
+@kernel(noalias=True, inline=True)
+def set_sum(x, y, out):
+    for i in range(out.size):
+        out[i] = x[i] + y[i]
+
+
+@kernel(noalias=True, inline=True)
+def set_linear(total, first, square, elevation, potential):
+    """Set the terms without gradients; first: W_1, of which the rate is linear."""
+    for i in range(elevation.size):
+        elevation[i] = total[i] - first[i]
+        potential[i] = 0.5 * square[i]
+
+
+@kernel(noalias=True, inline=True)
+def add_axis(lower, outer, slope, flow, elevation, potential):
+    """Add one axis' part of the products of gradients; lower, outer: sums of W and of W_i W_j to order M - 2."""
+    for i in range(elevation.size):
+        steepness = slope[i] * slope[i]
+        elevation[i] += steepness * lower[i] - slope[i] * flow[i]
+        potential[i] += 0.5 * (steepness * outer[i] - flow[i] * flow[i])

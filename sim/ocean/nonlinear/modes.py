@@ -51,9 +51,3 @@ def spectrum_of(field: np.ndarray) -> np.ndarray:
     if m > 1:
         spectrum[m // 2] = 0.0
     return np.ascontiguousarray(spectrum)
-
-
-def field_of(spectrum: np.ndarray) -> np.ndarray:
-    """Field (n, m) of a spectrum (m, n/2)."""
-    m, n = spectrum.shape[0], 2 * spectrum.shape[1]
-    return np.ascontiguousarray(np.fft.irfft2(spectrum, (m, n)).T) * (n * m)

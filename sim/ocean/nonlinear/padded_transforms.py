@@ -1,7 +1,7 @@
 """Transforms between half-plane spectra and a finer grid, on which products of fields do not alias.
 
 A product of M fields of n waves has M n waves. On a grid of (M + 1)/2 n cells, those that alias fall on waves that are
-cut off afterwards (Orszag 1971 for M = 2; Ducrozet et al. 2016, Sec. 3.1). Only rows and columns with waves are
+cut off afterwards (Ducrozet et al. 2016, Comput. Phys. Commun. 203:245). Only rows and columns with waves are
 transformed: at M = 3 that takes 0.75 of the time of a whole transform.
 """
 
@@ -69,6 +69,12 @@ class PaddedTransforms:
         self._rows_back.update_arrays(self._half, plane.reshape(self.shape))
         self._rows_back.execute()
         self.count += 1
+
+    def field_of(self, spectrum: np.ndarray) -> np.ndarray:
+        """New field (cells, rows) [x, y] of a spectrum as high as the grid."""
+        self.spectrum[...] = spectrum
+        self.set_grid(self._grid.ravel())
+        return np.array(self._grid.T, order="C")
 
     def set_result(self, plane: np.ndarray) -> None:
         """Set `result` to the spectrum of a plane, not divided by the number of cells."""

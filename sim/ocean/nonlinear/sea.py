@@ -4,7 +4,7 @@ Choose it where waves act on one another: groups that steepen, crests, rogue wav
 time at once. Limits:
 - Potential flow under a surface without overhangs: no overturning, no tension, no viscosity, level bottom.
 - Steepness by order. The speed of a wave of k a = 0.3 is off by 1.4e-3 at order 3, 1e-4 at 5 and 1e-5 at 7; k a = 0.35
-  needs order 7, k a = 0.4 breaks up at any order.
+  needs order 7, k a = 0.4 breaks up.
 - Short waves on high crests: the series in z diverges where k a of the shortest wave of the grid and the amplitude of
   the sea is above about 5. `breaking` damps what grows there.
 
@@ -28,7 +28,7 @@ from sim.ocean.nonlinear.breaking import Eddies, tail_decay
 from sim.ocean.nonlinear.expansion import Expansion
 from sim.ocean.nonlinear.flow import Flow
 from sim.ocean.nonlinear.march import March, Propagator, propagate, real
-from sim.ocean.nonlinear.modes import field_of
+from sim.ocean.nonlinear.padded_transforms import PaddedTransforms
 from sim.ocean.nonlinear.start import mean_wavenumber, started
 from sim.ocean.sea import Sea
 from sim.validation import (
@@ -105,31 +105,31 @@ class NonlinearSea:
         self.fade = check_not_negative("fade", fade, "s")
         rtol = check_number("rtol", rtol, 1e-14, 0.1, "")
         chosen = FIRST_STEP * period if step is None else check_positive("step", step, "s")
+        self._fields = PaddedTransforms((modes.size[1], modes.size[0]), len(modes.kx))
         self._expansion = Expansion(modes, self.order) if self.order > 1 else None
         is_damped = breaking and self.order > 1
         self._propagator = Propagator(modes, tail_decay(modes) if is_damped else np.zeros_like(modes.k))
         self._eddies: Eddies | None = None
         self._march: March | None = None
-        self._fade_in, self._is_faded = 0.0, self.fade == 0.0
+        self._lost, self._fade_in, self._is_faded = 0.0, 0.0, self.fade == 0.0
         self._rates: tuple[float, np.ndarray] = math.nan, u  # time, and the whole rates then
         self._flow: tuple[float, Flow | None] = math.nan, None
         if self._expansion is not None:
             if is_damped:
                 self._eddies = Eddies(self._expansion, 2.0 * math.pi / period / k**2)
-            self._nonlinear = np.empty_like(u)
             self._march = March(self._propagator, self._evaluate, time, u, chosen, rtol if step is None else None)
         self._begun = sum(self._energies())
 
     def advance(self, t: float) -> None:
         """Move on to time t [s]. Raises ValueError for a time before the present one, DivergenceError if the waves
-        become too steep for the method; the sea then stays at its last time."""
+        become too steep for the method; the sea then stays at the last time that could be reached."""
         t = check_finite("t", t, "s")
         if t < self._time:
             raise argument_error("t", t, f"the time of the sea, {self._time:g} s, or later")
         faded = self._start_time + FADED * self.fade
         if not self._is_faded and t >= faded:
             self._move(faded)
-            self._fade_in, self._is_faded = sum(self._energies()) + self._lost() - self._begun, True
+            self._fade_in, self._is_faded = sum(self._energies()) + self._lost - self._begun, True
         self._move(t)
 
     @property
@@ -140,23 +140,23 @@ class NonlinearSea:
     @property
     def height(self) -> np.ndarray:
         """Elevation (n, m) [m] of the surface."""
-        return field_of(self._u[0])
+        return self._fields.field_of(self._u[0])
 
     @property
     def potential(self) -> np.ndarray:
         """Velocity potential (n, m) [m2/s] on the surface; its mean is 0."""
-        return field_of(self._u[1])
+        return self._fields.field_of(self._u[1])
 
     @property
     def slope(self) -> np.ndarray:
         """Slope (n, m, 2) of the surface along x and y."""
         modes = self._modes
-        return np.stack([field_of(1j * k * self._u[0]) for k in (modes.kx[None, :], modes.ky[:, None])], axis=-1)
+        return np.stack([self._fields.field_of(1j * k * self._u[0]) for k in (modes.kx, modes.ky[:, None])], axis=-1)
 
     @property
     def rise(self) -> np.ndarray:
         """Rate (n, m) [m/s] at which the surface rises in place."""
-        return field_of(self._whole_rates()[0])
+        return self._fields.field_of(self._whole_rates()[0])
 
     @property
     def significant_height(self) -> float:
@@ -169,10 +169,9 @@ class NonlinearSea:
     def energy(self) -> Energy:
         """The energy account at the present time."""
         kinetic, potential = self._energies()
-        lost = self._lost()
-        change = kinetic + potential + lost - self._begun
+        change = kinetic + potential + self._lost - self._begun
         fade_in = self._fade_in if self._is_faded else change
-        return Energy(kinetic, potential, lost, fade_in, change - fade_in)
+        return Energy(kinetic, potential, self._lost, fade_in, change - fade_in)
 
     @property
     def steps(self) -> int:
@@ -182,7 +181,7 @@ class NonlinearSea:
     @property
     def transforms(self) -> int:
         """Transforms run so far."""
-        return self._expansion.transform_count if self._expansion else 0
+        return self._fields.count + (self._expansion.transform_count if self._expansion else 0)
 
     def kinematics(self, points: ArrayLike) -> Kinematics:
         """The water at points (n, 3) [m], z up from still water, by the sum over all waves; see `flow.py`.
@@ -200,14 +199,16 @@ class NonlinearSea:
     def _move(self, t: float) -> None:
         """The same as `advance` for a time that is allowed."""
         if self._march is not None:
-            self._march.advance(t)
-            self._u = self._march.at(t)
+            try:
+                self._march.advance(t)
+            finally:  # without the whole way: at the end of the last step
+                t = min(t, self._march.end.t)
+                self._u, self._lost, self._time = self._march.at(t), self._march.lost(t), t
         else:
             moved = np.empty_like(self._u)
             first = real(self._first)
             propagate(self._propagator.turn(t - self._start_time), first, first, 0.0, real(moved))
-            self._u = moved
-        self._time = t
+            self._u, self._time = moved, t
 
     def _evaluate(self, t: float, u: np.ndarray, out: np.ndarray) -> float:
         """Set the nonlinear rates, and return the loss to breaking [J/m2/s]."""
@@ -237,7 +238,3 @@ class NonlinearSea:
         eta, psi = self._u
         kinetic = 0.5 * self.density * self._modes.mean_product(psi, self._whole_rates()[0])
         return kinetic, 0.5 * self.density * self.gravity * self._modes.mean_product(eta, eta)
-
-    def _lost(self) -> float:
-        """Energy [J/m2] lost to breaking so far."""
-        return self._march.lost(self._time) if self._march else 0.0

@@ -50,8 +50,9 @@ def started(start: Any, size: Any, length: Any, water: dict[str, Any]) -> tuple[
 def checked_size(size: Any) -> tuple[int, int]:
     """`size` as cells along x and y. Raises ValueError otherwise."""
     low, high = SIZES
-    n, m = cells = (size, size) if is_whole_number(size) else size if isinstance(size, tuple) else (0, 0)
-    if not all(is_whole_number(c) and c <= high for c in cells) or n < low or n % 2 or (m != 1 and (m < 4 or m % 2)):
+    cells = (size, size) if is_whole_number(size) else size
+    n, m = cells if isinstance(cells, tuple) and len(cells) == 2 else (0, 0)
+    if not all(is_whole_number(c) and c <= high for c in (n, m)) or n < low or n % 2 or (m != 1 and (m < 4 or m % 2)):
         allowed = f"even whole numbers (n, m), n from {low} and m from 4 to {high} or m = 1, or one number for both"
         raise argument_error("size", size, allowed)
     return int(n), int(m)

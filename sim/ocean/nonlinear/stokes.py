@@ -11,8 +11,7 @@ Limits: up to about 95 % of the highest wave; the nearer to it, the more terms a
     >>> round(float(crest - trough), 9)
     1.0
 
-Sources: M. M. Rienecker, J. D. Fenton, J. Fluid Mech. 104:119 (1981), eqs. 6-11; J. D. Fenton, Comput. Geosci. 14:357
-(1988), eqs. 3-9.
+Sources: M. M. Rienecker, J. D. Fenton, J. Fluid Mech. 104:119 (1981); J. D. Fenton, Comput. Geosci. 14:357 (1988).
 """
 
 import dataclasses
@@ -40,7 +39,7 @@ class StokesWave:
     gravity: float  # [m/s2]
     speed: float  # [m/s] of the form in water without a mean current
     cosines: np.ndarray  # (order + 1,) [m]: the elevation is sum cosines[j] cos(j k x)
-    sines: np.ndarray  # (order,) [m2/s]: B_j sqrt(g/k^3) of Fenton's eq. 3
+    sines: np.ndarray  # (order,) [m2/s]: amplitudes of the potential, as in `depth_factors`
 
     @property
     def wavenumber(self) -> float:
@@ -114,9 +113,9 @@ def residuals(z: np.ndarray, steepness: float, kd: float, order: int) -> np.ndar
     theta = np.arange(order + 1)[:, None] * math.pi / order * j
     C, S = depth_factors(j, eta[:, None], kd)
     u, w = -c + (C * np.cos(theta)) @ (j * B), (S * np.sin(theta)) @ (j * B)
-    stream = -c * eta + (S * np.cos(theta)) @ B - psi  # Rienecker and Fenton, eq. 8: a streamline
-    bernoulli = 0.5 * (u * u + w * w) + eta - R  # eq. 9: constant pressure
-    mean = eta.sum() - 0.5 * (eta[0] + eta[-1])  # eq. 10
+    stream = -c * eta + (S * np.cos(theta)) @ B - psi  # 0 on a streamline
+    bernoulli = 0.5 * (u * u + w * w) + eta - R  # 0 at constant pressure
+    mean = eta.sum() - 0.5 * (eta[0] + eta[-1])
     return np.concatenate([stream, bernoulli, [mean, eta[0] - eta[-1] - steepness]])
 
 

@@ -53,7 +53,7 @@ def breather(steepness: float, waves: int, rtol: float) -> float:
     """Largest envelope over the carrier of Peregrine's breather, which starts 1.5 of its times before its peak.
 
     Peregrine 1983 (J. Austral. Math. Soc. B 25:16) as in Chabchoub, Hoffmann and Akhmediev 2011 (Phys. Rev. Lett.
-    106:204502, eq. 2), as free waves; bound waves come with the fade-in. The envelope is of waves from k/2 to 3 k/2.
+    106:204502), as free waves; bound waves come with the fade-in. The envelope is of waves from k/2 to 3 k/2.
     """
     size, a, rate = 8 * waves, steepness / K, steepness**2 * FREQUENCY
     x = (np.arange(size) - size // 2) * LENGTH / 8

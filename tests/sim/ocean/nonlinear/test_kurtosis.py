@@ -34,9 +34,9 @@ def test_kurtosis_over_500_periods():
     """BFI about 1 (k_p Hs/2 = 0.12, gamma = 6): above that of bound waves, below the narrow-band limit.
 
     Bound waves alone give 3 + 24 k^2 m0 = 3.09 (Onorato, Osborne and Serio 2005, narrow band). The limit of free waves
-    of a narrow band is 3 + pi/sqrt(3) BFI^2 = 4.81 (Mori and Janssen 2006, J. Phys. Oceanogr. 36:1471, eq. 44).
-    Flumes with this spectrum have maxima between 3.4 and 4.2, after some 30 wavelengths (Onorato et al. 2006, Eur. J.
-    Mech. B 25:586; Mori et al. 2011, J. Phys. Oceanogr. 41:1484).
+    of a narrow band is 3 + pi/sqrt(3) BFI^2 = 4.81 (Mori and Janssen 2006, J. Phys. Oceanogr. 36:1471).
+    In a flume with this spectrum the kurtosis grows to about 4 within some 30 wavelengths (Onorato et al. 2006, Eur. J.
+    Mech. B 25:586).
     """
     length = WAVES * 2.0 * math.pi / PEAK_WAVENUMBER
     times = np.arange(0.0, 501.0, 5.0) * PEAK_PERIOD

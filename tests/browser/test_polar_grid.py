@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from tests.browser.glsl import in_base_64
 
 SOURCE = (resources.files("app.render") / "js" / "polar_grid.js").read_text("utf-8")
-TRIANGLES = {2: 40_000, 0: 12_000}  # at most, at full and at least detail
+TRIANGLES = {2: 40_000, 1: 21_000, 0: 12_000}  # at most, by fineness
 PIXELS = 200  # of each camera that are tried
 # What `aimPolar` needs of three: vectors and 4 x 4 matrices, column by column. Its frame is that of the sea.
-AIM = """([source, details, cameras, widest, highest, cell]) => {
+AIM = """([source, fineness, cameras, widest, highest, cell]) => {
     const numbers = new Float32Array(Uint8Array.from(atob(cameras), (c) => c.charCodeAt(0)).buffer);
     class Vector {
         set(x, y, z) { Object.assign(this, { x, y, z }); return this; }
@@ -36,12 +36,12 @@ AIM = """([source, details, cameras, widest, highest, cell]) => {
     const { aimPolar, POLAR, DOUBLED } = new Function(`${source}; return { aimPolar, POLAR, DOUBLED };`)();
     const found = [], still = { elements: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] };
     for (let k = 0; k < numbers.length; k += 32) {
-        const polar = { userData: { details }, geometry: { setDrawRange: (from, count) => (polar.count = count) } };
+        const polar = { userData: { fineness }, geometry: { setDrawRange: (from, count) => (polar.count = count) } };
         const uniforms = { toSea: { value: still }, polarPlace: {}, polarSteps: {}, polarTurn: {} };
         const camera = { matrixWorld: { elements: numbers.slice(k, k + 16) },
                          projectionMatrixInverse: { elements: numbers.slice(k + 16, k + 32) } };
         aimPolar({ polar, uniforms, mesh: { position: new Vector() }, widest, highest, cell }, camera);
-        const { rings, spokes } = POLAR[details], rows = polar.visible ? polar.count / 6 / (spokes - 1) : 0;
+        const { rings, spokes } = POLAR[fineness], rows = polar.visible ? polar.count / 6 / (spokes - 1) : 0;
         if (rows > rings + DOUBLED - 1) throw new Error(`${rows} rows of triangles`);
         const { polarPlace, polarSteps, polarTurn } = uniforms;
         found.push(polar.visible ? [...polarPlace.value, ...polarSteps.value, polarTurn.value, rows, spokes]
@@ -91,13 +91,13 @@ def seen(world: NDArray[np.float64], inverse: NDArray[np.float64], height: float
     return points[np.hypot(*(points - eye[:2]).T) < 50e3]
 
 
-@pytest.mark.parametrize("details", [2, 0])
-def test_the_fan_holds_all_that_is_seen_moved_by_waves(chromium: Any, details: int) -> None:
+@pytest.mark.parametrize("fineness", TRIANGLES)
+def test_the_fan_holds_all_that_is_seen_moved_by_waves(chromium: Any, fineness: int) -> None:
     widest, highest, cell = 1.5, 1.0, 2.0  # [m]
     worlds, inverses = cameras(300)
     page = chromium.new_page()
     table = in_base_64(np.hstack([worlds, inverses]))
-    fans = page.evaluate(AIM, [SOURCE, details, table, widest, highest, cell])
+    fans = page.evaluate(AIM, [SOURCE, fineness, table, widest, highest, cell])
     page.close()
     counts = []
     for world, inverse, fan in zip(worlds, inverses, fans, strict=True):
@@ -117,4 +117,4 @@ def test_the_fan_holds_all_that_is_seen_moved_by_waves(chromium: Any, details: i
         assert radius.max() <= outer * np.cos(0.5 * between) or outer > 50e3
         off = np.mod(angle - turn, 2.0 * np.pi)
         assert (off[radius > 1e-3] <= between * (spokes - 1) + 1e-4).all()
-    assert max(counts) <= TRIANGLES[details]
+    assert max(counts) <= TRIANGLES[fineness]

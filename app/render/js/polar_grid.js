@@ -11,15 +11,22 @@ const EDGE_SAMPLES = 8; // of each side of the view
 const HIGHEST = 0.05; // [rad] over the horizon up to which there may be waves
 const MIN_HALF = 0.2, MAX_HALF = 1.35; // [rad] half the angle of the fan
 const LEAST_STEP = 0.3; // step between the nearest rings, in cells of the simulated grid, if the eye is low
-// Rings with waves, spokes, and the step between rings over the distance from the eye, by the details of QUALITY.
+const MANY_PIXELS = 600_000; // of a canvas, from which on triangles are smaller
+// Rings with waves, spokes, and the step between rings over the distance from the eye, by `finenessOf`.
 const POLAR = [
   { rings: 110, spokes: 46, step: 0.06 },
-  { rings: 180, spokes: 56, step: 0.04 },
+  { rings: 180, spokes: 56, step: 0.045 },
   { rings: 240, spokes: 72, step: 0.03 },
 ];
 
-function makePolar(sea, details) {
-  const { rings, spokes } = POLAR[details], rows = rings + DOUBLED;
+// How fine the grid is for a canvas, 0 to 2: a triangle of a few pixels costs as much as one of many.
+function finenessOf({ drawingBufferWidth, drawingBufferHeight }) {
+  if (QUALITY.details() === 0) return 0;
+  return drawingBufferWidth * drawingBufferHeight > MANY_PIXELS ? 2 : 1;
+}
+
+function makePolar(sea, fineness) {
+  const { rings, spokes } = POLAR[fineness], rows = rings + DOUBLED;
   const numbers = new Float32Array(3 * rows * spokes), index = new Uint32Array(6 * (rows - 1) * (spokes - 1));
   for (let ring = 0, k = 0, at = 0; ring < rows; ring++) {
     for (let spoke = 0; spoke < spokes; spoke++, k += 3) {
@@ -36,7 +43,7 @@ function makePolar(sea, details) {
   const polar = new sea.mesh.constructor(geometry, sea.mesh.material);
   polar.frustumCulled = false;
   polar.raycast = () => {};
-  polar.userData.details = details;
+  polar.userData.fineness = fineness;
   sea.mesh.parent.add(polar);
   return polar;
 }
@@ -63,7 +70,7 @@ function viewBorder(sea, camera) {
 
 // Place the grid for a camera, and draw as many of its rings as are needed.
 function aimPolar(sea, camera) {
-  const { polar, uniforms } = sea, { rings, spokes, step } = POLAR[polar.userData.details];
+  const { polar, uniforms } = sea, { rings, spokes, step } = POLAR[polar.userData.fineness];
   const v = sea.mesh.position.clone(), e = camera.matrixWorld.elements;
   const eye = v.setFromMatrixPosition(camera.matrixWorld).applyMatrix4(uniforms.toSea.value).toArray();
   const turned = (x, y, z) => v.set(x, y, z).transformDirection(uniforms.toSea.value).toArray();

@@ -1,6 +1,6 @@
 // The photograph of the sky as a table by azimuth, elevation and blur, which the shaders of water, sky and rain look up.
 // It is drawn anew when the photograph or a uniform that it depends on changes. A browser that cannot draw into half
-// floats has no table: there each pixel looks at the photograph itself.
+// floats, or does not link the table's program, has no table: there each pixel looks at the photograph itself.
 
 const SKY_UNIFORMS = ["skyline", "skyFold", "skyTint", "sunDirection"]; // of which it is a function
 const HALF_FLOAT = 1016, RGBA = 1023, LINEAR = 1006, REPEAT = 1000, CLAMP = 1001; // three's constants
@@ -43,7 +43,7 @@ function drawSkyTable(base, sea, renderer, scene) {
     skyTables.set(base, { target, dome, key: "" });
   }
   const table = skyTables.get(base);
-  if (table.key === key) return;
+  if (table.key === key || refused.has(table.dome.material)) return;
   table.key = key;
   skiesDrawn += 1;
   const { material } = table.dome;
@@ -60,7 +60,7 @@ function drawSkyTable(base, sea, renderer, scene) {
   renderer.setRenderTarget(table.target);
   renderer.render(table.dome, window.__viserMutable.camera);
   renderer.setRenderTarget(before);
-  uniforms.skyTable.value = table.target.texture;
+  uniforms.skyTable.value = isLinked(renderer, material) ? table.target.texture : null;
 }
 
 // The text of a fragment shader that shows the sky of these uniforms.

@@ -183,8 +183,9 @@ shaders.push({
       return null;
     }
     mesh.layers.mask = 0; // the polar grid is drawn in its place, with its material
-    if (sea.polar && sea.polar.userData.details !== QUALITY.details()) disposePolar(sea);
-    sea.polar ??= makePolar(sea, QUALITY.details());
+    const fineness = finenessOf(renderer.getContext());
+    if (sea.polar?.userData.fineness !== fineness) disposePolar(sea);
+    sea.polar ??= makePolar(sea, fineness);
     sea.polar.material = mesh.material;
     aimPolar(sea, camera);
 

@@ -51,3 +51,4 @@ class MooringReadings(NamedTuple):
     most_offset: float  # [m]
     most_at: tuple[int, float]  # line, from 0, and time [s] of the largest tension
     stability: Gauge
+    rest_stretch: float  # of the line that is stretched most at rest, over its length

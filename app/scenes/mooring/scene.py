@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.formats.formatting import metres, percent
 from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
@@ -53,6 +54,8 @@ PATH_INTERVAL = 0.25  # [s]
 # Largest speeds of what is dragged, so that no line snaps by it: in distances of anchors and sizes of the body [1/s].
 ANCHOR_SPEED, FAIRLEAD_SPEED = 0.02, 0.1
 DRAG_RATE = 1.0  # [rad/s] natural frequency of the mouse's pull on the body
+# At rest, over a line's length: beyond it the line is too short for its anchor, which no shorter step mends.
+MAX_STRETCH = 0.2
 MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
 FARTHEST = 5.0  # in lengths of a line and distances of anchors, beyond which a run has diverged
 LINE_SERIES = tuple(f"line {i + 1}" for i in range(MAX_LINES))
@@ -66,7 +69,7 @@ PLOTS = {
 CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}
 CHANGING = (
     "state", "system", "places", "tensions", "path", "path_count", "most_offset", "rest_place", "anchors",
-    "fairleads", "rest_scale", "failure", "body", "sea", "nodes", "links", "step_modes",
+    "fairleads", "rest_scale", "rest_stretch", "failure", "body", "sea", "nodes", "links", "step_modes",
 )  # fmt: skip
 
 
@@ -113,6 +116,7 @@ class MooringScene:
         self.nodes, self.links = nodes_and_links(self.system, p)
         self.rest_place = self.body_place()
         self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
+        self.rest_stretch = np.linalg.norm(np.diff(self.points_of_lines(), axis=1), axis=2).sum(axis=1) / p.length - 1.0
         self.hold: tuple[int, Vector] | None = None
         self.path, self.path_count = np.empty((0, 2), np.float32), 0
         self.most_offset = 0.0
@@ -260,7 +264,14 @@ class MooringScene:
 
     def diagnosis(self) -> str:
         """Cause of the divergence, and settings that would hold."""
-        method = INTEGRATORS[self.params.integrator]
+        line, p = int(self.rest_stretch.argmax()), self.params
+        if self.rest_stretch[line] > MAX_STRETCH:
+            return (
+                f"Line {line + 1} is stretched by {percent(self.rest_stretch[line])} at rest: {metres(p.length)} are "
+                f"too short for an anchor {metres(p.reach)} away in {metres(p.depth)} of water. Give it more length, "
+                "or bring its anchor nearer."
+            )
+        method = INTEGRATORS[p.integrator]
         return divergence_text(
             self.time, method, self.step, self.stability, leapfrog_alternative(method, self.stability)
         )
@@ -271,7 +282,7 @@ class MooringScene:
         tension = np.empty(len(p.ends))
         v = state.velocities(p, 0.0)
         set_tensions(state.x.reshape(-1), v, p, tension)
-        self.tension, self.points = tension[self.links], np.moveaxis(state.x[:, self.nodes], 0, -1)
+        self.tension, self.points = tension[self.links], self.points_of_lines()
         self.tensions.measure(state.t, self.tension, self.points)
         place = self.body_place()
         self.offset = float(np.linalg.norm((place - self.rest_place)[:2]))
@@ -279,6 +290,10 @@ class MooringScene:
         if state.t >= PATH_INTERVAL * self.path_count:
             self.path = np.concatenate((self.path[1 - MAX_PATH :], place[None, :2].astype(np.float32)))
             self.path_count += 1
+
+    def points_of_lines(self) -> NDArray[np.float64]:
+        """(lines, segments + 1, 3) [m] of the nodes of each line, from its anchor."""
+        return np.moveaxis(self.state.x[:, self.nodes], 0, -1)
 
     def add_plot_row(self) -> None:
         """Add tensions and offset at the scene's time."""
@@ -298,7 +313,9 @@ class MooringScene:
     def readings(self) -> MooringReadings:
         """Numbers for the panel."""
         now = self.tensions
-        return MooringReadings(now.readings(self.lying()), self.offset, self.most_offset, now.most_at, self.stability)
+        stretch = float(self.rest_stretch.max())
+        lines = now.readings(self.lying())
+        return MooringReadings(lines, self.offset, self.most_offset, now.most_at, self.stability, stretch)
 
     def frame(self) -> MooringFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
@@ -405,6 +422,12 @@ def needs(params: Params) -> tuple[str, ...]:
     return ("leapfrog",) if params.integrator == "leapfrog" else ("leapfrog", params.integrator)
 
 
+def remedy(snapshot: Any) -> float:
+    """A time step [s] at which a run that diverged would have held; 0 if the step is not at fault."""
+    now: MooringReadings = snapshot.readings
+    return 0.0 if now.rest_stretch > MAX_STRETCH else holding_step(snapshot.params.time_step, now.stability)
+
+
 SCENE = SceneKind(
     name="mooring",
     title="Mooring",
@@ -424,6 +447,6 @@ SCENE = SceneKind(
         "points": "m", "body": "m", "rotation": "1", "tension": "N", "surface": "m", "path": "m", "uplift": "1",
     },
     measures=measures,
-    remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
+    remedy=remedy,
     live_values=live_values,
 )  # fmt: skip

@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import random
+import re
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_cu
 from app.scenes.mooring.scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import BED_ROWS, View, bed_colours
+from app.server.loop import SimLoop
 from sim.mooring import critical_step
 from sim.mooring.balance import what_is_left
 from sim.mooring.catenary import catenary
@@ -180,6 +182,19 @@ def test_the_gauge_is_that_of_the_library_and_a_longer_step_diverges():
         run(long, 60.0)
     kind = scene_named("mooring")
     assert kind.remedy is not None
+
+
+def test_a_run_that_begins_with_lines_that_are_too_short_blames_them_and_no_step():
+    """40 m of chain to an anchor 80 m away in 40 m of water: the straight way alone is more than twice as long."""
+    kind = scene_named("mooring")
+    short = check_record(kind.params, {**kind.presets["Chain catenary"], "length": 40.0})
+    loop = SimLoop(kind.make(short), effort=lambda: 0.0)
+    for _ in range(60):
+        loop.tick(1 / 60)
+    said = r"Line \d is stretched by 9\d\s% at rest: 40 m are too short for an anchor 80 m away in 40 m"
+    assert re.match(said, loop.halted)
+    assert "step" not in loop.halted
+    assert kind.remedy(loop.latest) == 0.0
 
 
 def test_a_checkpoint_goes_on_as_the_run_did():

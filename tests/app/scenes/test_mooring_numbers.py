@@ -74,8 +74,8 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
     first, p = found.lines[0], scene.params
     expected = {
         "fairlead_tension": first.fairlead, "anchor_tension": first.anchor, "uplift": first.uplift,
-        "largest_tension": max(line.most_at_fairlead for line in found.lines), "lying_length": first.lying,
-        "hanging_length": p.length - first.lying, "slack_share": 0.0, "offset": found.offset,
+        "largest_tension": max(line.most_at_fairlead for line in found.lines), "line_1_lying_length": first.lying,
+        "hanging_length": p.length - first.lying, "line_1_slack_share": 0.0, "offset": found.offset,
         "fairlead_height": float(scene.points[0, -1, 2]) + p.depth,
         "line_weight": 9.81 * (80.0 - 1025.0 * math.pi / 4.0 * 0.09**2),
     }  # fmt: skip

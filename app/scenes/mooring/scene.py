@@ -264,13 +264,9 @@ class MooringScene:
 
     def diagnosis(self) -> str:
         """Cause of the divergence, and settings that would hold."""
-        line, p = int(self.rest_stretch.argmax()), self.params
-        if self.rest_stretch[line] > MAX_STRETCH:
-            return (
-                f"Line {line + 1} is stretched by {percent(self.rest_stretch[line])} at rest: {metres(p.length)} are "
-                f"too short for an anchor {metres(p.reach)} away in {metres(p.depth)} of water. Give it more length, "
-                "or bring its anchor nearer."
-            )
+        p = self.params
+        if self.rest_stretch.max() > MAX_STRETCH:
+            return too_short_text(int(self.rest_stretch.argmax()), float(self.rest_stretch.max()), p)
         method = INTEGRATORS[p.integrator]
         return divergence_text(
             self.time, method, self.step, self.stability, leapfrog_alternative(method, self.stability)
@@ -384,6 +380,14 @@ class MooringScene:
         self.measure()
         self.plot_rows.resume()
         self.last_moments.clear()
+
+
+def too_short_text(line: int, stretch: float, p: Params) -> str:
+    """Cause of a divergence that no shorter step mends. line: from 0; stretch: at rest, over its length."""
+    return (
+        f"Line {line + 1} is stretched by {percent(stretch)} at rest: {metres(p.length)} are too short for an anchor "
+        f"{metres(p.reach)} away in {metres(p.depth)} of water. Give it more length, or bring its anchor nearer."
+    )
 
 
 def rest_or_start(system: System) -> tuple[Rest, str]:

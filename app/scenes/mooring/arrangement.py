@@ -22,6 +22,8 @@ BODY_DRAG = 1.0  # coefficient of drag on the wet side of the body
 HEIGHT_OVER_WIDTH = 0.55  # of a buoy and of a box
 BOX_LENGTH = 1.6  # of a box, over its width
 FLOATING_PART = 0.4, 0.65  # of the length from the anchor: where floats are
+MAX_SURFACE_POINTS = 49  # along a side of the drawn surface
+SURFACE_SIDE = 2.6  # of the drawn surface, in `extent`s
 
 
 class Places(NamedTuple):
@@ -86,6 +88,21 @@ def heights(sea: Components | None, along: NDArray[np.float64], t: float, fade: 
     k = np.hypot(sea.kx, sea.ky)
     phase = np.outer(along, k) + 2.0 * math.pi * sea.phase - sea.omega * t
     return fade * (np.cos(phase) @ sea.amplitude)
+
+
+def surface_side(params: Params) -> float:
+    """Side of the drawn surface [m]."""
+    return SURFACE_SIDE * extent(params)
+
+
+def surface_heights(params: Params, sea: Components | None, t: float, fade: float) -> NDArray[np.float32]:
+    """Heights (m, m) [m] of the drawn surface, which lies about the origin, at time t [s]; fade: of all."""
+    side = surface_side(params)
+    axis = np.linspace(-0.5 * side, 0.5 * side, MAX_SURFACE_POINTS)
+    along = np.linspace(-0.75 * side, 0.75 * side, 512)
+    bearing = math.radians(params.direction)
+    place = axis[:, None] * math.cos(bearing) + axis[None] * math.sin(bearing)
+    return np.interp(place, along, heights(sea, along, t, fade)).astype(np.float32)
 
 
 def line_types(params: Params) -> tuple[LineType, LineType]:

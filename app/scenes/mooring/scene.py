@@ -16,14 +16,14 @@ from app.scenes.mooring.arrangement import (
     Places,
     body_of,
     build,
-    extent,
     first_places,
-    heights,
     hull_of,
     line_types,
     nodes_and_links,
     sea_of,
     sections,
+    surface_heights,
+    surface_side,
 )
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.live_values import live_values
@@ -47,8 +47,6 @@ from sim.validation import ConvergenceError
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
 FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
-MAX_SURFACE_POINTS = 49  # along a side of the drawn surface
-SURFACE_SIDE = 2.6  # of the drawn surface, in `extent`s
 MAX_PATH = 1200  # places of the body's path that are kept
 PATH_INTERVAL = 0.25  # [s]
 # Largest speeds of what is dragged, so that no line snaps by it: in distances of anchors and sizes of the body [1/s].
@@ -327,8 +325,8 @@ class MooringScene:
             points=self.points.astype(np.float32),
             tension=self.tension.astype(np.float32),
             full_scale=MAX_TENSION_SCALE * self.rest_scale,
-            surface=self.surface(),
-            side=SURFACE_SIDE * extent(p),
+            surface=surface_heights(p, self.sea, self.time, self.fade),
+            side=surface_side(p),
             path=self.path,
             rest=vector_of(self.rest_place),
             offset=self.most_offset,
@@ -337,15 +335,6 @@ class MooringScene:
         )
         self.last_moments.add(self.time, frame, frame.points)
         return frame
-
-    def surface(self) -> NDArray[np.float32]:
-        """Heights (m, m) [m] of the water about the origin."""
-        side = SURFACE_SIDE * extent(self.params)
-        axis = np.linspace(-0.5 * side, 0.5 * side, MAX_SURFACE_POINTS)
-        along = np.linspace(-0.75 * side, 0.75 * side, 512)
-        bearing = math.radians(self.params.direction)
-        place = axis[:, None] * math.cos(bearing) + axis[None] * math.sin(bearing)
-        return np.interp(place, along, heights(self.sea, along, self.time, self.fade)).astype(np.float32)
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""

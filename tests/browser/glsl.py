@@ -13,7 +13,7 @@ from app.render.material import MAX_WATERLINES
 SHADER = (resources.files("app.render") / "js" / "water_shader.js").read_text("utf-8")
 # A picture of float numbers, a point for each input. What three would insert is left out: no function here uses it.
 # Numbers travel as the bytes of single-precision numbers in base 64: a list of them takes seconds.
-RUN = """([constants, shader, expression, table, uniforms, tileSide, tile]) => {
+RUN = """([constants, shader, expression, table, uniforms, tileSide, tile, details]) => {
     const decode = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
     const points = decode(table);
     const GLSL = new Function(`${constants}; ${shader}; return WATER_GLSL;`)();
@@ -33,7 +33,7 @@ RUN = """([constants, shader, expression, table, uniforms, tileSide, tile]) => {
     gl.attachShader(program, make(gl.FRAGMENT_SHADER, `#version 300 es
         precision highp float;
         #define MAX_WATERLINES 13
-        #define DETAILS 2
+        #define DETAILS ${details}
         uniform vec3 cameraPosition;
         uniform mat4 toSea;
         uniform highp sampler2D inputs;
@@ -87,17 +87,19 @@ def evaluate(
     points: NDArray[np.float64],
     uniforms: dict[str, Any] | None = None,
     tile: NDArray[np.float64] | None = None,
+    details: int = 2,
 ) -> NDArray[np.float64]:
     """A GLSL expression, a vec4, at each of (n, up to 4) points, in it "p": (n, 4).
 
-    uniforms: vec3 by name; the others are 0. tile: (m, m, 4), of both textures of the waves.
+    uniforms: vec3 by name; the others are 0. tile: (m, m, 4), of both textures of the waves. details:
+    of the shader.
     """
     inputs = np.zeros((len(points), 4))
     inputs[:, : points.shape[1]] = points
     values = {name: [float(v) for v in value] for name, value in (uniforms or {}).items()}
     side, texels = (0, "") if tile is None else (len(tile), in_base_64(tile))
     constants = f"const MAX_WATERLINES = {json.dumps(MAX_WATERLINES)}"
-    found = page.evaluate(RUN, [constants, SHADER, expression, in_base_64(inputs), values, side, texels])
+    found = page.evaluate(RUN, [constants, SHADER, expression, in_base_64(inputs), values, side, texels, details])
     return np.frombuffer(base64.b64decode(found), np.float32).astype(float).reshape(-1, 4)
 
 

@@ -37,7 +37,8 @@ SCENES = {
 TAKE_OVER = """() => { const viewer = window.__viserMutable, scene = viewer.scene, earlier = scene.onBeforeRender;
     scene.onBeforeRender = function (renderer, of, camera, target) {
         if (!window.drawOne && of === scene && camera === viewer.camera) {
-            const draw = renderer.render.bind(renderer), gl = renderer.getContext(), pixel = new Uint8Array(4);
+            const own = renderer.render.springtideEarlier ?? renderer.render; // frames.js would draw no frame twice
+            const draw = own.bind(renderer), gl = renderer.getContext(), pixel = new Uint8Array(4);
             window.drawOne = () => {
                 draw(scene, camera);
                 const triangles = renderer.info.render.triangles;

@@ -113,6 +113,25 @@ def test_facets_that_glint_have_their_variance_and_the_light_of_a_smooth_path(pa
         assert found[:, 2].max() > 2.0 * smooth
 
 
+@pytest.mark.parametrize(("details", "least", "most"), [(2, 0.2, 1.0), (0, 0.0, 0.1)])
+def test_at_less_detail_few_sparkles_are_a_single_pixel(page: Any, details: int, least: float, most: float) -> None:
+    """Drawn pixels at a grazing angle, which are four times as long as wide on the water."""
+    x, y = np.meshgrid(0.02 * np.arange(200), 0.08 * np.arange(200), indexing="ij")
+    points = np.column_stack([x.ravel(), y.ravel()])
+    share = constant("GLINT_SHARE" if details == 2 else "WIDE_GLINT_SHARE")
+    facet = f"facetAt(p.xy, facetWidth(vec2(0.02, 0.0), vec2(0.0, 0.08)), {share * 0.004})"
+    sun = "normalize(vec3(1.0, 0.0, 0.5)), normalize(vec3(-1.0, 0.1, 0.4))"
+    light = f"{facet}.z * mirroredFrom({sun}, vec2(0.1) + {facet}.xy, {(1.0 - share) * 0.004}, 0.37, 1.34)"
+    found = evaluate(page, f"vec4({light}, 0.0, 0.0, 0.0)", points, {"seaState": (1.0, 1.0, 0.0)}, details=details)
+    bright = found[:, 0].reshape(x.shape) > 3.0 * found[:, 0].mean()
+    around = np.zeros(x.shape, int)
+    for shift in itertools.product((-1, 0, 1), repeat=2):
+        around += np.roll(bright, shift, (0, 1))
+    single = (around[bright] == 1).mean()
+    assert bright.mean() > 0.01
+    assert least <= single <= most
+
+
 @pytest.mark.parametrize("distance", [5.0, 50.0, 500.0])
 def test_normals_drawn_and_filtered_have_the_spectrum_s_slope_variance(page: Any, distance: float) -> None:
     """Ripples of the shader, and the simulated waves of a tile, at the pixel that is seen at this distance."""

@@ -40,6 +40,7 @@
     const found = { x: box.x - canvas.left, y: box.y - canvas.top, width: box.width, height: box.height };
     if (free && Object.keys(found).every((key) => Math.abs(free[key] - found[key]) < 1)) return;
     free = found;
+    if (viewer.camera) centre(viewer.camera, viewer.canvas); // frames.js compares cameras before it draws
     viewer.requestRender();
   }
 
@@ -165,8 +166,6 @@
   // A script that replaces its own earlier hook asks for `springtideEarlier`, what there was before it.
   function makeHook(earlier) {
     const hook = function (renderer, scene, camera, target) {
-      // viser fades the canvas in over the first frames after its sky is there: many seconds where frames are slow.
-      if (scene.environment) renderer.domElement.style.opacity = "1";
       beforeRender(camera);
       earlier.call(this, renderer, scene, camera, target);
     };

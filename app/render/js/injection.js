@@ -97,7 +97,15 @@ function report() {
   send({ type: "GuiUpdateMessage", uuid, updates: { value: `${PAGE}\n${drawn}` } });
 }
 
+let paced = null; // the renderer whose frames are paced
+
 function beforeRender(renderer, scene, camera) {
+  if (paced !== renderer) {
+    paced = renderer;
+    makeOpaque(renderer, scene);
+    QUALITY.start(renderer);
+    paceFrames(renderer);
+  }
   window.__springtide = { memory: () => ({ ...renderer.info.memory }), quality: QUALITY, skiesDrawn }; // tests read it
   QUALITY.beforeRender(renderer);
   const nodes = window.__viserMutable.nodeRefFromName;

@@ -108,6 +108,7 @@ function drawLeaders({ geometry, material, renderOrder, constructor }, lines) {
     const how = { vertexShader, uniforms, fragmentShader: LEADER_FRAGMENT, depthTest: false, depthWrite: false };
     leaders = new constructor(made, new material.constructor({ ...how, transparent: true }));
     Object.assign(leaders, { name: "springtide-leaders", frustumCulled: false, renderOrder });
+    leaders.userData.springtideDerived = true;
     labelGroup.add(leaders);
   }
   const { aLabelIndex, aParams, aRect } = leaders.geometry.attributes;

@@ -70,6 +70,7 @@ function applyPacked(mesh, data, attribute, rest) {
     }
   }
   position.needsUpdate = own.needsUpdate = true; // counts their versions on
+  position.springtideWrites = (position.springtideWrites ?? 0) + 1; // frames.js does not count them as changes
   own.springtide = { packed: packed.array, version: packed.version, written: position.version };
   mesh.geometry.computeVertexNormals();
   mesh.geometry.computeBoundingSphere();

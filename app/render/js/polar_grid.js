@@ -43,7 +43,7 @@ function makePolar(sea, fineness) {
   const polar = new sea.mesh.constructor(geometry, sea.mesh.material);
   polar.frustumCulled = false;
   polar.raycast = () => {};
-  polar.userData.fineness = fineness;
+  Object.assign(polar.userData, { fineness, springtideDerived: true });
   sea.mesh.parent.add(polar);
   return polar;
 }

@@ -1,12 +1,16 @@
 // How finely this browser draws: its share of the screen's pixels, and how much detail the shaders of water and rain have.
 //
-// "Automatic" measures how long frames take while the picture moves, and goes down step by step where they are slow, and
-// up again with care. The choice belongs to the browser: it is kept in its local storage and is part of no link, preset
+// "Automatic" starts at the last step without a graphics card, else where this browser was when it last had the lab open.
+// It measures how long frames take while the picture moves (frames.js), and goes down step by step if they are slow, at
+// once if one is very slow, and up again with care. The choice belongs to the browser: it is kept in its local storage and is part of no link, preset
 // or set-up. A page with viser's "fixedDpr" in its address wants a picture that does not change: it is drawn as it says.
 // Pictures that the server asks for have all pixels and details.
 
 const QUALITY = (() => {
   const KEY = "springtide-quality"; // of the local storage
+  const STEPS_KEY = "springtide-quality-steps"; // of the local storage: the last step of each renderer, by its name
+  // Names of renderers without a graphics card of their own.
+  const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|microsoft basic render|paravirtual/i;
   const STEPS = [
     // Pixels first: fewer of them need no other program.
     { quality: "high", pixels: 1, details: 2 },
@@ -21,12 +25,14 @@ const QUALITY = (() => {
   const WINDOW = 2000; // [ms] of frames of which the median counts
   const LEAST_FRAMES = 3; // of a window
   const SKIPPED = 3; // frames after a change: they compile programs
+  const LONG = 300; // [ms] of a frame, from which on one such frame is enough
+  const TERRIBLE = 500; // [ms] of a frame, from which on the last step is taken at once
   const PATIENCE = 20_000; // [ms] of fast frames before a step up; four times as long after a step up that was too much
   const TRIAL = 10_000; // [ms] after a step up in which slow frames mean that it was too much
 
   // The step of "automatic", from the lengths of frames [ms] that `take` is given.
-  function makeJudge() {
-    let step = 0, frames = [], spent = 0, skipped = SKIPPED, slowWindows = 0, fast = 0, patience = PATIENCE, trial = 0;
+  function makeJudge(step = 0) {
+    let frames = [], spent = 0, skipped = SKIPPED, slowWindows = 0, fast = 0, patience = PATIENCE, trial = 0;
     const forget = () => {
       [frames, spent, skipped, slowWindows] = [[], 0, SKIPPED, 0];
     };
@@ -39,7 +45,8 @@ const QUALITY = (() => {
       step: () => step,
       forget,
       take(length) {
-        if (skipped > 0) return void (skipped -= 1);
+        if (skipped > 0) return void (skipped = length > LONG ? 0 : skipped - 1);
+        if (length > TERRIBLE && step < STEPS.length - 1) return void change(STEPS.length);
         frames.push(length);
         spent += length;
         if (spent < WINDOW || frames.length < LEAST_FRAMES) return;
@@ -63,9 +70,10 @@ const QUALITY = (() => {
     };
   }
 
-  const judge = makeJudge();
+  let judge = makeJudge();
   const isFixed = new URLSearchParams(location.search).has("fixedDpr");
-  let current = STEPS[0], pending = false, dismissed = false, choice = "automatic", line = null;
+  let current = STEPS[0], dismissed = false, choice = "automatic", line = null;
+  let rendererName = "", valid = 0; // since when [ms] lengths of frames count
 
   function readChoice() {
     try {
@@ -76,6 +84,33 @@ const QUALITY = (() => {
     }
   }
 
+  // The last steps by name of the renderer; empty in a browser without storage.
+  function readSteps() {
+    try {
+      return JSON.parse(localStorage.getItem(STEPS_KEY)) ?? {};
+    } catch {
+      return {};
+    }
+  }
+
+  function keepStep() {
+    try {
+      localStorage.setItem(STEPS_KEY, JSON.stringify({ ...readSteps(), [rendererName]: judge.step() }));
+    } catch {
+      // It is judged again.
+    }
+  }
+
+  function nameOf(renderer) {
+    const gl = renderer.getContext(), more = gl.getExtension("WEBGL_debug_renderer_info");
+    return String(gl.getParameter(more ? more.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  }
+
+  function forget() {
+    judge.forget();
+    valid = performance.now();
+  }
+
   function choose(name) {
     try {
       localStorage.setItem(KEY, name);
@@ -84,7 +119,7 @@ const QUALITY = (() => {
     }
     choice = name;
     dismissed = false;
-    judge.forget();
+    forget();
     show();
     window.__viserMutable.requestRender();
   }
@@ -143,11 +178,14 @@ const QUALITY = (() => {
     return window.__viserMutable.getRenderRequestState === "capture";
   }
 
+  // Pixels that are drawn per pixel of the page.
+  const ratio = () => devicePixelRatio * (isCapturing() ? 1 : current.pixels);
+
   readChoice();
   document.addEventListener("change", (event) => {
     if (event.target instanceof HTMLSelectElement && "springtideQuality" in event.target.dataset) choose(event.target.value);
   });
-  document.addEventListener("visibilitychange", judge.forget);
+  document.addEventListener("visibilitychange", forget);
   addEventListener("storage", (event) => {
     if (event.key !== KEY) return;
     readChoice();
@@ -164,28 +202,35 @@ const QUALITY = (() => {
     isCapturing, // a picture that the server asked for
     // How much detail the shaders of this frame have: 2 all, 1 less, 0 least.
     details: () => (isFixed || isCapturing() ? 2 : current.details),
-    // Called before each frame is drawn: sets its pixels, and has its length measured.
+    // Begin with a renderer: at the step that it had when the page was last open, and at the last one if it has no
+    // graphics card. The pixels are set here alone: viser's own monitor and its resizing set others.
+    start(renderer) {
+      rendererName = nameOf(renderer);
+      const kept = readSteps()[rendererName];
+      judge = makeJudge(kept in Object.keys(STEPS) ? kept : SOFTWARE.test(rendererName) ? STEPS.length - 1 : 0);
+      show();
+      if (isFixed) return;
+      wrapMethod(renderer, "setPixelRatio", (earlier) => function () {
+        earlier.call(this, ratio());
+      });
+    },
+    // Called before each frame is drawn: sets its pixels.
     beforeRender(renderer) {
       if (isFixed) return;
-      const capturing = isCapturing();
-      const ratio = devicePixelRatio * (capturing ? 1 : current.pixels);
-      if (Math.abs(renderer.getPixelRatio() - ratio) > 1e-3) renderer.setPixelRatio(ratio);
+      if (Math.abs(renderer.getPixelRatio() - ratio()) > 1e-3) renderer.setPixelRatio(ratio());
+    },
+    // A frame took so long [ms] from the time when it began; compiled: whether programs were made for it.
+    take(length, began, compiled) {
       // A clip whose pictures change their size in the middle cannot be played.
-      const measured = choice === "automatic" && document.visibilityState === "visible" && !window.__springtideClip;
-      if (capturing || !measured) return judge.forget();
-      if (pending) return;
-      pending = true;
-      // The time to the next frame, where a frame was drawn: a scene that sends few pictures is not slow to draw.
-      const drawn = performance.now();
-      requestAnimationFrame(() => {
-        pending = false;
-        const before = judge.step();
-        judge.take(performance.now() - drawn);
-        if (judge.step() !== before) {
-          show();
-          window.__viserMutable.requestRender();
-        }
-      });
+      const measured = !isFixed && choice === "automatic" && document.visibilityState === "visible" && !window.__springtideClip;
+      if (!measured) judge.forget();
+      if (!measured || began < valid || compiled) return;
+      const before = judge.step();
+      judge.take(length);
+      if (judge.step() === before) return;
+      keepStep();
+      show();
+      window.__viserMutable.requestRender();
     },
   };
 })();

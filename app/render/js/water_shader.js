@@ -544,6 +544,14 @@ const WATER_GLSL = {
 
     const float LIGHT_LIMIT = 6.0; // radiance that is reduced to its half
     const float GLINT_SHARE = 0.7; // of the variance of slopes too fine to be drawn: that between facets that glint
+    const float WIDE_GLINT_SHARE = 0.35; // the same at less detail
+
+    // Width [m] for which facets are made, from the steps of the place to the next pixels. At less detail a drawn pixel is
+    // wide on the screen, and a sparkle in a single one would be a block: facets span two of them there.
+    float facetWidth(vec2 fx, vec2 fy) {
+      float a = dot(fx, fx), b = dot(fy, fy);
+      return DETAILS > 1 ? sqrt(min(a, b)) : 1.5 * pow(max(a * b, 1e-12), 0.25);
+    }
 
     // The facet at x: its random slope, which turns with time, Gaussian with this variance along each axis; and the share
     // of its light that comes from x, of mean 1: it is brightest near its middle. So glints are single round sparkles about
@@ -652,10 +660,11 @@ const WATER_GLSL = {
         mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a);
       }
 
-      vec3 facet = facetAt(rest, sqrt(min(dot(fx, fx), dot(fy, fy))), GLINT_SHARE * variance);
+      float glints = DETAILS > 1 ? GLINT_SHARE : WIDE_GLINT_SHARE;
+      vec3 facet = facetAt(rest, facetWidth(fx, fy), glints * variance);
       float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z * facet.z
                     * mirroredFrom(sunDirection, V, slope + facet.xy,
-                                   (1.0 - GLINT_SHARE) * variance + 0.0004, facing, optics.x);
+                                   (1.0 - glints) * variance + 0.0004, facing, optics.x);
       vec3 toFire = firePlace - at;
       float near = dot(toFire, toFire) + 1.0;
       toFire /= sqrt(near);

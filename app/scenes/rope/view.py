@@ -190,7 +190,7 @@ class View(SpringView[Params, RopeFrame, RopeReadings]):
         g = snapshot.readings
         step, stiffness = g.stability.critical_step, g.largest_stiffness
         unit = "N/m" if g.parameter == "stiffness" else "N"
-        text = f"stable up to {number(stiffness)} {unit}" if stiffness > 0 else "no stiffness is stable at this step"
+        text = f"limit {number(stiffness)} {unit}" if stiffness > 0 else "no stiffness is stable at this step"
         if step == float("inf"):
             text = "every stiffness is stable"
         return {"integrator": g.note, "time_step": step_mark(step), g.parameter: text}

@@ -47,7 +47,7 @@ def step_mark(critical_step: float) -> str:
     """The line below the control of the time step. critical_step: the largest stable step [s], 0 or infinity too."""
     if critical_step == math.inf:
         return "every step is stable"
-    return f"stable up to {longest_step(critical_step)}" if critical_step > 0 else "no step is stable with this method"
+    return f"limit {longest_step(critical_step)}" if critical_step > 0 else "no step is stable with this method"
 
 
 def colour_scale(low: str, name: object, high: str, *, clipped: bool) -> Html:

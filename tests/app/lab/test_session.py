@@ -99,7 +99,7 @@ def right(session: Session) -> Session:
     taken = session.rope.versions[-1].saved.texts["rope.py"] if session.rope.versions else b""
     if session.state.error is not None or taken != RIGHT.encode():
         save(session, RIGHT)
-        wait_for(lambda: session.state.error is None and session.rope.taken == session.state.version)
+    wait_for(lambda: session.state.error is None and session.rope.taken == session.state.version)
     return session
 
 

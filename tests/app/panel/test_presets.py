@@ -30,6 +30,7 @@ def test_a_value_set_back_is_no_change(lab: Viewer) -> None:
 
 
 def test_a_preset_starts_running(lab: Viewer) -> None:
+    lab.served.stop_threads()
     lab.loop.handle(Pause())
     lab.panel.load("Lab scene: 50 points")
     lab.loop.tick(0.0)

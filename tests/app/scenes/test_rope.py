@@ -367,7 +367,7 @@ def test_a_sweep_records_the_tip_of_the_rope_and_nothing_dissipated_at_the_start
 
 
 def test_the_line_under_the_time_step_names_the_largest_that_is_stable() -> None:
-    assert step_mark(0.0123) == "stable up to 1/82 s (12 ms)"
+    assert step_mark(0.0123) == "limit 1/82 s (12 ms)"
     assert step_mark(0.0) == "no step is stable with this method"
     assert step_mark(math.inf) == "every step is stable"
 

@@ -16,11 +16,10 @@ from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_cu
 from app.scenes.mooring.scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import BED_ROWS, View, bed_colours
-from sim.mooring import critical_step
-from sim.mooring.balance import what_is_left
-from sim.mooring.catenary import catenary
+from sim.mooring import balance, critical_step, interior
 from sim.parameters import check_record
 from sim.validation import ConvergenceError
+from tests.sim.mooring.catenary import catenary
 
 SMALL: dict[str, Any] = {"segments": 12, "lines": 1, "steady_force": 10.0, "time_step": 1 / 120}
 
@@ -295,16 +294,19 @@ STATIC = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("count", [20, pytest.param(2000, marks=pytest.mark.stress)])
-def test_random_moorings_rest_or_say_what_is_left(count):
-    rng, failed = random.Random(4), 0
-    for _ in range(count):
-        params = random_params(rng)
+def corrections_of(params: Params) -> int:
+    """Corrections of the search for rest, which has to find it."""
+    with pytest.MonkeyPatch.context() as patch:
+        done = []
+        for module, name in ((interior.Tangent, "step"), (balance, "corrected")):
+            plain = getattr(module, name)
+            patch.setattr(module, name, lambda *args, plain=plain: (done.append(1), plain(*args))[1])
         system = build(params, first_places(params), body_of(params, None), None)
-        try:
-            rest = system.at_rest()
-        except ConvergenceError:
-            failed += 1
-            continue
-        assert what_is_left(rest.nodes, system.kernel_view(1.0))[1]
-    assert failed <= 0.12 * count
+        assert balance.what_is_left(system.at_rest().nodes, system.kernel_view(1.0))[1]
+        return len(done)
+
+
+@pytest.mark.parametrize("count", [100, pytest.param(2000, marks=pytest.mark.stress)])
+def test_random_moorings_rest(count):
+    rng = random.Random(4)
+    assert max(corrections_of(random_params(rng)) for _ in range(count)) <= 40

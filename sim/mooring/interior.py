@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring.balance import Pieces
-from sim.mooring.chains import Chains
+from sim.mooring.chains import Chains, Eliminated
 from sim.mooring.cones import (
     MIRROR,
     UNIT,
@@ -173,7 +173,7 @@ class Tangent:
     """The laws linearised about a state, to which the steps of one correction are solved."""
 
     def __init__(self, pairs: Pairs, chains: Chains, x: Array, state: State) -> None:
-        self.pairs, self.chains, self.x, self.state = pairs, chains, x, state
+        self.pairs, self.x, self.state = pairs, x, state
         p = pairs.p
         self.force = forces_on_free(np.ascontiguousarray(pairs.forces(x, state).T), x, p)
         self.errors = pairs.errors(x, state)
@@ -189,9 +189,10 @@ class Tangent:
         self.blocks = (np.eye(3) + along[:, None, None] * outer) / self.square[:, None, None]
         self.yields = state.gap + state.press / pairs.bed
         self.rises = pairs.height / pairs.whole + state.above / state.lift + state.below / state.spare
-        self.upright = np.zeros((p.nodes, 3, 3))
-        np.add.at(self.upright[:, 2, 2], pairs.on_bed, state.press / self.yields)
-        np.add.at(self.upright[:, 2, 2], pairs.afloat, 1.0 / self.rises)
+        upright = np.zeros((p.nodes, 3, 3))
+        np.add.at(upright[:, 2, 2], pairs.on_bed, state.press / self.yields)
+        np.add.at(upright[:, 2, 2], pairs.afloat, 1.0 / self.rises)
+        self.matrix = Eliminated(chains, self.blocks, upright)
 
     def solve(self, change: Products) -> tuple[Array, State]:
         """The step of the free coordinates, and of the state, that balances forces and changes the products."""
@@ -204,7 +205,7 @@ class Tangent:
         press = (change.bed - state.press * gap) / self.yields
         lift = (change.dry / state.lift - change.wet / state.spare - height) / self.rises
         more = np.ascontiguousarray(pairs.forces_of(pull, press, lift).T)
-        step = self.chains.solve(self.blocks, self.upright, self.force + moves_on_free(more, p))
+        step = self.matrix.solve(self.force + moves_on_free(more, p))
         dx = moved(np.zeros_like(self.x), step, p)  # with no round-off of the places
         span, down, up = pairs.span(dx), dx[2, pairs.on_bed], dx[2, pairs.afloat]
         pull = pull - np.einsum("ijk,ik->ij", self.blocks, span)

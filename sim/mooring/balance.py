@@ -6,7 +6,6 @@ positions and tensions were unknown. Links that pull or not, nodes on the bed or
 follow piecewise linear laws, and the start is near enough to tell on which piece each of them is.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +20,7 @@ Array = NDArray[np.float64]
 
 SETTLED = 1e-9  # largest force left [N] over the largest on any node
 ROUND_OFF = 8.0 * np.finfo(float).eps  # the same over the largest term of a sum of forces
-RISE = 1e3  # of the largest force left by a correction, with which a start was not near
+RISE = 1e6  # of the largest force left by the first correction, above which the start was not near
 HOLD = 1e-8  # of slack links, over what taut ones have: no place of what lies slack is better than another
 
 
@@ -42,6 +41,12 @@ class Pieces(NamedTuple):
     in_surface: NDArray[np.bool_]  # (parts,) with a part of it
 
 
+def pieces_at(x: Array, p: LineArrays) -> Pieces:
+    """Those of positions x (3, n)."""
+    z, top = x[2, p.places[:, 0]], 0.5 * p.parts[:, HEIGHT]
+    return Pieces(z <= p.bed, z < top, np.abs(z) < top)
+
+
 class Laws:
     """The piecewise linear laws of bed and buoyancy."""
 
@@ -49,10 +54,6 @@ class Laws:
         self.p = p
         self.node, self.height = p.places[:, 0], p.parts[:, HEIGHT]
         self.bed, self.lift = p.parts[:, BED_AREA] * p.bed_stiffness, p.parts[:, DISPLACED] * p.gravity
-
-    def pieces(self, z: Array) -> Pieces:
-        """Those of heights z (parts,)."""
-        return Pieces(z <= self.p.bed, z < 0.5 * self.height, np.abs(z) < 0.5 * self.height)
 
     def upward(self, z: Array, on: Pieces) -> Array:
         """Forces (parts,) [N] of bed and buoyancy at heights z, each on its piece wherever that ends."""
@@ -84,7 +85,7 @@ def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) 
     blocks = across[:, None, None] * np.eye(3) + (along - across)[:, None, None] * outer
     z = x[2, laws.node]
     np.add.at(upright[:, 2, 2], laws.node, laws.slope(on))
-    np.add.at(more[:, 2], laws.node, laws.upward(z, on) - laws.upward(z, laws.pieces(z)))
+    np.add.at(more[:, 2], laws.node, laws.upward(z, on) - laws.upward(z, pieces_at(x, p)))
     force = pull(x, p)[0] + moves_on_free(np.ascontiguousarray(more.T), p)
     step = chains.solve(blocks, upright, force)
     d = moved(np.zeros_like(x), step, p)  # with no round-off of the places
@@ -105,14 +106,16 @@ def balanced(p: LineArrays, chains: Chains, x: Array, tension: Array, on: Pieces
 
     on: pieces of the laws there, for the first correction.
     """
-    laws, before = Laws(p), math.inf
+    laws = Laws(p)
     left, is_settled = what_is_left(x, p)
+    most = RISE * left  # a stiff line may be stretched by the first correction, which the second takes back
     for done in range(corrections):
-        if is_settled or not left <= RISE * before:
+        if is_settled or not left <= most:
             return Balance(x, left, is_settled, done)
+        most = 0.5 * left if done else most
         x, tension = corrected(laws, chains, x, tension, on)
-        on = laws.pieces(x[2, laws.node])
-        before, (left, is_settled) = left, what_is_left(x, p)
+        on = pieces_at(x, p)
+        left, is_settled = what_is_left(x, p)
     return Balance(x, left, is_settled, corrections)
 
 

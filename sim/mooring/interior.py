@@ -10,7 +10,6 @@ predictor and corrector. Forces need not balance on the way. Near the end the ac
 Source: L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010).
 """
 
-import contextlib
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -112,7 +111,7 @@ class Pairs:
             held = min(held, float(p.bodies[:, [STIFFNESS, STIFFNESS + 7, STIFFNESS + 14]].max() * short.sum()))
         least = 1e-12 * float((self.stiffness * self.rest).max())
         load = max(self.load, float(np.abs(p.steady[:, :3]).max(initial=0.0)), held, least)
-        each = load * float(self.rest.mean())  # [J] of every pair
+        each = load * float(np.maximum(self.rest, length).mean())  # [J] of every pair
         slack = np.concatenate((WIDE * np.maximum(self.rest, length)[:, None], span), axis=1)
         pull = each * MIRROR * slack / determinant(slack)[:, None]
         press = np.full(len(self.bed), load / max(len(self.bed), 1))
@@ -250,12 +249,30 @@ class Near(NamedTuple):
     gap: float  # mean product of the pairs over the largest energy of a link
     is_last: bool  # round-off lets no state come nearer
 
-    def guesses(self) -> list[Array]:
-        """Tensions (links,) with 0 of links that seem slack: by their lengths, and by both numbers of each pair."""
+    def guesses(self, by_place: Pieces) -> list[tuple[Array, Pieces]]:
+        """Tensions (links,), 0 of links that seem slack, and pieces: one guess, or two if they differ.
+
+        Links by their lengths and parts by both numbers of their pairs; or links by their pairs and parts by place.
+        """
         by_length = self.slack < TAUT
         by_pair = self.tension > self.slack * float(self.tension.max())
-        masks = [by_length] if (by_length == by_pair).all() else [by_length, by_pair]
-        return [np.where(mask, self.tension, 0.0) for mask in masks]
+        one, other = (np.where(by_length, self.tension, 0.0), self.on), (np.where(by_pair, self.tension, 0.0), by_place)
+        is_same = all((a == b).all() for a, b in zip((one[0], *one[1]), (other[0], *other[1]), strict=True))
+        return [one] if is_same else [one, other]
+
+
+def corrected(pairs: Pairs, chains: Chains, x: Array, state: State) -> tuple[Array, State] | None:
+    """Positions and state after one correction; None if round-off leaves no step inside the bounds."""
+    try:
+        step, change = Tangent(pairs, chains, x, state).step()
+    except np.linalg.LinAlgError:
+        return None
+    fraction = INSIDE * state.longest(change)
+    while not (after := state.plus(change, fraction)).is_inside():
+        fraction *= SHORTER
+        if not fraction > LEAST_FRACTION:  # true of a NaN as well
+            return None
+    return moved(x, fraction * step, pairs.p), after
 
 
 def along_central_path(p: LineArrays, chains: Chains, x: Array) -> Iterator[Near]:
@@ -263,14 +280,8 @@ def along_central_path(p: LineArrays, chains: Chains, x: Array) -> Iterator[Near
     pairs = Pairs(p)
     state, is_last = pairs.first(x), False
     while not is_last:
-        fraction = 0.0
-        with contextlib.suppress(np.linalg.LinAlgError):  # round-off may leave a pivot of 0
-            step, change = Tangent(pairs, chains, x, state).step()
-            fraction = INSIDE * state.longest(change)
-            while fraction > LEAST_FRACTION and not state.plus(change, fraction).is_inside():
-                fraction *= SHORTER
-        is_last = not fraction > LEAST_FRACTION
-        if not is_last:
-            x, state = moved(x, fraction * step, p), state.plus(change, fraction)
+        after = corrected(pairs, chains, x, state)
+        is_last = after is None
+        x, state = after or (x, state)
         slack = state.slack[:, 0] - np.sqrt(dot(state.slack[:, 1:], state.slack[:, 1:]))
         yield Near(x, state.pull[:, 0], slack / pairs.rest, pairs.pieces(state), pairs.gap(state), is_last)

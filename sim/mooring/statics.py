@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.mooring.balance import balanced
+from sim.mooring.balance import balanced, pieces_at
 from sim.mooring.chains import Chains
 from sim.mooring.interior import along_central_path
 from sim.mooring.tangent import links_at, six_of
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MAX_CORRECTIONS = 40  # of both methods together
 FINISHING = 5  # of them at the end
-NEAR, NEARER = 1e-9, 0.1  # gap at which the end is tried first, and over the last one again
+NEAR, NEARER = 1e-9, 1e-2  # gap at which the end is tried first, and over the last one again
 
 
 class Rest(NamedTuple):
@@ -59,8 +59,8 @@ def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = No
         if not (near.gap <= aim or near.is_last or done >= MAX_CORRECTIONS - FINISHING):
             continue
         aim = NEARER * near.gap
-        for tension in near.guesses():
-            found = balanced(p, chains, near.x, tension, near.on, min(FINISHING, MAX_CORRECTIONS - done))
+        for tension, on in near.guesses(pieces_at(near.x, p)):
+            found = balanced(p, chains, near.x, tension, on, min(FINISHING, MAX_CORRECTIONS - done))
             if found.is_settled:
                 return rest_of(system, found.x, p)
             done, left = done + found.corrections, min(left, found.left)

@@ -66,7 +66,7 @@ def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = No
             done, left = done + found.corrections, min(left, found.left)
         if done >= MAX_CORRECTIONS:
             break
-    raise ConvergenceError("static state of the mooring", f"{left:.3g} N", MAX_CORRECTIONS)
+    raise ConvergenceError("static state of the mooring", f"{left:.3g} N", done)
 
 
 def rest_of(system: "System", x: NDArray[np.float64], p: LineArrays) -> Rest:

@@ -43,55 +43,71 @@ class Chains:
         return np.array([place[3 * int(c % self.p.nodes) + int(c // self.p.nodes)] for c in at], dtype=np.int64)
 
     def solve(self, links: Array, nodes: Array, force: Array) -> Array:
-        """The solution of K u = force in the free coordinates of `sim.mooring.tangent`.
+        """The solution of K u = force in the free coordinates of `sim.mooring.tangent`; see `Eliminated`."""
+        return Eliminated(self, links, nodes).solve(force)
 
-        links: (links, 3, 3) block H of each, which stands for [H -H; -H H]. nodes: (nodes, 3, 3) what is added to each
-        node's block. force: in free coordinates.
+
+class Eliminated:
+    """The matrix K of a system with its chains eliminated, to be solved for several forces."""
+
+    def __init__(self, chains: Chains, links: Array, nodes: Array) -> None:
+        """links: (links, 3, 3) block H of each, which stands for [H -H; -H H]. nodes: (nodes, 3, 3) what is added to
+        each node's block.
         """
-        p, m = self.p, self.points
+        self.chains, p, m = chains, chains.p, chains.points
         blocks = nodes.copy()
         np.add.at(blocks, p.ends[:, 0], links)
         np.add.at(blocks, p.ends[:, 1], links)
-        inner, six = np.zeros(3 * (p.nodes - m) + self.count), force[len(self.order) :]
-        inner[self.order] = force[: len(self.order)]
-        own, inner = inner[: self.count], inner[self.count :].reshape(-1, 3)
-        left, right = np.zeros((m, 3, m, 3)), np.zeros((m, 3))  # of the points
+        left = np.zeros((m, 3, m, 3))  # of the points
         left[np.arange(m), :, np.arange(m)] = blocks[:m]
-        solved = []
-        for at, of in self.lines:
+        # Of each line: its blocks, and how its inner nodes follow unit moves of both ends.
+        self.parts: list[tuple[Array, Array, Array, Array, Array] | None] = []
+        for at, of in chains.lines:
             a, b, chain = int(at[0]), int(at[-1]), links[of]
             if len(at) == 2:
                 left[a, :, b] -= chain[0]
                 left[b, :, a] -= chain[0]
-                solved.append(None)
+                self.parts.append(None)
                 continue
-            middle = at[1:-1]
-            sides = np.zeros((7, len(middle), 3))  # the forces, then the pull of unit moves of both ends
-            sides[0] = inner[middle - m]
+            moves = np.zeros((6, len(at) - 2, 3))
             for e in range(3):
-                sides[1 + e, 0], sides[4 + e, -1] = chain[0, :, e], chain[-1, :, e]
-            diagonal = np.ascontiguousarray(blocks[middle]).reshape(-1, 9)
+                moves[e, 0], moves[3 + e, -1] = chain[0, :, e], chain[-1, :, e]
+            diagonal = np.ascontiguousarray(blocks[at[1:-1]]).reshape(-1, 9)
             beside = -np.ascontiguousarray(chain[1:]).reshape(-1, 9)
-            for side in sides:
-                solve_block_tridiagonal(diagonal, beside.copy(), side)
-            solved.append(sides)
+            for move in moves:
+                solve_block_tridiagonal(diagonal, beside.copy(), move)
+            self.parts.append((diagonal, beside, moves, chain[0], chain[-1]))
             # What the ends feel of the chain: H u of its first and its last node.
-            for end, H, u in ((a, chain[0], sides[:, 0]), (b, chain[-1], sides[:, -1])):
-                right[end] += H @ u[0]
-                left[end, :, a] -= H @ u[1:4].T
-                left[end, :, b] -= H @ u[4:].T
-        motion = self.motion.reshape(3 * m, -1)
-        matrix = motion.T @ left.reshape(3 * m, 3 * m) @ motion
+            for end, H, u in ((a, chain[0], moves[:, 0]), (b, chain[-1], moves[:, -1])):
+                left[end, :, a] -= H @ u[:3].T
+                left[end, :, b] -= H @ u[3:].T
+        self.motion = chains.motion.reshape(3 * m, -1)
+        self.matrix = self.motion.T @ left.reshape(3 * m, 3 * m) @ self.motion
         for b, row in enumerate(p.bodies):
-            at6 = slice(self.count + 6 * b, self.count + 6 * b + 6)
-            matrix[at6, at6] += row[STIFFNESS : STIFFNESS + 36].reshape(6, 6)
-        pull = motion.T @ right.reshape(-1) + np.concatenate((own, six))
-        found: Array = np.linalg.solve(matrix, pull).astype(np.float64, copy=False) if len(pull) else pull
-        moves = (motion @ found).reshape(m, 3)
-        for (at, _), sides in zip(self.lines, solved, strict=True):
-            if sides is not None:
-                ends = np.concatenate((moves[at[0]], moves[at[-1]]))
-                inner[at[1:-1] - m] = sides[0] + np.tensordot(ends, sides[1:], 1)
+            at6 = slice(chains.count + 6 * b, chains.count + 6 * b + 6)
+            self.matrix[at6, at6] += row[STIFFNESS : STIFFNESS + 36].reshape(6, 6)
+
+    def solve(self, force: Array) -> Array:
+        """The solution of K u = force in the free coordinates of `sim.mooring.tangent`."""
+        chains, m = self.chains, self.chains.points
+        inner, six = np.zeros(3 * (chains.p.nodes - m) + chains.count), force[len(chains.order) :]
+        inner[chains.order] = force[: len(chains.order)]
+        own, inner = inner[: chains.count], inner[chains.count :].reshape(-1, 3)
+        right = np.zeros((m, 3))  # of the points
+        for (at, _), part in zip(chains.lines, self.parts, strict=True):
+            if part is not None:
+                diagonal, beside, _, first, last = part
+                middle = inner[at[1:-1] - m]
+                solve_block_tridiagonal(diagonal, beside.copy(), middle)
+                right[at[0]] += first @ middle[0]
+                right[at[-1]] += last @ middle[-1]
+                inner[at[1:-1] - m] = middle
+        pull = self.motion.T @ right.reshape(-1) + np.concatenate((own, six))
+        found: Array = np.linalg.solve(self.matrix, pull).astype(np.float64, copy=False) if len(pull) else pull
+        ends = (self.motion @ found).reshape(m, 3)
+        for (at, _), part in zip(chains.lines, self.parts, strict=True):
+            if part is not None:
+                inner[at[1:-1] - m] += np.tensordot(np.concatenate((ends[at[0]], ends[at[-1]])), part[2], 1)
         return np.concatenate(
-            (np.concatenate((found[: self.count], inner.reshape(-1)))[self.order], found[self.count :])
+            (np.concatenate((found[: chains.count], inner.reshape(-1)))[chains.order], found[chains.count :])
         )

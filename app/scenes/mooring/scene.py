@@ -38,7 +38,7 @@ from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.mooring import System, at_rest
 from sim.mooring.gauge import modes
 from sim.mooring.simulate import LineState
-from sim.mooring.statics import Rest, first_guess, rest_of
+from sim.mooring.statics import Rest, rest_of, straight
 from sim.springs import INTEGRATORS
 from sim.springs.lines.energy import set_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of
@@ -389,7 +389,7 @@ def rest_or_start(system: System) -> tuple[Rest, str]:
         return at_rest(still), ""
     except ConvergenceError as error:
         reason = f"The lines find no state of rest ({error}). Change their length, their anchors or EA."
-        return rest_of(still, first_guess(still, {})[0], still.kernel_view(1.0)), reason
+        return rest_of(still, straight(still), still.kernel_view(1.0)), reason
 
 
 def compile_with(method: str) -> None:

@@ -9,7 +9,6 @@ import pytest
 from app.lab.task import Task, load_tasks, read_task
 from app.scenes import scene_named
 from sim.floating import Hull, equilibrium_draft
-from sim.mooring.catenary import catenary
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.emulsions import arrhenius
 from sim.ocean.fluids import fresnel
@@ -17,6 +16,7 @@ from sim.ocean.planets import gravity_of
 from sim.ocean.spectra.phillips import PhillipsConditions, density
 from sim.springs import rope, simulate
 from sim.springs.stability import critical_step
+from tests.sim.mooring.catenary import catenary
 
 TASKS = load_tasks()
 REFERENCE = {task.name: task.function for task in TASKS if task.check is not None}

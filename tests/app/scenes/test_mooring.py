@@ -4,6 +4,7 @@ import dataclasses
 import math
 import random
 import re
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -18,11 +19,10 @@ from app.scenes.mooring.scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import BED_ROWS, View, bed_colours
 from app.server.loop import SimLoop
-from sim.mooring import critical_step
-from sim.mooring.balance import what_is_left
-from sim.mooring.catenary import catenary
-from sim.parameters import check_record
+from sim.mooring import balance, critical_step, interior
+from sim.parameters import Parameter, check_record
 from sim.validation import ConvergenceError
+from tests.sim.mooring.catenary import catenary
 
 SMALL: dict[str, Any] = {"segments": 12, "lines": 1, "steady_force": 10.0, "time_step": 1 / 120}
 
@@ -292,14 +292,24 @@ def test_light_ropes_and_stiff_lines_rest(changed):
     assert not MooringScene(Params(**changed)).failure
 
 
-def random_params(rng: random.Random) -> Params:
-    """A mooring anywhere inside the sliders."""
+def anywhere(rng: random.Random, one: Parameter) -> float:
+    """A value between a slider's ends."""
+    if one.log_from:
+        return math.exp(rng.uniform(math.log(one.log_from), math.log(one.high)))
+    return rng.uniform(one.low, one.high)
+
+
+def an_end(rng: random.Random, one: Parameter) -> float:
+    return rng.choice((one.low, one.high))
+
+
+def random_params(rng: random.Random, value: Callable[[random.Random, Parameter], float] = anywhere) -> Params:
+    """A mooring inside the sliders."""
     values = {}
     for field in dataclasses.fields(Params):
         one = field.metadata["parameter"]
         if field.name in STATIC:
-            low = math.log(one.log_from) if one.log_from else 0.0
-            number = math.exp(rng.uniform(low, math.log(one.high))) if one.log_from else rng.uniform(one.low, one.high)
+            number = value(rng, one)
             values[field.name] = round(number) if isinstance(one.default, int) else number
     return Params(**values, body=rng.choice(["buoy", "box"]), floats=rng.random() < 0.5, wave_height=0.0)
 
@@ -310,16 +320,32 @@ STATIC = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("count", [20, pytest.param(2000, marks=pytest.mark.stress)])
-def test_random_moorings_rest_or_say_what_is_left(count):
-    rng, failed = random.Random(4), 0
-    for _ in range(count):
-        params = random_params(rng)
+def corrections_of(params: Params) -> int:
+    """Corrections of the search for rest, which has to find it."""
+    with pytest.MonkeyPatch.context() as patch:
+        done = []
+        for module, name in ((interior.Tangent, "step"), (balance, "corrected")):
+            plain = getattr(module, name)
+            patch.setattr(module, name, lambda *args, plain=plain: (done.append(1), plain(*args))[1])
         system = build(params, first_places(params), body_of(params, None), None)
+        assert balance.what_is_left(system.at_rest().nodes, system.kernel_view(1.0))[1]
+        return len(done)
+
+
+@pytest.mark.parametrize("count", [100, pytest.param(2000, marks=pytest.mark.stress)])
+def test_random_moorings_rest(count):
+    rng = random.Random(4)
+    assert max(corrections_of(random_params(rng)) for _ in range(count)) <= 40
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.stress)])
+def test_moorings_at_the_ends_of_the_sliders_rest_but_for_a_few(count):
+    """Of forces of 5 MN in lines that weigh 0.03 N/m, round-off may hide which lie and which float."""
+    rng, failed = random.Random(1), 0
+    for _ in range(count):
+        params = random_params(rng, an_end)
         try:
-            rest = system.at_rest()
+            assert corrections_of(params) <= 40
         except ConvergenceError:
             failed += 1
-            continue
-        assert what_is_left(rest.nodes, system.kernel_view(1.0))[1]
-    assert failed <= 0.12 * count
+    assert failed <= 0.02 * count

@@ -10,7 +10,7 @@ from sim.floating.hydrodynamics import linear_hull, natural_frequency
 from sim.floating.mooring_lines import MooringLines, fairleads, just_taut, pulls
 from sim.floating.periods import period
 from sim.floating.rotation import rotation_matrix
-from sim.mooring.catenary import catenary
+from tests.sim.mooring.catenary import catenary
 
 DEPTH, REACH, STIFFNESS = 30.0, 60.0, 2e4  # [m], [m], [N]
 LIGHT = 0.05  # [N/m] weight of a line with hardly any

@@ -8,7 +8,7 @@ import pytest
 
 from sim import floating
 from sim.mooring import Line, LineType, Point, System, moored, simulate
-from sim.mooring.statics import Rest, first_guess
+from sim.mooring.statics import Rest, straight
 from sim.ocean.kinematics import Components
 from sim.springs.forces.acceleration import set_acceleration
 from tests.refusals import assert_refused
@@ -47,7 +47,7 @@ def test_a_body_answers_a_wave_by_its_response_amplitude(heading):
 def test_a_wave_pushes_a_body_where_it_is(place):
     system = box_in_waves(0.7)
     m, waves, t = system.bodies[0], system.waves, 2.3
-    x = first_guess(system, {})[0]
+    x = straight(system)
     x[:2, system.node_count] = place
     x[:2, 1] += place  # the end of the thread
     a = np.empty(x.size)
@@ -60,7 +60,7 @@ def test_a_wave_pushes_a_body_where_it_is(place):
 
 def test_the_account_balances_of_a_body_in_waves():
     system = box_in_waves(0.7)
-    start = Rest({}, {}, {}, first_guess(system, {})[0])
+    start = Rest({}, {}, {}, straight(system))
     run = simulate(system, duration=60.0, frames=61, step=0.01, start=start, with_account=True)
     error = run.energy.total + run.energy.dissipated - run.energy.work
     assert np.abs(error - error[0]).max() < 1e-3 * np.ptp(run.energy.total)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, System
-from sim.mooring.catenary import catenary
+from tests.sim.mooring.catenary import catenary
 from tests.sim.mooring.systems import chain_on_bed, floating_body, taut_rope
 
 # Of 200 random lines, on the bed and free: made with MoorPy 1.3.0 at a tolerance of 1e-10 of the length.

@@ -152,6 +152,11 @@ shaders.push({
       seas.delete(base);
     }
   },
+  unpack({ base, mesh }) {
+    const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
+    if (!surface || !rest) return false;
+    return applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array);
+  },
   update({ base, mesh, data, renderer, scene, camera }) {
     showPhotograph(scene, false);
     const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
@@ -162,7 +167,7 @@ shaders.push({
       seas.set(base, (sea = makeSea(mesh, uniformsOf(base, mesh))));
       mesh.geometry.computeVertexNormals = () => {}; // the slopes replace them: viser need not compute them each frame
     }
-    if (!applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array)) return null;
+    if (!this.unpack({ base, mesh })) return null;
     readMaterial(sea, data);
     drawSkyTable(base, sea, renderer, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);

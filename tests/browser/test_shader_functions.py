@@ -1,8 +1,10 @@
 """The functions of the water's shader, as Chromium compiles them, against closed forms and the same sums in numpy."""
 
 import itertools
+import json
 import re
 from collections.abc import Iterator
+from importlib import resources
 from typing import Any
 from unittest.mock import MagicMock
 
@@ -238,3 +240,23 @@ def test_rays_from_the_water_meet_what_stands_in_it_and_above_it(page: Any) -> N
     # Facets that are tilted spread the rays: what is small and far is mirrored in part.
     spread = evaluate(page, "mirroredHulls(vec3(0.0), normalize(p.xyz), 0.3, vec3(1.0))", rays[:1], uniforms)
     assert 0.1 < spread[0, 3] < 0.95
+
+
+def test_numbers_become_the_next_half_precision_numbers(page: Any) -> None:
+    """Numpy's own rounding, of all sizes, of ties, and of numbers that are too large."""
+    random = np.random.default_rng(5)
+    sizes = 2.0 ** random.uniform(-27.0, 16.0, 20_000) * random.choice([-1.0, 1.0], 20_000)
+    halves = np.arange(0x7BFF, dtype=np.uint16).view(np.float16).astype(np.float32)
+    ties = (halves[:-1] + halves[1:]) / 2.0  # exact in single precision
+    numbers = np.concatenate([sizes, halves, ties, [0.0, 65504.0, 65519.0, 2.0**-14, 2.0**-24, 2.0**-25]])
+    numbers = numbers.astype(np.float32)
+    run = "([code, text]) => new Function(`${code}; return text => JSON.parse(text).map(toHalf);`)()(text)"
+    code = (resources.files("app.render") / "js" / "half.js").read_text("utf-8")
+
+    def halves_of(values: NDArray[np.float32]) -> NDArray[np.uint16]:
+        return np.array(page.evaluate(run, [code, json.dumps(values.astype(float).tolist())]), np.uint16)
+
+    with np.errstate(over="ignore"):
+        expected = np.minimum(np.maximum(numbers.astype(np.float16), np.float16(-65504)), np.float16(65504))
+    assert (halves_of(numbers) == expected.view(np.uint16)).all()
+    assert halves_of(np.array([1e6, -1e6], np.float32)).tolist() == [0x7BFF, 0xFBFF]

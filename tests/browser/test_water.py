@@ -247,7 +247,7 @@ def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_
     page = new_page(chromium, 320, 200, drawn=False)
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
-    page.goto(file.as_uri())
+    page.goto(f"{file.as_uri()}?fixedDpr=1")
     assert wait(page, lambda: materials(page) == {"/sea": "springtide-water/sea"})
     assert errors == []
     page.close()

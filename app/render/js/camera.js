@@ -109,7 +109,7 @@
   let lastTarget = null;
 
   function keepAbove(camera, controls) {
-    const { always, now } = lowest(camera);
+    let { always, now } = lowest(camera);
     const target = controls.getTarget(camera.position.clone());
     if (camera.position.y < always - 1e-6) {
       const moved = lastTarget && lastTarget.distanceTo(target) > 1e-6 * controls.distance;
@@ -132,6 +132,7 @@
         camera.position.y = always;
         target.y += lift;
       }
+      now = lowest(camera).now; // of the place that it has now
     }
     lastTarget = target;
     // Above a crest the camera is lifted for this frame only, so that it comes down again behind the crest.

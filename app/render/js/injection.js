@@ -11,7 +11,8 @@
 // app/render/injection.py puts these constants before this file: WATER_UNIFORMS, RAIN_UNIFORMS, MAX_WATERLINES,
 // DARK_LIFT, LUMA.
 
-// Each shader: { suffix, update(context), removeUnused() }. `update` is called for each node with that suffix. It
+// Each shader: { suffix, unpack(node), update(context), removeUnused() }. `unpack` (optional) brings the vertices up to
+// date before the camera of the frame is placed. `update` is called for each node with that suffix. It
 // returns the material that has the shader, or null. `removeUnused` (optional) disposes of what removed nodes left.
 const shaders = [];
 const refused = new WeakSet(); // materials with a program that did not link: they keep viser's own shader
@@ -97,6 +98,18 @@ function report() {
   send({ type: "GuiUpdateMessage", uuid, updates: { value: `${PAGE}\n${drawn}` } });
 }
 
+// Call a function for each shader and node that asks for it: { base, mesh, data }.
+function forEachShaded(call) {
+  const nodes = window.__viserMutable.nodeRefFromName;
+  for (const name of Object.keys(nodes)) {
+    for (const shader of shaders) {
+      if (!name.endsWith(shader.suffix) || !nodes[name]) continue;
+      const base = name.slice(0, -shader.suffix.length), mesh = meshOf(base), data = meshOf(name);
+      if (mesh && data) call(shader, { base, mesh, data });
+    }
+  }
+}
+
 let paced = null; // the renderer whose frames are paced
 
 function beforeRender(renderer, scene, camera) {
@@ -108,19 +121,11 @@ function beforeRender(renderer, scene, camera) {
   }
   window.__springtide = { memory: () => ({ ...renderer.info.memory }), quality: QUALITY, skiesDrawn }; // tests read it
   QUALITY.beforeRender(renderer);
-  const nodes = window.__viserMutable.nodeRefFromName;
   const active = [];
-  for (const name of Object.keys(nodes)) {
-    for (const shader of shaders) {
-      if (!name.endsWith(shader.suffix) || !nodes[name]) continue;
-      const base = name.slice(0, -shader.suffix.length);
-      const mesh = meshOf(base);
-      const data = meshOf(name);
-      if (!mesh || !data) continue;
-      const material = shader.update({ base, mesh, data, renderer, scene, camera });
-      if (material && isLinked(renderer, material)) active.push(base);
-    }
-  }
+  forEachShaded((shader, node) => {
+    const material = shader.update({ ...node, renderer, scene, camera });
+    if (material && isLinked(renderer, material)) active.push(node.base);
+  });
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
   dressSmoke(scene);
   dressLabels(renderer, scene, camera);
@@ -134,6 +139,7 @@ function install() {
   if (!viewer || !viewer.scene || !viewer.nodeRefFromName) return void setTimeout(install, 50);
   const earlier = viewer.scene.onBeforeRender.springtideEarlier || viewer.scene.onBeforeRender;
   const hook = function (renderer, scene, camera, target) {
+    forEachShaded((shader, node) => shader.unpack?.(node)); // the camera (camera.js) stays above this frame's water
     earlier.call(this, renderer, scene, camera, target);
     beforeRender(renderer, scene, camera);
   };

@@ -39,23 +39,31 @@ function makeSea(mesh, uniforms) {
   return { mesh, geometry: mesh.geometry, uniforms, filled: -1, polar: null, dome: null, widest: 0, highest: 0, cell: 1 };
 }
 
-// Fill a texture with width x height x 4 numbers, and its smaller copies with their means where it repeats both ways.
-// three binds it but does not fill it: its own class is not in scope, and it takes any object with this version for one
-// whose data needs no upload.
-function filledTexture(renderer, texture, width, height, numbers, repeats) {
-  const gl = renderer.getContext();
-  texture ??= { isTexture: true, version: 0 };
-  const name = (renderer.properties.get(texture).__webglTexture ??= gl.createTexture());
+// Fill a texture with width x height x 4 half-precision numbers (half.js), and its smaller copies with their means where
+// it repeats both ways. three binds it but does not fill it: its own class is not in scope, and it takes any object with
+// this version for one whose data needs no upload.
+function filledTexture(renderer, texture, width, height, halves, repeats) {
+  const gl = renderer.getContext(), size = [width, height, repeats].join();
+  texture ??= { isTexture: true, version: 0, size: "" };
+  const kept = renderer.properties.get(texture), isNew = texture.size !== size || !kept.__webglTexture;
+  if (isNew) {
+    gl.deleteTexture(kept.__webglTexture ?? null); // its size is for good
+    kept.__webglTexture = gl.createTexture();
+    texture.size = size;
+  }
   renderer.state.activeTexture(gl.TEXTURE0);
-  renderer.state.bindTexture(gl.TEXTURE_2D, name);
-  const flags = [gl.UNPACK_FLIP_Y_WEBGL, gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL];
-  const kept = flags.map((flag) => gl.getParameter(flag));
-  for (const flag of flags) gl.pixelStorei(flag, false);
-  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA16F, width, height, 0, gl.RGBA, gl.FLOAT, numbers);
-  flags.forEach((flag, k) => gl.pixelStorei(flag, kept[k]));
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, repeats ? gl.LINEAR_MIPMAP_LINEAR : gl.LINEAR);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, repeats ? gl.REPEAT : gl.CLAMP_TO_EDGE);
+  renderer.state.bindTexture(gl.TEXTURE_2D, kept.__webglTexture);
+  if (isNew) {
+    gl.texStorage2D(gl.TEXTURE_2D, repeats ? 1 + Math.floor(Math.log2(Math.max(width, height))) : 1, gl.RGBA16F, width, height);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, repeats ? gl.LINEAR_MIPMAP_LINEAR : gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, repeats ? gl.REPEAT : gl.CLAMP_TO_EDGE);
+  }
+  const flags = { [gl.UNPACK_FLIP_Y_WEBGL]: false, [gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL]: false, [gl.UNPACK_ALIGNMENT]: 4 };
+  const before = Object.keys(flags).map((flag) => [flag, gl.getParameter(flag)]);
+  for (const flag in flags) gl.pixelStorei(flag, flags[flag]);
+  gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGBA, gl.HALF_FLOAT, halves);
+  for (const [flag, value] of before) gl.pixelStorei(flag, value);
   if (repeats) gl.generateMipmap(gl.TEXTURE_2D);
   return texture;
 }
@@ -69,26 +77,26 @@ function fillWaves(sea, renderer, rest) {
   sea.filled = slopeAndFoam.version;
   const [height, width] = isRings ? [rows, columns] : [rows - 1, columns - 1], middle = gridMiddle.value.toArray();
   const vertexAt = isRings ? (i, j) => (i === 0 ? rest.length / 3 - 1 : (i - 1) * width + j) : (i, j) => i * columns + j;
-  const [places, slopes] = [new Float32Array(4 * width * height), new Float32Array(4 * width * height)];
+  const [places, slopes] = [new Uint16Array(4 * width * height), new Uint16Array(4 * width * height)];
   let [widest, highest] = [0, 0];
   for (let i = 0, to = 0; i < height; i++) {
     for (let j = 0; j < width; j++, to += 4) {
       const from = 3 * vertexAt(i, j);
-      for (let axis = 0; axis < 3; axis++) {
-        places[to + axis] = position.array[from + axis] - rest[from + axis] - (axis < 2 ? middle[axis] : 0);
-        slopes[to + axis] = slopeAndFoam.array[from + axis];
-      }
-      slopes[to + 3] = slopes[to] ** 2 + slopes[to + 1] ** 2;
-      widest = Math.max(widest, Math.abs(places[to]), Math.abs(places[to + 1]));
-      highest = Math.max(highest, Math.abs(places[to + 2]));
+      const x = position.array[from] - rest[from] - middle[0], y = position.array[from + 1] - rest[from + 1] - middle[1];
+      const z = position.array[from + 2] - rest[from + 2];
+      const a = slopeAndFoam.array[from], b = slopeAndFoam.array[from + 1], foam = slopeAndFoam.array[from + 2];
+      writeHalves(places, to, x, y, z, 0);
+      writeHalves(slopes, to, a, b, foam, a * a + b * b);
+      widest = Math.max(widest, Math.abs(x), Math.abs(y));
+      highest = Math.max(highest, Math.abs(z));
     }
   }
   // Pieces of a tile that are blended with the same variance may be higher than any of them.
   [sea.widest, sea.highest] = [1.5 * widest, (isRings ? 1 : 1.5) * highest];
   sea.cell = isRings ? ringLaw.value.y : length / (rows - 1);
-  for (const [name, numbers] of [["wavePlaces", places], ["waveSlopes", slopes]]) {
+  for (const [name, halves] of [["wavePlaces", places], ["waveSlopes", slopes]]) {
     const { uniforms } = sea;
-    uniforms[name].value = filledTexture(renderer, uniforms[name].value, width, height, numbers, !isRings);
+    uniforms[name].value = filledTexture(renderer, uniforms[name].value, width, height, halves, !isRings);
   }
 }
 
@@ -144,6 +152,11 @@ shaders.push({
       seas.delete(base);
     }
   },
+  unpack({ base, mesh }) {
+    const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
+    if (!surface || !rest) return false;
+    return applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array);
+  },
   update({ base, mesh, data, renderer, scene, camera }) {
     showPhotograph(scene, false);
     const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
@@ -154,7 +167,7 @@ shaders.push({
       seas.set(base, (sea = makeSea(mesh, uniformsOf(base, mesh))));
       mesh.geometry.computeVertexNormals = () => {}; // the slopes replace them: viser need not compute them each frame
     }
-    if (!applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array)) return null;
+    if (!this.unpack({ base, mesh })) return null;
     readMaterial(sea, data);
     drawSkyTable(base, sea, renderer, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);

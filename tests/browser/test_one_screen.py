@@ -89,7 +89,7 @@ def pause(lab: Viewer, tab: Tab) -> None:
     tab.wait(lambda: tab.page.locator('.springtide-panel[data-state="paused"]').count(), 20)
 
 
-@pytest.fixture(scope="module", params=NAMES)
+@pytest.fixture(params=NAMES)
 def opened(
     request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab], tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[tuple[Viewer, Tab]]:

@@ -1,4 +1,4 @@
-"""What works only in a checkout of the repository, where benchmarks/ lies beside the package."""
+"""Commands of a checkout of the repository, where benchmarks/ lies beside the package."""
 
 import importlib
 from pathlib import Path

@@ -155,7 +155,7 @@ class Memory(NamedTuple):
     residues: np.ndarray  # (p, 6, 6) complex
 
     def slow_added_mass(self) -> np.ndarray:
-        """What it adds (6, 6) to the added mass at infinite frequency in a motion far slower than its poles."""
+        """Addition (6, 6) to the added mass at infinite frequency in a motion far slower than its poles."""
         return -2.0 * np.einsum("pij,p->ij", self.residues, self.poles**-2.0).real
 
 

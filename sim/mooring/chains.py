@@ -35,7 +35,7 @@ class Chains:
         self.order = self.free_order(free)
 
     def free_order(self, free: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Where each free coordinate of `sim.mooring.tangent` is among points' (3 each), inner nodes' and bodies'."""
+        """Place of each free coordinate of `sim.mooring.tangent` among points' (3 each), inner nodes' and bodies'."""
         inner = np.arange(self.points, self.p.nodes)
         nodes = np.concatenate((free, inner))
         place = {int(3 * node + e): 3 * i + e for i, node in enumerate(nodes) for e in range(3)}

@@ -1,4 +1,4 @@
-"""What a picture of each scene costs a browser that draws in software, in pictures of three.js's own ocean.
+"""Cost of a frame of each scene in a browser that draws in software, in frames of three.js's own ocean.
 
 The cost is the processor time of Chromium's GPU process for one picture of a paused moment, 640 x 400. Both pages are
 drawn in turns in one browser, and only their ratio is of use: `python -m pytest -m stress

@@ -218,7 +218,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
 
     @staticmethod
     def shape_of(frame: MooringFrame) -> Shape:
-        """What a drawing is made for: all that `build` reads, but for what `show` assigns."""
+        """The inputs of a drawing: all that `build` reads, except for those that `show` assigns."""
         p = frame.params
         return frame.points.shape, p.reach, p.depth, p.body, p.size, frame.surface.shape, frame.rest[2]
 

@@ -106,7 +106,7 @@ class Pressed:
         self.panel.share.files.note_sent(self.panel.recorder.shown)
 
     def shown(self) -> object:
-        """All that a user may see of it: the panel's texts and values, what was sent, posted and asked for."""
+        """State that a user may see: the panel's texts and values, what was sent, posted and asked for."""
         handles = list(self.gui._gui_input_handle_from_uuid.values())
         texts = [getattr(handle, name, None) for handle in handles for name in ("options", "label", "visible")]
         lines = [line.content for line in self.panel.share.lines.values()]

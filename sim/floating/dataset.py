@@ -2,13 +2,15 @@
 
     hull = with_dataset(Hull.load("barge.stl"), "barge.nc")
 
-The dataset is that of one body in deep water without forward speed, with the six motions, added mass, damping,
-Froude-Krylov and diffraction forces. Its x, y are those that the hull was given in, its waterline lies at z = 0.
+The dataset has the six motions of a body, added mass, damping, Froude-Krylov and diffraction forces, without forward
+speed, in deep water or water of one depth. Its x, y are those that the hull was given in, its waterline lies at z = 0.
+Of several bodies one is taken by its name: its own coefficients, while the others are held.
 """
 
 import dataclasses
 import math
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,107 +18,302 @@ import numpy as np
 
 from sim.floating.closed_mesh import ClosedMesh, check_hull
 from sim.floating.hull import Hull
-from sim.floating.hydrodynamics import DIRECTIONS, MIRROR_X, MIRROR_Y, lagrange, table_length, velocity_at
+from sim.floating.hydrodynamics import (
+    DIRECTIONS,
+    MIRROR_X,
+    MIRROR_Y,
+    lagrange,
+    table_length,
+    velocity_at,
+    wavenumber_of,
+)
 from sim.floating.linear_table import LinearTable
-from sim.validation import argument_error, check_kind, check_positive
+from sim.validation import argument_error, check_angle, check_kind, check_positive, check_vector
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 MOTIONS = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
-WANTED = ("added_mass", "radiation_damping", "diffraction_force", "Froude_Krylov_force", "omega", "wave_direction")
+FREQUENCIES = ("omega", "period", "wavelength", "freq", "wavenumber")  # coordinates, of which a dataset has one as axis
+MATRICES, FORCES = ("added_mass", "radiation_damping"), ("diffraction_force", "Froude_Krylov_force")
+WANTED = (*MATRICES, *FORCES, "omega", "wave_direction", "influenced_dof", "radiating_dof", "rho", "g")
 WIDEST_GAP = math.radians(31.0)  # between directions that are interpolated
 SYMMETRY = 1e-3  # share of the greatest force that a hull's own symmetry may miss
+SAME_DEPTH = 1e-3  # by how much a depth that is asked for may differ from one of the dataset
+SAME_HEADING = 1e-3  # [rad] the same of a heading
 
 
-def with_dataset(hull: Hull, path: str | Path, draft: float | None = None) -> Hull:
-    """The hull with the linear coefficients of a dataset, for bodies of about its draft.
+def with_dataset(
+    hull: Hull,
+    path: str | Path,
+    draft: float | None = None,
+    *,
+    body: str | None = None,
+    depth: float | None = None,
+    heading: float | None = None,
+    rotation_center: Sequence[float] | None = None,
+) -> Hull:
+    """The hull with the linear coefficients of a dataset, for bodies of about its draft, in water of its depth.
 
-    draft [m]: that of the dataset, where it does not say. Raises ValueError for a file that is no dataset of one body,
-    or does not fit; ModuleNotFoundError without xarray (`pip install xarray netCDF4`).
+    draft [m]: that of the dataset, where it does not say. body: name of one of several; the others are held. depth [m],
+    or inf: one of several. heading [rad]: one of several, where they are too few to interpolate; a hull with one
+    heading answers waves of that heading only. rotation_center (3,) [m]: of the motions, where the dataset does not
+    say. Raises ValueError for a file that is no such dataset, or does not fit; ModuleNotFoundError without xarray
+    (`pip install xarray netCDF4`).
     """
     check_hull("hull", hull)
-    if draft is not None:
-        check_positive("draft", draft, "m")
-    shape = dataclasses.replace(hull.shape, table=table_of_dataset(path, hull, draft))
-    return dataclasses.replace(hull, shape=shape)
+    dataset = read_dataset(path)
+    choice = {"body": body, "depth": depth, "heading": heading, "rotation_center": rotation_center}
+    table = converted(dataset, str(path), hull, draft, **choice)
+    return dataclasses.replace(hull, shape=dataclasses.replace(hull.shape, table=table))
 
 
-def table_of_dataset(path: str | Path, mesh: ClosedMesh, draft: float | None = None) -> LinearTable:
-    """The table of a hull from a dataset, at its one draft [m]; None: the `draught` of the dataset.
-
-    Raises ValueError for a file that is no such dataset, ModuleNotFoundError without xarray.
-    """
+def read_dataset(path: str | Path) -> "Dataset":
+    """The dataset in a file. Raises ValueError if there is none, ModuleNotFoundError without xarray."""
     check_kind("path", path, str | os.PathLike, "the name of a file")
     import xarray  # half a second, and not needed by most
 
     try:
         with xarray.open_dataset(path) as file:
-            dataset = file.load()
-    except (OSError, ValueError) as error:
-        reason = str(error).partition("\n")[0]
-        raise argument_error("path", str(path), f"a dataset written by capytaine.export_dataset ({reason})") from error
-    return converted(dataset, str(path), mesh, draft)
+            return file.load()
+    except Exception as error:  # its readers raise errors of many types
+        reason = " ".join(str(error).partition("\n")[0].split())
+        allowed = f"a dataset written by capytaine.export_dataset ({reason or type(error).__name__})"
+        raise argument_error("path", str(path), allowed) from error
 
 
-def converted(dataset: "Dataset", path: str, mesh: ClosedMesh, draft: float | None) -> LinearTable:
-    """The same of a dataset in memory."""
+def converted(
+    dataset: "Dataset",
+    path: str,
+    mesh: ClosedMesh,
+    draft: float | None = None,
+    *,
+    body: str | None = None,
+    depth: float | None = None,
+    heading: float | None = None,
+    rotation_center: Sequence[float] | None = None,
+) -> LinearTable:
+    """The table of a hull from a dataset in memory, at its one draft [m]. Arguments and errors as of `with_dataset`."""
     missing = [name for name in WANTED if name not in dataset.variables]
     if missing:
-        raise argument_error("path", path, f"a dataset of one body with {', '.join(missing)}")
-    motions = tuple(str(name).rpartition("__")[2] for name in dataset["influenced_dof"].values)
-    if sorted(motions) != sorted(MOTIONS):
-        raise argument_error("path", path, f"a dataset of one body with the motions {', '.join(MOTIONS)}")
-    if not math.isinf(float(dataset["water_depth"])) or float(dataset.get("forward_speed", 0.0)) != 0.0:
-        raise argument_error("path", path, "a dataset in deep water, without forward speed")
-    if draft is None and "draught" not in dataset.variables:
-        raise argument_error("draft", draft, "a number above 0 m, as the dataset has no draught")
-    depth = check_positive("draft", float(dataset["draught"]), "m") if draft is None else draft
-    order = [motions.index(name) for name in MOTIONS]
-    omega = dataset["omega"].values
+        raise argument_error("path", path, f"a dataset of Capytaine's with {', '.join(missing)}, which this one lacks")
+    dataset = with_speed_zero(dataset, path)
+    dataset, water = with_one_depth(dataset, path, depth)
+    dataset = by_frequency(dataset, path)
+    dataset, chosen = of_one_body(dataset, path, body)
+    rho, g = (
+        check_positive(name, scalar(dataset, name, path), unit) for name, unit in (("rho", "kg/m3"), ("g", "m/s2"))
+    )
+    draft = draft_of(dataset, path, chosen, draft)
+    if not draft < float(mesh.size[2]):
+        raise argument_error("draft", draft, f"less than the height of the hull, {mesh.size[2]:g} m")
+    if not draft < water:
+        raise argument_error("draft", draft, f"less than the depth of the water, {water:g} m")
+    omega = numbers(dataset, "omega", ("omega",), path, allow_infinite=True)
     waves = np.flatnonzero(np.isfinite(omega) & (omega > 0.0))
     waves = waves[np.argsort(omega[waves])]
-    if len(waves) < 4:
-        raise argument_error("path", path, "a dataset of at least four frequencies")
-    rho, g = float(dataset["rho"]), float(dataset["g"])
+    if len(waves) < 4 or (np.diff(omega[waves]) <= 0.0).any():
+        raise argument_error("path", path, "a dataset of at least four frequencies above 0, each once")
     length = table_length(mesh)
-    centre = dataset["rotation_center" if "rotation_center" in dataset.variables else "center_of_mass"].values
-    offset = centre - [mesh.centre[0], mesh.centre[1], 0.0]
+    offset = centre_of(dataset, path, chosen, rotation_center) - [mesh.centre[0], mesh.centre[1], 0.0]
     S = velocity_at(*offset)  # from the middle of the waterline to the centre of rotation
+    kept = waves if not np.isinf(omega).any() else np.append(waves, np.flatnonzero(np.isinf(omega))[0])
 
     def matrix(name: str) -> np.ndarray:
         """(frequencies, 6, 6) about the middle of the waterline, over density."""
-        values = dataset[name].transpose("omega", "influenced_dof", "radiating_dof").values[:, order][:, :, order]
+        values = numbers(dataset, name, ("omega", "influenced_dof", "radiating_dof"), path, keep=kept)
         values = S.T @ values @ S / rho
         return (values + values.swapaxes(1, 2)) / 2
 
     unit = length ** np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
     scale, root = np.outer(unit, unit) * length, math.sqrt(length)
-    added, endless = matrix("added_mass") / scale, np.isinf(omega)
-    k = omega[waves] ** 2 / g
-    X = np.stack([force_of(dataset, name)[waves][:, :, order] for name in ("diffraction_force", "Froude_Krylov_force")])
-    headings = np.mod(dataset["wave_direction"].values, 2 * math.pi)
+    added, count = matrix("added_mass") / scale, len(waves)
+    k = wavenumber_of(omega[waves] / math.sqrt(g), water)
+    axes = ("omega", "wave_direction", "influenced_dof")
+    X = sum(numbers(dataset, name, axes, path, keep=waves) for name in FORCES)
+    headings = np.mod(numbers(dataset, "wave_direction", ("wave_direction",), path), 2 * math.pi)
     path_length = mesh.centre[0] * np.cos(headings) + mesh.centre[1] * np.sin(headings)
     phase = np.exp(-1j * k[:, None] * path_length)[:, :, None]
-    excitation = resampled(X.sum(axis=0) @ S * phase / (rho * g * unit * length), headings, path)
+    X = X @ S * phase / (rho * g * unit * length)
+    if heading is not None or len(headings) == 1:
+        i = place_of_heading(headings, path, heading)
+        excitation, only = np.repeat(X[:, i : i + 1], len(DIRECTIONS), axis=1), float(headings[i])
+    else:
+        excitation, only = resampled(X, headings, path), math.nan
     return LinearTable(
         aspect=np.ones(1),
-        draft=np.array([depth / length]),
+        draft=np.array([draft / length]),
         direction=DIRECTIONS,
         frequency=omega[waves] * math.sqrt(length / g),
-        added_mass=added[waves][None, None],
-        damping=(matrix("radiation_damping")[waves] / (scale * math.sqrt(g) / root))[None, None],
-        infinite=added[endless if endless.any() else waves[-1:]][0][None, None],
+        added_mass=added[:count][None, None],
+        damping=(matrix("radiation_damping")[:count] / (scale * math.sqrt(g) / root))[None, None],
+        infinite=added[-1][None, None],
         excitation=excitation[None, None],
+        depth=water / length,
+        heading=only,
     )
 
 
-def force_of(dataset: "Dataset", name: str) -> np.ndarray:
-    """A force (frequencies, directions, 6), complex, also where real and imaginary parts lie side by side."""
+def with_speed_zero(dataset: "Dataset", path: str) -> "Dataset":
+    """The part of a dataset without forward speed. Raises ValueError where there is none."""
+    if "forward_speed" not in dataset.variables:
+        return dataset
+    speeds = np.atleast_1d(numbers(dataset, "forward_speed", None, path))
+    if not (speeds == 0.0).any():
+        raise argument_error("path", path, f"a dataset without forward speed; this one has {speeds[0]:g} m/s")
+    if "forward_speed" in dataset.dims:
+        dataset = dataset.isel(forward_speed=int(np.flatnonzero(speeds == 0.0)[0]))
+    # beside those of other speeds, matrices without speed are there once for each direction
+    for name in MATRICES:
+        if "wave_direction" in dataset[name].dims:
+            dataset[name] = dataset[name].isel(wave_direction=0)
+    return dataset
+
+
+def with_one_depth(dataset: "Dataset", path: str, depth: float | None) -> tuple["Dataset", float]:
+    """The part of a dataset of the depth [m] that is asked for, and that depth. Raises ValueError without it."""
+    depths = np.full(1, math.inf)
+    if "water_depth" in dataset.variables:
+        depths = np.atleast_1d(numbers(dataset, "water_depth", None, path, allow_infinite=True))
+    if depths.ndim != 1 or not (depths > 0.0).all():
+        raise argument_error("path", path, "a dataset of depths above 0 m")
+    i = 0
+    if depth is not None:
+        depth = check_positive("depth", depth, "m", allow_infinite=True)
+        fits = [one == depth or abs(one - depth) <= SAME_DEPTH * depth < math.inf for one in depths]
+        i = fits.index(True) if True in fits else -1
+    if i < 0 or (depth is None and len(depths) > 1):
+        raise argument_error("depth", depth, f"one that the dataset has: {', '.join(f'{one:g}' for one in depths)} m")
+    if "water_depth" in dataset.dims:
+        dataset = dataset.isel(water_depth=i)
+    return dataset, float(depths[i])
+
+
+def by_frequency(dataset: "Dataset", path: str) -> "Dataset":
+    """The dataset with `omega` as the axis of its frequencies. Raises ValueError where it has no such axis."""
+    axes = [name for name in FREQUENCIES if name in dataset.dims]
+    omega = dataset["omega"]
+    if len(axes) != 1 or omega.dims != (axes[0],):
+        raise argument_error("path", path, f"a dataset with one axis of frequencies, by {', '.join(FREQUENCIES)}")
+    return dataset if axes == ["omega"] else dataset.swap_dims({axes[0]: "omega"})
+
+
+def of_one_body(dataset: "Dataset", path: str, body: str | None) -> tuple["Dataset", str]:
+    """The part of a dataset of one body with the six motions in their order, and the name before its motions.
+
+    Raises ValueError where the body is not there, was not named, or lacks a motion.
+    """
+    parts = {}
+    for axis in ("influenced_dof", "radiating_dof"):
+        if dataset[axis].ndim != 1 or axis not in dataset.dims:
+            raise argument_error("path", path, f"a dataset with the axis {axis}")
+        parts[axis] = [str(name).rpartition("__")[::2] for name in dataset[axis].values]
+    bodies = list(dict.fromkeys(name for name, _ in parts["influenced_dof"]))
+    known = [*bodies, *(alone_name(dataset) if bodies == [""] else [])]
+    if body is None and len(bodies) > 1:
+        raise argument_error("body", body, f"one of the bodies of the dataset: {', '.join(bodies)}")
+    if body is not None and body not in known:
+        raise argument_error("body", body, f"one of the bodies of the dataset: {', '.join(filter(None, known))}")
+    chosen = bodies[0] if len(bodies) == 1 else str(body)
+    for axis, names in parts.items():
+        wanted = [(chosen, motion) for motion in MOTIONS]
+        if any(names.count(one) != 1 for one in wanted) or sum(name == chosen for name, _ in names) != len(MOTIONS):
+            here = ", ".join(motion for name, motion in names if name == chosen)
+            raise argument_error("path", path, f"a body with the motions {', '.join(MOTIONS)}; in {axis}: {here}")
+        dataset = dataset.isel({axis: [names.index(one) for one in wanted]})
+    return dataset, chosen
+
+
+def alone_name(dataset: "Dataset") -> list[str]:
+    """The name of the one body of a dataset, if it is said."""
+    return [str(dataset[name].item()) for name in ("body", "body_name") if name in dataset and dataset[name].size == 1]
+
+
+def of_body(dataset: "Dataset", name: str, body: str) -> np.ndarray | None:
+    """Values of a variable that a dataset may have for each body; None without them, or where they are not numbers."""
+    if name not in dataset.variables:
+        return None
+    values = dataset[name]
+    axis = next((one for one in ("body", "body_name") if one in values.dims), "")
+    if axis:
+        names = [str(one) for one in values[axis].values] if axis in values.coords else []
+        if body not in names:
+            return None
+        values = values.isel({axis: names.index(body)})
+    found = values.values
+    return found.astype(float) if found.dtype.kind in "iuf" and np.isfinite(found).all() else None
+
+
+def draft_of(dataset: "Dataset", path: str, body: str, draft: float | None) -> float:
+    """The draft [m] as given, or that of the dataset. Raises ValueError where neither is there."""
+    if draft is not None:
+        return check_positive("draft", draft, "m")
+    found = of_body(dataset, "draught", body)
+    if found is None or found.ndim:
+        raise argument_error("draft", draft, "a number above 0 m, as the dataset has no draught")
+    return check_positive("draft", float(found), "m")
+
+
+def centre_of(dataset: "Dataset", path: str, body: str, given: Sequence[float] | None) -> np.ndarray:
+    """The point (3,) [m] that the motions are about, as given, or that of the dataset.
+
+    Without a centre of rotation it is the centre of mass. Raises ValueError where none is there.
+    """
+    if given is not None:
+        return np.array(check_vector("rotation_center", given, "m"))
+    for name in ("rotation_center", "center_of_mass"):
+        found = of_body(dataset, name, body)
+        if found is not None and found.shape == (3,):
+            return found
+    allowed = "a point (x, y, z) [m] that its motions are about, as the dataset has neither that nor a center_of_mass"
+    raise argument_error("rotation_center", given, allowed)
+
+
+def scalar(dataset: "Dataset", name: str, path: str) -> float:
+    """The one number of a variable. Raises ValueError for several."""
+    values = np.asarray(dataset[name].values)
+    if values.size != 1 or values.dtype.kind not in "iuf":
+        raise argument_error("path", path, f"a dataset with one number {name}; this one has {values.size}")
+    return float(values.reshape(-1)[0])
+
+
+def numbers(
+    dataset: "Dataset",
+    name: str,
+    axes: tuple[str, ...] | None,
+    path: str,
+    *,
+    keep: np.ndarray | None = None,
+    allow_infinite: bool = False,
+) -> np.ndarray:
+    """The values of a variable along these axes, complex also where real and imaginary parts lie side by side.
+
+    keep: which of the first axis; only these need to be finite. Raises ValueError for other axes and numbers.
+    """
     values: Any = dataset[name]
-    if "complex" in values.dims:
+    if "complex" in values.dims and sorted(map(str, values["complex"].values)) == ["im", "re"]:
         values = values.sel(complex="re") + 1j * values.sel(complex="im")
-    return values.transpose("omega", "wave_direction", "influenced_dof").values
+    # what has one place along a further axis lies there
+    values = values.squeeze([axis for axis in values.dims if axes and axis not in axes and values.sizes[axis] == 1])
+    if axes is not None and set(values.dims) != set(axes):
+        along = ", ".join(map(str, values.dims)) or "none"
+        raise argument_error("path", path, f"a dataset with {name} along {', '.join(axes)}; in this one: {along}")
+    found = np.asarray((values if axes is None else values.transpose(*axes)).values)
+    found = found if keep is None else found[keep]
+    if found.dtype.kind not in "iufc" or not (np.isfinite(found) | (allow_infinite & (found == np.inf))).all():
+        raise argument_error("path", path, f"a dataset of numbers; {name} has others, and frequencies can be left out")
+    return found
+
+
+def place_of_heading(headings: np.ndarray, path: str, heading: float | None) -> int:
+    """Index of the one of headings (n,) [rad] that is asked for. Raises ValueError without it."""
+    if heading is None:
+        return 0
+    miss = np.abs(np.angle(np.exp(1j * (headings - check_angle("heading", heading)))))
+    if not len(miss) or miss.min() > SAME_HEADING:
+        known = ", ".join(f"{one:.4g}" for one in headings)
+        raise argument_error("heading", heading, f"one that the dataset has: {known} rad")
+    return int(miss.argmin())
 
 
 def resampled(X: np.ndarray, headings: np.ndarray, path: str) -> np.ndarray:
@@ -138,7 +335,10 @@ def resampled(X: np.ndarray, headings: np.ndarray, path: str) -> np.ndarray:
             X = np.concatenate([X, mirrored[:, keep][:, ::-1]], axis=1)
     around = np.concatenate([headings[-2:] - 2 * math.pi, headings, headings[:3] + 2 * math.pi])
     if np.diff(around).max() > WIDEST_GAP or len(headings) < 4:
-        raise argument_error("path", path, "directions at most 30 degrees apart, all around or up to 90 or 180 degrees")
+        allowed = (
+            "directions at most 30 degrees apart, all around or up to 90 or 180 degrees, or one chosen by `heading`"
+        )
+        raise argument_error("path", path, allowed)
     values = np.concatenate([X[:, -2:], X, X[:, :3]], axis=1)
     index, weights = lagrange(around, DIRECTIONS)
     return np.einsum("dw,ndwm->ndm", weights, values[:, index])

@@ -21,6 +21,7 @@ from sim.interruption import raise_if_stopped
 from sim.jit import kernel
 from sim.ocean.gerstner import Waves, widened
 from sim.ocean.wave_sum import fine_wave
+from sim.validation import argument_error
 
 HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are taken again
 LAST_RATES = (15 / 8, -10 / 8, 3 / 8)  # weights of the last three rates of change, for that half a step after them
@@ -66,9 +67,12 @@ class WaveExcitation:
         The upward force is the change of the impulse sum a Re(i D/w exp(i phase)) along the body's way, and so has no
         mean. In linear theory the force at a fixed place has no mean. At a place that moves with the waves its mean is
         of second order, and a small body that follows the water does not feel it.
+
+        Raises ValueError for a hull with a dataset of one heading, in waves of another.
         """
         if not (np.array_equal(kx, self.kx) and np.array_equal(ky, self.ky)):
             self.kx, self.ky, self.impulses = kx.copy(), ky.copy(), ()
+            self.check_headings(fleet, kx, ky, amplitude)
             k = np.hypot(kx, ky)
             found = [kind.beyond_long_waves(k) for kind in self.kinds]
             self.tables = np.array([rest for rest, _ in found]).reshape(len(found), len(k), len(DIRECTIONS), 6)
@@ -96,6 +100,19 @@ class WaveExcitation:
         self.impulses = (out[:, 2].copy(), *self.impulses[: len(LAST_RATES)])
         out[:, 2] = rate_of_change(self.impulses, h)
         return out
+
+    def check_headings(self, fleet: Fleet, kx: np.ndarray, ky: np.ndarray, amplitude: np.ndarray) -> None:
+        """Raises ValueError for a hull with coefficients of one heading, in waves of another."""
+        bearing = np.arctan2(ky, kx)[amplitude > 0.0]
+        for b, q in enumerate(self.kind):
+            heading, (c, s) = self.kinds[q].heading, heading_of(fleet.rotation, b)
+            away = np.abs(np.angle(np.exp(1j * (bearing - math.atan2(s, c) - heading))))
+            if (away > HEADING_TOLERANCE).any():  # False for nan: all headings
+                given = (
+                    f"a hull with a dataset of {heading:.4g} rad only, in waves up to {away.max():.3g} rad from that"
+                )
+                allowed = "waves of that heading, or a dataset of headings all around"
+                raise argument_error(f"bodies[{b}]", given, allowed)
 
 
 def rate_of_change(values: Sequence[np.ndarray], h: float) -> np.ndarray:

@@ -20,6 +20,7 @@ from sim.floating.body import Body, make_fleet
 from sim.floating.equilibrium import Layers, check_layers
 from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
 from sim.floating.fluid_state import make_water
+from sim.floating.hydrodynamics import check_water_depth
 from sim.floating.motion import STANDARD, MotionCoefficients, step
 from sim.floating.stability import Loaded, is_stable, near_upright
 from sim.interruption import raise_if_stopped
@@ -55,8 +56,8 @@ def float_in(
 
     On a sum of waves they feel linear wave forces; on the FFT sea those of waves long beside the hull (motion.py). The
     gravity is the sea's. A step is 1/60 s, or shorter to divide the frames. A UserWarning gives the GM of a body that
-    is not stable upright. Raises ValueError for a value that is not allowed, and as `make_fleet`, `RadialSea.at` and
-    `step`.
+    is not stable upright. Raises ValueError for a value that is not allowed, for a hull with a dataset of another depth
+    or heading than the sea's, and as `make_fleet`, `RadialSea.at` and `step`.
     """
     check_kind("sea", sea, Sea | RadialSea, "a Sea or a RadialSea")
     check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
@@ -67,6 +68,8 @@ def float_in(
     gravity = sea.conditions.gravity if isinstance(sea, Sea) else sea.column.gravity
     coefficients = coefficients._replace(gravity=gravity)
     fleet = make_fleet(bodies, layers)
+    for i, body in enumerate(bodies):
+        check_water_depth(f"bodies[{i}]", body.hull, sea.conditions.depth if isinstance(sea, Sea) else math.inf)
     for words in unstable(bodies, layers):
         warnings.warn(words, UserWarning, stacklevel=2)
     widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])

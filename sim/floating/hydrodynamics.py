@@ -30,7 +30,7 @@ from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, add_pressure
 from sim.floating.linear_table import LinearTable, table_of
 from sim.interruption import pieces, raise_if_stopped
-from sim.validation import ConvergenceError
+from sim.validation import ConvergenceError, argument_error
 
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
 POLES = np.array([-0.362 + 0.419j, -0.408 + 0.850j, -0.311 + 1.274j, -1.344 + 1.128j, -1.127 + 4.227j])
@@ -39,6 +39,7 @@ FIT_WIDTH = 0.12  # share of a hull's own frequency about which the memory is fi
 FIT_FLOOR = 0.06  # weight of the other frequencies
 STEADY_WEIGHT = 30.0  # of the condition that a steady motion meets no force
 DEEPEST = 0.98  # of the height of a hull: the draft at which one that is wholly under water has its coefficients
+ONE_DEPTH = 0.01  # by how much water may be deeper or shallower than that of a table
 ONE_DRAFT = 0.01  # by how much a body's draft may differ from the only one of its table
 MAX_TURNS = 60  # of the search for a natural frequency
 PIECE = 64  # waves at a time: the solve yields in between
@@ -49,6 +50,8 @@ LONG_POWERS = np.array([1.0, 1.0, 1.0, 1.0, 1.0, 2.0])  # of k, by which what is
 # small, and wrong where a hull has the coefficients of a box.
 FADING_POWERS = np.array([3.0, 3.0, 3.0, 3.0, 3.0, 2.0])
 NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
+NEWTON_STEPS = 8  # of a wavenumber from 20 % below it: to the last bit
+SHALLOW_UNTIL = 60.0  # 2 k depth, from which on x/sinh(x) is below 1e-24
 LEVEL_MOTIONS = [0, 1, 5]  # surge, sway, yaw: water that is higher, and level, does not push along them
 # Signs of the motions under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
@@ -65,17 +68,18 @@ class PlaneForce(NamedTuple):
 class LongWaveForce(NamedTuple):
     """Force and moment (6,) of a wave a cos(k.x - wt) that is long beside the hull, to first order of k.
 
-    X = rise + k lift + i (kx run[0] + ky run[1]), at unit density and gravity.
+    X = rise + w^2/g lift + i (kx run[0] + ky run[1]), at unit density and gravity; w^2/g is k in deep water.
     """
 
     rise: np.ndarray
     lift: np.ndarray  # [for each rad/m]
     run: np.ndarray  # (2, 6) the same
 
-    def at(self, kx: np.ndarray, ky: np.ndarray) -> np.ndarray:
-        """X (..., 6) of wavenumbers kx, ky (...) [rad/m]."""
+    def at(self, kx: np.ndarray, ky: np.ndarray, depth: float) -> np.ndarray:
+        """X (..., 6) of wavenumbers kx, ky (...) [rad/m] in water of a depth [m]."""
         kx, ky = kx[..., None], ky[..., None]
-        return self.rise + np.hypot(kx, ky) * self.lift + 1j * (kx * self.run[0] + ky * self.run[1])
+        upward = frequency_of(np.hypot(kx, ky), depth) ** 2
+        return self.rise + upward * self.lift + 1j * (kx * self.run[0] + ky * self.run[1])
 
 
 class LinearHull(NamedTuple):
@@ -96,6 +100,17 @@ class LinearHull(NamedTuple):
     is_round: bool  # seen from above: the excitation does not depend on the heading
     plane: PlaneForce  # of a plane on the hull at this draft
     long: LongWaveForce
+    depth: float  # [m] of the water, inf for deep water
+    heading: float  # [rad] the only one that the excitation is known for; nan: all
+
+    @property
+    def directions(self) -> np.ndarray:
+        """The directions [rad] of the waves of the excitation (36,)."""
+        return DIRECTIONS if math.isnan(self.heading) else np.full(len(DIRECTIONS), self.heading)
+
+    def wavenumber(self, frequency: np.ndarray) -> np.ndarray:
+        """Wavenumber [rad/m] of waves of frequencies [1/sqrt(m)] in the water that the coefficients are of."""
+        return wavenumber_of(frequency, self.depth)
 
     def at(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
         """Added mass and damping (6, 6) at a frequency [1/sqrt(m)].
@@ -105,28 +120,33 @@ class LinearHull(NamedTuple):
         first, last = float(self.frequency[0]), float(self.frequency[-1])
         nodes, weights = lagrange(self.frequency, min(max(frequency, first), last))
         a = np.tensordot(weights, self.added_mass[nodes], 1)
-        if frequency < first:
-            return a, haskind(self.around(np.array([frequency**2]))[0], frequency)
-        return a, np.tensordot(weights, self.damping[nodes], 1)
+        if frequency >= first:
+            return a, np.tensordot(weights, self.damping[nodes], 1)
+        k = self.wavenumber(np.array([frequency]))
+        if math.isnan(self.heading):
+            return a, haskind(self.around(k)[0], float(k[0]), self.depth)
+        k_first = float(self.wavenumber(np.array([first]))[0])
+        ratio = radiated_share(float(k[0]), self.depth) / radiated_share(k_first, self.depth)
+        return a, ratio * self.damping[0]  # as if the forces were those of the first frequency
 
     def around(self, k: np.ndarray) -> np.ndarray:
         """X (waves, 36, 6) of waves in DIRECTIONS against the hull, for wavenumbers k (waves,) [rad/m], over g."""
         rest, is_long = self.beyond_long_waves(k)
-        kx, ky = k[:, None] * np.cos(DIRECTIONS), k[:, None] * np.sin(DIRECTIONS)
-        return rest + is_long[:, None, None] * self.long.at(kx, ky)
+        kx, ky = k[:, None] * np.cos(self.directions), k[:, None] * np.sin(self.directions)
+        return rest + is_long[:, None, None] * self.long.at(kx, ky, self.depth)
 
     def beyond_long_waves(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """X (waves, 36, 6) as `around`, less that of long waves where is_long (waves,) is 1, and not 0.
 
         Above the table it fades with the shortness of the wave beside the hull.
         """
-        nodes = self.frequency**2
+        nodes = self.wavenumber(self.frequency)
         is_long = (k < nodes[LONG_NODES - 1]).astype(float)
-        cosine, sine = np.cos(DIRECTIONS), np.sin(DIRECTIONS)
-        beyond = self.excitation - self.long.at(nodes[:, None] * cosine, nodes[:, None] * sine)
+        cosine, sine = np.cos(self.directions), np.sin(self.directions)
+        beyond = self.excitation - self.long.at(nodes[:, None] * cosine, nodes[:, None] * sine, self.depth)
         scaled = (beyond / nodes[:, None, None] ** LONG_POWERS).reshape(len(nodes), -1)
         powers, fading = (np.tile(one, len(DIRECTIONS)) for one in (LONG_POWERS, FADING_POWERS))
-        index, weights = lagrange(self.frequency, np.minimum(np.sqrt(k), self.frequency[-1]))
+        index, weights = lagrange(self.frequency, np.minimum(frequency_of(k, self.depth), self.frequency[-1]))
         table, found = self.excitation.reshape(len(nodes), -1), np.empty((len(k), scaled.shape[1]), complex)
         for piece in pieces(len(k), PIECE):
             for i, one in enumerate(k[piece].tolist(), start=piece.start):
@@ -140,12 +160,38 @@ class LinearHull(NamedTuple):
         return found.reshape(len(k), len(DIRECTIONS), 6), is_long
 
 
-def haskind(X: np.ndarray, frequency: float) -> np.ndarray:
-    """Damping (6, 6) over sqrt(g) at a frequency [1/sqrt(m)], of the forces X (36, 6) over g in DIRECTIONS.
+def frequency_of(k: np.ndarray, depth: float) -> np.ndarray:
+    """omega/sqrt(g) [1/sqrt(m)] of waves of wavenumbers k [rad/m] in water of a depth [m], or inf."""
+    return np.sqrt(k if math.isinf(depth) else k * np.tanh(k * depth))
 
-    B = k/(8 pi rho g v) int X X* d beta, v = g/(2 w) the group velocity (Newman 1977, section 6.18, eq. 173).
+
+def wavenumber_of(frequency: np.ndarray, depth: float) -> np.ndarray:
+    """Wavenumber [rad/m] of waves of omega/sqrt(g) [1/sqrt(m)] in water of a depth [m], or inf, by Newton's method."""
+    deep = np.square(frequency)
+    if math.isinf(depth):
+        return deep
+    # x tanh x = y: as tanh x is below 1 and below x, the root is above y and above sqrt(y), by at most 20 %
+    y = deep * depth
+    x = np.maximum(y, np.sqrt(y))
+    for _ in range(NEWTON_STEPS):
+        t = np.tanh(x)
+        x = x - (x * t - y) / (t + x * (1.0 - t * t))
+    return x / depth
+
+
+def radiated_share(k: float, depth: float) -> float:
+    """k/(4 v) [1/m^1.5], v over sqrt(g) the group velocity, of waves of wavenumber k [rad/m] at a depth [m]."""
+    frequency, twice = float(frequency_of(np.array(k), depth)), 2.0 * k * depth
+    shallow = twice / math.sinh(twice) if twice < SHALLOW_UNTIL else 0.0
+    return k / (4.0 * 0.5 * frequency / k * (1.0 + shallow))
+
+
+def haskind(X: np.ndarray, k: float, depth: float) -> np.ndarray:
+    """Damping (6, 6) over sqrt(g) of the forces X (36, 6) over g in DIRECTIONS; wavenumber k [rad/m], depth [m].
+
+    B = k/(8 pi rho g v) int X X* d beta, v the group velocity (Newman 1977, section 6.18, eq. 173).
     """
-    return 0.5 * frequency**3 * np.einsum("di,dj->ij", X, X.conj()).real / len(X)
+    return radiated_share(k, depth) * np.einsum("di,dj->ij", X, X.conj()).real / len(X)
 
 
 class Memory(NamedTuple):
@@ -206,6 +252,17 @@ def outside_table(hull: Hull, draft: float) -> str:
     return " and ".join(beyond)
 
 
+def check_water_depth(name: str, hull: Hull, depth: float) -> None:
+    """Raises ValueError for a hull with the coefficients of water of a finite depth in water of another one [m]."""
+    table = hull.shape.table
+    if table is None or math.isinf(table.depth):
+        return
+    own = table.depth * table_length(hull)
+    if not abs(depth - own) <= ONE_DEPTH * own:
+        given = f"a hull with a dataset of water {own:.4g} m deep, in water of {depth:.4g} m"
+        raise argument_error(name, given, "water of the dataset's depth, or a dataset of the water's")
+
+
 def linear_hull(hull: Hull, draft: float) -> LinearHull:
     """The linear coefficients of a hull upright at a draft [m].
 
@@ -236,9 +293,11 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
     scale = np.outer(unit, unit) * length
     root = math.sqrt(length)
     frequency = table.frequency / root
-    # the wave reaches the axis of the table and the centre of mass one after the other; k = frequency^2
-    path = hull.axis[0] * np.cos(DIRECTIONS) + hull.axis[1] * np.sin(DIRECTIONS)
-    excitation = excitation * np.exp(1j * np.square(frequency)[:, None] * path)[:, :, None]
+    # the wave reaches the axis of the table and the centre of mass one after the other
+    directions = DIRECTIONS if math.isnan(table.heading) else np.full(len(DIRECTIONS), table.heading)
+    path = hull.axis[0] * np.cos(directions) + hull.axis[1] * np.sin(directions)
+    water = table.depth * length
+    excitation = excitation * np.exp(1j * wavenumber_of(frequency, water)[:, None] * path)[:, :, None]
     added, plane, cut = S.T @ (a * scale) @ S, plane_force(hull, draft), upright(hull, draft)
     return LinearHull(
         frequency=frequency,
@@ -252,6 +311,8 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
         is_round=is_round,
         plane=plane,
         long=long_wave_force(plane, cut, added[0]),
+        depth=water,
+        heading=table.heading,
     )
 
 
@@ -296,8 +357,9 @@ def interpolated(table: LinearTable, aspect: float, draft: float) -> LinearTable
             np.tensordot(u, found / scale.reshape(len(i), *[1] * (found.ndim - 1 - powers), *scale.shape[1:]), 1) * back
         )
 
+    damping = value(table.damping, 2)
     return table._replace(
-        added_mass=value(table.added_mass, 2), damping=not_negative(value(table.damping, 2)),
+        added_mass=value(table.added_mass, 2), damping=not_negative(damping) if len(drafts) > 1 else damping,
         infinite=value(table.infinite, 2), excitation=value(table.excitation, 1),
     )  # fmt: skip
 
@@ -309,7 +371,7 @@ def powers_of_draft(draft: np.ndarray) -> np.ndarray:
 
 
 def not_negative(damping: np.ndarray) -> np.ndarray:
-    """The nearest damping (n, 6, 6) that gives no energy to any motion; interpolation may miss that by a little."""
+    """The nearest damping (n, 6, 6) that gives no energy to any motion; interpolation and datasets may miss that."""
     size = np.sqrt(np.abs(np.einsum("nii->ni", damping)).max(axis=0)) + 1e-12
     values, vectors = np.linalg.eigh(damping / np.outer(size, size))
     kept = np.einsum("nij,nj,nkj->nik", vectors, np.maximum(values, 0.0), vectors)
@@ -378,7 +440,7 @@ def memory_of(linear: LinearHull, own_frequencies: np.ndarray) -> Memory:
     s = 1j * linear.frequency[:, None]
     parts = np.concatenate([1 / (s - poles) + 1 / (s - poles.conj()), 1j / (s - poles) - 1j / (s - poles.conj())], 1)
     steady = np.concatenate([(-1 / poles - 1 / poles.conj()).real, (-1j / poles + 1j / poles.conj()).real])
-    K = linear.damping + s[:, :, None] * (linear.added_mass - linear.infinite)
+    K = not_negative(linear.damping) + s[:, :, None] * (linear.added_mass - linear.infinite)
     residues = np.zeros((len(poles), 6, 6), complex)
     for i in range(6):
         for j in range(i, 6):

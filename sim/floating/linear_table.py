@@ -6,6 +6,8 @@ The table of a hull from a file lies in a file of the same name that ends with `
 
 import functools
 import hashlib
+import math
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import NamedTuple
@@ -32,13 +34,22 @@ class LinearTable(NamedTuple):
     damping: np.ndarray  # (a, d, n, 6, 6)
     infinite: np.ndarray  # (a, d, 6, 6) added mass at infinite frequency
     excitation: np.ndarray  # (a, d, n, m, 6) complex
+    depth: float = math.inf  # of the water; inf: deep
+    heading: float = math.nan  # [rad] the only one that the excitation is of, at whatever direction it stands; nan: all
+
+
+def table_from(arrays: Mapping[str, np.ndarray]) -> LinearTable:
+    """The table in the arrays of a file. Raises KeyError, TypeError or ValueError for other arrays."""
+    given = {field: arrays[field] for field in LinearTable._fields if field in arrays}
+    numbers = {field: float(given[field]) for field in LinearTable._field_defaults if field in given}
+    return LinearTable(**{**given, **numbers})
 
 
 @functools.cache
 def table_of(name: str) -> LinearTable:
     """A shipped table: "box", "cylinder" or "sphere"."""
     with files("sim.floating").joinpath(f"tables/{name}.npz").open("rb") as file, np.load(file) as arrays:
-        return LinearTable(**{field: arrays[field] for field in LinearTable._fields})
+        return table_from(arrays)
 
 
 def place_of_table(hull_file: str | Path) -> Path:
@@ -65,7 +76,7 @@ def read_table(path: Path, mesh: ClosedMesh) -> LinearTable:
     try:
         with np.load(path) as arrays:
             made_of = str(arrays["mesh"])
-            table = LinearTable(**{field: arrays[field] for field in LinearTable._fields})
+            table = table_from(arrays)
     except Exception as error:  # numpy's reader raises errors of many types
         raise argument_error("path", str(path), f"a table made by `springtide hydrodynamics` ({error})") from error
     if made_of != fingerprint(mesh):

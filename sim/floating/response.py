@@ -20,6 +20,7 @@ from sim.floating.stability import about_rest, is_stable
 from sim.validation import argument_error, as_array, check_angle, check_positive
 
 MAX_TRIM = 1e-3  # [rad] of a body that counts as upright: a hull from a file is never quite symmetric
+MAX_MISS = 1e-6  # [rad] from the only heading of a dataset
 
 
 class LinearForces(NamedTuple):
@@ -40,12 +41,14 @@ def response_amplitude(
 
     Complex: surge, sway, heave [m/m], roll, pitch, yaw [rad/m] along and about the body's axes, x = Re(xi e^(-i w t))
     in the wave cos(k.x - w t), x from the centre of gravity. heading [rad]: where the waves go to, from the body's x.
-    It solves (C - w^2 (M + A) - i w B) xi = X (Newman 1977, section 6.20), upright, on deep water, without drag. Above
+    It solves (C - w^2 (M + A) - i w B) xi = X (Newman 1977, section 6.20), upright, without drag, on deep water, or
+    that of the hull's dataset. C is that of the hull, also where a dataset has one, and A and B are symmetric. Above
     the table's frequencies A and B are those of its end and X fades. Below them A is that of its first frequency, and X
     tends to the force of long waves, so that the body moves with the water and leans as the wave is steep. In layers
     the coefficients have the mean density of what is displaced, and the interface follows the surface.
 
-    Raises ValueError for a value that is not allowed, and for a body that sinks, has a trim, or is not stable upright.
+    Raises ValueError for a value that is not allowed, a heading that the hull's dataset does not have, and for a body
+    that sinks, has a trim, or is not stable upright.
     """
     f = linear_forces(body, frequency, heading, layers, gravity)
     w = np.asarray(frequency, dtype=float)[:, None, None]
@@ -82,11 +85,13 @@ def linear_forces(
         C[2:5, 2:5] += gravity * change * forces[2:5]
     fluid = density * hull.volume / linear.volume  # [kg/m3] mean density of the displaced fluids
     mass = density * np.block([[hull.volume * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), hull.inertia]])
+    if abs(math.remainder(heading - linear.heading, 2.0 * math.pi)) > MAX_MISS:  # False for nan: all headings
+        raise argument_error("heading", heading, f"{linear.heading:g} rad, the only one that the hull's dataset has")
     index, weights = lagrange(np.append(DIRECTIONS, 2.0 * math.pi), heading % (2.0 * math.pi))
-    k = w**2 / gravity
+    k = linear.wavenumber(w / math.sqrt(gravity))
     beyond, is_long = linear.beyond_long_waves(k)
     X = np.einsum("d,ndm->nm", weights, beyond[:, index % len(DIRECTIONS)])
-    X = fluid * (X + is_long[:, None] * linear.long.at(k * math.cos(heading), k * math.sin(heading)))
+    X = fluid * (X + is_long[:, None] * linear.long.at(k * math.cos(heading), k * math.sin(heading), linear.depth))
     # the pressure under a plane that follows the wave, in each fluid instead of the mean one
     for density_step, plane in [*planes, (-fluid, linear.plane)]:
         slope = math.cos(heading) * plane.slope[0] + math.sin(heading) * plane.slope[1]

@@ -1,11 +1,12 @@
 """A hull as a `Body` of a mooring, by linear theory: added mass and damping of one frequency, waves by the table."""
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sim import floating
-from sim.floating.hydrodynamics import not_negative
+from sim.floating.hydrodynamics import check_water_depth, not_negative
 from sim.floating.response import linear_forces
 from sim.mooring.system import Body
 
@@ -22,11 +23,15 @@ def moored(
 
     frequency: [rad/s] of the added mass and the radiation damping, which are taken as constant; that of the highest
     waves is a good one. waves: those of the system, which push it by `sim.floating.response.linear_forces` [N, N m].
-    Coefficients are those of deep water.
+    Coefficients are those of deep water, or of the depth of the hull's dataset, which is then that of the waves.
 
-    Raises ValueError as `response_amplitude` does.
+    Raises ValueError as `response_amplitude` does, and for waves on water of another depth than the dataset's.
     """
-    own = linear_forces(body, [frequency], gravity=gravity)
+    if waves is not None:
+        check_water_depth("waves", body.hull, waves.depth)
+    table = body.hull.shape.table
+    heading = 0.0 if table is None or math.isnan(table.heading) else table.heading  # whichever: only X depends on it
+    own = linear_forces(body, [frequency], heading, gravity=gravity)
     C = own.stiffness.copy()
     for e, of in ((0, 2), (1, 2), (5, 3)):
         C[e, e] += HELD * C[of, of]

@@ -105,7 +105,6 @@ def test_in_two_fluids_the_heave_of_a_long_wave_is_the_wave():
     ("name", "change", "words"),
     [
         ("path", lambda d: d.drop_vars("added_mass"), "added_mass"),
-        ("path", lambda d: d.assign_coords(water_depth=30.0), "deep water"),
         ("path", lambda d: d.isel(wave_direction=[0, 9, 18]), "30 degrees apart"),
         ("path", lambda d: d.isel(omega=[0, 1, 2]), "four frequencies"),
         ("path", lambda d: d.isel(influenced_dof=[0, 2]), "the motions"),

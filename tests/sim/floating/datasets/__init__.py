@@ -1,0 +1,1 @@
+"""Small datasets of Capytaine's, and the script that makes them."""

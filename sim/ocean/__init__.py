@@ -3,7 +3,8 @@
 Conventions: SI units, radians, z up. Directions are where waves and wind go to, from +x towards +y. A wave is
 Re[2 h0 exp(i(k.x - omega t))] with omega >= 0; Hs = 4 sqrt(m0), m0 the variance of the height.
 
-`SPECTRA`, `Sea`, `RadialSea`, `draw_waves` and `zero_crossings` are imported from here.
+`SPECTRA`, `Sea`, `RadialSea`, `draw_waves`, `measured_spectrum`, `read_spectrum`, `recorded_waves` and `zero_crossings`
+are imported from here.
 """
 
 import importlib
@@ -11,12 +12,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sim.ocean.gerstner import draw_waves
+    from sim.ocean.measured import measured_spectrum
     from sim.ocean.radial import RadialSea
+    from sim.ocean.recorded import recorded_waves
     from sim.ocean.sea import Sea
     from sim.ocean.spectra import SPECTRA
+    from sim.ocean.spectrum_files import read_spectrum
     from sim.ocean.wave_record import zero_crossings
 
-__all__ = ["SPECTRA", "RadialSea", "Sea", "draw_waves", "zero_crossings"]
+__all__ = [
+    "SPECTRA", "RadialSea", "Sea", "draw_waves", "measured_spectrum", "read_spectrum", "recorded_waves",
+    "zero_crossings",
+]  # fmt: skip
 
 # Imported on first use, so that the closed forms of `sim.ocean.dispersion` cost neither numba nor pyfftw.
 HOMES = {
@@ -24,6 +31,9 @@ HOMES = {
     "RadialSea": "sim.ocean.radial",
     "Sea": "sim.ocean.sea",
     "draw_waves": "sim.ocean.gerstner",
+    "measured_spectrum": "sim.ocean.measured",
+    "read_spectrum": "sim.ocean.spectrum_files",
+    "recorded_waves": "sim.ocean.recorded",
     "zero_crossings": "sim.ocean.wave_record",
 }
 

@@ -115,7 +115,7 @@ class Spectrum(NamedTuple, Generic[C]):
     @property
     def title(self) -> str:
         """Its title in a list of spectra: the first words of `doc`."""
-        return self.doc.partition(":")[0]
+        return self.doc.partition(": ")[0]
 
     def wind_speed(self, u10: float) -> float:
         """The wind speed [m/s] that it takes, from that 10 m above the sea."""

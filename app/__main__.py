@@ -268,6 +268,9 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
         "--hull", type=Path, metavar="FILE",
         help="add a closed mesh in metres to the radial sea: STL, OBJ or PLY with z up, glTF or GLB with y up",
     )  # fmt: skip
+    spectrum = "waves of a measured spectrum, in either sea: CSV, NDBC, WAVEWATCH III or SWAN; see docs/files.md"
+    parser.add_argument("--spectrum", type=Path, metavar="FILE", help=spectrum)
+    parser.add_argument("--spectrum-time", metavar="TIME", help="of one of its records (default: the last one)")
 
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
@@ -279,18 +282,31 @@ def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     if arguments.preset is not None:
         setup = preset_setup("--preset", arguments.preset, scene)
         values = dict(setup.values)
-        say_missing_hull(setup, arguments.hull)
-    params = check_record(scene.params, {**values, **parse_assignments(scene.params, arguments.set)})
-    return params if arguments.hull is None else with_hull(params, arguments.hull)
+        say_missing_files(setup, arguments)
+    given = {**values, **parse_assignments(scene.params, arguments.set)}
+    params = check_record(scene.params, given)
+    if arguments.hull is not None:
+        params = with_hull(params, arguments.hull)
+    if arguments.spectrum is not None:
+        params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in given)
+    elif arguments.spectrum_time is not None:
+        raise ValueError("--spectrum-time: it needs --spectrum FILE")
+    return params
 
 
-def say_missing_hull(setup: Any, hull: Path | None = None) -> None:
-    """Say on the error stream which mesh a set-up had, unless `hull` gives one."""
-    from app.scenes.setups import missing_hull
+def say_missing_files(setup: Any, arguments: argparse.Namespace | None = None) -> None:
+    """Say on the error stream which files a set-up had, except for those that options give."""
+    from app.scenes.setups import missing_files
 
-    text = missing_hull(setup) if hull is None else ""
+    others = {option: file for option, file in setup.files.items() if getattr(arguments, option, None) is None}
+    text = missing_files(setup._replace(files=others))
     if text:
-        print(f"springtide: {text}", file=sys.stderr)
+        say_on_error_stream(text)
+
+
+def say_on_error_stream(text: str) -> None:
+    """Print a line on the error stream."""
+    print(f"springtide: {one_line(text)}", file=sys.stderr)
 
 
 def with_hull(params: Any, path: Path) -> Any:
@@ -307,6 +323,27 @@ def with_hull(params: Any, path: Path) -> Any:
     if faces > MAX_HULL_FACES:
         raise argument_error("--hull", f"{path} of {faces} triangles", f"at most {MAX_HULL_FACES}")
     return dataclasses.replace(params, hull=str(path))
+
+
+def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -> Any:
+    """The parameters with the waves of a measured spectrum, and a tile that holds them unless a length was given.
+
+    Raises ValueError for a scene without a sea, or a file that holds no spectrum.
+    """
+    from sim.validation import argument_error
+
+    if not hasattr(params, "spectrum_file"):
+        raise argument_error("--spectrum", str(path), "a spectrum with the scenes square_sea and radial_sea only")
+    from app.scenes.sea_parameters import spectrum_in_file, tile_length
+
+    try:
+        spectrum = spectrum_in_file(str(path), time or "")
+    except ModuleNotFoundError as error:
+        raise OSError(f"{path}: {error.name} is not installed; install it by: pip install '.[spectra]'") from None
+    params = dataclasses.replace(params, spectrum_file=str(path), spectrum_time=time or "")
+    if has_length or not hasattr(params, "length"):
+        return params
+    return dataclasses.replace(params, length=tile_length(spectrum, params))
 
 
 def serve(arguments: argparse.Namespace, session: Any = None) -> int:
@@ -333,7 +370,8 @@ def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
         if last is not None:
             return last.scene, last.params
     scene = scene_named(arguments.scene)
-    nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
+    files = arguments.hull is not None or arguments.spectrum is not None
+    nothing_asked = arguments.preset is None and not arguments.set and not files
     return arguments.scene, scene.opening_params() if nothing_asked else read_params(scene, arguments)
 
 
@@ -344,7 +382,7 @@ def serve_beside(arguments: argparse.Namespace) -> int:
 
     first, *others = read_comparison(arguments.setups)
     for setup in (first, *others):
-        say_missing_hull(setup)
+        say_missing_files(setup)
     return serve_lab(first.scene, first.params, **serving(arguments), others=others)
 
 

@@ -1,15 +1,19 @@
 """Parameters that both seas have: skies, and those of all spectra, with angles in degrees, which the library takes in
 radians."""
 
+import functools
 import math
 from typing import Any
 
-from sim.ocean.spectra import PARAMETERS, SPECTRA
-from sim.parameters import Parameter
+from sim.ocean import read_spectrum
+from sim.ocean.gerstner import peak_wavenumber
+from sim.ocean.spectra import PARAMETERS, SPECTRA, Spectrum
+from sim.parameters import Parameter, parameters_of
 
 SPECTRUM_TITLES = {
     name: SPECTRA[name].title for name in sorted(SPECTRA, key=["pierson_moskowitz", "phillips", *SPECTRA].index)
 }
+TILE_WAVELENGTHS = 10.0  # of the peak, along the side of a tile: it then holds Hs within 1 %
 SKY_TITLES = {"park": "Day", "sunset": "Sunset", "dawn": "Dawn", "night": "Night"}
 
 
@@ -28,3 +32,29 @@ def spectrum_values(params: object) -> dict[str, Any]:
     """The values of the parameters of all spectra, as the library takes them."""
     values = {name: getattr(params, name) for name in PARAMETERS}
     return {name: math.radians(v) if PARAMETERS[name].unit == "rad" else v for name, v in values.items()}
+
+
+@functools.lru_cache(maxsize=8)
+def spectrum_in_file(path: str, time: str) -> Spectrum[Any]:
+    """The measured spectrum in a file, read once; time: of its record, "" for the last. Raises as `read_spectrum`."""
+    return read_spectrum(path, time or None)
+
+
+def chosen_spectrum(params: Any) -> Spectrum[Any]:
+    """The spectrum of a sea's parameters: that of a file, where there is one."""
+    if params.spectrum_file:
+        return spectrum_in_file(params.spectrum_file, params.spectrum_time)
+    return SPECTRA[params.spectrum]
+
+
+def unused_waves(params: Any) -> set[str]:
+    """Names of the parameters of waves that have no effect on the chosen spectrum."""
+    unused = chosen_spectrum(params).unused(spectrum_values(params))
+    return unused | {"spectrum"} if params.spectrum_file else unused
+
+
+def tile_length(spectrum: Spectrum[Any], params: Any) -> float:
+    """Side [m] of a tile that holds the waves of a measured spectrum, within the limits of the parameter."""
+    length = TILE_WAVELENGTHS * 2.0 * math.pi / peak_wavenumber(spectrum, spectrum.conditions())
+    allowed = parameters_of(params)["length"]
+    return min(max(float(f"{length:.2g}"), allowed.low), allowed.high)

@@ -135,8 +135,12 @@ def measured(
             raise argument_error("earlier", earlier.shape, f"a field of shape {height.shape}")
         # h = P e^(-i omega t) + Q e^(i omega t): the phase of h falls where the wave runs along k, rises against it.
         before = np.fft.rfft2(np.asarray(earlier, np.float64)) / n**2
-        turned = twice * (before.imag * h.real - before.real * h.imag)  # the imaginary part of before conj(h)
-        turned *= omega * interval < 0.5 * math.pi
+        # Im(before conj(h)) = (|P|^2 - |Q|^2) sin(omega interval), here over k as well, for the unit vector
+        angle = omega * interval
+        scale = k * np.sin(angle)
+        some = (angle < 0.5 * math.pi) & (scale > 0.0)
+        turned = twice * (before.imag * h.real - before.real * h.imag)
+        turned = np.divide(turned, scale, out=np.zeros_like(turned), where=some)
         if resolved_in_time(peak_period, interval):
             direction = _direction(float((turned * kx).sum()), float((turned * ky).sum()))
     return Statistics(

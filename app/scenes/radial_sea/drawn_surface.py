@@ -18,7 +18,6 @@ from sim.ocean import Sea
 from sim.ocean.foam import whitecaps
 from sim.ocean.gerstner import Waves
 from sim.ocean.radial import CLEAN, RadialSea, RadialSurface, lost
-from sim.ocean.spectra import SPECTRA
 from sim.ocean.statistics import energy_by_wavenumber, expected
 from sim.ocean.tile_sea import TileSea
 
@@ -167,7 +166,7 @@ class DrawnSurface:
         key = choice, tuple(sea.past.items())
         if self.decayed_height is None or self.decayed_height[0] != key:
             if self.spectrum_energy is None or self.spectrum_energy[0] != choice:
-                self.spectrum_energy = choice, *energy_by_wavenumber(SPECTRA[choice.spectrum], choice.conditions)
+                self.spectrum_energy = choice, *energy_by_wavenumber(choice.spectrum, choice.conditions)
             _, k, energy = self.spectrum_energy
             some = energy > NEGLIGIBLE_ENERGY * energy.max()
             kept = np.exp(-2.0 * lost(sea.past, k[some]))
@@ -182,7 +181,7 @@ def tile_of(scene: "RadialSeaScene") -> TileSea:
     sea = Sea(
         TILE_SIZE,
         TILE_LENGTH,
-        spectrum_of(p).name,
+        spectrum_of(p),
         choppiness=p.choppiness,
         frequency=lambda k: column.roots(k)[0],
         **{field.name: getattr(conditions, field.name) for field in dataclasses.fields(conditions)},

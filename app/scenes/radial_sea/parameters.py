@@ -6,7 +6,14 @@ import math
 from typing import Any
 
 from app.scenes.groups import in_grid, in_look, in_main, in_plots, in_waves, speed_parameter
-from app.scenes.sea_parameters import SKY_TITLES, SPECTRUM_PARAMETERS, SPECTRUM_TITLES, spectrum_values
+from app.scenes.sea_parameters import (
+    SKY_TITLES,
+    SPECTRUM_PARAMETERS,
+    SPECTRUM_TITLES,
+    chosen_spectrum,
+    spectrum_values,
+    unused_waves,
+)
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import Fluid, fluids
@@ -167,7 +174,10 @@ class Params:
     )
     plot_budget: bool = in_plots(False, doc="Where the oil of the spill is, over five days", title="Oil budget")
 
-    hull: str = ""  # a mesh file that floats too; it is named on the command line only, never by a browser
+    # Files are named on the command line only, never by a browser.
+    hull: str = ""  # a mesh that floats too
+    spectrum_file: str = ""  # a measured spectrum
+    spectrum_time: str = ""  # of its record, "" for the last one
 
 
 PRESETS: dict[str, dict[str, Any]] = {
@@ -201,7 +211,7 @@ ABOUT = {  # preset -> what it shows and what to try
 
 def hidden(params: Params) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
-    names = SPECTRA[params.spectrum].unused(spectrum_values(params))
+    names = unused_waves(params)
     if params.spill != "layer":
         names |= {"thickness", "temperature"}
     if spill_of(params) is None:
@@ -231,7 +241,8 @@ def hidden(params: Params) -> set[str]:
         names.add("jet_flow")
     if not (params.rig and (params.fire or params.jet)):
         names.add("particles")
-    if params.surface == "fft" or (params.spectrum == "regular" and spectrum_values(params)["second_height"] == 0.0):
+    is_regular = params.spectrum == "regular" and not params.spectrum_file
+    if params.surface == "fft" or (is_regular and spectrum_values(params)["second_height"] == 0.0):
         names.add("wave_count")
     return names
 
@@ -297,7 +308,7 @@ def column_of(params: Params) -> FluidColumn:
 
 def spectrum_of(params: Params) -> Spectrum:
     """The spectrum of the waves; one that makes none without wind where there are to be none."""
-    return SPECTRA[params.spectrum if params.waves else LEVEL_SPECTRUM]
+    return chosen_spectrum(params) if params.waves else SPECTRA[LEVEL_SPECTRUM]
 
 
 def conditions_of(params: Params) -> Conditions:

@@ -8,6 +8,7 @@ import numpy as np
 from app.formats.formatting import fixed, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import Html, bold, faint, fill, info, join, table
+from app.scenes.measured_sea import measured_text
 from app.scenes.radial_sea.budget import budget_html, budget_marks
 from app.scenes.radial_sea.frame import RadialReadings
 from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
@@ -36,7 +37,10 @@ def draft_text(value: float) -> str:
 def readout_of(snapshot: Snapshot) -> Html:
     """Under the status line: the draft of each body, then the waves and the oil of the jet."""
     readings: RadialReadings = snapshot.readings
-    parts = [drafts_html(readings, snapshot.frame.params.waves), waves_text(readings)]
+    params = snapshot.frame.params
+    parts = [drafts_html(readings, params.waves), waves_text(readings)]
+    if params.spectrum_file and params.waves:
+        parts.append(measured_text(params))
     if readings.oil_budget.ejected > 0.0:
         parts.append(oil_budget_text(readings.oil_budget))
     return join(parts)

@@ -1,25 +1,25 @@
 """Random waves of the radial sea, by the parameters that determine them."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from app.scenes.radial_sea.parameters import Params, conditions_of, spectrum_of
 from sim.ocean.gerstner import Waves, draw_waves
-from sim.ocean.spectra import SPECTRA, Conditions
+from sim.ocean.spectra import Conditions, Spectrum
 
 
 class WaveChoice(NamedTuple):
     """Choices that determine the random waves; equal choices have equal waves."""
 
-    spectrum: str
+    spectrum: Spectrum[Any]
     conditions: Conditions
     wave_count: int
 
 
 def wave_choice_of(params: Params) -> WaveChoice:
     """Waves of these parameters."""
-    return WaveChoice(spectrum_of(params).name, conditions_of(params), params.wave_count)
+    return WaveChoice(spectrum_of(params), conditions_of(params), params.wave_count)
 
 
 def draw(choice: WaveChoice) -> Waves:
     """The waves of a choice."""
-    return draw_waves(SPECTRA[choice.spectrum], choice.conditions, choice.wave_count)
+    return draw_waves(choice.spectrum, choice.conditions, choice.wave_count)

@@ -6,11 +6,12 @@ import numpy as np
 
 from app.messages import Snapshot
 from app.scenes.contract import Measure
+from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.frame import SeaReadings
 from app.scenes.square_sea.parameters import Params, conditions, gravity
 from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.planets import EARTH_GRAVITY, gravity_of
-from sim.ocean.spectra import SPECTRA, Conditions, Spectrum
+from sim.ocean.spectra import Conditions, Spectrum
 from sim.ocean.statistics import open_sea_height
 
 LIGHT, HEAVY = 0.01, 100.0  # [Earth masses] of the planets of the lab
@@ -19,7 +20,7 @@ LIGHT, HEAVY = 0.01, 100.0  # [Earth masses] of the planets of the lab
 def spectrum_conditions(params: Params, wind_speed: float, g: float) -> Conditions:
     """The conditions of the parameters' spectrum in another wind [m/s], 10 m above the sea, or gravity [m/s2]."""
     values = conditions(params, wind_speed) | {"gravity": g}
-    return SPECTRA[params.spectrum].conditions_from(values)
+    return chosen_spectrum(params).conditions_from(values)
 
 
 def peak_speed(spectrum: Spectrum, c: Conditions) -> float:
@@ -30,7 +31,7 @@ def peak_speed(spectrum: Spectrum, c: Conditions) -> float:
 
 def open_sea(params: Params, wind_speed: float, g: float) -> tuple[float, float]:
     """Significant height [m] of an open sea, and speed [m/s] of its peak waves; NaN for the speed of a level one."""
-    spectrum, c = SPECTRA[params.spectrum], spectrum_conditions(params, wind_speed, g)
+    spectrum, c = chosen_spectrum(params), spectrum_conditions(params, wind_speed, g)
     if spectrum.is_level(c):
         return 0.0, math.nan
     return open_sea_height(spectrum, c), peak_speed(spectrum, c)

@@ -7,9 +7,15 @@ from typing import Any, NamedTuple
 
 from app.formats.formatting import number
 from app.scenes.groups import in_grid, in_look, in_main, in_plots, in_waves, speed_parameter
-from app.scenes.sea_parameters import SKY_TITLES, SPECTRUM_PARAMETERS, SPECTRUM_TITLES, spectrum_values
+from app.scenes.sea_parameters import (
+    SKY_TITLES,
+    SPECTRUM_PARAMETERS,
+    SPECTRUM_TITLES,
+    chosen_spectrum,
+    spectrum_values,
+    unused_waves,
+)
 from sim.ocean.planets import RADIUS_RULES, SOLAR_SYSTEM, gravity_of
-from sim.ocean.spectra import SPECTRA
 from sim.parameters import parameter, with_parameters
 
 SIZES = ("64", "128", "256", "512")
@@ -117,6 +123,9 @@ class Params:
     )
     plot_wave_spectrum: bool = in_plots(False, doc="Spectrum at the wave gauge beside theory", title="Wave spectrum")
 
+    spectrum_file: str = ""  # a measured spectrum; it is named on the command line only, never by a browser
+    spectrum_time: str = ""  # of its record, "" for the last one
+
 
 PRESETS: dict[str, dict[str, Any]] = {
     "Earth breeze": {},
@@ -171,10 +180,10 @@ def gravity(params: Params) -> float:
 
 def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any]:
     """The arguments of `Sea` and `Sea.change`. wind_speed: U10 [m/s] in place of the one in `params`."""
-    wind = params.wind_speed if wind_speed is None else wind_speed
+    wind, spectrum = params.wind_speed if wind_speed is None else wind_speed, chosen_spectrum(params)
     return {
-        "spectrum": params.spectrum,
-        "wind_speed": SPECTRA[params.spectrum].wind_speed(wind),
+        "spectrum": spectrum,
+        "wind_speed": spectrum.wind_speed(wind),
         "wind_direction": math.radians(params.wind_direction),
         "gravity": gravity(params),
         "depth": math.inf if params.deep else params.depth,
@@ -183,7 +192,7 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
         "viscosity": params.viscosity,
         "dispersion_scale": params.dispersion_scale,
         "loop_period": params.loop_period or None,
-        **{name: value for name, value in spectrum_values(params).items() if SPECTRA[params.spectrum].uses(name)},
+        **{name: value for name, value in spectrum_values(params).items() if spectrum.uses(name)},
     }
 
 
@@ -197,7 +206,7 @@ def rain_settings(params: Params) -> RainSettings:
 
 def hidden(params: Params) -> set[str]:
     """Names of the parameters that have no effect while the others are as they are."""
-    names = SPECTRA[params.spectrum].unused(spectrum_values(params))
+    names = unused_waves(params)
     if params.planet != "by mass":
         names |= {"planet_mass", "radius_rule"}
     if params.planet != "by gravity":

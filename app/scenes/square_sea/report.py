@@ -5,6 +5,8 @@ import math
 from app.formats.formatting import count, fixed, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, lines, table
+from app.scenes.measured_sea import measured_text
+from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.frame import SeaReadings
 from app.scenes.square_sea.live_values import spectrum_conditions
 from app.scenes.square_sea.parameters import Params, gravity
@@ -12,7 +14,6 @@ from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, gravity_of
-from sim.ocean.spectra import SPECTRA
 from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
 from sim.ocean.spectra.regular import RegularConditions
 from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, open_sea_height, resolved_in_time
@@ -31,9 +32,10 @@ WATER_VISCOSITY, HEAVY_OIL_VISCOSITY = 1e-6, 2e-2  # [m2/s] kinematic, to compar
 def readout(snapshot: Snapshot) -> Html:
     """Statistics, foam, rain and wave gauge."""
     frame, r = snapshot.frame, snapshot.readings
-    texts: list[object] = []
+    is_measured = bool(frame.params.spectrum_file)
+    texts: list[object] = [measured_text(frame.params)] if is_measured else []
     if r.report is not None:
-        texts.append(statistics_table(r.report))
+        texts.append(statistics_table(r.report, chosen_spectrum(frame.params).title if is_measured else "an open sea"))
     if frame.params.foam:
         texts.append(foam_text(r, gravity(frame.params)))
     breaking = breaking_text(frame.params)
@@ -64,7 +66,7 @@ def breaking_text(params: Params) -> str:
     """A warning where the waves are too high for the depth; "" where they are not."""
     if params.deep:
         return ""
-    spectrum = SPECTRA[params.spectrum]
+    spectrum = chosen_spectrum(params)
     height = open_sea_height(spectrum, spectrum_conditions(params, params.wind_speed, gravity(params)))
     if height <= BREAKING_HEIGHT * params.depth:
         return ""
@@ -97,8 +99,8 @@ def rain_text(rain: "RainReadings") -> str:
     return f"Rain {number(rain.rate)} mm/h. Shown: {rain.drawn} of {falling} falling drops. {rings}"
 
 
-def statistics_table(r: Report) -> Html:
-    """The statistics: as drawn, as expected of this tile, and of an endless sea."""
+def statistics_table(r: Report, source: str = "an open sea") -> Html:
+    """The statistics: as drawn, as expected of this tile, and of an endless sea, which `source` names."""
     m, e, endless = r.measured, r.theory.statistics, r.theory.whole
     band = BAND_WIDTH * r.theory.scatter * e.significant_height
     inside = abs(m.significant_height - e.significant_height) <= band + 1e-9
@@ -127,7 +129,7 @@ def statistics_table(r: Report) -> Html:
         return measured
     share = e.significant_height / endless
     if share < MAX_SHARE_OF_ENDLESS_SEA:
-        text = fill("These waves have {} of the height of an open sea ({} m).", percent(share, 3), number(endless))
+        text = fill("These waves have {} of the height of {} ({} m).", percent(share, 3), source, number(endless))
     else:
         text = fill("Waves of the earlier weather are still here; this wind alone makes {} m.", number(endless))
     return join((measured, faint(text)))
@@ -161,7 +163,7 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     }
     if not p.deep:
         found["depth"] = depth_line(p)
-    if isinstance(c, FetchConditions) and not SPECTRA[p.spectrum].is_level(c):
+    if isinstance(c, FetchConditions) and not chosen_spectrum(p).is_level(c):
         found["fetch"] = fetch_line(c)
     if isinstance(c, RegularConditions) and snapshot.readings.report is not None:
         length, _ = snapshot.readings.report.theory.wave
@@ -173,7 +175,7 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
 def wind_line(params: Params) -> str:
     """The wind on Beaufort's scale."""
     force, name = beaufort(params.wind_speed)
-    spectrum = SPECTRA[params.spectrum]
+    spectrum = chosen_spectrum(params)
     if spectrum.wind_height == 10.0:
         return f"Beaufort {force}, {name}"
     there = number(spectrum.wind_speed(params.wind_speed))

@@ -39,7 +39,7 @@ class StudentSea(TableUser):
             calls[GRAVITY] = Call((np.array([p.planet_mass]),), Range(declared.low, declared.high, declared.unit))
         else:
             idle[GRAVITY] = "choose a planet by its mass, as dense as the Earth"
-        if p.spectrum != PHILLIPS.name:
+        if p.spectrum_file or p.spectrum != PHILLIPS.name:
             idle[SPECTRUM] = f"choose the spectrum {PHILLIPS.title}"
         elif p.wind_speed < MIN_WIND_SPEED:
             idle[SPECTRUM] = "there is no wind"

@@ -45,11 +45,19 @@ def test_a_drawn_field_measures_as_its_amplitudes():
     # No wave of this spectrum runs against another, so a snapshot has the energy of the amplitudes.
     assert of_field.significant_height == pytest.approx(of_waves.significant_height, rel=1e-9)
     assert of_field.peak_period == pytest.approx(of_waves.peak_period, rel=0.012)  # other bins, 6 % wide
-    assert of_field.direction == pytest.approx(2.0, abs=5e-3)  # weighs short waves more, which are fewer to a side
+    assert of_field.direction == pytest.approx(2.0, abs=2e-4)
     assert of_waves.direction == pytest.approx(2.0, abs=2e-4)
     slope = sea.surface(5.0).slope
     assert of_field.mean_square_slope == pytest.approx(float(np.square(slope).sum(-1).mean()), rel=1e-9)
     assert of_field.significant_height == pytest.approx(4 * sea.surface(5.0).height.std(), rel=1e-9)
+
+
+def test_the_direction_of_two_systems_is_that_of_their_energy():
+    """A swell that crosses a wind sea: short waves turn faster, and count no more for it."""
+    sea = Sea(256, 1200.0, "sea_state", hs=1.5, tp=5.0, wind_direction=-1.3, second_height=2.0, second_direction=0.8)
+    before, now = sea.surface(0.0).height, sea.surface(0.1).height
+    found = measured(now, 1200.0, sea.conditions, before, 0.1)
+    assert found.direction == pytest.approx(drawn(sea).direction, abs=0.01)
 
 
 def test_one_snapshot_tells_no_direction():

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import viser
 
-from app.formats.formatting import number
+from app.formats.formatting import number, percent
 from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
@@ -22,6 +22,7 @@ from app.render.viser_inside import set_arrays
 from app.render.water import Tile, Water
 from app.scenes.contract import Pieces
 from app.scenes.contract import View as SceneView
+from app.scenes.measured_sea import height_and_period
 from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
@@ -212,10 +213,15 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         measured = snapshot.readings.report
         if measured is None:
             return ""
-        waves = measured.measured
-        return fill(
+        waves, theory, p = measured.measured, measured.theory, snapshot.frame.params
+        text = fill(
             "Waves: {} m high, {} s apart", bold(number(waves.significant_height)), bold(number(waves.peak_period))
         )
+        if not p.spectrum_file:
+            return text
+        height, period = height_and_period(p.spectrum_file, p.spectrum_time)
+        held = percent(theory.statistics.significant_height / theory.whole, 3)
+        return fill("{}. File: {} m, {} s; the tile holds {}.", text, number(height), number(period), held)
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""

@@ -29,7 +29,6 @@ from sim.ocean.fluids import fluids
 from sim.ocean.foam import whitecaps
 from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.radial import RadialSea
-from sim.ocean.spectra import SPECTRA
 from sim.parameters import check_record, clamp_value, effect_of_change, parameters_of
 
 CALM = {"waves": False, "rig": False, "ripples": False}
@@ -518,7 +517,7 @@ def test_what_oil_took_of_the_waves_stays_taken_and_the_panel_says_how_much_is_l
     loop = SimLoop(cast(AnyScene, scene))
     loop.tick(0.1)
     said = marks_of(loop.latest)["exposure"].replace("\u202f", "")
-    k = np.array([peak_wavenumber(SPECTRA[scene.wave_choice.spectrum], scene.wave_choice.conditions)])
+    k = np.array([peak_wavenumber(scene.wave_choice.spectrum, scene.wave_choice.conditions)])
     share = math.exp(-1200.0 * float((first.roots(k)[1] + second.roots(k)[1])[0]))
     assert float(re.findall(r"keeps ([\d.]+)", said)[0]) == pytest.approx(100.0 * share, rel=0.01)
 
@@ -595,7 +594,7 @@ def test_both_surfaces_have_the_height_of_the_spectrum_on_the_same_fluids(change
     choice = scene.wave_choice
     k, step = np.linspace(math.log(1e-3), math.log(30.0), 400, retstep=True)
     k, theta = np.exp(k)[:, None], np.arange(72) * (2.0 * math.pi / 72)
-    S = SPECTRA[choice.spectrum](k * np.cos(theta), k * np.sin(theta), choice.conditions)
+    S = choice.spectrum(k * np.cos(theta), k * np.sin(theta), choice.conditions)
     _, decay = scene.column.roots(k[:, 0])
     energy = (S * k**2).sum(axis=1) * np.exp(-2.0 * decay * scene.age) * step * 2.0 * math.pi / 72
     height = 4.0 * math.sqrt(energy.sum())

@@ -1,0 +1,93 @@
+"""The waves of a measured spectrum in the scenes of both seas, from the command line on."""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.__main__ import main, make_parser, read_params
+from app.scenes import scene_named
+from app.scenes.radial_sea.report import readout_of
+from app.scenes.square_sea.report import readout
+from app.scenes.square_sea.view import View
+from app.server.loop import SimLoop
+from sim.ocean.statistics import expected
+
+FREQUENCY = np.arange(0.04, 0.4, 0.005)
+DENSITY = 6.0 * np.exp(-(((FREQUENCY - 0.09) / 0.012) ** 2)) + 0.5 * np.exp(
+    -(((FREQUENCY - 0.22) / 0.05) ** 2)
+)  # [m2/Hz]
+HEIGHT = 4.0 * math.sqrt((0.5 * (DENSITY[1:] + DENSITY[:-1]) * np.diff(FREQUENCY)).sum())
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    """A file of the spectrum, with the waves from the north-west."""
+    rows = "".join(f"{f:.3f},{S:.6f},315,25\n" for f, S in zip(FREQUENCY, DENSITY, strict=True))
+    path = tmp_path / "buoy.csv"
+    path.write_text("f,S,direction,spread\n" + rows, encoding="utf-8")
+    return path
+
+
+def snapshot_of(scene: str, *words: str):
+    """The set-up of a command line after a while, and its snapshot."""
+    kind = scene_named(scene)
+    loop = SimLoop(kind.make(read_params(kind, make_parser().parse_args(list(words)))))
+    for _ in range(6):
+        loop.tick(0.2)
+    return kind, loop.scene, loop.latest
+
+
+def test_the_square_sea_takes_a_tile_that_holds_the_file(table):
+    kind, scene, latest = snapshot_of("square_sea", "--spectrum", str(table))
+    sea = scene.sea
+    wave = 9.81 / (2.0 * math.pi * 0.09**2)
+    assert sea.length == pytest.approx(10.0 * wave, rel=0.05)
+    found = expected(sea)
+    assert found.significant_height == pytest.approx(HEIGHT, rel=5e-3)
+    assert found.peak_period == pytest.approx(1.0 / 0.09, rel=0.02)
+    assert found.direction == pytest.approx(-math.pi / 4, abs=0.03)  # to the south-east
+    assert {"spectrum", "spreading", "hs", "fetch"} <= kind.hidden(scene.params)
+    text = re.sub(r"<[^>]*>", "", str(readout(latest)))
+    assert f"Measured, buoy.csv: significant height {HEIGHT:.3g} m, peak period 11.1 s." in text
+    short = re.sub(r"<[^>]*>", "", str(View.figures(None, latest)))  # type: ignore[arg-type]
+    assert re.search(rf"File: {HEIGHT:.3g} m, 11\.1 s; the tile holds 100.%\.", short), short
+
+
+def test_a_tile_that_is_given_stays_and_shows_what_it_holds(table):
+    _, scene, latest = snapshot_of("square_sea", "--spectrum", str(table), "--set", "length=100", "size=64", "mesh=32")
+    assert scene.sea.length == 100.0
+    share = expected(scene.sea).significant_height / HEIGHT
+    assert share < 0.9
+    assert f"{100 * share:.1f}" in View.figures(None, latest).replace("\xa0", " ")  # type: ignore[arg-type]
+
+
+def test_the_sum_of_waves_has_the_height_of_the_file(table):
+    _, scene, latest = snapshot_of("radial_sea", "--spectrum", str(table), "--set", "bodies=0", "rig=false")
+    assert scene.sum.significant_height == pytest.approx(HEIGHT, rel=2e-3)
+    assert "Measured, buoy.csv" in str(readout_of(latest))
+    tile = scene.tile_now().sea
+    assert tile.spectrum is scene.wave_choice.spectrum
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--scene", "rope"], "square_sea and radial_sea only"),
+        (["--scene", "square_sea", "--spectrum-time", "noon"], "such as 2020-01-02 05:00"),
+        (["--scene", "square_sea", "--spectrum-time", "2020-01-02"], "table of one"),
+    ],
+)
+def test_a_spectrum_that_does_not_fit_ends_with_one_line(table, words, said, monkeypatch, capsys):
+    monkeypatch.setattr("app.commands.serve.serve_lab", lambda *_, **__: pytest.fail("the server was started"))
+    assert main([*words, "--spectrum", str(table), "--no-open"]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_a_time_alone_is_refused(capsys):
+    assert main(["run", "square_sea", "--seconds", "1", "--out", "x.npz", "--spectrum-time", "2020-01-01"]) == 2
+    assert "--spectrum FILE" in capsys.readouterr().err

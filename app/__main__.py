@@ -149,7 +149,17 @@ def make_parser() -> argparse.ArgumentParser:
     coefficients.add_argument(
         "--compare", action="store_true", help="in a checkout: set the shipped shapes beside Capytaine, live"
     )
+    add_mesh_reading(coefficients)
     coefficients.set_defaults(command=run_hydrodynamics)
+
+    hull = commands.add_parser("hull", help="size, volume, draft and stability of a mesh, and where it is open")
+    hull.add_argument("hull", type=Path, metavar="FILE", help="a mesh, as of --hull")
+    density = "of the whole hull, mass over volume (default: 500)"
+    hull.add_argument("--density", type=quantity("kg/m3"), default=500.0, metavar="KG/M3", help=density)
+    gravity = "height of the centre of gravity over the keel (default: that of the volume)"
+    hull.add_argument("--kg", type=quantity("m"), metavar="METRES", help=gravity)
+    add_mesh_reading(hull)
+    hull.set_defaults(command=show_hull)
 
     add_lab(commands.add_parser("lab", help="the course lab: make a folder of exercises, check it"))
 
@@ -264,13 +274,30 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     )
     names = "set parameters of the scene; `springtide run SCENE --list` lists presets and parameters"
     parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help=names)
-    parser.add_argument(
-        "--hull", type=Path, metavar="FILE",
-        help="add a closed mesh in metres to the radial sea: STL, OBJ or PLY with z up, glTF or GLB with y up",
-    )  # fmt: skip
+    hull = "add a closed mesh to the radial sea: STL, OBJ, PLY, GDF and others with z up, glTF or GLB with y up"
+    parser.add_argument("--hull", type=Path, metavar="FILE", help=hull)
+    add_mesh_reading(parser)
     spectrum = "waves of a measured spectrum, in either sea: CSV, NDBC, WAVEWATCH III or SWAN; see docs/files.md"
     parser.add_argument("--spectrum", type=Path, metavar="FILE", help=spectrum)
     parser.add_argument("--spectrum-time", metavar="TIME", help="of one of its records (default: the last one)")
+
+
+def add_mesh_reading(parser: argparse.ArgumentParser) -> None:
+    """The options that say how a mesh file is read; none is given as the default, which depends on the format."""
+    unit = "unit of length in the mesh file (default: m, or that of the format)"
+    parser.add_argument("--hull-unit", choices=("m", "cm", "mm", "ft"), default="", help=unit)
+    weld = "make corners nearer than this one, where a mesh has gaps"
+    parser.add_argument("--weld", type=quantity("m"), default=0.0, metavar="METRES", help=weld)
+    mirror = "add the other half of a mesh, across x = 0 or y = 0"
+    parser.add_argument("--mirror", choices=("x", "y"), default="", help=mirror)
+    parser.add_argument("--cap", choices=("deck",), default="", help="close a mesh that is open at the top")
+
+
+def mesh_reading(arguments: argparse.Namespace) -> Any:
+    """How the options say that a mesh file is read."""
+    from sim.floating.hull import MeshReading
+
+    return MeshReading(arguments.hull_unit, arguments.weld, arguments.mirror, arguments.cap)
 
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
@@ -286,7 +313,7 @@ def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     given = {**values, **parse_assignments(scene.params, arguments.set)}
     params = check_record(scene.params, given)
     if arguments.hull is not None:
-        params = with_hull(params, arguments.hull)
+        params = with_hull(params, arguments.hull, mesh_reading(arguments))
     if arguments.spectrum is not None:
         params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in given)
     elif arguments.spectrum_time is not None:
@@ -309,20 +336,38 @@ def say_on_error_stream(text: str) -> None:
     print(f"springtide: {one_line(text)}", file=sys.stderr)
 
 
-def with_hull(params: Any, path: Path) -> Any:
-    """The parameters with one more hull; raises ValueError for a scene without bodies, or a mesh that is no hull."""
+def with_hull(params: Any, path: Path, reading: Any) -> Any:
+    """The parameters with one more hull, of which size, volume and draft are printed.
+
+    Raises ValueError for a scene without bodies, or a mesh that is no hull.
+    """
     import numpy as np
 
+    from app.commands.hull import hull_line, size_warning
     from sim.floating import Hull
     from sim.validation import argument_error
 
     if not hasattr(params, "hull"):
         raise argument_error("--hull", str(path), "a hull with the scene radial_sea only")
-    with np.errstate(all="ignore"):  # of huge coordinates numpy would warn before they are refused
-        faces = len(Hull.load(path).faces)
-    if faces > MAX_HULL_FACES:
-        raise argument_error("--hull", f"{path} of {faces} triangles", f"at most {MAX_HULL_FACES}")
-    return dataclasses.replace(params, hull=str(path))
+    # of huge coordinates numpy would warn before they are refused
+    with np.errstate(all="ignore"), naming_extra("meshes", path):
+        hull = Hull.load(path, True, *reading)
+    if len(hull.faces) > MAX_HULL_FACES:
+        raise argument_error("--hull", f"{path} of {len(hull.faces)} triangles", f"at most {MAX_HULL_FACES}")
+    print(one_line(hull_line(path.name, hull, params.density)), flush=True)
+    warning = size_warning(path.name, hull.size, reading)
+    if warning:
+        say_on_error_stream(warning)
+    return dataclasses.replace(params, hull=str(path), hull_reading=reading)
+
+
+@contextlib.contextmanager
+def naming_extra(extra: str, path: Path) -> Iterator[None]:
+    """Inside, a library that a file needs and that is not installed becomes an OSError that says how to install it."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        raise OSError(f"{path}: {error.name} is not installed; install it by: pip install '.[{extra}]'") from None
 
 
 def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -> Any:
@@ -336,10 +381,8 @@ def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -
         raise argument_error("--spectrum", str(path), "a spectrum with the scenes square_sea and radial_sea only")
     from app.scenes.sea_parameters import spectrum_in_file, tile_length
 
-    try:
+    with naming_extra("spectra", path):
         spectrum = spectrum_in_file(str(path), time or "")
-    except ModuleNotFoundError as error:
-        raise OSError(f"{path}: {error.name} is not installed; install it by: pip install '.[spectra]'") from None
     params = dataclasses.replace(params, spectrum_file=str(path), spectrum_time=time or "")
     if has_length or not hasattr(params, "length"):
         return params
@@ -499,7 +542,15 @@ def run_hydrodynamics(arguments: argparse.Namespace) -> int:
         return of_checkout("--compare", "hydrodynamics").compare()
     from app.commands.hydrodynamics import make
 
-    return make(arguments.hull, arguments.out)
+    return make(arguments.hull, arguments.out, mesh_reading(arguments))
+
+
+def show_hull(arguments: argparse.Namespace) -> int:
+    """`springtide hull`."""
+    from app.commands.hull import show
+
+    with naming_extra("meshes", arguments.hull):
+        return show(arguments.hull, mesh_reading(arguments), arguments.density, arguments.kg)
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:

@@ -9,6 +9,7 @@ from rich.progress import Progress
 from app.formats import text_tables
 from sim.floating import Hull
 from sim.floating.boundary_elements import FREQUENCIES, make_table
+from sim.floating.hull import AS_IT_IS, MeshReading
 from sim.floating.linear_table import place_of_table, write_table
 from sim.validation import argument_error
 
@@ -21,7 +22,7 @@ def require_capytaine() -> None:
         raise OSError("Capytaine is not installed; install it by: pip install '.[bem]'")
 
 
-def make(hull_file: Path, out: Path | None) -> int:
+def make(hull_file: Path, out: Path | None, reading: MeshReading = AS_IT_IS) -> int:
     """Write the table of the hull in a file to `out`, or where `--hull` finds it; returns the exit status.
 
     Raises ValueError for a mesh that is no hull or has too many triangles, OSError without Capytaine.
@@ -30,7 +31,7 @@ def make(hull_file: Path, out: Path | None) -> int:
     out = place if out is None else out
     if not out.parent.is_dir():
         raise argument_error("--out", str(out), "a file in a folder that exists")
-    hull = Hull.load(hull_file, own_table=False)
+    hull = Hull.load(hull_file, False, *reading)
     require_capytaine()
     drafts = [share * float(hull.size[2]) for share in DRAFT_SHARES]
     console = get_console()

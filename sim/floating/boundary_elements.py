@@ -105,7 +105,7 @@ def make_table(
     """
     length = table_length(hull)
     found = [solve(*wet_surface(hull, draft), DIRECTIONS, progress=progress) for draft in drafts]
-    stacked = {field: np.array([[getattr(one, field) for one in found]]) for field in Solution._fields}
+    stacked: dict[str, Any] = {field: np.array([[getattr(one, field) for one in found]]) for field in Solution._fields}
     return LinearTable(
         aspect=np.ones(1), draft=np.array(drafts, float) / length, direction=DIRECTIONS,
         frequency=np.array(FREQUENCIES), **stacked,

@@ -9,11 +9,14 @@ asked of the shape itself (`equilibrium_draft`) uses its closed form and `extent
 import dataclasses
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from sim.floating.closed_mesh import ClosedMesh, checked_mesh
+from sim.floating.closed_mesh import MAX_LENGTH, ClosedMesh, checked_mesh, open_edges
 from sim.floating.linear_table import place_of_table, read_table
+from sim.floating.mesh_repair import place_of_gaps, remedy, repaired
+from sim.floating.panel_files import UNITS, Mesh, read_mesh
 from sim.floating.shapes.box import SHAPE as BOX
 from sim.floating.shapes.box import box
 from sim.floating.shapes.cylinder import SHAPE as CYLINDER
@@ -22,12 +25,22 @@ from sim.floating.shapes.record import Appearance, Shape
 from sim.floating.shapes.sphere import SHAPE as SPHERE
 from sim.floating.shapes.sphere import sphere
 from sim.interruption import raise_if_stopped
-from sim.validation import argument_error, as_array, check_kind, check_positive, unreadable
+from sim.validation import argument_error, as_array, check_choice, check_kind, check_positive
 
 FILE_SHAPE = "hull"  # name of the shape that is made of a mesh file, and of its one appearance
 FILE_TITLE = "From file"
-Y_UP = (".glb", ".gltf")  # +y up and metres (glTF 2.0, section 3.4)
-WITH_UNITS = (".dae", ".zae", ".3mf")  # which have a unit and an axis of their own, that trimesh does not apply
+
+
+class MeshReading(NamedTuple):
+    """How a mesh file is read; see `Hull.load`."""
+
+    unit: str = ""
+    weld: float = 0.0  # [m]
+    mirror: str = ""
+    cap: str = ""
+
+
+AS_IT_IS = MeshReading()
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -76,14 +89,24 @@ class Hull(ClosedMesh):
         return Hull.of(CYLINDER, cylinder(radius, height))
 
     @staticmethod
-    def load(path: str | Path, own_table: bool = True) -> "Hull":
-        """A hull from a mesh file (STL, OBJ, PLY, OFF, GLB, glTF), all of its parts in one, units read as metres.
+    def load(
+        path: str | Path,
+        own_table: bool = True,
+        unit: str = "",
+        weld: float = 0.0,
+        mirror: str = "",
+        cap: str = "",
+    ) -> "Hull":
+        """A hull from a mesh file, all of its parts in one; formats are those of `panel_files.py`.
 
         glTF and GLB have y up, as their specification says, and are turned; all others are read with z up.
-        own_table: with the table of linear coefficients that lies beside the file, if there is one. Raises ValueError
-        where the file cannot be read, its mesh is not closed, oriented and finite, or its table is that of another one.
+        own_table: with the table of linear coefficients that lies beside the file, if there is one. unit: "m", "cm",
+        "mm" or "ft", by default that of the format, or metres. An open mesh is closed by weld [m], corners nearer than
+        that become one; by mirror, "x" or "y", the plane across which the other half lies; by cap, "deck". Raises
+        ValueError where the file cannot be read, its mesh is not closed, oriented and finite, or its table is that of
+        another one; ModuleNotFoundError without meshio, where the format needs it.
         """
-        return Hull.of_shape(shape_from_file(path, own_table))
+        return Hull.of_shape(shape_from_file(path, own_table, MeshReading(unit, weld, mirror, cap)))
 
     @staticmethod
     def from_arrays(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -> "Hull":
@@ -98,29 +121,39 @@ class Hull(ClosedMesh):
         return Hull.of(Shape("mesh", lambda: mesh, ()), mesh)
 
 
-def shape_from_file(path: str | Path, own_table: bool = True) -> Shape:
+def shape_from_file(path: str | Path, own_table: bool = True, reading: MeshReading = AS_IT_IS) -> Shape:
     """The shape of the mesh in a file; its hulls always have the size of the file.
 
     own_table: with the table of linear coefficients that lies beside the file, if there is one (linear_table.py).
 
     Raises ValueError as `Hull.load`.
     """
-    if not Path(check_kind("path", path, str | os.PathLike, "the name of a file")).exists():
-        raise unreadable("path", path, FileNotFoundError())
-    ending = Path(path).suffix.lower()
-    if ending in WITH_UNITS:
-        raise argument_error("path", str(path), "STL, OBJ, PLY, OFF, GLB or glTF, in metres: convert it")
-    import trimesh  # reading meshes is rare and the import is slow
-
-    try:
-        loaded = trimesh.load(str(path), force="mesh", process=True)
-        vertices = np.asarray(loaded.vertices, dtype=float).reshape(-1, 3)  # type: ignore[union-attr]
-        faces = np.asarray(loaded.faces, dtype=np.int64).reshape(-1, 3)  # type: ignore[union-attr]
-    except Exception as error:  # trimesh's readers raise errors of many types
-        raise argument_error("path", str(path), f"a mesh file that can be read ({error})") from error
-    if ending in Y_UP:
-        vertices = vertices[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
-    mesh = checked_mesh(vertices, faces, str(path))
+    mesh = mesh_from_file(path, reading)
     place = place_of_table(path)
     table = read_table(place, mesh) if own_table and place.is_file() else None
     return Shape(FILE_SHAPE, lambda: mesh, (), (Appearance(FILE_SHAPE, FILE_TITLE),), table=table)
+
+
+def mesh_from_file(path: str | Path, reading: MeshReading = AS_IT_IS) -> ClosedMesh:
+    """The closed mesh in a file. Raises ValueError as `Hull.load`."""
+    vertices, faces = open_mesh_from_file(path, reading)
+    if len(faces) and np.isfinite(vertices).all() and open_edges(faces):
+        help = remedy(vertices, faces)
+        allowed = "a closed mesh, faces turned one way" + (f"; {help} closes it" if help else "")
+        raise argument_error(str(path), place_of_gaps(vertices, faces), allowed)
+    size = float(np.ptp(vertices, axis=0).max()) if len(faces) else 0.0
+    if not reading.unit and size > MAX_LENGTH:
+        allowed = f"at most {MAX_LENGTH:g} m; --hull-unit mm reads millimetres"
+        raise argument_error(str(path), f"{size:g} m of length", allowed)
+    return checked_mesh(vertices, faces, str(path))
+
+
+def open_mesh_from_file(path: str | Path, reading: MeshReading = AS_IT_IS) -> Mesh:
+    """Triangles of a file in metres, with its repairs, closed or not. Raises ValueError for what cannot be read."""
+    where = Path(check_kind("path", path, str | os.PathLike, "the name of a file"))
+    if reading.unit:
+        check_choice("unit", reading.unit, UNITS)
+    mesh = read_mesh(where, reading.unit)
+    if not len(mesh.faces) or not np.isfinite(mesh.vertices).all() or mesh.faces.max() >= len(mesh.vertices):
+        return mesh  # `checked_mesh` says what is wrong with it
+    return Mesh(*repaired(*mesh, reading.weld, reading.mirror, reading.cap))

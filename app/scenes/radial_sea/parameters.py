@@ -14,6 +14,7 @@ from app.scenes.sea_parameters import (
     spectrum_values,
     unused_waves,
 )
+from sim.floating.hull import AS_IT_IS, MeshReading
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import Fluid, fluids
@@ -176,6 +177,7 @@ class Params:
 
     # Files are named on the command line only, never by a browser.
     hull: str = ""  # a mesh that floats too
+    hull_reading: MeshReading = AS_IT_IS
     spectrum_file: str = ""  # a measured spectrum
     spectrum_time: str = ""  # of its record, "" for the last one
 

@@ -126,7 +126,7 @@ class RadialSeaScene:
             from app.scenes.radial_sea import student_sea  # only `springtide lab DIR` pays for it
 
             self.student = student_sea.StudentRadialSea(live.tables)
-        self.hull_file, self.file_shape = "", None
+        self.hull_file, self.file_shape = ("", params.hull_reading), None
         self.grid_choice: tuple[int, int, str] | None = None
         self.plot_rows = PlotRows(len(SERIES), PLOT_INTERVAL)
         self.reset()
@@ -185,9 +185,10 @@ class RadialSeaScene:
 
     def shape_of_file(self) -> Shape | None:
         """The shape in the hull file that the parameters name, which is read once."""
-        if self.params.hull != self.hull_file:
-            self.file_shape = shape_from_file(self.params.hull) if self.params.hull else None
-            self.hull_file = self.params.hull
+        file = self.params.hull, self.params.hull_reading
+        if file != self.hull_file:
+            self.file_shape = shape_from_file(file[0], reading=file[1]) if file[0] else None
+            self.hull_file = file
         return self.file_shape
 
     def set_grid(self) -> None:

@@ -273,7 +273,8 @@ def scalar(dataset: "Dataset", name: str, path: str) -> float:
     """The one number of a variable. Raises ValueError for several."""
     values = np.asarray(dataset[name].values)
     if values.size != 1 or values.dtype.kind not in "iuf":
-        raise argument_error("path", path, f"a dataset with one number {name}; this one has {values.size}")
+        here = f"{values.size} of type {values.dtype}"
+        raise argument_error("path", path, f"a dataset with one number {name}; this one has {here}")
     return float(values.reshape(-1)[0])
 
 
@@ -300,8 +301,15 @@ def numbers(
         raise argument_error("path", path, f"a dataset with {name} along {', '.join(axes)}; in this one: {along}")
     found = np.asarray((values if axes is None else values.transpose(*axes)).values)
     found = found if keep is None else found[keep]
-    if found.dtype.kind not in "iufc" or not (np.isfinite(found) | (allow_infinite & (found == np.inf))).all():
-        raise argument_error("path", path, f"a dataset of numbers; {name} has others, and frequencies can be left out")
+    if found.dtype.kind not in "iufc":
+        raise argument_error("path", path, f"a dataset of numbers; {name} has {found.dtype}")
+    bad = ~(np.isfinite(found) | (allow_infinite & (found == np.inf)))
+    if bad.any():
+        allowed = f"a dataset of finite numbers; of {name} {int(bad.sum())} are not"
+        if axes and axes[0] == "omega" and name != "omega":
+            rows = dataset["omega"].values[... if keep is None else keep][bad.reshape(len(bad), -1).any(axis=1)]
+            allowed += f", at omega {', '.join(f'{one:g}' for one in rows)} rad/s: leave these frequencies out"
+        raise argument_error("path", path, allowed)
     return found
 
 

@@ -12,7 +12,9 @@ Of panels half a hull, or a quarter, may be in a file that names its planes of s
 file has the corners of each panel: those nearer than a millionth of the hull become one.
 """
 
+import contextlib
 import importlib
+import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -78,12 +80,16 @@ def by_trimesh(path: Path) -> Mesh:
 def by_meshio(path: Path) -> Mesh:
     """Triangles and quadrangles of a file that meshio reads."""
     meshio: Any = importlib.import_module("meshio")
+    said = io.StringIO()  # it prints its errors, and ends the program
     try:
-        found = meshio.read(path)
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            found = meshio.read(path)
         points = np.asarray(found.points, float)
         points = points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
         kinds = found.cells_dict
-    except (Exception, SystemExit) as error:  # its readers raise errors of many types, and one ends the program
+    except SystemExit as error:
+        raise unread(path, said.getvalue()) from error
+    except Exception as error:  # its readers raise errors of many types
         raise unread(path, error) from error
     faces = [triangles_of(np.asarray(kinds[kind], np.int64)) for kind in ("triangle", "quad") if kind in kinds]
     if not faces:
@@ -92,9 +98,9 @@ def by_meshio(path: Path) -> Mesh:
     return Mesh(points, np.concatenate(faces))
 
 
-def unread(path: Path, error: BaseException) -> ValueError:
+def unread(path: Path, error: object) -> ValueError:
     """The error of a mesh that another library cannot read."""
-    reason = " ".join(str(error).partition("\n")[0].split()) or type(error).__name__
+    reason = " ".join(str(error).replace(str(path), "it").split()) or type(error).__name__
     return argument_error("path", str(path), f"a mesh file that can be read ({reason[:120]})")
 
 

@@ -347,7 +347,7 @@ def from_table(text: str, path: Path) -> Spectrum[Any]:
         raise line_error(
             path, number, "the columns frequency [Hz] and density [m2/Hz]; and direction and spread, or r1"
         )
-    values = np.array([numbers_of(words, len(names), path, line) for line, words in body])
+    values = np.array([numbers_of(words, path, line, len(names), names) for line, words in body])
     columns = {name: values[:, i] for i, name in enumerate(names) if name}
     f = columns["frequency"] if "frequency" in columns else columns["omega"] / (2.0 * math.pi)
     S = columns["density"] * (1.0 if "frequency" in columns else 2.0 * math.pi)
@@ -366,8 +366,8 @@ def from_table(text: str, path: Path) -> Spectrum[Any]:
 def from_matrix(rows: list[tuple[int, list[str]]], path: Path) -> Spectrum[Any]:
     """The spectrum of rows of densities [m2/Hz/degree] behind a frequency, under a row of directions [degrees]."""
     number, head = rows[0]
-    degrees = numbers_of(head[1:], len(head) - 1, path, number)
-    values = np.array([numbers_of(words, len(head), path, line) for line, words in rows[1:]])
+    degrees = numbers_of(head[1:], path, number, len(head) - 1)
+    values = np.array([numbers_of(words, path, line, len(head)) for line, words in rows[1:]])
     values = values[np.argsort(values[:, 0])]
     return made(path, None, values[:, 0], values[:, 1:] * (180.0 / math.pi), towards(degrees))
 
@@ -400,10 +400,15 @@ def column_of(word: str) -> str:
     return next((name for name, known in COLUMNS.items() if letters in known), "")
 
 
-def numbers_of(words: list[str], count: int, path: Path, number: int) -> np.ndarray:
-    """The numbers of a row of a table. Raises ValueError that names the line."""
+def numbers_of(words: list[str], path: Path, number: int, count: int, names: list[str] | None = None) -> np.ndarray:
+    """The numbers (count,) of a row of a table; nan for the words of columns without a name, where these are known.
+
+    Raises ValueError that names the line.
+    """
     if len(words) != count:
         raise line_error(path, number, f"{count} columns; here are {len(words)}")
+    if not all(is_number(word) for i, word in enumerate(words) if names is None or names[i]):
+        raise line_error(path, number, "numbers")
     return np.array([float(word) if is_number(word) else math.nan for word in words])
 
 

@@ -171,7 +171,7 @@ REFUSED = [
     ("heading", lambda d: d, {"depth": 20.0, "heading": 0.1}, "0, 0.2618"),
     ("body", lambda d: d, {"depth": 20.0, "body": "ship"}, "fore"),
     ("path", lambda d: d.isel(influenced_dof=[0, 2]), {"depth": 20.0}, "Surge, Heave"),
-    ("path", with_nan, {"depth": 20.0}, "added_mass"),
+    ("path", with_nan, {"depth": 20.0}, "added_mass 1 are not, at omega 0.7 rad/s"),
     ("path", lambda d: d.isel(influenced_dof=0), {"depth": 20.0}, "influenced_dof"),
     ("draft", lambda d: d.assign(draught=5.0), {"depth": 20.0}, "height of the hull"),
     ("draft", lambda d: d.drop_vars("draught"), {"depth": 20.0}, "draught"),

@@ -33,5 +33,5 @@ def test_a_program_runs_and_is_short(
     assert "nan" not in said
 
 
-def test_there_are_fifteen_programs() -> None:
-    assert len(PROGRAMS) == 15
+def test_there_are_sixteen_programs() -> None:
+    assert len(PROGRAMS) == 16

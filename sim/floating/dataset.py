@@ -10,6 +10,7 @@ Of several bodies one is taken by its name: its own coefficients, while the othe
 import dataclasses
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -36,6 +37,10 @@ if TYPE_CHECKING:
 MOTIONS = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
 FREQUENCIES = ("omega", "period", "wavelength", "freq", "wavenumber")  # coordinates, of which a dataset has one as axis
 MATRICES, FORCES = ("added_mass", "radiation_damping"), ("diffraction_force", "Froude_Krylov_force")
+AXES = {  # after omega
+    **dict.fromkeys(MATRICES, ("influenced_dof", "radiating_dof")),
+    **dict.fromkeys(FORCES, ("wave_direction", "influenced_dof")),
+}
 WANTED = (*MATRICES, *FORCES, "omega", "wave_direction", "influenced_dof", "radiating_dof", "rho", "g")
 WIDEST_GAP = math.radians(31.0)  # between directions that are interpolated
 SYMMETRY = 1e-3  # share of the greatest force that a hull's own symmetry may miss
@@ -58,7 +63,9 @@ def with_dataset(
     draft [m]: that of the dataset, where it does not say. body: name of one of several; the others are held. depth [m],
     or inf: one of several. heading [rad]: one of several, where they are too few to interpolate; a hull with one
     heading answers waves of that heading only. rotation_center (3,) [m]: of the motions, where the dataset does not
-    say. Raises ValueError for a file that is no such dataset, or does not fit; ModuleNotFoundError without xarray
+    say. A UserWarning names frequencies that are left out, as they have no numbers.
+
+    Raises ValueError for a file that is no such dataset, or does not fit; ModuleNotFoundError without xarray
     (`pip install xarray netCDF4`).
     """
     check_hull("hull", hull)
@@ -110,27 +117,32 @@ def converted(
     if not draft < water:
         raise argument_error("draft", draft, f"less than the depth of the water, {water:g} m")
     omega = numbers(dataset, "omega", ("omega",), path, allow_infinite=True)
-    waves = np.flatnonzero(np.isfinite(omega) & (omega > 0.0))
+    by_omega = {name: numbers(dataset, name, ("omega", *rest), path, check=False) for name, rest in AXES.items()}
+    whole = np.all([np.isfinite(by_omega[name]).all(axis=(1, 2)) for name in MATRICES], axis=0)
+    endless = np.flatnonzero(np.isinf(omega) & whole)
+    whole &= np.all([np.isfinite(by_omega[name]).all(axis=(1, 2)) for name in FORCES], axis=0)
+    in_range = np.isfinite(omega) & (omega > 0.0)
+    waves = np.flatnonzero(in_range & whole)
     waves = waves[np.argsort(omega[waves])]
     if len(waves) < 4 or (np.diff(omega[waves]) <= 0.0).any():
-        raise argument_error("path", path, "a dataset of at least four frequencies above 0, each once")
+        raise argument_error("path", path, "a dataset of at least four frequencies above 0 with numbers, each once")
+    if (in_range & ~whole).any():
+        left_out = ", ".join(f"{one:.4g}" for one in omega[in_range & ~whole])
+        warnings.warn(f"{path}: not numbers, and left out, at omega {left_out} rad/s", UserWarning, stacklevel=3)
     length = table_length(mesh)
     offset = centre_of(dataset, path, chosen, rotation_center) - [mesh.centre[0], mesh.centre[1], 0.0]
     S = velocity_at(*offset)  # from the middle of the waterline to the centre of rotation
-    kept = waves if not np.isinf(omega).any() else np.append(waves, np.flatnonzero(np.isinf(omega))[0])
 
     def matrix(name: str) -> np.ndarray:
         """(frequencies, 6, 6) about the middle of the waterline, over density."""
-        values = numbers(dataset, name, ("omega", "influenced_dof", "radiating_dof"), path, keep=kept)
-        values = S.T @ values @ S / rho
+        values = S.T @ by_omega[name] @ S / rho
         return (values + values.swapaxes(1, 2)) / 2
 
     unit = length ** np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
     scale, root = np.outer(unit, unit) * length, math.sqrt(length)
-    added, count = matrix("added_mass") / scale, len(waves)
+    added = matrix("added_mass") / scale
     k = wavenumber_of(omega[waves] / math.sqrt(g), water)
-    axes = ("omega", "wave_direction", "influenced_dof")
-    X = sum(numbers(dataset, name, axes, path, keep=waves) for name in FORCES)
+    X = sum(by_omega[name][waves] for name in FORCES)
     headings = np.mod(numbers(dataset, "wave_direction", ("wave_direction",), path), 2 * math.pi)
     path_length = mesh.centre[0] * np.cos(headings) + mesh.centre[1] * np.sin(headings)
     phase = np.exp(-1j * k[:, None] * path_length)[:, :, None]
@@ -145,9 +157,9 @@ def converted(
         draft=np.array([draft / length]),
         direction=DIRECTIONS,
         frequency=omega[waves] * math.sqrt(length / g),
-        added_mass=added[:count][None, None],
-        damping=(matrix("radiation_damping")[:count] / (scale * math.sqrt(g) / root))[None, None],
-        infinite=added[-1][None, None],
+        added_mass=added[waves][None, None],
+        damping=(matrix("radiation_damping")[waves] / (scale * math.sqrt(g) / root))[None, None],
+        infinite=added[(endless if len(endless) else waves[-1:])[0]][None, None],
         excitation=excitation[None, None],
         depth=water / length,
         heading=only,
@@ -284,12 +296,12 @@ def numbers(
     axes: tuple[str, ...] | None,
     path: str,
     *,
-    keep: np.ndarray | None = None,
+    check: bool = True,
     allow_infinite: bool = False,
 ) -> np.ndarray:
     """The values of a variable along these axes, complex also where real and imaginary parts lie side by side.
 
-    keep: which of the first axis; only these need to be finite. Raises ValueError for other axes and numbers.
+    check: whether they have to be finite. Raises ValueError for other axes and numbers.
     """
     values: Any = dataset[name]
     if "complex" in values.dims and sorted(map(str, values["complex"].values)) == ["im", "re"]:
@@ -300,16 +312,11 @@ def numbers(
         along = ", ".join(map(str, values.dims)) or "none"
         raise argument_error("path", path, f"a dataset with {name} along {', '.join(axes)}; in this one: {along}")
     found = np.asarray((values if axes is None else values.transpose(*axes)).values)
-    found = found if keep is None else found[keep]
-    if found.dtype.kind not in "iufc":
+    if found.dtype.kind not in ("iufc" if name in FORCES else "iuf"):
         raise argument_error("path", path, f"a dataset of numbers; {name} has {found.dtype}")
     bad = ~(np.isfinite(found) | (allow_infinite & (found == np.inf)))
-    if bad.any():
-        allowed = f"a dataset of finite numbers; of {name} {int(bad.sum())} are not"
-        if axes and axes[0] == "omega" and name != "omega":
-            rows = dataset["omega"].values[... if keep is None else keep][bad.reshape(len(bad), -1).any(axis=1)]
-            allowed += f", at omega {', '.join(f'{one:g}' for one in rows)} rad/s: leave these frequencies out"
-        raise argument_error("path", path, allowed)
+    if check and bad.any():
+        raise argument_error("path", path, f"a dataset of finite numbers; of {name} {int(bad.sum())} are not")
     return found
 
 
@@ -337,7 +344,8 @@ def resampled(X: np.ndarray, headings: np.ndarray, path: str) -> np.ndarray:
             # what the mirror turns round is 0 in a wave that it leaves
             still = X[:, -1:] if factor is MIRROR_X else X[:, [0, -1]]
             if np.abs(still[:, :, factor < 0]).max() > SYMMETRY * np.abs(X).max():
-                raise argument_error("path", path, "directions all around a hull that is not symmetric")
+                allowed = "directions all around a hull that is not symmetric, or one chosen by `heading`"
+                raise argument_error("path", path, allowed)
             keep = at if factor is MIRROR_X else at & (headings > 1e-6)
             headings = np.concatenate([headings, (2.0 * end - headings[keep])[::-1]])
             X = np.concatenate([X, mirrored[:, keep][:, ::-1]], axis=1)

@@ -153,6 +153,10 @@ class Words:
         """Take the words from this line on."""
         self.words, self.at = [word for text in self.lines[line:] for word in text.split("!")[0].split()], 0
 
+    def of_line(self, line: int) -> None:
+        """Take the words of one line only."""
+        self.words, self.at = self.lines[line].split() if line < len(self.lines) else [], 0
+
     def numbers(self, count: int, what: str) -> np.ndarray:
         """The next numbers (count,). Raises ValueError where they are not there."""
         words = self.words[self.at : self.at + count]
@@ -178,10 +182,13 @@ def read_gdf(words: Words) -> Panels:
 
     WAMIT user manual, section 6.1. Its lengths are in the unit of GRAV.
     """
-    words.begin(1)
+    words.of_line(1)  # each line of the head may have words behind its numbers
     _, gravity = words.numbers(2, "ULEN and GRAV")
+    words.of_line(2)
     x, y = words.counts(2, "ISX and ISY", 0, 1)
-    count = words.counts(1, "panels", 1, MAX_PANELS)[0]
+    words.of_line(3)
+    count = words.counts(1, "the number of panels", 1, MAX_PANELS)[0]
+    words.begin(4)
     vertices = words.numbers(12 * count, "panels").reshape(-1, 3)
     corners = np.arange(4 * count).reshape(-1, 4)
     unit = "ft" if FEET_GRAVITY[0] < gravity < FEET_GRAVITY[1] else "m"

@@ -99,7 +99,7 @@ def measured_spectrum(
     if bad.any():
         i = int(bad.argmax())
         raise argument_error("frequency", f"{f[i]:g} Hz, after {f[i - 1]:g}" if i else f"{f[0]:g} Hz", allowed)
-    theta, shape, unit = None, f.shape, "m2/Hz"
+    theta, order, shape, unit = None, np.zeros(0, int), f.shape, "m2/Hz"
     if direction is not None:
         allowed = f"at least {MIN_DIRECTIONS} angles [rad] within one turn, each once"
         theta = as_array("direction", direction, allowed)

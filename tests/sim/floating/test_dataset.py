@@ -156,9 +156,18 @@ def test_a_sea_or_mooring_of_another_depth_or_heading_is_refused():
 HULL = Hull.box(20.0, 10.0, 4.0)
 
 
-def with_nan(d):
-    d["added_mass"].values[:, 2, 0, 0] = math.nan
-    return d
+def with_nan(d, count: int = 6):
+    return d.assign(added_mass=d["added_mass"].where(d["omega"] >= d["omega"].values[count]))
+
+
+def test_frequencies_without_numbers_are_left_out_and_named(tmp_path, depths):
+    """The lowest ones, as older programs fail there."""
+    known = depths.sel(water_depth=20.0)
+    with pytest.warns(UserWarning, match=r"left out, at omega 0.35, 0.5 rad/s"):
+        body = box("fore", (0.0, 0.0), written(known, tmp_path, lambda d: with_nan(d, 2)))
+    assert_is_capytaines(body, known.isel(omega=slice(2, None)), "", 0.0)
+    without_end = lambda d: d.assign(added_mass=d["added_mass"].where(d["omega"] < math.inf))  # noqa: E731
+    assert_is_capytaines(box("fore", (0.0, 0.0), written(known, tmp_path, without_end)), known, "", 0.0)
 
 
 REFUSED = [
@@ -171,7 +180,7 @@ REFUSED = [
     ("heading", lambda d: d, {"depth": 20.0, "heading": 0.1}, "0, 0.2618"),
     ("body", lambda d: d, {"depth": 20.0, "body": "ship"}, "fore"),
     ("path", lambda d: d.isel(influenced_dof=[0, 2]), {"depth": 20.0}, "Surge, Heave"),
-    ("path", with_nan, {"depth": 20.0}, "added_mass 1 are not, at omega 0.7 rad/s"),
+    ("path", with_nan, {"depth": 20.0}, "with numbers"),
     ("path", lambda d: d.isel(influenced_dof=0), {"depth": 20.0}, "influenced_dof"),
     ("draft", lambda d: d.assign(draught=5.0), {"depth": 20.0}, "height of the hull"),
     ("draft", lambda d: d.drop_vars("draught"), {"depth": 20.0}, "draught"),

@@ -38,7 +38,7 @@ def stl(path: Path, vertices: np.ndarray, faces: np.ndarray) -> Path:
 def gdf(scale: float = 1.0, gravity: float = 9.80665) -> str:
     """Panels of the half as WAMIT has them, a mirror at y = 0."""
     corners = "".join("{:g} {:g} {:g}\n".format(*(scale * HALF[i])) for row in PANELS for i in row)
-    return f"half a wedge\n1.0 {gravity}\n0 1\n{len(PANELS)}\n{corners}"
+    return f"half a wedge\n1.0 {gravity} ULEN GRAV\n0  1  ISX ISY\n{len(PANELS)}\n{corners}"
 
 
 def nemoh() -> str:

@@ -586,7 +586,7 @@ const WATER_GLSL = {
 
       // Waves finer than a pixel no longer tilt it; they make it rough instead.
       vec2 slope;
-      float rough, height = at.z, foamShare;
+      float rough, foamShare;
       #ifdef RINGS
         vec3 drawn = ringsAt(waveSlopes, rest).xyz;
         float cell = grid.z / 64.0, flatness = ringFlatness(rest);
@@ -600,7 +600,6 @@ const WATER_GLSL = {
         slope = waves.xy;
         rough = waves.w;
         foamShare = waves.z;
-        height = wavesAt(wavePlaces, rest, share, coarse, false).z;
       #endif
       foamShare *= 1.0 - oil;
       vec4 fine = ripples(at.xy, footprint);
@@ -674,7 +673,7 @@ const WATER_GLSL = {
       float sunUp = max(dot(N, sunDirection), 0.0);
       vec3 fire = fireLight / near;
       vec3 lit = ambient + (sunLight * sunUp + fire * max(dot(N, toFire), 0.0)) * 0.3183;
-      float crest = clamp(height / max(seaState.y, 0.01) + 0.15, 0.0, 1.2);
+      float crest = clamp(at.z / max(seaState.y, 0.01) + 0.15, 0.0, 1.2);
       float through = pow(clamp(dot(-V, normalize(sunDirection - 0.35 * N)) * 0.5 + 0.5, 0.0, 1.0), 3.0);
       vec3 body = deep * lit;
       body += scatter * (ambient * (0.10 + 0.35 * crest * crest) * facing

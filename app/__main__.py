@@ -312,13 +312,20 @@ def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
         say_missing_files(setup, arguments)
     given = {**values, **parse_assignments(scene.params, arguments.set)}
     params = check_record(scene.params, given)
+    check_files_named(arguments)
     if arguments.hull is not None:
         params = with_hull(params, arguments.hull, mesh_reading(arguments))
     if arguments.spectrum is not None:
         params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in given)
-    elif arguments.spectrum_time is not None:
-        raise ValueError("--spectrum-time: it needs --spectrum FILE")
     return params
+
+
+def check_files_named(arguments: argparse.Namespace) -> None:
+    """Raises ValueError for an option about a file that no other option names."""
+    for option, needed in (("hull_unit", "hull"), ("weld", "hull"), ("mirror", "hull"), ("cap", "hull"),
+                           ("spectrum_time", "spectrum")):  # fmt: skip
+        if getattr(arguments, option) and getattr(arguments, needed) is None:
+            raise ValueError(f"--{option.replace('_', '-')}: it needs --{needed} FILE")
 
 
 def say_missing_files(setup: Any, arguments: argparse.Namespace | None = None) -> None:
@@ -413,6 +420,7 @@ def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
         if last is not None:
             return last.scene, last.params
     scene = scene_named(arguments.scene)
+    check_files_named(arguments)
     files = arguments.hull is not None or arguments.spectrum is not None
     nothing_asked = arguments.preset is None and not arguments.set and not files
     return arguments.scene, scene.opening_params() if nothing_asked else read_params(scene, arguments)

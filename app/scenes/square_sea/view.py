@@ -217,7 +217,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         text = fill(
             "Waves: {} m high, {} s apart", bold(number(waves.significant_height)), bold(number(waves.peak_period))
         )
-        if not p.spectrum_file:
+        if not p.spectrum_file or not theory.whole > 0.0:
             return text
         height, period = height_and_period(p.spectrum_file, p.spectrum_time)
         held = percent(theory.statistics.significant_height / theory.whole, 3)

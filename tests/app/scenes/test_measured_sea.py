@@ -88,6 +88,13 @@ def test_a_spectrum_that_does_not_fit_ends_with_one_line(table, words, said, mon
     assert error.count("\n") == 1
 
 
-def test_a_time_alone_is_refused(capsys):
-    assert main(["run", "square_sea", "--seconds", "1", "--out", "x.npz", "--spectrum-time", "2020-01-01"]) == 2
-    assert "--spectrum FILE" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("words", "file"),
+    [(["--spectrum-time", "2020-01-01"], "spectrum"), (["--weld", "1e-5"], "hull"), (["--hull-unit", "mm"], "hull")],
+)
+def test_an_option_about_a_file_needs_the_file(words, file, monkeypatch, capsys):
+    monkeypatch.setattr("app.commands.serve.serve_lab", lambda *_, **__: pytest.fail("the server was started"))
+    assert main([*words, "--no-open"]) == 2
+    assert f"it needs --{file} FILE" in capsys.readouterr().err
+    assert main(["run", "radial_sea", "--seconds", "1", "--out", "x.npz", *words]) == 2
+    assert f"it needs --{file} FILE" in capsys.readouterr().err

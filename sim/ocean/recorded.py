@@ -61,7 +61,9 @@ def recorded_waves(
     check_kind("water", water, FluidColumn | Conditions, "a FluidColumn or Conditions")
     X = np.fft.rfft(heights - heights.mean())[1:] / n
     f = np.arange(1, len(X) + 1) / (n * step)
-    amplitude = np.where(f == 0.5 / step, 1.0, 2.0) * np.abs(X)
+    amplitude = 2.0 * np.abs(X)
+    if n % 2 == 0:  # half the rate of the samples, of which a transform has the whole amplitude
+        amplitude[-1] *= 0.5
     energy = 0.5 * amplitude**2
     if not energy.sum() > 0.0:
         raise argument_error("height", f"{n} equal heights", "a record with waves")

@@ -299,6 +299,15 @@ def test_a_record_on_water_of_a_depth_passes_as_recorded(record):
     assert np.sqrt(np.mean((found - eta[::7] + eta.mean()) ** 2)) < 0.002 * 4.0 * eta.std()
 
 
+def test_the_shortest_wave_of_a_record_has_its_amplitude():
+    """Two samples a wave, of an even number and of an odd one."""
+    up_and_down = 0.5 * (-1.0) ** np.arange(16)
+    waves = recorded_waves(np.arange(16.0), up_and_down)
+    assert waves.amplitude == pytest.approx([0.5])
+    t = np.arange(15.0)
+    assert recorded_waves(t, np.cos(2.0 * math.pi * 7.0 / 15.0 * t)).amplitude == pytest.approx([1.0])
+
+
 T = np.arange(0.0, 30.0, 0.5)
 REFUSED = [
     ("frequency", lambda: measured_spectrum([0.1, 0.2], [1.0, 1.0]), "at least three"),

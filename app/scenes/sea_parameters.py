@@ -53,6 +53,11 @@ def unused_waves(params: Any) -> set[str]:
     return unused | {"spectrum"} if params.spectrum_file else unused
 
 
+def follows_wind(params: Any) -> bool:
+    """True if the waves run about the wind's direction: all but those of a file with directions of its own."""
+    return not params.spectrum_file or chosen_spectrum(params).uses("spreading")
+
+
 def tile_length(spectrum: Spectrum[Any], params: Any) -> float:
     """Side [m] of a tile that holds the waves of a measured spectrum, within the limits of the parameter."""
     length = TILE_WAVELENGTHS * 2.0 * math.pi / peak_wavenumber(spectrum, spectrum.conditions())

@@ -11,6 +11,7 @@ from app.scenes.sea_parameters import (
     SPECTRUM_PARAMETERS,
     SPECTRUM_TITLES,
     chosen_spectrum,
+    follows_wind,
     spectrum_values,
     unused_waves,
 )
@@ -232,6 +233,8 @@ def hidden(params: Params) -> set[str]:
         names |= {"spectrum", *SPECTRUM_PARAMETERS, "wave_count", "choppiness", "exposure", "ageing", "film"}
         if not (params.rig and params.fire):  # the wind still blows the smoke
             names |= {"wind_direction"} | ({"wind_speed"} if spill_of(params) is None else set())
+    elif not follows_wind(params) and not (params.rig and params.fire):
+        names.add("wind_direction")
     if params.bodies == 0:
         names |= {"density", "own_densities", "size", "ripples", "mooring", "pull"}
     names |= {name for i, name in enumerate(OWN_DENSITIES) if not params.own_densities or i >= params.bodies}

@@ -12,6 +12,7 @@ from app.scenes.sea_parameters import (
     SPECTRUM_PARAMETERS,
     SPECTRUM_TITLES,
     chosen_spectrum,
+    follows_wind,
     spectrum_values,
     unused_waves,
 )
@@ -218,5 +219,5 @@ def hidden(params: Params) -> set[str]:
     if not params.foam or params.foam_by_wind:
         names.add("foam_threshold")
     if params.rain == 0.0:
-        names |= {"drops", "rings"}
+        names |= {"drops", "rings"} | (set() if follows_wind(params) else {"wind_direction"})
     return names

@@ -49,7 +49,7 @@ def test_the_square_sea_takes_a_tile_that_holds_the_file(table):
     assert found.significant_height == pytest.approx(HEIGHT, rel=5e-3)
     assert found.peak_period == pytest.approx(1.0 / 0.09, rel=0.02)
     assert found.direction == pytest.approx(-math.pi / 4, abs=0.03)  # to the south-east
-    assert {"spectrum", "spreading", "hs", "fetch"} <= kind.hidden(scene.params)
+    assert {"spectrum", "spreading", "hs", "fetch", "wind_direction"} <= kind.hidden(scene.params)
     text = re.sub(r"<[^>]*>", "", str(readout(latest)))
     assert f"Measured, buoy.csv: significant height {HEIGHT:.3g} m, peak period 11.1 s." in text
     short = re.sub(r"<[^>]*>", "", str(View.figures(None, latest)))  # type: ignore[arg-type]
@@ -65,7 +65,8 @@ def test_a_tile_that_is_given_stays_and_shows_what_it_holds(table):
 
 
 def test_the_sum_of_waves_has_the_height_of_the_file(table):
-    _, scene, latest = snapshot_of("radial_sea", "--spectrum", str(table), "--set", "bodies=0", "rig=false")
+    kind, scene, latest = snapshot_of("radial_sea", "--spectrum", str(table), "--set", "bodies=0", "rig=false")
+    assert "wind_direction" in kind.hidden(scene.params)
     assert scene.sum.significant_height == pytest.approx(HEIGHT, rel=2e-3)
     assert "Measured, buoy.csv" in str(readout_of(latest))
     tile = scene.tile_now().sea

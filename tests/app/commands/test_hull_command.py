@@ -29,6 +29,7 @@ def test_the_facts_of_a_hull_are_printed(tmp_path, capsys):
     height = buoyancy + 20.0 * (2 + 4 * T / 3) ** 3 / 12 / (240.0 * 300.0 / 1025.0) - 1.75
     found = re.search(r"GM: (\S+) m with the centre of gravity 1.75 m over the keel GZ:", said)
     assert float(found[1]) == pytest.approx(height, abs=1e-3)  # type: ignore[index]
+    assert re.findall(r"at (\d+) deg", said) == ["5", "10", "15", "20", "30", "40", "50", "60"]
     assert main(["hull", str(path), "--kg", "2.9 m"]) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert "2.9 m over the keel: not stable upright GZ: -" in said

@@ -167,7 +167,11 @@ def test_frequencies_without_numbers_are_left_out_and_named(tmp_path, depths):
         body = box("fore", (0.0, 0.0), written(known, tmp_path, lambda d: with_nan(d, 2)))
     assert_is_capytaines(body, known.isel(omega=slice(2, None)), "", 0.0)
     without_end = lambda d: d.assign(added_mass=d["added_mass"].where(d["omega"] < math.inf))  # noqa: E731
-    assert_is_capytaines(box("fore", (0.0, 0.0), written(known, tmp_path, without_end)), known, "", 0.0)
+    body = box("fore", (0.0, 0.0), written(known, tmp_path, without_end))
+    assert_is_capytaines(body, known, "", 0.0)
+    table = body.hull.shape.table
+    assert table is not None
+    assert (table.infinite == table.added_mass[:, :, -1]).all()
 
 
 REFUSED = [

@@ -299,6 +299,17 @@ def test_a_record_on_water_of_a_depth_passes_as_recorded(record):
     assert np.sqrt(np.mean((found - eta[::7] + eta.mean()) ** 2)) < 0.002 * 4.0 * eta.std()
 
 
+def test_short_waves_that_surface_tension_speeds_pass_as_recorded():
+    """At 5 Hz they are a tenth longer than without it; half a minute later the phase is still right."""
+    t = np.arange(0.0, 40.0, 0.04)
+    eta = 0.01 * np.cos(2.0 * math.pi * 5.0 * t)
+    waves = recorded_waves(t, eta)
+    assert waves.k[0] < 0.98 * (10.0 * math.pi) ** 2 / 9.81
+    sea = RadialSea(waves, choppiness=0.0)
+    found = [sea.at([[0.0, 0.0]], one).height[0] for one in t[800:830]]
+    assert found == pytest.approx(eta[800:830], abs=1e-5)
+
+
 def test_the_shortest_wave_of_a_record_has_its_amplitude():
     """Two samples a wave, of an even number and of an odd one."""
     up_and_down = 0.5 * (-1.0) ** np.arange(16)

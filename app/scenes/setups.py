@@ -38,7 +38,7 @@ from sim.parameters import (
     unknown_parameter,
 )
 from sim.quantities import read_number, write_number
-from sim.validation import argument_error, unreadable
+from sim.validation import Refusals, argument_error, unreadable
 
 VERSION = 2  # of a file with a hull; others are of version 1, so that older programs can read them
 MAX_LENGTH = 5000  # characters of a query or a file
@@ -171,27 +171,6 @@ def entries(query: str) -> dict[str, str]:
         if sum(other == name for other, _ in pairs) > 1:
             raise ValueError(f"{shortened(name)!r}: given more than once in the address")
     return given
-
-
-class Refusals:
-    """Collects the ValueErrors of its `with` blocks, so that a user learns of all mistakes at once."""
-
-    def __init__(self) -> None:
-        self.reasons: list[str] = []
-
-    def __enter__(self) -> None:
-        """Begin a block."""
-
-    def __exit__(self, kind: object, error: object, trace: object) -> bool:
-        """Keep the reason of a block that was refused."""
-        if isinstance(error, ValueError):
-            self.reasons.append(str(error))
-        return isinstance(error, ValueError)
-
-    def check(self) -> None:
-        """Raises ValueError with all reasons, if there are any."""
-        if self.reasons:
-            raise ValueError("; ".join(self.reasons))
 
 
 def read_setup(text: str) -> Setup:

@@ -97,7 +97,15 @@ class Pairs:
         # What is left of the forces of the water: the drag of a current.
         none, no_bends = p.links * [1.0, 0.0, 0.0, 0.0, 0.0], p.bends[:0]
         self.elastic = Elastic(p)
-        self.current_only = p._replace(links=none, bends=no_bends, loads=0.0 * p.loads, bed_stiffness=0.0, bed_damping=0.0, friction=0.0, gravity=0.0)
+        self.current_only = p._replace(
+            links=none,
+            bends=no_bends,
+            loads=0.0 * p.loads,
+            bed_stiffness=0.0,
+            bed_damping=0.0,
+            friction=0.0,
+            gravity=0.0,
+        )
 
     def span(self, x: Array) -> Array:
         """Vectors (links, 3) from start to end of every link."""

@@ -47,6 +47,10 @@ class StaticInputs(NamedTuple):
             far, system.depth, system.gravity, system.density,
         )  # fmt: skip
 
+    def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Offsets [m] along the waves, and the force [N] against each."""
+        return static_curve(self)
+
 
 class RestoringCurve:
     """The curve of the arrangement as it was last asked for."""
@@ -59,14 +63,14 @@ class RestoringCurve:
         """The chart; the curve is found again where anything that it depends on is another."""
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
         far = 2.0 ** math.ceil(math.log2(max(scene.most_offset, 1e-3)))
-        key = StaticInputs.of(scene, far)
+        key = scene.static_inputs(far)
         if key != self.made_of:
-            self.curve = static_curve(key)
+            self.curve = key.curve()
             self.made_of = key
         offset, force = self.curve
         wave = direction_of(scene)
         now = float((scene.body_place() - scene.rest_place)[:2] @ wave)
-        pull = -float(force_of_lines(scene) @ wave)
+        pull = -float(scene.force_of_lines() @ wave)
         # A bar from the lowest force of the curve to the force now, at the offset now.
         x = np.concatenate((offset, [now, now]))
         static = np.concatenate((force, np.interp([now, now], offset, force)))

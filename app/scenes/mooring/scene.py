@@ -29,7 +29,7 @@ from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.live_values import live_values
 from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import ABOUT, EXPLICIT, MAX_LINES, PRESETS, Params, hidden
-from app.scenes.mooring.restoring import RestoringCurve
+from app.scenes.mooring.restoring import RestoringCurve, StaticInputs, force_of_lines
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import LastMoments, divergence_text, holding_step, leapfrog_alternative
@@ -76,6 +76,7 @@ class MooringScene:
 
     frame_interval = FRAME_INTERVAL
     note = ""
+    changing = CHANGING  # attributes that a checkpoint holds
 
     def __init__(self, params: Params) -> None:
         self.params = params
@@ -186,6 +187,10 @@ class MooringScene:
         """(3,) [m] of the body's centre."""
         return np.add(self.body.place, self.state.x[:, self.system.node_count])
 
+    def rotation(self) -> NDArray[np.float64]:
+        """(3,) [rad] of the body."""
+        return self.state.x[:, self.system.node_count + 1]
+
     def paths(self, duration: float) -> NDArray[np.float64]:
         """(lines, 5, 3) of the anchors for `duration` [s], as `LineArrays` has them; fairleads are moved at once."""
         t = self.state.t
@@ -219,8 +224,7 @@ class MooringScene:
     @property
     def fade(self) -> float:
         """Factor on waves and current, which begin smoothly."""
-        share = min(self.state.t / FADE, 1.0)
-        return share * share * (3.0 - 2.0 * share)
+        return fade_at(self.state.t)
 
     def mouse_pull(self) -> NDArray[np.float64]:
         """(1, 6) [N, N m] critically damped, on the body."""
@@ -291,11 +295,12 @@ class MooringScene:
 
     def add_plot_row(self) -> None:
         """Add tensions and offset at the scene's time."""
-        missing = (math.nan,) * (MAX_LINES - self.params.lines)
         now = self.tensions
+        fairleads, anchors = (1e-3 * one[:MAX_LINES] for one in (now.fairlead, now.anchor))
+        missing = (math.nan,) * (MAX_LINES - len(fairleads))
         self.plot_rows.add(
-            self.time, *(1e-3 * now.fairlead).tolist(), *missing, 1e-3 * float(now.most_fairlead.max()),
-            *(1e-3 * now.anchor).tolist(), *missing, self.offset,
+            self.time, *fairleads.tolist(), *missing, 1e-3 * float(now.most_fairlead.max()), *anchors.tolist(),
+            *missing, self.offset,
         )  # fmt: skip
 
     def lying(self) -> NDArray[np.float64]:
@@ -314,7 +319,7 @@ class MooringScene:
     def frame(self) -> MooringFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
         p = self.params
-        x, y, z = (float(value) for value in self.state.x[:, self.system.node_count + 1])
+        x, y, z = self.rotation().tolist()
         half = 0.5 * math.hypot(x, y, z)
         share = math.sin(half) / (2.0 * half) if half > 0.0 else 0.5
         frame = MooringFrame(
@@ -330,6 +335,8 @@ class MooringScene:
             path=self.path,
             rest=vector_of(self.rest_place),
             offset=self.most_offset,
+            anchors=self.points[:, 0].astype(np.float32),
+            fairleads=self.points[:, -1].astype(np.float32),
             uplift=self.tensions.uplift > 0.0,
             pull=None if self.hold is None else self.hold[1],
         )
@@ -356,9 +363,17 @@ class MooringScene:
             "rotation": (place[:, 1].copy(), "rad"),
         }
 
+    def static_inputs(self, far: float = 0.0) -> StaticInputs:
+        """Everything that the restoring curve depends on. far: [m] offset to which it goes at least."""
+        return StaticInputs.of(self, far)
+
+    def force_of_lines(self) -> NDArray[np.float64]:
+        """Level force (2,) [N] of the lines on the body now."""
+        return force_of_lines(self)
+
     def keep(self) -> dict[str, object]:
         """Checkpoint: everything that changes."""
-        return copied({name: getattr(self, name) for name in CHANGING}, self.system, self.body, self.sea)
+        return copied({name: getattr(self, name) for name in self.changing}, self.system, self.body, self.sea)
 
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
@@ -369,6 +384,21 @@ class MooringScene:
         self.measure()
         self.plot_rows.resume()
         self.last_moments.clear()
+
+
+def fade_at(t: float) -> float:
+    """Factor on what begins smoothly, at time t [s]."""
+    share = min(t / FADE, 1.0)
+    return share * share * (3.0 - 2.0 * share)
+
+
+def scene_of(params: Params) -> MooringScene:
+    """The scene of the parameters, or of the file that they name."""
+    if not params.mooring:
+        return MooringScene(params)
+    from app.scenes.mooring.file_scene import FileScene  # which is derived from the class above
+
+    return FileScene(params)
 
 
 def too_short_text(line: int, stretch: float, p: Params) -> str:
@@ -428,7 +458,7 @@ SCENE = SceneKind(
     params=Params,
     presets=PRESETS,
     about=ABOUT,
-    make=MooringScene,
+    make=scene_of,
     hidden=hidden,
     warm_up=warm_up,
     needs=needs,

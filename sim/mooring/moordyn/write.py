@@ -68,7 +68,7 @@ def type_row(kind: LineType, path: Path) -> str:
     if kind.curve:
         stiffness = CURVE_FILE.format(stem=path.stem, name=kind.name)
         rows = [f"{strain:.17g} {tension:.17g}" for strain, tension in kind.curve]
-        write_text(path.parent / stiffness, [kind.name, "Strain Tension", "(-) (N)", *rows, ""])
+        write_text(path.parent / stiffness, [kind.name, "Strain Tension", "(-) (N)", *rows])
     coefficients = kind.drag_across, kind.added_across, kind.drag_along, kind.added_along
     numbers = (f"{one:.17g}" for one in (kind.damping, kind.bending, *coefficients))
     return " ".join([kind.name, f"{kind.diameter:.17g}", f"{kind.mass:.17g}", stiffness, *numbers])

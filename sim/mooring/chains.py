@@ -1,7 +1,8 @@
 """Direct solution of a mooring's linear systems: the time grows linearly with the segments.
 
-The inner nodes of a line are a chain of 3 x 3 blocks, or a band of them where it resists bending, which is eliminated;
-a small dense system is left of the points where lines end and of the bodies. Its matrix is positive definite where that of the whole mooring is.
+The inner nodes of a line are a chain of 3 x 3 blocks, or a band of them if it resists bending, which is eliminated.
+A small dense system is left of the points where lines end and of the bodies. Its matrix is positive definite where
+that of the whole mooring is.
 """
 
 from typing import TYPE_CHECKING

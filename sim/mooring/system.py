@@ -211,7 +211,7 @@ class System:
             self.check_clamp(f"{name}: {field}", getattr(line, field), line.type, end)
 
     def check_clamp(self, name: str, direction: Vector | None, kind: LineType, end: int) -> None:
-        """Raises ValueError for a clamp that holds nothing: of a line that does not resist bending, or at a free end."""
+        """Raises ValueError for a clamp of a line without EI, or at an end that is free."""
         if direction is None:
             return
         if not math.sqrt(sum(c * c for c in check_vector(name, direction, ""))) > 0.0:

@@ -22,7 +22,7 @@ BODY = 1
 BODY_DRAG = 1.0  # coefficient of drag on the wet side of the body
 HEIGHT_OVER_WIDTH = 0.55  # of a buoy and of a box
 # Of a vessel from a file as drawn: over the distance of its fairleads, over the extent, and its height over its width.
-VESSEL_WIDTH, LEAST_VESSEL, LARGEST_VESSEL, VESSEL_HEIGHT = 1.2, 0.03, 0.2, 0.4
+VESSEL_WIDTH, LEAST_VESSEL, LARGEST_VESSEL, VESSEL_HEIGHT = 2.0, 0.04, 0.25, 0.3
 BOX_LENGTH = 1.6  # of a box, over its width
 FLOATING_PART = 0.4, 0.65  # of the length from the anchor: where floats are
 MAX_SURFACE_POINTS = 49  # along a side of the drawn surface

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from app.formats.formatting import percent
 from app.messages import Grab, Release, SceneCommand, vector_of
 from app.scenes.mooring.arrangement import extent, sea_of
+from app.scenes.mooring.body_scene import MAX_STRETCH, MooringScene, fade_at, rest_or_start
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.from_file import FileMooring, mooring_of, slack_of
 from app.scenes.mooring.parameters import Params
 from app.scenes.mooring.restoring import LEAST_SHARE, SHARE
-from app.scenes.mooring.scene import MAX_STRETCH, MooringScene, fade_at, rest_or_start
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.tracking import CriticallyDampedTracker
@@ -25,7 +25,7 @@ from sim.ocean.kinematics import Components
 from sim.springs import INTEGRATORS
 from sim.validation import ConvergenceError
 
-VESSEL_SPEED = 0.02  # largest speed of a dragged vessel, in `extent`s [1/s]
+VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
 FARTHEST = 10.0  # in `extent`s, beyond which a run has diverged
 CURVE_POINTS = 17  # offsets at which the statics of all lines are solved
 CHANGING = (

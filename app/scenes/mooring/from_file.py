@@ -97,7 +97,9 @@ def shown_lines(system: System, reverse: list[bool]) -> Shown:
         before.append(nodes[i])
         after.append(nodes[i + 1])
         share.append(at - i)
-        links.append(numbers[np.minimum((np.arange(pieces) + 0.5) * line.segments / pieces, line.segments - 1).astype(int)])
+        links.append(
+            numbers[np.minimum((np.arange(pieces) + 0.5) * line.segments / pieces, line.segments - 1).astype(int)]
+        )
     lengths = np.array([line.length for line in system.lines])
     return Shown(np.array(before), np.array(after), np.array(share)[..., None], np.array(links), lengths)
 

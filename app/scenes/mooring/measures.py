@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from app.scenes.contract import Measure
 
 if TYPE_CHECKING:
-    from app.scenes.mooring.scene import MooringScene
+    from app.scenes.mooring.body_scene import MooringScene
 
 
 def measures(scene: "MooringScene") -> dict[str, Measure]:

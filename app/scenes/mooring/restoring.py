@@ -14,7 +14,7 @@ from sim.interruption import raise_if_stopped
 from sim.mooring import Line, Point, System, at_rest
 
 if TYPE_CHECKING:
-    from app.scenes.mooring.scene import MooringScene
+    from app.scenes.mooring.body_scene import MooringScene
 
 SPANS = 32  # places at which a line's statics are solved
 POINTS = 41  # of the drawn curve

@@ -78,7 +78,10 @@ def lift_height(p, i, z):
 
 @kernel(allocates=False)
 def lines_energies(x, v, t, p):
-    """(kinetic, elastic, gravity, contact) [J]; gravity holds buoyancy and steady forces, elastic the stiffness of bodies."""
+    """(kinetic, elastic, gravity, contact) [J].
+
+    Elastic holds bending and the stiffness of bodies, gravity buoyancy and steady forces.
+    """
     n = p.cols
     elastic, gravity, contact = bending_energy(x, p), 0.0, 0.0
     for q in range(p.ends.shape[0]):

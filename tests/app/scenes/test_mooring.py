@@ -13,9 +13,9 @@ import pytest
 from app.messages import DivergenceError, Grab, Place, Release, vector_of
 from app.scenes import scene_named
 from app.scenes.mooring.arrangement import DENSITY, body_of, build, first_places, heights, hull_of, line_types, sea_of
+from app.scenes.mooring.body_scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.parameters import PRESETS, Params
 from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_curve
-from app.scenes.mooring.scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import BED_ROWS, View, bed_colours
 from app.server.loop import SimLoop
@@ -266,7 +266,7 @@ def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
     def fail(system):
         raise ConvergenceError("static state of the mooring", "3 N", 40)
 
-    monkeypatch.setattr("app.scenes.mooring.scene.at_rest", fail)
+    monkeypatch.setattr("app.scenes.mooring.body_scene.at_rest", fail)
     scene = MooringScene(Params(**SMALL))
     assert np.isfinite(scene.frame().points).all()
     with pytest.raises(DivergenceError, match=r"no state of rest .*3 N left.* Change their length"):

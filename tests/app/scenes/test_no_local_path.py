@@ -102,7 +102,7 @@ def test_a_reader_is_told_how_to_add_the_mesh(
     assert setup.params == KIND.params(**SMALL)
     assert "hull boat.obj is missing" in missing_files(setup)
     assert "--hull boat.obj" in missing_files(setup)
-    assert missing_files(setup, params) == ""
+    assert missing_files(setup, dataclasses.replace(KIND.params(), hull=str(mesh))) == ""
     out = ["run", "radial_sea", "--seconds", "0.1", "--out", str(tmp_path / "again.npz"), "--preset", str(file)]
     capsys.readouterr()
     assert main(out) == 0

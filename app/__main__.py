@@ -333,10 +333,10 @@ def with_mooring(params: Any, path: Path, has_step: bool) -> Any:
     from sim.parameters import clamp_value, parameters_of
     from sim.validation import argument_error
 
-    if not hasattr(params, "mooring"):
+    if not hasattr(params, "moordyn_file"):
         raise argument_error("--mooring", str(path), "a MoorDyn file with the scene mooring only")
     system = read_moordyn(path, lambda text: say_on_error_stream(f"{path.name}: {text}"))
-    params = dataclasses.replace(params, mooring=str(path))
+    params = dataclasses.replace(params, moordyn_file=str(path))
     if has_step:
         return params
     step = float(f"{STEP_SAFETY * critical_step(system, params.integrator):.1e}")

@@ -51,7 +51,7 @@ MAX_ABOUT = 100_000  # [bytes] of what a recording says of itself
 BLOCK, BLOCK_END = '<script type="application/json" id="springtide-setup">', "</script>"
 UNREADABLE = (ValueError, KeyError, EOFError, RuntimeError, struct.error, zipfile.BadZipFile, zlib.error)
 FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Springtide"
-FILES = ("hull", "mooring")  # options that add a file to a scene, and the fields of its parameters with their paths
+FILES = {"hull": "hull", "mooring": "moordyn_file"}  # options that add a file, and the fields that have its path
 FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", *FILES, "name", "note")
 
 Camera = tuple[Vector, Vector]  # position and target [m]
@@ -84,7 +84,7 @@ def shared_values(params: BaseParams) -> dict[str, Value]:
 
 def added_files(params: object) -> dict[str, str]:
     """Names of the files that were added to these parameters, by their options."""
-    paths = {option: file_name(getattr(params, option, "")) for option in FILES}
+    paths = {option: file_name(getattr(params, field, "")) for option, field in FILES.items()}
     return {option: name for option, name in paths.items() if name}
 
 
@@ -404,6 +404,6 @@ def recorded_setup(file: BinaryIO) -> str:
         "version": VERSION,
         "scene": kind.name,
         "parameters": values,
-        **{option: content["parameters"].get(option, "") for option in FILES},
+        **{option: content["parameters"].get(field, "") for option, field in FILES.items()},
     }
     return json.dumps(setup, ensure_ascii=False)

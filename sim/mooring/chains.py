@@ -24,7 +24,9 @@ Array = NDArray[np.float64]
 Bending = tuple[Array, Array]  # of a line: (3, inner) bands from the diagonal on, and (inner, 2) beside its ends [N/m]
 
 
-def bending_of(at: NDArray[np.int64], rows: Array, columns: Array, values: Array) -> Bending | None:
+def bending_of(
+    at: NDArray[np.int64], rows: NDArray[np.int64], columns: NDArray[np.int64], values: Array
+) -> Bending | None:
     """The bending of the line with nodes `at`; None if it does not resist bending, or has no inner nodes."""
     count = len(at) - 2
     inner = (rows >= at[1]) & (rows <= at[-2]) if count > 0 else np.zeros(len(rows), dtype=bool)
@@ -33,7 +35,7 @@ def bending_of(at: NDArray[np.int64], rows: Array, columns: Array, values: Array
     rows, columns, values = rows[inner] - at[1], columns[inner], values[inner]
     band, beside = np.zeros((3, count)), np.zeros((count, 2))
     for i, end in enumerate((at[0], at[-1])):
-        np.add.at(beside, (rows[columns == end], i), values[columns == end])
+        np.add.at(beside[:, i], rows[columns == end], values[columns == end])
     columns = columns - at[1]
     among = (columns >= 0) & (columns < count) & (columns <= rows)
     np.add.at(band, ((rows - columns)[among], columns[among]), values[among])

@@ -46,9 +46,9 @@ class Water(NamedTuple):
 
 def water_of(params: Params) -> Water:
     """The water of the parameters, or that of their file."""
-    if not params.mooring:
+    if not params.moordyn_file:
         return Water(params.depth, DENSITY, GRAVITY)
-    system = mooring_of(params.mooring).system
+    system = mooring_of(params.moordyn_file).system
     return Water(system.depth, system.density, system.gravity)
 
 
@@ -59,29 +59,29 @@ def depth_of(params: Params) -> float:
 
 def extent(params: Params) -> float:
     """A length [m] that the picture is made for."""
-    if params.mooring:
-        return mooring_of(params.mooring).extent
+    if params.moordyn_file:
+        return mooring_of(params.moordyn_file).extent
     return max(params.reach, 1.2 * params.depth)
 
 
 def diameter_of(params: Params) -> float:
     """Diameter [m] of the lines; of a file the largest."""
-    if params.mooring:
-        return max(line.type.diameter for line in mooring_of(params.mooring).system.lines)
+    if params.moordyn_file:
+        return max(line.type.diameter for line in mooring_of(params.moordyn_file).system.lines)
     return params.diameter
 
 
 def width_of(params: Params) -> float:
     """Width [m] of the body; a vessel from a file is drawn within its fairleads, as no file has its shape."""
-    if not params.mooring:
+    if not params.moordyn_file:
         return params.size
-    found = mooring_of(params.mooring)
+    found = mooring_of(params.moordyn_file)
     return min(max(VESSEL_WIDTH * found.radius, LEAST_VESSEL * found.extent), LARGEST_VESSEL * found.extent)
 
 
 def hull_of(params: Params) -> floating.Hull:
     """The body's hull."""
-    if params.mooring:
+    if params.moordyn_file:
         return floating.Hull.cylinder(0.5 * width_of(params), VESSEL_HEIGHT * width_of(params))
     width, height = params.size, HEIGHT_OVER_WIDTH * params.size
     if params.body == "buoy":
@@ -159,8 +159,8 @@ def line_types(params: Params) -> tuple[LineType, LineType]:
 
 def first_line(params: Params) -> tuple[LineType, float]:
     """Type and length [m] of line 1."""
-    if params.mooring:
-        line = mooring_of(params.mooring).system.lines[0]
+    if params.moordyn_file:
+        line = mooring_of(params.moordyn_file).system.lines[0]
         return line.type, line.length
     return line_types(params)[0], params.length
 

@@ -8,19 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.formats.formatting import percent
-from app.messages import Grab, Release, SceneCommand, vector_of
+from app.messages import Grab, Release, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import extent, sea_of
-from app.scenes.mooring.body_scene import MAX_STRETCH, MooringScene, fade_at, rest_or_start
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.from_file import FileMooring, mooring_of, slack_of
+from app.scenes.mooring.line_scene import MAX_STRETCH, LineScene, fade_at
 from app.scenes.mooring.parameters import Params
 from app.scenes.mooring.restoring import LEAST_SHARE, SHARE
-from app.scenes.mooring.tensions import Tensions
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.interruption import raise_if_stopped
 from sim.mooring import System, at_rest
-from sim.mooring.simulate import LineState
 from sim.ocean.kinematics import Components
 from sim.springs import INTEGRATORS
 from sim.validation import ConvergenceError
@@ -32,12 +30,6 @@ CHANGING = (
     "state", "system", "tensions", "path", "path_count", "most_offset", "vessel", "rest_scale", "rest_stretch",
     "failure", "sea", "step_modes", "moved_by",
 )  # fmt: skip
-
-
-class Vessel(NamedTuple):
-    """The place of a vessel without a body of its own."""
-
-    place: tuple[float, float, float]  # [m] at the start
 
 
 class FileInputs(NamedTuple):
@@ -77,34 +69,29 @@ def level_force(file: FileMooring, x: NDArray[np.float64], tension: NDArray[np.f
     return found
 
 
-class FileScene(MooringScene):
+class FileScene(LineScene):
     """A mooring that a file describes, on the simulation thread."""
 
     changing = CHANGING
 
-    def reset(self) -> None:
-        """At rest in level water, with the vessel where the file has it."""
+    def arrange(self) -> None:
+        """Make the file's system, with the vessel where the file has it."""
         p = self.params
-        self.file = mooring_of(p.mooring)
-        self.body = Vessel(self.file.middle)
+        self.file = mooring_of(p.moordyn_file)
         self.vessel = CriticallyDampedTracker((0.0, 0.0, 0.0), VESSEL_SPEED * extent(p))
+        self.moved_by = np.zeros(3)
         self.sea = sea_of(p)
         self.system = self.arranged()
-        rest, self.failure = rest_or_start(self.system)
-        self.state = LineState(self.system, rest)
         self.links = self.file.shown.links
-        self.moved_by = np.zeros(3)
-        self.rest_place = self.body_place()
-        self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
-        spans = np.linalg.norm(np.diff(self.points_of_lines(), axis=1), axis=2).sum(axis=1)
-        self.rest_stretch = spans / self.file.shown.lengths - 1.0
-        self.hold = None
-        self.path, self.path_count, self.most_offset = np.empty((0, 2), np.float32), 0, 0.0
-        self.assess_stability()
-        self.tensions = Tensions(len(self.system.lines))
-        self.measure()
-        self.plot_rows.restart()
-        self.last_moments.clear()
+
+    @property
+    def middle(self) -> Vector:
+        """[m] of the vessel at the surface, where it begins."""
+        return self.file.middle
+
+    def lengths(self) -> NDArray[np.float64]:
+        """(lines,) [m], unstretched."""
+        return self.file.shown.lengths
 
     def arranged(self) -> System:
         """The file's system in the waves and the current of the parameters."""
@@ -130,9 +117,9 @@ class FileScene(MooringScene):
         match command:
             case Grab(0, target, client) if self.hold is None or self.hold[0] == client:
                 self.hold = client, target
-                away = np.subtract(target, self.body.place)[:2]
+                away = np.subtract(target, self.middle)[:2]
                 away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))
-                self.vessel.target = vector_of((*away, 0.0))
+                self.vessel.target = vector_of(np.append(away, 0.0))
             case Release(client) if self.hold is not None and self.hold[0] == client:
                 self.hold = None
             case _:
@@ -140,7 +127,7 @@ class FileScene(MooringScene):
 
     def body_place(self) -> NDArray[np.float64]:
         """(3,) [m] of the vessel's middle at the surface."""
-        return np.add(self.body.place, self.moved_by)
+        return np.add(self.middle, self.moved_by)
 
     def rotation(self) -> NDArray[np.float64]:
         """No rotation (3,) [rad]."""
@@ -154,7 +141,7 @@ class FileScene(MooringScene):
         self.vessel.advance(t, duration)
         x1, v1 = np.array(self.vessel.position), np.array(self.vessel.velocity)
         for x, v, at in ((x0, v0, t), (x1, v1, t + duration)):
-            wave, speed = water_motion(self.sea, self.body.place, at)
+            wave, speed = water_motion(self.sea, self.middle, at)
             fade = fade_at(at)
             x += share * fade * wave
             v += share * fade * speed
@@ -171,14 +158,6 @@ class FileScene(MooringScene):
         """(coupled points, 3) [m] at the start."""
         points = self.file.system.points
         return np.array([points[node].position for node in self.file.vessel]).reshape(-1, 3)
-
-    def driven(self) -> dict[str, NDArray[np.float64]]:
-        """Fields of the kernels' view that change with time: waves and current that begin."""
-        hold, self.hold = self.hold, None  # the mouse moves the vessel, and pulls at no body
-        try:
-            return super().driven()
-        finally:
-            self.hold = hold
 
     def is_bounded(self) -> bool:
         """False once anything is not finite or is farther away than lines reach."""
@@ -221,7 +200,7 @@ class FileScene(MooringScene):
     def static_inputs(self, far: float = 0.0) -> FileInputs:
         """Everything that the restoring curve depends on."""
         bearing = math.radians(self.params.direction)
-        return FileInputs(self.params.mooring, (math.cos(bearing), math.sin(bearing)), far)
+        return FileInputs(self.params.moordyn_file, (math.cos(bearing), math.sin(bearing)), far)
 
     def force_of_lines(self) -> NDArray[np.float64]:
         """Level force (2,) [N] of the lines on the vessel now."""

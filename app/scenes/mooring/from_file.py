@@ -68,7 +68,7 @@ def mooring_of(path: str) -> FileMooring:
     )
     return FileMooring(
         system, tuple(notes), shown_lines(system, reverse), vessel, nodes.get("fixed", ()),
-        (*nodes.get("free", ()), *nodes.get("body", ())), ends, vector_of((*middle, 0.0)),
+        (*nodes.get("free", ()), *nodes.get("body", ())), ends, vector_of(np.append(middle, 0.0)),
         float(arms.max(initial=0.0)), extent, farthest_offset(system, extent),
     )  # fmt: skip
 

@@ -92,7 +92,7 @@ class Params:
     plot_restoring: bool = in_plots(
         False, doc="Static force of all lines over the offset, and the force now", title="Restoring force"
     )
-    mooring: str = ""  # a MoorDyn file; it is named on the command line only, never by a browser
+    moordyn_file: str = ""  # a MoorDyn file; it is named on the command line only, never by a browser
 
 
 ROPE: dict[str, Any] = {
@@ -142,11 +142,11 @@ OF_NO_FILE = {
 def hidden(params: Params) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = set() if params.floats else {"lift"}
-    names |= OF_NO_FILE if params.mooring else {"follow"}
+    names |= OF_NO_FILE if params.moordyn_file else {"follow"}
     if params.wave_height == 0.0:
         names |= {"wave_period", "regular"}
-        if params.mooring:
+        if params.moordyn_file:
             names.add("follow")
-        if params.current == 0.0 and (params.mooring or params.steady_force == 0.0):
+        if params.current == 0.0 and (params.moordyn_file or params.steady_force == 0.0):
             names.add("direction")
     return names

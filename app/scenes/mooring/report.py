@@ -68,11 +68,11 @@ def offset_text(snapshot: Snapshot) -> Html:
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     said = faint("Slack: the share of time, or since when, in which the last segment is not stretched.")
-    notes = {
+    notes: dict[str, str] = {
         "Tensions": join((offset_text(snapshot), tension_table(snapshot))),
         "Bed and slack": join((bed_table(snapshot), said)),
     }
-    path = snapshot.params.mooring
+    path = snapshot.params.moordyn_file
     return {"File": file_text(path), **notes} if path else notes
 
 

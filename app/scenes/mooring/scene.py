@@ -4,9 +4,10 @@ from typing import Any
 
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
-from app.scenes.mooring.body_scene import ANCHOR_SERIES, LINE_SERIES, MAX_STRETCH, SERIES, MooringScene
+from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
 from app.scenes.mooring.frame import MooringReadings
+from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, MAX_STRETCH, SERIES, LineScene
 from app.scenes.mooring.live_values import live_values
 from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import ABOUT, EXPLICIT, PRESETS, Params, hidden
@@ -20,9 +21,9 @@ PLOTS = {
 CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}
 
 
-def scene_of(params: Params) -> MooringScene:
+def scene_of(params: Params) -> LineScene:
     """The scene of the parameters, or of the file that they name."""
-    return FileScene(params) if params.mooring else MooringScene(params)
+    return FileScene(params) if params.moordyn_file else MooringScene(params)
 
 
 def compile_with(method: str) -> None:

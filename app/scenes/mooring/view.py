@@ -160,7 +160,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             )  # fmt: skip
         hull = hull_of(p)
         width, low, high = width_of(p), *(float(edge) for edge in hull.extents[2])
-        is_round = bool(p.mooring) or p.body == "buoy"
+        is_round = bool(p.moordyn_file) or p.body == "buoy"
         line = min(max(-frame.rest[2], low + 2 * STRIPE * width), high - 2 * STRIPE * width)  # as it floats
         edges = [low, line, line + STRIPE * width, high, *(high + width * np.cumsum([part for _, part, _ in ON_DECK]))]
         self.slices = np.array(edges[:-1]) + 0.5 * np.diff(edges)  # heights [m] of their middles over the body's centre
@@ -222,7 +222,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
     def shape_of(frame: MooringFrame) -> Shape:
         """The inputs of a drawing: all that `build` reads, except for those that `show` assigns."""
         p = frame.params
-        return frame.points.shape, p.mooring, p.reach, p.depth, p.body, p.size, frame.surface.shape, frame.rest[2]
+        return frame.points.shape, p.moordyn_file, p.reach, p.depth, p.body, p.size, frame.surface.shape, frame.rest[2]
 
     def balls(self, name: str, places: NDArray[np.float32], radius: float, colour: tuple[int, int, int]) -> Any:
         """A ball at each place (n, 3) [m]."""
@@ -327,7 +327,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         """The arrows of anchors and fairleads."""
         p, far = frame.params, extent(frame.params)
         for i in range(MAX_LINES):
-            is_shown = p.handles and not p.mooring and i < len(frame.points)
+            is_shown = p.handles and not p.moordyn_file and i < len(frame.points)
             for kind, node, scale in (("anchor", 0, ARROW_SIZE), ("fairlead", -1, SMALL_ARROW_SIZE)):
                 gizmo = self.gizmos[f"{kind} {i + 1}"]
                 if is_shown and gizmo.handle.scale != scale * far:

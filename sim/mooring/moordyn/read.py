@@ -52,14 +52,14 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> 
         say(f"left out, as they steer MoorDyn only: {', '.join(options.steering)}")
     for text in options.warnings:
         say(text) if say is not None else warnings.warn(f"{path.name}: {text}", stacklevel=2)
-    fields = {name: value for name, value in options.fields.items() if name != "depth"}
+    fields: dict[str, Any] = {name: value for name, value in options.fields.items() if name != "depth"}
     free = [body for body in bodies.values() if body.kind == "free"]
     dragged = [drag_of(body) for body in free if body.drag_area > 0.0]
     water = {"gravity": fields.get("gravity", System.gravity), "density": fields.get("density", System.density)}
     return System(
         tuple(lines.values()), (*points.values(), *dragged), depth, tuple(free_body(body, **water) for body in free),
         slack_damping=True, **fields,
-    )  # type: ignore[arg-type]  # fmt: skip
+    )  # fmt: skip
 
 
 def count_of(section: Section | None) -> int:

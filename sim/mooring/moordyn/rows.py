@@ -166,7 +166,7 @@ def read_point(row: Row, bodies: Mapping[int, FileBody]) -> Point:
     drag_area, added = (*numbers[8 if len(words) == 12 else 5 :], 0.0)[:2]
     body = None
     if kind == "body":
-        if number not in bodies:
+        if number is None or number not in bodies:
             raise argument_error(f"{where}: attachment", words[1], f"a body of the file: {sorted(bodies)}")
         owner = bodies[number]
         place = owner.place + owner.turn @ place

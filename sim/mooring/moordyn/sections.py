@@ -65,25 +65,25 @@ def split_sections(text: str, wrong: Refusals) -> dict[str, Section]:
     """The rows of each section that is read; refusals go to `wrong`."""
     found: dict[str, Section] = {}
     refused: dict[str, int] = {}
-    current: str | None = None
+    current = ""
     skip, at = 0, 0
     for number, line in enumerate(text.splitlines(), 1):
         header = HEADER.match(line.strip())
         if header:
             name, at = name_of(header.group(1)), number
-            current = NAMES.get(name) or REFUSED.get(name)
+            current = NAMES.get(name) or REFUSED.get(name, "")
             skip = 0 if current == OPTIONS else 2
             if current in found:
                 with wrong:
                     raise argument_error(f"line {number}: section", header.group(1), f"one section {current}")
-                current = None
+                current = ""
             elif current in NAMES.values():
                 found[current] = Section([], [])
-            elif current is None and not name and number > 2 and is_section(header.group(1)):
+            elif not current and not name and number > 2 and is_section(header.group(1)):
                 with wrong:
                     raise argument_error(f"line {number}: section", header.group(1), f"one of {sorted(NAMES)}")
             continue
-        if current is None:
+        if not current:
             continue
         words = re.split(r"(?:^|\s)[#!]", line, maxsplit=1)[0].split()  # without a comment
         if skip == 2 and COUNT.match(line.strip()):

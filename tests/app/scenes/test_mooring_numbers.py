@@ -9,7 +9,8 @@ import pytest
 
 from app.scenes.mooring import report
 from app.scenes.mooring.arrangement import DENSITY, GRAVITY, bearings, first_places, line_types, sections
-from app.scenes.mooring.body_scene import FADE, MooringScene
+from app.scenes.mooring.body_scene import MooringScene
+from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.live_values import live_values
 from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import Params

@@ -145,6 +145,6 @@ def test_of_a_path_of_any_system_only_the_last_part_is_read_and_written() -> Non
         file_name("/home/anna/boat.stl") == file_name(r"C:\Users\anna\boat.stl") == file_name("boat.stl") == "boat.stl"
     )
     text = json.dumps({"version": 2, "scene": "radial_sea", "parameters": {}, "hull": "/home/anna/boat.stl"})
-    assert read_file(text) == Setup("radial_sea", KIND.params(), {}, hull="boat.stl")
+    assert read_file(text) == Setup("radial_sea", KIND.params(), {}, files={"hull": "boat.stl"})
     with pytest.raises(ValueError, match=r"hull: .* is not allowed"):
         read_file(json.dumps({"version": 2, "scene": "radial_sea", "parameters": {}, "hull": 3}))

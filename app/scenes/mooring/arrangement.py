@@ -71,6 +71,11 @@ def diameter_of(params: Params) -> float:
     return params.diameter
 
 
+def has_body(params: Params) -> bool:
+    """False of a file without coupled points, which has no vessel."""
+    return not params.moordyn_file or bool(mooring_of(params.moordyn_file).vessel)
+
+
 def width_of(params: Params) -> float:
     """Width [m] of the body; a vessel from a file is drawn within its fairleads, as no file has its shape."""
     if not params.moordyn_file:

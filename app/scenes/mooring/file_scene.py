@@ -150,7 +150,7 @@ class FileScene(LineScene):
         paths[:, 0] = x0 + self.places
         paths[:, 1:4] = v0, (3.0 * gap - 2.0 * v0 - v1) / duration, (v0 + v1 - 2.0 * gap) / duration**2
         paths[:, 4] = t
-        self.moved_by = x1
+        self.moved_by = x1 if self.file.vessel else np.zeros(3)
         return paths
 
     @property

@@ -20,7 +20,7 @@ from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.contract import View as SceneView
-from app.scenes.mooring.arrangement import depth_of, diameter_of, extent, hull_of, width_of
+from app.scenes.mooring.arrangement import depth_of, diameter_of, extent, has_body, hull_of, width_of
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
 from app.scenes.mooring.report import figures_of, marks_of, notes_of, readout_of
@@ -173,6 +173,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             batched_scales=np.column_stack([wide, wide, np.diff(edges)]).astype(np.float32),
             batched_colors=np.array([linear(colour) for *_, colour in (*PAINTS, *ON_DECK)], np.uint8),
         )  # fmt: skip
+        self.body.visible = has_body(p)
         self.body.on_drag("left")(self.on_body)
         self.anchors = self.balls("/anchors", frame.anchors, ANCHOR_SIZE * far, ANCHOR_COLOUR)
         self.fairleads = self.balls("/fairleads", frame.fairleads, FAIRLEAD_SIZE * far, FAIRLEAD_COLOUR)

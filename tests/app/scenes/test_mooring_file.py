@@ -8,7 +8,7 @@ import pytest
 
 from app.__main__ import main
 from app.messages import Grab, Release
-from app.scenes.mooring.arrangement import depth_of, extent, water_of
+from app.scenes.mooring.arrangement import depth_of, extent, has_body, water_of
 from app.scenes.mooring.file_scene import FileScene, level_force, water_motion
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.line_scene import FADE
@@ -153,11 +153,16 @@ def test_water_numbers_and_texts_are_those_of_the_file():
     assert values["line_weight"].value == pytest.approx(9.81 * (120.0 - 1025.0 * np.pi / 4.0 * 0.08**2))
 
 
-def test_a_file_without_coupled_points_is_shown_without_a_vessel():
-    scene = scene_of("chain", wave_height=1.0)
-    assert len(scene.file.vessel) == 1
-    text = (FILES / "chain.txt").read_text(encoding="utf-8").replace("Coupled", "Fixed")
-    assert "Coupled" not in text
+def test_a_file_without_coupled_points_has_no_vessel(tmp_path):
+    text = (FILES / "stiff_cable.txt").read_text(encoding="utf-8").replace("Coupled", "Fixed")
+    path = tmp_path / "hanging.txt"
+    path.write_text(text, encoding="utf-8")
+    scene = SCENE.make(Params(moordyn_file=str(path), time_step=2e-4, current=0.5))
+    assert not has_body(scene.params)
+    scene.advance(400)
+    assert scene.readings().most_offset == 0.0
+    assert np.isfinite(scene.frame().points).all()
+    assert (scene.static_inputs(1.0).curve()[1] == 0.0).all()
 
 
 def test_a_setup_holds_the_name_of_the_file_only():

@@ -39,6 +39,7 @@ Vector = tuple[float, float, float]
 KINDS = ("fixed", "coupled", "free", "body")
 FARTHEST = 1e5  # [m] from the origin
 MOST_SEGMENTS = 2000  # of a line
+MOST_PARTS = 10_000  # lines or points of a system
 MOST_DAMPING = 100.0  # ratio, of a segment
 MAX_DISPERSION_ERROR = 0.02  # of omega: what surface tension and rounded numbers may make
 
@@ -130,6 +131,9 @@ class System:
         """Raises ValueError with the name of the value that cannot be: kernels check no index."""
         for name in ("lines", "points", "bodies"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
+        for name in ("lines", "points", "bodies"):
+            if len(getattr(self, name)) > MOST_PARTS:
+                raise argument_error(name, len(getattr(self, name)), f"at most {MOST_PARTS}")
         check_number("depth", self.depth, 0, FARTHEST, "m", above=True)
         check_number("gravity", self.gravity, 0, 1e4, "m/s^2")
         for name, unit in (

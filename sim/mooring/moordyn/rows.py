@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -32,6 +32,7 @@ FREE = ("free", "point", "connect", "con")
 PINNED = ("vesselpinned", "vespin", "cpldpin", "coupledpinned")
 CURVE_HEADER = 3  # lines of a file of strain and tension before its rows
 MAX_CURVE_ROWS = 1000
+MAX_LISTED = 30  # names in an error
 
 
 class FileBody(NamedTuple):
@@ -107,6 +108,11 @@ def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tu
     return rows[-1][1] / rows[-1][0], tuple(rows)
 
 
+def listed(names: Collection[object]) -> str:
+    """The names, or their number if they are many."""
+    return str(list(names)) if len(names) <= MAX_LISTED else f"{len(names)} of the file"
+
+
 def read_kind(where: str, text: str) -> tuple[str, int | None]:
     """Kind of an attachment, and the number behind it, as in Body2. Raises ValueError for one that is not modelled."""
     found = ATTACHMENT.fullmatch(text)
@@ -167,7 +173,7 @@ def read_point(row: Row, bodies: Mapping[int, FileBody]) -> Point:
     body = None
     if kind == "body":
         if number is None or number not in bodies:
-            raise argument_error(f"{where}: attachment", words[1], f"a body of the file: {sorted(bodies)}")
+            raise argument_error(f"{where}: attachment", words[1], f"a body of the file: {listed(bodies)}")
         owner = bodies[number]
         place = owner.place + owner.turn @ place
         kind, body = ("body", number) if owner.kind == "free" else (owner.kind, None)
@@ -184,7 +190,7 @@ def read_end(where: str, text: str, points: Mapping[int, Point]) -> int:
         raise argument_error(f"{where}: attachment", text, "the ID of a point")
     found = int(re.sub(r"\D", "", text))
     if found not in points:
-        raise argument_error(f"{where}: attachment", text, f"one of the points {sorted(points)}")
+        raise argument_error(f"{where}: attachment", text, f"one of the points {listed(points)}")
     return found
 
 
@@ -215,7 +221,7 @@ def read_line(row: Row, ends_first: bool, types: Mapping[str, LineType], points:
     where = f"{LINES}, line {row.number}"
     words = check_columns(where, row.words, 6, 7)
     if words[1] not in types:
-        raise argument_error(f"{where}: type", words[1], f"one of {sorted(types)}")
+        raise argument_error(f"{where}: type", words[1], f"one of {listed(types)}")
     first, numbers = (words[2:4], words[4:6]) if ends_first else (words[4:6], words[2:4])
     start, end = (read_end(where, text, points) for text in first)
     length = number_in(where, numbers[0])

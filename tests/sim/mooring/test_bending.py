@@ -146,6 +146,20 @@ def test_a_stiff_line_diverges_at_the_step_of_the_gauge(factor, holds):
     assert (moved < 1e-4) == holds
 
 
+def test_lines_with_tables_stretch_as_their_rows_say():
+    """Weights hang on two ropes of unlike tables and one of constant EA; the last weighs more than the last row."""
+    tables = ((0.0, 0.0), (0.01, 100.0), (0.03, 500.0)), ((0.0, 0.0), (0.02, 1e4), (0.05, 2e4), (0.1, 9e4))
+    kinds = [LineType(f"rope {i}", 1e-3, 1e-6, 2e4, 0.0, curve=curve) for i, curve in enumerate((*tables, ()))]
+    points, lines = [], []
+    for i, (kind, weight) in enumerate(zip([*kinds, kinds[0]], (300.0, 15e3, 500.0, 700.0), strict=True)):
+        top = (float(i), 0.0, -1.0)
+        points += [Point(2 * i, "fixed", top), Point(2 * i + 1, "free", (float(i), 0.0, -3.0), weight / 9.81)]
+        lines.append(Line(i, kind, 2 * i, 2 * i + 1, 2.0, 4))
+    rest = System(tuple(lines), tuple(points), 50.0, **DRY).at_rest()
+    for i, strain in enumerate((0.02, 0.035, 500.0 / 2e4, 0.03 + 200.0 / 2e4)):
+        assert -1.0 - rest.x[i][-1, 2] == pytest.approx(2.0 * (1.0 + strain), rel=1e-6)
+
+
 ROWS = [
     ("line type chain: bending", {"bending": -1.0}),
     ("line type chain: bending", {"bending": math.nan}),

@@ -57,27 +57,23 @@ def read_type(row: Row, folder: Path) -> LineType:
     is_first_version = len(rest) == 8
     diameter, mass = number_in(where, rest[0]), number_in(where, rest[1])
     stiffness, curve = read_stiffness(where, rest[2], folder)
-    damping = number_in(f"{where}: BA", only_number(f"{where}: BA", rest[3], "viscoelastic lines"))
+    damping = only_number(f"{where}: BA", rest[3], "damping that changes is not modelled")
     if is_first_version:
         added, added_along, drag, drag_along = (number_in(where, text) for text in rest[4:])
         bending = 0.0
     else:
-        bending = number_in(f"{where}: EI", only_number(f"{where}: EI", rest[4], "an EI that changes"))
+        bending = only_number(f"{where}: EI", rest[4], "an EI that changes is not modelled")
         drag, added, drag_along, added_along = (number_in(where, text) for text in rest[5:9])
     if len(rest) > 9 and number_in(f"{where}: Cl", rest[9]) != 0.0:
         raise argument_error(f"{where}: Cl", rest[9], "0: vortex-induced vibrations are not modelled")
     return LineType(name, diameter, mass, stiffness, damping, added, drag, added_along, drag_along, bending, curve)
 
 
-def only_number(where: str, text: str, what: str) -> str:
-    """The text itself. Raises ValueError for a list, or the name of a file. what: that one of these stands for."""
+def only_number(where: str, text: str, reason: str) -> float:
+    """The number that `text` is. Raises ValueError, for a list or the name of a file with the reason."""
     if "|" in text or ":" in text or re.search(r"[A-Za-z_]\w*\.\w+$", text):
-        raise argument_error(
-            where,
-            text,
-            f"one number: {what} are not modelled".replace("an EI that changes are", "an EI that changes is"),
-        )
-    return text
+        raise argument_error(where, text, f"one number: {reason}")
+    return number_in(where, text)
 
 
 def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tuple[float, float], ...]]:
@@ -143,6 +139,8 @@ def read_body(row: Row) -> FileBody:
     for name, numbers in (("mass", [mass]), ("volume", [volume]), ("I", inertia), ("CdA", drag), ("Ca", added)):
         if min(numbers) < 0.0:
             raise argument_error(f"{where}: {name}", min(numbers), "0 or above")
+        if kind == "free" and name in ("mass", "I") and min(numbers) == 0.0:
+            raise argument_error(f"{where}: {name}", 0.0, "a number above 0, as the body is free")
     return FileBody(
         whole_in(where, words[0]), kind, place, turn, mass,
         np.array([0.0, 0.0, centre[0]] if len(centre) == 1 else centre), np.resize(inertia, 3), volume,
@@ -197,7 +195,7 @@ def read_end(where: str, text: str, points: Mapping[int, Point]) -> int:
 def ends_first(section: Section, points: Mapping[int, Point]) -> bool:
     """True if the ends of a line stand before its length and segments, as in version 2, and not behind them.
 
-    Both kinds of file have a row of column names, and files are about in which it is the other version's.
+    The values decide. The column names do where both orders fit: some files have those of the other version.
     """
     names = section.columns
     by_name = not any(name.startswith("unstr") for name in names[2:3])

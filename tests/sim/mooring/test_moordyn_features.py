@@ -175,6 +175,16 @@ def test_of_very_many_obstacles_the_first_ones_are_named_and_the_others_counted(
     assert len(str(error.value)) < 2000
 
 
+@pytest.mark.parametrize(("row", "name"), [
+    ("1 Free 0 0 -5 0 0 0 0 0 4 1 1 0", "mass"), ("1 Free 0 0 -5 0 0 0 9 0 4|0|4 1 1 0", "I"),
+    ("1 Free 0 0 -5 0 0 0 9 0|1 4 1 1 0", "CG"), ("1 Free 0 0 -5 0 0 0 9 0 4 -1 1 0", "volume"),
+    ("1 Body2 0 0 -5 0 0 0 9 0 4 1 1 0", "attachment"), ("1 Free 0 0 -5 0 0 0 9 0 4 1 1|1|1|1 0", "CdA"),
+])  # fmt: skip
+def test_a_body_that_is_none_is_refused(tmp_path, row, name):
+    path = changed(tmp_path, ("(m^2) (-)\n---------------------- RODS", f"(m^2) (-)\n{row}\n---------------- RODS"))
+    assert_refused(f"BODIES, line 13: {name}", lambda: read_moordyn(path))
+
+
 TABLES = [
     ("c.dat, line 5", "a\nb\nc\n0 0\n0.1 hard\n", "'hard'"),
     ("c.dat, line 5", "a\nb\nc\n0 0\n0.1 1e5 7\n", "2 columns"),

@@ -10,7 +10,7 @@ from PIL import Image
 from app.messages import Pause
 from app.scenes.mooring.parameters import Params
 from app.server.viewer import Viewer
-from tests.browser.conftest import NO_NOTES, Tab
+from tests.browser.conftest import LATE_UPDATE, NO_NOTES, Tab
 from tests.browser.test_water import PANEL_HIDDEN
 
 FILES = Path(__file__).parents[1] / "sim/mooring/files"
@@ -59,7 +59,7 @@ def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Call
     assert errors == []
 
 
-def test_a_file_without_a_vessel_shows_none(tmp_path: Path, open_tab: Callable[..., Tab]) -> None:
+def test_files_without_a_vessel_or_without_anchors_are_drawn(tmp_path: Path, open_tab: Callable[..., Tab]) -> None:
     path = tmp_path / "hanging.txt"
     text = (FILES / "stiff_cable.txt").read_text(encoding="utf-8")
     path.write_text(text.replace("Coupled", "Fixed"), encoding="utf-8")
@@ -71,7 +71,11 @@ def test_a_file_without_a_vessel_shows_none(tmp_path: Path, open_tab: Callable[.
         assert not lab.view.body.visible
         tab.wait(lambda: lab.loop.scene.time > 0.1)
         assert lab.loop.scene.readings().most_offset == 0.0
-        errors = tab.errors
+        lab.open("mooring", Params(moordyn_file=str(FILES / "hanging_body.txt"), time_step=5e-4))
+        tab.wait(lambda: lab.view.built and len(tab.vertices("/line_2")) > 0)
+        assert lab.view.body.visible
+        assert len(lab.view.fairleads.batched_positions) == 4  # two on the vessel, and the body's with that of its drag
+        errors = [error for error in tab.errors if LATE_UPDATE not in error]
     finally:
         lab.shut()
     assert errors == []

@@ -6,17 +6,21 @@ as large. The energy is convex, and its force linear in the positions: neither r
 another method. An end is free to turn; at one that a clamp holds in the direction t the line goes on behind it as it
 does before it, turned about t, so that d = x_1 - x_0 - l t with twice the stiffness.
 
-A row of `bends` holds three nodes, their weights, the stiffness 2 energy/|d|^2 [N/m], and a vector [m]:
-d = sum of weights times positions, plus the vector. The bends at inner nodes are sums over three nodes; of a clamp the
-third weight is 0.
+A row of `bends` holds three nodes, their weights, the stiffness 2 energy/|d|^2 [N/m], a vector [m] and the links before
+and after the middle: d = sum of weights times positions, plus the vector. The bends at inner nodes are sums over three
+nodes; of a clamp the third weight is 0 and there is no link before it (-1).
+
+The bends pull along the links too, by EI times the squared curvature: `add_bending_tension`.
 
 Source: Hall and Goupee (2015), Ocean Eng. 104:590, and MoorDyn's theory, which has 2 sin(a/2) in place of sin(a) of the
 angle a between two segments.
 """
 
+import math
+
 from sim.jit import kernel
 
-NODES, WEIGHTS, BEND_STIFFNESS, OFFSET = 0, 3, 6, 7  # columns
+NODES, WEIGHTS, BEND_STIFFNESS, OFFSET, LINKS = 0, 3, 6, 7, 10  # columns
 
 
 @kernel(inline=True)
@@ -42,6 +46,22 @@ def add_bending(x, p, f):
             f[j] -= s * dx
             f[n + j] -= s * dy
             f[2 * n + j] -= s * dz
+
+
+@kernel(noalias=True, allocates=False)
+def add_bending_tension(x, p, out):
+    """Add the part of the axial force [N] of each link that the bends beside it have."""
+    n = p.cols
+    for i in range(p.bends.shape[0]):
+        dx, dy, dz = bend_at(x, p, i)
+        for e in range(2):
+            q = int(p.bends[i, 10 + e])
+            if q >= 0:
+                a, b = p.ends[q, 0], p.ends[q, 1]
+                rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+                length = math.sqrt(rx * rx + ry * ry + rz * rz)
+                along = (dx * rx + dy * ry + dz * rz) / max(length, 1e-12)
+                out[q] += p.bends[i, 6] * (along if e == 1 else -along)
 
 
 @kernel(allocates=False)

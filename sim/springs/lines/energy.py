@@ -21,7 +21,7 @@ from sim.springs.lines.arrays import (
     MASS,
     STIFFNESS,
 )
-from sim.springs.lines.bending import bending_energy, bending_rate
+from sim.springs.lines.bending import add_bending_tension, bending_energy, bending_rate
 from sim.springs.lines.forces import (
     accelerate_lines,
     bed_force,
@@ -191,7 +191,8 @@ def lines_pins_damping_power(x, v, p):
 
 @kernel
 def set_tensions(x, v, p, out):
-    """Set the tension (links,) [N] of every link, its damping included."""
+    """Set the tension (links,) [N] of every link, with its damping and what bending adds."""
     for q in range(p.ends.shape[0]):
         rx, ry, rz, length = span_of(x, p, q)
         out[q] = tension_of(p, q, length) + damping_of(p, q, length) * rate_of(v, p, q, rx, ry, rz, length)
+    add_bending_tension(x, p, out)

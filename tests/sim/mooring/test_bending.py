@@ -2,11 +2,12 @@
 
 import dataclasses
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from sim.mooring import Line, LineType, Point, System, critical_step, simulate
+from sim.mooring import Line, LineType, Point, System, critical_step, read_moordyn, simulate
 from sim.mooring.gauge import modes
 from sim.mooring.tangent import stiffness_matrix
 from sim.springs.analysis.energy import energies
@@ -15,6 +16,7 @@ from sim.springs.lines.forces import set_rest_forces
 from tests.refusals import assert_refused
 from tests.sim.mooring.systems import chain_on_bed
 
+FILES = Path(__file__).with_name("files")
 EI, LENGTH = 1e4, 10.0
 DRY = {"density": 0.0, "bed_stiffness": 0.0}
 
@@ -40,6 +42,24 @@ def test_a_cantilever_sinks_as_the_beam_with_a_pull_does(pull):
         errors.append((-5.0 - rest.x[1][-1, 2]) / exact - 1.0)
     assert 0.0 < errors[0] < 5e-3
     assert np.divide(errors[:-1], errors[1:]) == pytest.approx(4.0, rel=0.05)  # of second order
+
+
+def test_the_axial_force_at_a_clamp_is_the_pull_along_it():
+    """What bending takes of it is of the size of EI times the squared curvature: 3 % here."""
+    rest = cantilever(40, 1000.0, 300.0).at_rest()
+    ways = np.diff(rest.x[1], axis=0)
+    along = (1000.0 * ways[:, 0] - 300.0 * ways[:, 2]) / np.linalg.norm(ways, axis=1)
+    assert rest.tension[1] == pytest.approx(along, rel=1e-6)
+
+
+# Least tension [N] of each line, where it hangs lowest or highest, with MoorDyn 2.7.2 as in `test_moordyn_features.py`.
+LEAST = {"stiff_sagbend": 30141.233, "stiff_slack": 2751.1125}
+
+
+@pytest.mark.parametrize("name", LEAST)
+def test_the_tension_in_the_sagbend_is_that_of_moordyn(name):
+    system = read_moordyn(FILES / f"{name}.txt")
+    assert system.at_rest().tension[1].min() == pytest.approx(LEAST[name], rel=1e-3)
 
 
 def test_a_clamp_at_the_end_is_that_at_the_start_of_a_line_the_other_way_round():

@@ -21,6 +21,7 @@ CLOSED_OUTPUT = 141  # exit status of a program that SIGPIPE ends, by convention
 DEFAULT_SCENE = "rope"
 LIVE = "live"  # the command of the lab that need not be named
 STEP_SAFETY = 0.5  # of the longest stable step at rest, for a mooring from a file
+MAX_MOORING_NODES = 2000  # of a mooring from a file: all its modes are computed for the longest step
 MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
 
 
@@ -336,6 +337,8 @@ def with_mooring(params: Any, path: Path, has_step: bool) -> Any:
     if not hasattr(params, "moordyn_file"):
         raise argument_error("--mooring", str(path), "a MoorDyn file with the scene mooring only")
     system = read_moordyn(path, lambda text: say_on_error_stream(f"{path.name}: {text}"))
+    if system.node_count > MAX_MOORING_NODES:
+        raise argument_error("--mooring", f"{path} of {system.node_count} nodes", f"at most {MAX_MOORING_NODES}")
     params = dataclasses.replace(params, moordyn_file=str(path))
     if has_step:
         return params

@@ -8,6 +8,8 @@ import pytest
 
 from app.__main__ import main
 from app.messages import Grab, Release
+from app.panel.recorder import Recorder
+from app.panel.recording_files import Plotted, recording_npz
 from app.scenes.mooring.arrangement import depth_of, extent, has_body, water_of
 from app.scenes.mooring.file_scene import FileScene, level_force, water_motion
 from app.scenes.mooring.from_file import mooring_of
@@ -17,7 +19,9 @@ from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import Params, hidden
 from app.scenes.mooring.report import notes_of
 from app.scenes.mooring.scene import SCENE
-from app.scenes.setups import missing_files, read_file, write_file
+from app.scenes.setups import missing_files, read_file, read_setup_text, write_file
+from app.server.loop import SimLoop
+from app.server.replay_file import replay_html
 from sim.mooring import read_moordyn
 
 FILES = Path(__file__).parents[2] / "sim/mooring/files"
@@ -176,6 +180,26 @@ def test_a_setup_holds_the_name_of_the_file_only():
     assert missing_files(setup, params) == ""
 
 
+def test_recording_and_replay_hold_the_name_of_the_file_and_no_folder(tmp_path):
+    folder = tmp_path / "of-nobody-else"
+    folder.mkdir()
+    path = folder / "deck.txt"
+    path.write_text((FILES / "turned_body.txt").read_text(encoding="utf-8"), encoding="utf-8")
+    loop, recorder = SimLoop(SCENE.make(Params(moordyn_file=str(path), time_step=1e-3))), Recorder(SCENE.packing)
+    for i in range(4):
+        loop.tick(1 / 25)
+        recorder.note(loop.latest, i / 25)
+    page = replay_html(SCENE, recorder.kept(), Plotted((), {}))  # type: ignore[arg-type]
+    file = tmp_path / "recording.npz"
+    file.write_bytes(recording_npz(SCENE, recorder.kept()))  # type: ignore[arg-type]
+    with np.load(file) as found:
+        about = str(found["about"])
+    for text in (page, about):
+        assert "deck.txt" in text
+        assert "of-nobody-else" not in text
+    assert read_file(read_setup_text("set-up", file), scene="mooring").files == {"mooring": "deck.txt"}
+
+
 def test_a_file_runs_without_a_browser(tmp_path, capsys):
     out = tmp_path / "run.npz"
     arguments = ["--seconds", "0.2", "--rate", "10", "--out", str(out)]
@@ -209,6 +233,11 @@ def test_what_is_left_out_is_said_and_a_bad_file_ends_the_program_in_one_line(tm
         assert said.err.count("\n") == 1
         assert "'RODS'" in said.err
         assert said.out == ""  # nothing is served
+    huge = tmp_path / "huge.txt"
+    text = (FILES / "chain.txt").read_text(encoding="utf-8")
+    huge.write_text(text.replace("1 c 1 2 320.0 20 p\n", "1 c 1 2 320 1500 p\n2 c 1 2 321 1500 p\n"), encoding="utf-8")
+    assert main(["run", "mooring", *out, "--mooring", str(huge)]) == 2
+    assert "3000 nodes" in capsys.readouterr().err.splitlines()[-1]
     for scene in (["run", "rope", *out], ["--scene", "rope", "--no-open", "--port", "0"]):
         assert main([*scene, "--mooring", str(FILES / "chain.txt")]) == 2
         assert "--mooring" in capsys.readouterr().err

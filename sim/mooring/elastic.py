@@ -54,7 +54,7 @@ class Elastic:
         return length, slope
 
     def on_pieces(self, value: Array, found: Array, column: int) -> tuple[Array, Array]:
-        """`found` of links with a constant stiffness, and of those with a table what belongs to `value`.
+        """`found` of links with a constant stiffness, with the table's numbers for `value` of all others.
 
         column: of the table that `value` is of. The second array: derivatives [N/m] of the tensions.
         """

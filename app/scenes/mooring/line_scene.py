@@ -100,7 +100,7 @@ class LineScene(abc.ABC):
 
     @abc.abstractmethod
     def arrange(self) -> None:
-        """Make the system, and what moves with it, as the parameters have it."""
+        """Make the system and all trackers of the parameters."""
 
     @abc.abstractmethod
     def take_system(self) -> None:
@@ -112,7 +112,7 @@ class LineScene(abc.ABC):
 
     @abc.abstractmethod
     def handle(self, command: SceneCommand) -> None:
-        """Carry out what a user does with the mouse."""
+        """Carry out a command of the mouse."""
 
     @abc.abstractmethod
     def lengths(self) -> NDArray[np.float64]:

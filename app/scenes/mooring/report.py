@@ -77,7 +77,7 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
 
 
 def file_text(path: str) -> Html:
-    """The file that the mooring is from, and what of it is left out."""
+    """The file of the mooring, and the parts of it without effect here."""
     found = mooring_of(path)
     system = found.system
     count = fill(

@@ -11,7 +11,8 @@ from sim.mooring.moordyn.options import read_options
 from sim.mooring.moordyn.rows import FileBody, ends_first, read_body, read_line, read_point, read_type
 from sim.mooring.moordyn.sections import BODIES, LINES, OPTIONS, POINTS, TYPES, Row, Section, read_text, split_sections
 from sim.mooring.system import Body, Point, System
-from sim.validation import Refusals, argument_error
+from sim.mooring.turning import with_turning
+from sim.validation import ConvergenceError, Refusals, argument_error
 
 HELD = (
     1e-6  # of a free body's weight on an arm of 1 m, as stiffness of rotation: statics need one where no line turns it
@@ -23,8 +24,9 @@ T = TypeVar("T")
 def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> System:
     """The System of a MoorDyn file of version 1 or 2.
 
-    Coupled bodies become coupled points at their places, and free ones a Body each, which turns by small angles. A link
-    is damped where it is slack, too, as MoorDyn has it. Steady forces on points are in N.
+    Coupled bodies become coupled points at their places. A free one becomes a Body, which turns by small angles with
+    the stiffness that its lines at rest give it. A link is damped where it is slack, too, as MoorDyn has it. Steady
+    forces on points are in N.
 
     say: takes a line on each thing of the file that is left out. None: a UserWarning on what may change forces.
     Raises ValueError with everything that cannot be read, and its sections and lines.
@@ -48,18 +50,30 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> 
     options = read_options(found[OPTIONS].rows if OPTIONS in found else [], wrong)
     wrong.check()
     depth = depth_of(options.fields, points.values(), options.warnings)
-    if options.steering and say is not None:
-        say(f"left out, as they steer MoorDyn only: {', '.join(options.steering)}")
-    for text in options.warnings:
-        say(text) if say is not None else warnings.warn(f"{path.name}: {text}", stacklevel=2)
     fields: dict[str, Any] = {name: value for name, value in options.fields.items() if name != "depth"}
     free = [body for body in bodies.values() if body.kind == "free"]
     dragged = [drag_of(body) for body in free if body.drag_area > 0.0]
     water = {"gravity": fields.get("gravity", System.gravity), "density": fields.get("density", System.density)}
-    return System(
+    system = System(
         tuple(lines.values()), (*points.values(), *dragged), depth, tuple(free_body(body, **water) for body in free),
         slack_damping=True, **fields,
     )  # fmt: skip
+    if free:
+        system = turned(system, options.warnings)
+    if options.steering and say is not None:
+        say(f"left out, as they steer MoorDyn only: {', '.join(options.steering)}")
+    for text in options.warnings:
+        say(text) if say is not None else warnings.warn(f"{path.name}: {text}", stacklevel=2)
+    return system
+
+
+def turned(system: System, said: list[str]) -> System:
+    """The system with the stiffness of its bodies by their lines at rest."""
+    try:
+        return with_turning(system, system.at_rest())
+    except ConvergenceError as error:
+        said.append(f"free bodies turn without the stiffness that their lines give ({error})")
+        return system
 
 
 def count_of(section: Section | None) -> int:
@@ -81,14 +95,14 @@ def read_rows(
     return found
 
 
-def depth_of(fields: Mapping[str, float], points: Iterable[Point], warnings: list[str]) -> float:
+def depth_of(fields: Mapping[str, float], points: Iterable[Point], said: list[str]) -> float:
     """The depth of the water [m]: that of the lowest fixed point if it is not given, or is less, as in MoorDyn."""
     lowest = -min((point.position[2] for point in points if point.kind == "fixed"), default=0.0)
     given = fields.get("depth", 0.0)
     if not max(lowest, given) > 0.0:
         raise argument_error(f"{OPTIONS}: WtrDpth", fields.get("depth"), "the depth of the water [m]")
     if "depth" in fields and lowest > given * (1.0 + 1e-6):
-        warnings.append(f"WtrDpth {given:g}: the water is {lowest:g} m deep, as a fixed point is below the bed")
+        said.append(f"WtrDpth {given:g}: the water is {lowest:g} m deep, as a fixed point is below the bed")
         return lowest
     return fields.get("depth", lowest)
 

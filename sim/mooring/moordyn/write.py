@@ -46,7 +46,7 @@ def write_moordyn(system: System, path: str | Path) -> None:
 
 
 def check_writable(system: System) -> None:
-    """Raises ValueError for what a file of lines and points does not hold."""
+    """Raises ValueError for a system that a file of lines and points cannot hold."""
     clamped = [line.id for line in system.lines if line.clamp_at_start or line.clamp_at_end]
     pushed = [point.id for point in system.points if any(point.force)]
     none = {"bodies": system.bodies, "waves": system.waves, "current": any(system.current)}

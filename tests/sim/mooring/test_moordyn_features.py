@@ -86,7 +86,7 @@ def test_a_free_body_has_the_mass_of_its_row_and_the_buoyancy_of_all_its_volume(
     assert mass[1, 3] == mass[3, 1] == pytest.approx(-4000.0 * 0.5)
     lift = (12.0 * 1025.0 - 4000.0) * 9.81
     assert body.steady == pytest.approx((0.0, 0.0, lift, 0.0, 0.0, 0.0))
-    assert np.asarray(body.stiffness)[3, 3] == pytest.approx(0.5 * lift, rel=1e-5)
+    assert np.asarray(body.stiffness)[3, 3] > 0.5 * lift  # and what its ropes add: see `test_turning.py`
     assert system.points[-1] == Point(-1, "body", (0.0, 0.0, -20.0), drag_area=6.0, body=1)
 
 

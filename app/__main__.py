@@ -18,7 +18,11 @@ from sim.quantities import read_number
 from sim.validation import ConvergenceError
 
 CLOSED_OUTPUT = 141  # exit status of a program that SIGPIPE ends, by convention of shells
+DEFAULT_SCENE = "rope"
+SCENE_OF_FILE = {"mooring": "mooring", "hull": "radial_sea", "spectrum": "square_sea"}  # option -> scene it opens
 LIVE = "live"  # the command of the lab that need not be named
+STEP_SAFETY = 0.5  # of the longest stable step at rest, for a mooring from a file
+MAX_MOORING_NODES = 2000  # of a mooring from a file: all its modes are computed for the longest step
 MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
 
 
@@ -259,7 +263,8 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
 
 def add_serving(parser: argparse.ArgumentParser) -> None:
     """The options of `springtide` without a command."""
-    parser.add_argument("--scene", default="rope", metavar="SCENE", help=", ".join(NAMES) + " (default: rope)")
+    scenes = ", ".join(NAMES) + " (default: rope, or that of the first file)"
+    parser.add_argument("--scene", default="", metavar="SCENE", help=scenes)
     resume = "begin with the set-up that the last lab with this option was left with, if there was one"
     parser.add_argument("--resume", action="store_true", help=resume)
     add_address(parser)
@@ -289,6 +294,7 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     hull = "add a closed mesh to the radial sea: STL, OBJ, PLY, GDF and others with z up, glTF or GLB with y up"
     parser.add_argument("--hull", type=Path, metavar="FILE", help=hull)
     add_mesh_reading(parser)
+    parser.add_argument("--mooring", type=Path, metavar="FILE", help="open a MoorDyn file in the scene mooring")
     spectrum = "waves of a measured spectrum, in either sea: CSV, NDBC, WAVEWATCH III or SWAN; see docs/files.md"
     parser.add_argument("--spectrum", type=Path, metavar="FILE", help=spectrum)
     parser.add_argument("--spectrum-time", metavar="TIME", help="of one of its records (default: the last one)")
@@ -327,6 +333,8 @@ def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     check_files_named(arguments)
     if arguments.hull is not None:
         params = with_hull(params, arguments.hull, mesh_reading(arguments))
+    if arguments.mooring is not None:
+        params = with_mooring(params, arguments.mooring, "time_step" in given)
     if arguments.spectrum is not None:
         params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in given)
     return params
@@ -408,6 +416,27 @@ def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -
     return dataclasses.replace(params, length=tile_length(spectrum, params))
 
 
+def with_mooring(params: Any, path: Path, has_step: bool) -> Any:
+    """The parameters with the mooring of a MoorDyn file, and a stable time step unless one was given.
+
+    Raises ValueError for another scene or a file that cannot be read, ConvergenceError for one without a state of rest.
+    """
+    from sim.mooring import critical_step, read_moordyn
+    from sim.parameters import clamp_value, parameters_of
+    from sim.validation import argument_error
+
+    if not hasattr(params, "moordyn_file"):
+        raise argument_error("--mooring", str(path), "a MoorDyn file with the scene mooring only")
+    system = read_moordyn(path, lambda text: say_on_error_stream(f"{path.name}: {text}"))
+    if system.node_count > MAX_MOORING_NODES:
+        raise argument_error("--mooring", f"{path} of {system.node_count} nodes", f"at most {MAX_MOORING_NODES}")
+    params = dataclasses.replace(params, moordyn_file=str(path))
+    if has_step:
+        return params
+    step = float(f"{STEP_SAFETY * critical_step(system, params.integrator):.1e}")
+    return dataclasses.replace(params, time_step=clamp_value(parameters_of(params)["time_step"], step))
+
+
 def serve(arguments: argparse.Namespace, session: Any = None) -> int:
     """`springtide`: the lab in a browser. session: of a student's folder."""
     name, params = opening_setup(arguments)
@@ -431,11 +460,18 @@ def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
         last = read_last()
         if last is not None:
             return last.scene, last.params
-    scene = scene_named(arguments.scene)
+    name = scene_name(arguments)
+    scene = scene_named(name)
     check_files_named(arguments)
-    files = arguments.hull is not None or arguments.spectrum is not None
+    files = any(getattr(arguments, option) is not None for option in SCENE_OF_FILE)
     nothing_asked = arguments.preset is None and not arguments.set and not files
-    return arguments.scene, scene.opening_params() if nothing_asked else read_params(scene, arguments)
+    return name, scene.opening_params() if nothing_asked else read_params(scene, arguments)
+
+
+def scene_name(arguments: argparse.Namespace) -> str:
+    """Name of the scene to open: as given, or that of the first file that is added."""
+    added = (scene for option, scene in SCENE_OF_FILE.items() if getattr(arguments, option) is not None)
+    return arguments.scene or next(added, DEFAULT_SCENE)
 
 
 def serve_beside(arguments: argparse.Namespace) -> int:
@@ -517,7 +553,7 @@ def serve_folder(arguments: argparse.Namespace) -> int:
     from app.lab.session import Session
     from app.lab.task import load_tasks
 
-    if arguments.scene == "rope" and arguments.preset is None and not arguments.set:
+    if scene_name(arguments) == DEFAULT_SCENE and arguments.preset is None and not arguments.set:
         # Of this method the program's rope and a student's right one are the same to rounding.
         arguments.set = ["integrator=rk4"]
     session = Session(arguments.folders[0], load_tasks(*arguments.tasks), arguments.tasks)

@@ -5,8 +5,8 @@ The address `/?scene=rope&preset=...&stiffness=2000` and the file
     {"version": 1, "scene": "rope", "preset": "...", "parameters": {"stiffness": 2000}, "name": "...", "note": "..."}
 
 say the same: the values of a preset (by default the scene's defaults), and those that differ from it. A number is
-written so that reading it gives the very same number. A hull or a spectrum from a file is no parameter: a set-up
-has the file's name, `"hull": "boat.stl"`, and whoever reads it is told to add the file.
+written so that reading it gives the very same number. A hull, a mooring or a spectrum from a file is no parameter: a
+set-up has the file's name, `"hull": "boat.stl"`, and whoever reads it is told to add the file.
 
 A replay (HTML) holds such a file in a block of its own, and a recording (.npz) all parameters: both open as it does.
 """
@@ -52,7 +52,7 @@ BLOCK, BLOCK_END = '<script type="application/json" id="springtide-setup">', "</
 UNREADABLE = (ValueError, KeyError, EOFError, RuntimeError, struct.error, zipfile.BadZipFile, zlib.error)
 FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Springtide"
 # options that add a file to a scene -> the fields of its parameters with their paths
-FILES = {"hull": "hull", "spectrum": "spectrum_file"}
+FILES = {"hull": "hull", "mooring": "moordyn_file", "spectrum": "spectrum_file"}
 FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", *FILES, "name", "note")
 
 Camera = tuple[Vector, Vector]  # position and target [m]

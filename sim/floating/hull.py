@@ -149,7 +149,7 @@ def mesh_from_file(path: str | Path, reading: MeshReading = AS_IT_IS) -> ClosedM
 
 
 def open_mesh_from_file(path: str | Path, reading: MeshReading = AS_IT_IS) -> Mesh:
-    """Triangles of a file in metres, with its repairs, closed or not. Raises ValueError for what cannot be read."""
+    """Triangles of a file in metres, with its repairs, closed or not. Raises ValueError if it cannot be read."""
     where = Path(check_kind("path", path, str | os.PathLike, "the name of a file"))
     if reading.unit:
         check_choice("unit", reading.unit, UNITS)

@@ -65,14 +65,14 @@ def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum
 
 
 def kind_of(text: str) -> str:
-    """What a buoy's file holds, alpha1, alpha2, r1, r2 or density, by the words of its first line."""
+    """The quantity in a buoy's file by its first line: alpha1, alpha2, r1, r2 or density."""
     head = text.partition("\n")[0].lower()
     found = re.search(r"\b(alpha[12]|r[12])_1\b", head)
     return found.group(1) if found else "density"
 
 
 def files_beside(path: Path) -> dict[str, Path]:
-    """The files of directions that belong to one of densities, by what they hold."""
+    """The files of directions that belong to one of densities, by their quantity."""
     found = {kind: path.with_suffix(ending) for ending, kind in REALTIME.items()}
     history = HISTORY_NAME.match(path.name)
     if history is not None:

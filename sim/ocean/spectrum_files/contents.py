@@ -1,4 +1,4 @@
-"""What all formats of spectra share: the text of a file, times, directions, and the spectrum that is made of them."""
+"""Common parts of all formats of spectra: the text of a file, times, directions, and the spectrum made of them."""
 
 import datetime
 import gzip
@@ -19,7 +19,7 @@ FORMS = "a table (CSV), an NDBC text file, or a file of WAVEWATCH III or SWAN (w
 
 
 def read_time(text: str) -> datetime.datetime:
-    """A time of day. Raises ValueError for what is none."""
+    """A date and time in UTC. Raises ValueError for another text."""
     try:
         found = datetime.datetime.fromisoformat(str(text).strip())
     except ValueError:
@@ -49,7 +49,7 @@ def titled(path: Path, time: datetime.datetime | None) -> str:
 
 
 def towards(degrees: np.ndarray) -> np.ndarray:
-    """Where waves go to [rad] from +x towards +y, that come from these degrees, clockwise from north."""
+    """Directions [rad], from +x towards +y, of waves that come from these degrees, clockwise from north."""
     return np.radians(270.0 - np.asarray(degrees))
 
 

@@ -14,6 +14,7 @@ from app.scenes.square_sea.report import readout
 from app.scenes.square_sea.view import View
 from app.server.loop import SimLoop
 from sim.ocean.statistics import expected
+from tests.sim.floating.test_mesh_files import DECK, SIDES, VERTICES, stl
 
 FREQUENCY = np.arange(0.04, 0.4, 0.005)
 DENSITY = 6.0 * np.exp(-(((FREQUENCY - 0.09) / 0.012) ** 2)) + 0.5 * np.exp(
@@ -87,6 +88,15 @@ def test_a_spectrum_that_does_not_fit_ends_with_one_line(table, words, said, mon
     error = capsys.readouterr().err
     assert said in error
     assert error.count("\n") == 1
+
+
+def test_a_file_alone_opens_its_scene(table, tmp_path, monkeypatch):
+    opened = []
+    monkeypatch.setattr("app.commands.serve.serve_lab", lambda name, *_, **__: opened.append(name) or 0)
+    mesh = stl(tmp_path / "wedge.stl", VERTICES, np.concatenate([DECK, SIDES]))
+    for words in (["--spectrum", str(table)], ["--hull", str(mesh)], ["--spectrum", str(table), "--hull", str(mesh)]):
+        assert main([*words, "--no-open"]) == 0
+    assert opened == ["square_sea", "radial_sea", "radial_sea"]
 
 
 @pytest.mark.parametrize(

@@ -385,7 +385,8 @@ def with_hull(params: Any, path: Path, reading: Any) -> Any:
     warning = size_warning(path.name, hull.size, reading)
     if warning:
         say_on_error_stream(warning)
-    return dataclasses.replace(params, hull=str(path), hull_reading=reading)
+    how = {f"hull_{name}": value for name, value in reading._asdict().items()}
+    return dataclasses.replace(params, hull=str(path), **how)
 
 
 @contextlib.contextmanager

@@ -15,7 +15,7 @@ from app.scenes.sea_parameters import (
     spectrum_values,
     unused_waves,
 )
-from sim.floating.hull import AS_IT_IS, MeshReading
+from sim.floating.hull import MeshReading
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import Fluid, fluids
@@ -178,7 +178,10 @@ class Params:
 
     # Files are named on the command line only, never by a browser.
     hull: str = ""  # a mesh that floats too
-    hull_reading: MeshReading = AS_IT_IS
+    hull_unit: str = ""  # fields of `MeshReading`
+    hull_weld: float = 0.0  # [m]
+    hull_mirror: str = ""
+    hull_cap: str = ""
     spectrum_file: str = ""  # a measured spectrum
     spectrum_time: str = ""  # of its record, "" for the last one
 
@@ -250,6 +253,11 @@ def hidden(params: Params) -> set[str]:
     if params.surface == "fft" or (is_regular and spectrum_values(params)["second_height"] == 0.0):
         names.add("wave_count")
     return names
+
+
+def reading_of(params: Params) -> MeshReading:
+    """The way in which the mesh file of the hull is read."""
+    return MeshReading(params.hull_unit, params.hull_weld, params.hull_mirror, params.hull_cap)
 
 
 def own_densities_of(params: Params) -> tuple[float, ...]:

@@ -27,6 +27,7 @@ from app.scenes.radial_sea.parameters import (
     exposure_of,
     hidden,
     own_densities_of,
+    reading_of,
     spill_of,
 )
 from app.scenes.radial_sea.radiated_waves import RadiatedWaves
@@ -126,7 +127,7 @@ class RadialSeaScene:
             from app.scenes.radial_sea import student_sea  # only `springtide lab DIR` pays for it
 
             self.student = student_sea.StudentRadialSea(live.tables)
-        self.hull_file, self.file_shape = ("", params.hull_reading), None
+        self.hull_file, self.file_shape = ("", reading_of(params)), None
         self.grid_choice: tuple[int, int, str] | None = None
         self.plot_rows = PlotRows(len(SERIES), PLOT_INTERVAL)
         self.reset()
@@ -185,7 +186,7 @@ class RadialSeaScene:
 
     def shape_of_file(self) -> Shape | None:
         """The shape in the hull file that the parameters name, which is read once."""
-        file = self.params.hull, self.params.hull_reading
+        file = self.params.hull, reading_of(self.params)
         if file != self.hull_file:
             self.file_shape = shape_from_file(file[0], reading=file[1]) if file[0] else None
             self.hull_file = file

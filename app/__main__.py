@@ -317,7 +317,7 @@ def serve(arguments: argparse.Namespace, session: Any = None) -> int:
 
     workbook = None
     if session is not None:
-        verdicts = session.check
+        verdicts = session.versions
         states = lambda: {name: verdict.state for name, verdict in verdicts.verdicts.items()}  # noqa: E731
         workbook = Workbook(session.tasks, session.folder, states)
     common = serving(arguments)

@@ -1,12 +1,17 @@
-"""Saved versions of a folder, found by looks at the stamps of its files."""
+"""Saved versions of a folder: found by looks at its files; which one runs, and what failed in which."""
 
 import os
+from collections.abc import Collection, Iterator
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
-from app.lab import versions
-from app.lab.versions import Look, Versions, stamps
+from app.lab.live_net import ROPE
+from app.lab.program_check import Verdict
+from app.lab.runner import RunError
+from app.lab.task import load_tasks
+from app.lab.versions import Look, Use, Versions, stamps
 
 
 def test_a_look_finds_what_was_written_made_and_removed(tmp_path: Path) -> None:
@@ -37,11 +42,10 @@ def test_a_look_finds_what_was_written_made_and_removed(tmp_path: Path) -> None:
 
 def test_a_second_save_that_changes_no_stamp_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr(versions.time, "monotonic", lambda: clock[0])
-    path, folder = tmp_path / "mine" / "rope.py", tmp_path / "copies"
+    monkeypatch.setattr("app.lab.versions.time.monotonic", lambda: clock[0])
+    path = tmp_path / "mine" / "rope.py"
     path.parent.mkdir()
-    folder.mkdir()
-    look = Versions(path.parent, (), folder)
+    look = Versions(path.parent, ())
 
     def save(text: str) -> None:
         path.write_text(text)
@@ -63,11 +67,147 @@ def test_a_second_save_that_changes_no_stamp_is_found(tmp_path: Path, monkeypatc
 
 def test_a_version_that_could_not_be_copied_is_found_again(tmp_path: Path) -> None:
     (tmp_path / "rope.py").write_text("x = 1")
-    look = Versions(tmp_path, (), tmp_path / "copies")
+    look = Versions(tmp_path, ())
+    look.copies.rmdir()
     for _ in range(2):
         with pytest.raises(FileNotFoundError):
             look.look()
-    (tmp_path / "copies").mkdir()
+    look.copies.mkdir()
     found = look.look()
     assert found is not None
     assert found.texts == {"rope.py": b"x = 1"}
+
+
+FORCE = "def spring_force(x1):\n    return {}\n"
+GRAVITY = Use("sea", "gravity", "square_sea.py")
+SPECTRUM = Use("sea", "spectrum", "square_sea.py")
+
+
+def process(*_: object) -> Mock:
+    """A process that never starts."""
+    return Mock(is_fresh=False)
+
+
+@pytest.fixture
+def versions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Versions]:
+    """The versions of an empty folder, with processes that never start."""
+    monkeypatch.setattr("app.lab.versions.Runner", process)
+    (tmp_path / "mine").mkdir()
+    found = Versions(tmp_path / "mine", load_tasks())
+    found.look()
+    yield found
+    found.close()
+
+
+def save(versions: Versions, **texts: str) -> int:
+    """Save files, by name without ending; returns the number of the version."""
+    for name, text in texts.items():
+        (versions.folder / f"{name}.py").write_text(text)
+    saved = versions.look()
+    assert saved is not None
+    return saved.number
+
+
+def ran(versions: Versions, use: Use, error: RunError | None = None, fails: Collection[int] = ()) -> int:
+    """The version by which a use runs; 0 for none. error: of the versions in `fails`."""
+
+    def job(runner: Mock, own: frozenset[str]) -> None:
+        assert own == {use.name}
+        if error is not None and int(runner.enter.call_args.args[0].name) in fails:
+            raise error
+
+    done = versions.run(use, lambda begun: begun & {use.name}, job)
+    return 0 if done is None else done.saved.number
+
+
+def test_a_save_is_a_new_version_of_the_files_that_it_may_have_changed(versions: Versions) -> None:
+    assert save(versions, rope="x = 1", square_sea="y = 1") == 2
+    assert save(versions, rope="x = 2") == 3
+    numbers = {file: versions.of(file).number for file in ("rope.py", "square_sea.py", "cloth.py")}
+    assert numbers == {"rope.py": 3, "square_sea.py": 2, "cloth.py": 1}
+    assert save(versions, mine="z = 1") == 4  # which any of them may use
+    assert {saved.number for saved in versions.of_file.values()} == {4}
+    save(versions, mine="z = 2")
+    assert sorted(path.name for path in versions.copies.iterdir()) == ["5"]
+
+
+def test_a_failure_of_some_arguments_holds_for_these_and_a_costly_one_for_all(versions: Versions) -> None:
+    sea = "def gravity(m):\n    return {}\ndef spectrum(k):\n    return 1\n"
+    raised, endless = (RunError(kind, "no result", "square_sea.py") for kind in ("raised", "endless"))
+    save(versions, square_sea=sea.format(1))
+    assert ran(versions, GRAVITY) == 2
+    save(versions, square_sea=sea.format(2))
+    assert ran(versions, GRAVITY, raised, {3}) == 2
+    assert versions.errors == {GRAVITY: raised}
+    assert ran(versions, SPECTRUM) == 3
+    assert ran(versions, GRAVITY) == 3
+    assert versions.errors == {}
+    assert ran(versions, GRAVITY, endless, {3}) == 2
+    assert ran(versions, GRAVITY) == 2
+    assert versions.errors == {GRAVITY: endless}
+    save(versions, rope="x = 1")
+    assert ran(versions, GRAVITY) == 2  # the sea's file is as it was
+    save(versions, square_sea="def spectrum(k):\n    return 1\n")
+    assert versions.errors == {}
+    assert ran(versions, GRAVITY) == 0
+
+
+def test_of_a_lane_only_the_processes_live_by_which_it_runs(versions: Versions) -> None:
+    processes = []
+    for number in range(2, 6):
+        save(versions, square_sea=f"def gravity(m):\n    return {number}\n")
+        assert ran(versions, GRAVITY) == number
+        processes.append(versions.processes["sea", number, False])
+        assert list(versions.processes) == [("sea", number, False)]
+    assert [process.close.call_count for process in processes] == [1, 1, 1, 0]
+    assert sorted(path.name for path in versions.copies.iterdir()) == ["1", "3", "4", "5"]
+
+
+def test_a_version_that_was_compiled_runs_so_until_it_fails_or_another_is_saved(versions: Versions) -> None:
+    use, own = ROPE.use, frozenset({"spring_force"})
+
+    def march() -> tuple[int, tuple[str, ...]] | None:
+        done = versions.run(use, lambda begun: begun, lambda runner, _: runner.march())
+        return None if done is None else (done.saved.number, done.compiled)
+
+    save(versions, rope=FORCE.format(1))
+    assert versions.attempt(use, lambda begun: begun, lambda runner, _: None)
+    assert march() == (2, ())
+    compiler = Mock(is_fresh=False, **{"compile.return_value": (["spring_force"], "")})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("app.lab.versions.Runner", lambda *_, compiles=False: compiler if compiles else process())
+        versions.compile(use)
+        assert march() == (2, ("spring_force",))
+        compiler.march.side_effect = RunError("raised", "index out of range", "rope.py")
+        assert march() == (2, ())
+        assert versions.errors == {}
+        assert (use, ("rope", 2, True), own) in versions.failed
+
+        def saved_meanwhile(_: object) -> None:
+            save(versions, rope=FORCE.format(2))
+            assert compiler.abort.called
+            raise RunError("ended", "the lab has ended the process", "rope.py")
+
+        compiler.compile.side_effect = saved_meanwhile
+        versions.compile(use)
+    assert march() == (2, ())  # until the newer one has been tried
+    assert versions.attempt(use, lambda begun: begun, lambda runner, _: None)
+    assert not versions.attempt(use, lambda begun: begun, lambda runner, _: None)
+    assert march() == (3, ())
+
+
+def test_a_verdict_holds_until_the_function_is_saved_again(versions: Versions) -> None:
+    save(versions, rope=FORCE.format(1))
+    task, saved = next((task, saved) for task, saved in versions.unchecked() if task.name == "spring_force")
+    count = len(versions.unchecked())
+    versions.judge(task, saved, Verdict("not checked"), final=False)
+    assert len(versions.unchecked()) == count
+    versions.judge(task, saved, Verdict("right"), final=True)
+    assert len(versions.unchecked()) == count - 1
+    save(versions, cloth="x = 1")
+    assert versions.verdicts == {"spring_force": Verdict("right")}
+    save(versions, rope=FORCE.format(2))
+    assert versions.verdicts == {}
+    versions.judge(task, saved, Verdict("wrong"), final=True)  # of the version before
+    assert versions.verdicts == {}
+    assert len(versions.unchecked()) == count

@@ -14,6 +14,7 @@ import viser
 from app.lab import task
 from app.lab.workbook import Workbook
 from app.messages import BaseParams, KeptState, PlotRow, Reset, StepOnce, Take, TogglePlay
+from app.panel.changes import Changes
 from app.panel.compare import Beside, Compare
 from app.panel.controls import Controls
 from app.panel.display import Display, add_switches
@@ -22,7 +23,6 @@ from app.panel.guide import Guide
 from app.panel.head import Actions, Head
 from app.panel.history import History, Settings
 from app.panel.plots import Plots
-from app.panel.questions import Questions
 from app.panel.readings import Readings
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
@@ -78,13 +78,13 @@ class Panel:
         session: "Session | None" = None,
         beside: Beside | None = None,
         changed: Callable[[BaseParams], None] = lambda params: None,
-        questions: Questions,
+        changes: Changes,
     ) -> None:
         """post: takes commands for the simulation. open_scene: takes a scene to show instead; both at once.
 
         workbook: the tasks of the lab, shown above the parameters. session: of a student's folder. wake: has the
         recording looked at once more. make_replay: makes the page of a replay. beside: shows other set-ups beside this
-        one; None where this one is beside another. changed: takes parameters that were set. questions: of visitors.
+        one; None where this one is beside another. changed: takes parameters that were set. changes: of the server.
         """
         self.server, self.kind, self.view, self.post = server, kind, view, post
         self.open_scene, self.beside, self.changed = open_scene, beside, changed
@@ -104,7 +104,7 @@ class Panel:
         self.controls, self.folders = self.shown.own, self.shown.folders
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
         self.recorder = Recorder(kind.packing)
-        self.share = Share(self, wake, make_replay, questions)
+        self.share = Share(self, wake, make_replay, changes)
         self.guide: Guide | None = None
         self.code: CodePanel | None = None
         self.map: StabilityMapPanel | None = None

@@ -13,11 +13,11 @@ import viser
 
 from app.lab.workbook import Workbook
 from app.messages import BaseParams, Command, Release, Reset, StudentAnswer
+from app.panel.changes import Changes
 from app.panel.compare import PaneWords
 from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
-from app.panel.questions import Questions
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_page
@@ -84,7 +84,7 @@ class Viewer:
         self.port = self.server.get_port()
         self.server.on_client_connect(self.release)  # it holds nothing: the command wakes a lab that was alone
         self.server.on_client_disconnect(self.release)
-        self.questions = Questions(self.server)
+        self.changes = Changes()
         self.ended = False
         self.came = threading.Event()  # a browser is connected, or the lab has ended
         self.current: ServedScene | None = None  # the scene that was opened last; it may be closed

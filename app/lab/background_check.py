@@ -42,7 +42,7 @@ class BackgroundCheck(Service):
         return frozenset(task.name for task, saved in self.versions.unchecked() if task.name in saved.begun)
 
     def look(self) -> None:
-        """Check what was saved."""
+        """Check the functions that were saved."""
         self.do(self.check)
 
     def check(self) -> None:

@@ -1,6 +1,6 @@
 """The rope or cloth that a student's functions move: a thread that has it computed, in a separate process.
 
-A scene asks for steps and takes what came of them; it never waits. Which version of the functions moves it is up to
+A scene asks for steps and takes their result; it never waits. Which version of the functions moves it is up to
 `Versions`.
 """
 
@@ -146,7 +146,7 @@ class LiveNet(Service):
         self, method: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment],
         answers: "queue.SimpleQueue[Marched]",
     ) -> None:  # fmt: skip
-        """Have steps taken from x and v, shape (n, 3) [m], [m/s]; what came of them is put into a queue.
+        """Have steps taken from x and v, shape (n, 3) [m], [m/s]; the result is put into a queue.
 
         method: name in INTEGRATORS.
         """

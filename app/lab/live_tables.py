@@ -92,7 +92,7 @@ class LiveTables(Service):
 
     @property
     def errors(self) -> dict[str, RunError]:
-        """What stops the newest version of the functions that are asked for."""
+        """Errors of the newest version of the functions that are asked for."""
         errors = {name: self.versions.errors.get(self.uses[name]) for name in self.calls}
         return {name: error for name, error in errors.items() if error is not None}
 

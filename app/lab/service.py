@@ -17,7 +17,7 @@ class Service:
         self.thread.start()
 
     def do(self, action: Callable[[], None]) -> None:
-        """Have the thread do something after what it was asked before."""
+        """Queue an action."""
         self.inbox.put(action)
 
     def run(self) -> None:
@@ -30,6 +30,6 @@ class Service:
                 self.trouble = unexpected(error, "Python")
 
     def close(self) -> None:
-        """End the thread after what it was asked; calls of a student's functions are ended by `Versions.abort`."""
+        """End the thread after the queued actions; `Versions.abort` ends calls of a student's functions."""
         self.inbox.put(None)
         self.thread.join()

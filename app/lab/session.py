@@ -1,4 +1,4 @@
-"""`springtide lab DIR` while it runs: a thread that looks at the student's folder twice a second, and what runs by it.
+"""`springtide lab DIR` while it runs: a thread looks at the student's folder twice a second.
 
 The rope (`live_net.py`), the seas (`live_tables.py`) and the check ask `Versions` for the version that they run.
 """

@@ -1,6 +1,6 @@
-"""The saved versions of a student's folder: which one runs, in which process, and what has failed in which.
+"""The saved versions of a student's folder, the process of each that runs, and the failures of their functions.
 
-The only place that decides this: rope, cloth, seas, checks and the teacher's page ask it. Of a save only those files
+The only place that decides which version runs: rope, cloth, seas, checks and the teacher's page ask it. Of a save only those files
 have a new version whose functions it may have changed.
 
 Files are found by their stamps, which costs little, works on network drives, and goes on where a folder is removed and

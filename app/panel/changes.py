@@ -68,7 +68,7 @@ class Notice:
     """The line in one panel."""
 
     def __init__(self, gui: viser.GuiApi, scene: str, changes: Changes, restore: Callable[[Change], None]) -> None:
-        """Add it to the container that is open. restore: shows what was shown before a change."""
+        """Add it to the container that is open. restore: undoes a change."""
         self.scene, self.changes, self.restore = scene, changes, restore
         self.text = gui.add_html("", visible=False)
         self.undo = gui.add_button_group("", (UNDO,), visible=False)
@@ -83,7 +83,7 @@ class Notice:
         self.undo.visible = change is not None
 
     async def on_undo(self, _: ViserEvent) -> None:
-        """Show what was shown before the change; the first press counts."""
+        """Undo the change; the first press counts."""
         change, self.changes.latest = self.changes.latest, None
         if change is not None:
             self.restore(change)

@@ -142,13 +142,13 @@ class Share:
             self.show(subject, client.client_id)
 
     def change(self, subject: Setup | str, page: str) -> Change:
-        """The change that a page makes by opening something, with what is shown now."""
+        """The change that a page makes by opening something."""
         panel = self.panel
         scene = comparison_named(subject)[0].scene if isinstance(subject, str) else subject.scene
         return Change(page, scene, subject, Setup(panel.kind.name, panel.params, {}, panel.loaded))
 
     def restore(self, change: Change) -> None:
-        """Show what was shown before a change."""
+        """Undo a change."""
         if isinstance(change.subject, str) and self.panel.beside is not None:
             self.panel.beside.end()
         self.panel.show_setup(change.before, None)

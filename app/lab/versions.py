@@ -1,7 +1,7 @@
 """The saved versions of a student's folder, the process of each that runs, and the failures of their functions.
 
-The only place that decides which version runs: rope, cloth, seas, checks and the teacher's page ask it. Of a save only those files
-have a new version whose functions it may have changed.
+The only place that decides which version runs: rope, cloth, seas, checks and the teacher's page ask it. A save is a new
+version only of those files whose functions it may have changed.
 
 Files are found by their stamps, which costs little, works on network drives, and goes on where a folder is removed and
 made again. After a change the files are read for some seconds whatever their stamps are: a clock of files can be as

@@ -270,18 +270,21 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
-    """The scene's parameters from --preset and --set; raises ValueError if one is not allowed."""
-    from app.scenes.setups import preset_setup
-    from sim.parameters import check_record, parse_assignments
+def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = "") -> Any:
+    """The scene's parameters from --preset and --set; raises ValueError if one is not allowed.
 
-    values = {}
-    if arguments.preset is not None:
-        setup = preset_setup("--preset", arguments.preset, scene)
-        values = dict(setup.values)
+    preset: without --preset, as `make_setup` takes it.
+    """
+    from app.scenes.setups import make_setup, preset_setup, with_values
+    from sim.parameters import parse_assignments
+
+    values = parse_assignments(scene.params, arguments.set)
+    if arguments.preset is None:
+        setup = make_setup(scene, preset, values)
+    else:
+        setup = with_values(preset_setup("--preset", arguments.preset, scene), values)
         say_missing_hull(setup, arguments.hull)
-    params = check_record(scene.params, {**values, **parse_assignments(scene.params, arguments.set)})
-    return params if arguments.hull is None else with_hull(params, arguments.hull)
+    return setup.params if arguments.hull is None else with_hull(setup.params, arguments.hull)
 
 
 def say_missing_hull(setup: Any, hull: Path | None = None) -> None:
@@ -332,9 +335,8 @@ def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
         last = read_last()
         if last is not None:
             return last.scene, last.params
-    scene = scene_named(arguments.scene)
-    nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
-    return arguments.scene, scene.opening_params() if nothing_asked else read_params(scene, arguments)
+    preset = None if arguments.hull is None else ""
+    return arguments.scene, read_params(scene_named(arguments.scene), arguments, preset)
 
 
 def serve_beside(arguments: argparse.Namespace) -> int:

@@ -27,14 +27,14 @@ from app.panel.readings import Readings
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.panel.share import Share
-from app.panel.task_setups import params_of_setup
+from app.panel.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, place_camera
 from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
 from app.scenes.own_setups import own_files
-from app.scenes.setups import Setup
-from sim.parameters import Value, changed_names, check_record
+from app.scenes.setups import Setup, make_setup
+from sim.parameters import Value, changed_names
 
 if TYPE_CHECKING:
     from app.lab.session import Session
@@ -203,8 +203,7 @@ class Panel:
     def params_of(self, preset: str) -> BaseParams:
         """The parameters of a preset. The hull from a file, which is not a parameter, stays."""
         own = self.own.get(preset)
-        params = own.params if own else check_record(type(self.params), self.kind.presets[preset])
-        return with_fields_of(self.params, params)
+        return with_fields_of(self.params, (own or make_setup(self.kind, preset)).params)
 
     def nearest_preset(self, params: BaseParams) -> str:
         """Name of the preset that parameters differ from the least."""
@@ -224,11 +223,7 @@ class Panel:
 
     def set_up(self, setup: task.Setup) -> None:
         """Show the set-up of a task. Raises ValueError if there is no such scene, preset or parameter."""
-        _, params, preset = params_of_setup(setup)
-        if setup.scene == self.kind.name:
-            self.load_params(with_fields_of(self.params, params), preset)
-        else:
-            self.open_scene(setup.scene, params, None)
+        self.show_setup(setup_of_task(setup), None)
 
     def show_setup(self, setup: Setup, client: int | None) -> None:
         """Show a set-up from a link or a file, with its camera for one browser."""

@@ -25,6 +25,7 @@ from app.render.viser_inside import send_at_once
 from app.scenes import NAMES, scene_named
 from app.scenes.compiling import Compiling
 from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
+from app.scenes.setups import make_setup
 from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.beside import Comparing, Comparison
 from app.server.guard import open_pane, open_server, quiet
@@ -112,7 +113,7 @@ class Viewer:
             try:
                 kind = scene_named(name)
                 if params is None:
-                    params = self.first_params.get(name) or (kind.opening_params() if first_look else kind.params())
+                    params = self.first_params.get(name) or (make_setup(kind).params if first_look else kind.params())
                 elif not first_look:
                     self.first_params.setdefault(name, params)
                 if not self.compile(kind, params) or self.ended:
@@ -154,7 +155,7 @@ class Viewer:
         try:
             return self.begun_scene(kind, params, post)
         except ValueError:
-            first = kind.opening_params()
+            first = make_setup(kind).params
             if params == first:
                 raise
             return self.begun_scene(kind, first, post)

@@ -154,10 +154,14 @@ class LiveNet(Service):
 
     def attempt(self) -> None:
         """Try the newest version in a few steps as the last ones were; if it works, the scene begins again with it."""
-        step, sphere = self.material.step_of(self.method), self.sphere
-        x, v, segment = self.material.trial(sphere)
-        own = functools.partial(self.material.own_of, method=self.method, sphere=sphere)
-        if self.versions.attempt(self.material.use, own, lambda runner, own: runner.march(own, step, x, v, [segment])):
+        method, sphere = self.method, self.sphere
+
+        def job(runner: Runner, own: frozenset[str]) -> March:
+            x, v, segment = self.material.trial(sphere)
+            return runner.march(own, self.material.step_of(method), x, v, [segment])
+
+        own = functools.partial(self.material.own_of, method=method, sphere=sphere)
+        if self.versions.attempt(self.material.use, own, job):
             self.begin_again()
 
     def answer(

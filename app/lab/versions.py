@@ -131,7 +131,7 @@ class Versions:
         self.worked: dict[Use, list[Saved]] = {}  # in the order of their numbers
         self.failed: dict[tuple[Use, Key, frozenset[str]], RunError] = {}
         self.processes: dict[Key, Runner] = {}
-        self.running: dict[Use, Key] = {}  # process that did the last job
+        self.running: dict[Use, Key] = {}  # process that does the last job
         self.compiling: tuple[Saved, Runner] | None = None
         self.spare: Runner | None = None  # runs, and waits for the folder of the next version
         self.is_closed = False
@@ -176,7 +176,7 @@ class Versions:
             needed.add(self.newest.number if self.newest is not None else 0)
             self.failed = {attempt: error for attempt, error in self.failed.items() if attempt[1][1] in needed}
         for path in self.copies.iterdir():
-            if int(path.name) not in needed:
+            if path.name.isdecimal() and int(path.name) not in needed:  # a function may have written something else
                 shutil.rmtree(path, ignore_errors=True)
 
     def of(self, file: str) -> Saved | None:
@@ -193,11 +193,16 @@ class Versions:
             names = own(saved.begun)
             key = use.lane, saved.number, bool(compiled)
             if not names:
+                with self.lock:
+                    self.running.pop(use, None)
+                self.end_idle(key)
                 self.note(use, saved)
                 self.say(use, saved, None)
                 break
             error = self.failed.get((use, key, names))
             if error is None:
+                with self.lock:
+                    self.running[use] = key
                 runner = self.process(key, saved)
                 try:
                     value = job(runner, names)
@@ -207,7 +212,7 @@ class Versions:
                 else:
                     self.say(use, saved, None)
                     self.note(use, saved)
-                    self.end_idle(use, key)
+                    self.end_idle(key)
                     return Done(value, saved, names, compiled)
             if not compiled:  # else plain Python is tried next, and says where it was
                 self.say(use, saved, error)
@@ -249,6 +254,7 @@ class Versions:
         self.tried[use] = saved.number
         self.say(use, saved, None)
         self.note(use, saved)
+        self.end_idle(key)
         return True
 
     def compile(self, use: Use) -> None:
@@ -322,12 +328,11 @@ class Versions:
         for key in [key for key in self.processes if key[0] == lane]:
             self.drop(key)
 
-    def end_idle(self, use: Use, key: Key) -> None:
-        """End the processes of the lane by which none of its uses runs any more, now that this one runs by `key`."""
-        self.running[use] = key
-        needed = {found for other, found in self.running.items() if other.lane == use.lane}
-        with self.lock:  # later ones are being tried
-            idle = [found for found in self.processes if found[0] == use.lane and found < key and found not in needed]
+    def end_idle(self, key: Key) -> None:
+        """End the processes of a lane before this one by which nothing runs."""
+        with self.lock:
+            needed = {key, *self.running.values()}
+            idle = [found for found in self.processes if found[0] == key[0] and found < key and found not in needed]
         for found in idle:
             self.drop(found)
 

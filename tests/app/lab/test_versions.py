@@ -9,7 +9,7 @@ import pytest
 
 from app.lab.live_net import ROPE
 from app.lab.program_check import Verdict
-from app.lab.runner import RunError
+from app.lab.runner import BUSY, RunError
 from app.lab.task import load_tasks
 from app.lab.versions import Look, Use, Versions, stamps
 
@@ -72,6 +72,7 @@ def test_a_version_that_could_not_be_copied_is_found_again(tmp_path: Path) -> No
     for _ in range(2):
         with pytest.raises(FileNotFoundError):
             look.look()
+        look.files.sure_at = 0.0  # equal stamps mean equal files
     look.copies.mkdir()
     found = look.look()
     assert found is not None
@@ -163,6 +164,39 @@ def test_of_a_lane_only_the_processes_live_by_which_it_runs(versions: Versions) 
     assert sorted(path.name for path in versions.copies.iterdir()) == ["1", "3", "4", "5"]
 
 
+def test_versions_that_are_tried_and_never_run_keep_one_process(versions: Versions) -> None:
+    for number in range(2, 6):
+        save(versions, rope=FORCE.format(number))
+        assert versions.attempt(ROPE.use, lambda begun: begun, lambda runner, _: None)
+        assert list(versions.processes) == [("rope", number, False)]
+    done = versions.run(ROPE.use, lambda begun: begun, lambda runner, _: None)
+    assert done is not None
+    assert done.saved.number == 5
+    save(versions, rope="def spring_force(x1):\n    ...\n")
+    assert versions.attempt(ROPE.use, lambda begun: begun, lambda runner, _: None)
+    assert versions.run(ROPE.use, lambda begun: begun, lambda runner, _: None) is None
+    assert not versions.processes
+
+
+def test_a_trial_leaves_the_process_alone_that_runs_meanwhile(versions: Versions) -> None:
+    def job(runner: Mock, _: frozenset[str]) -> None:
+        if len(versions.processes) == 1:
+            save(versions, rope=FORCE.format(2))
+            assert versions.attempt(ROPE.use, lambda begun: begun, lambda runner, _: None)
+            assert not runner.close.called
+
+    save(versions, rope=FORCE.format(1))
+    assert versions.attempt(ROPE.use, lambda begun: begun, lambda runner, _: None)
+    runs = [versions.run(ROPE.use, lambda begun: begun, job) for _ in range(2)]
+    assert [done and done.saved.number for done in runs] == [2, 3]
+    assert list(versions.processes) == [("rope", 3, False)]
+
+
+def test_what_a_function_writes_beside_the_copies_harms_nothing(versions: Versions) -> None:
+    (versions.copies / "notes.txt").write_text("x")
+    assert save(versions, rope="x = 1") == 2
+
+
 def test_a_version_that_was_compiled_runs_so_until_it_fails_or_another_is_saved(versions: Versions) -> None:
     use, own = ROPE.use, frozenset({"spring_force"})
 
@@ -211,3 +245,69 @@ def test_a_verdict_holds_until_the_function_is_saved_again(versions: Versions) -
     versions.judge(task, saved, Verdict("wrong"), final=True)  # of the version before
     assert versions.verdicts == {}
     assert len(versions.unchecked()) == count
+
+
+def test_on_a_busy_machine_the_newest_version_waits_and_is_tried_again(versions: Versions) -> None:
+    busy = RunError(BUSY, "no process can be started", "Python")
+    outcomes: list[RunError | None] = []
+
+    def job(*_: object) -> None:
+        if (error := outcomes.pop(0)) is not None:
+            raise error
+
+    def attempt() -> bool:
+        return versions.attempt(ROPE.use, lambda begun: begun, job)
+
+    outcomes[:] = [None, busy, None]
+    save(versions, rope=FORCE.format(1))
+    assert attempt()
+    save(versions, rope=FORCE.format(2))
+    assert not attempt()
+    assert versions.errors == {ROPE.use: busy}
+    assert attempt()
+    assert versions.errors == {}
+    outcomes[:] = [busy, None]
+    with pytest.raises(RunError, match="no process"):  # and the version before does not run meanwhile
+        versions.run(ROPE.use, lambda begun: begun, job)
+    assert versions.errors == {ROPE.use: busy}
+    done = versions.run(ROPE.use, lambda begun: begun, job)
+    assert done is not None
+    assert done.saved.number == 3
+    assert versions.errors == {}
+
+
+def test_a_process_that_no_function_has_entered_is_kept_for_the_next_version(versions: Versions) -> None:
+    def refuse(*_: object) -> None:
+        raise RunError("syntax", "invalid syntax", "rope.py", 2)
+
+    versions.warm()
+    spare = versions.spare
+    assert isinstance(spare, Mock)
+    spare.is_fresh = True
+    save(versions, rope=FORCE.format(1), square_sea="def gravity(m):\n    return 1\n")
+    assert not versions.attempt(ROPE.use, lambda begun: begun, refuse)
+    assert versions.spare is spare
+    assert versions.run(GRAVITY, lambda begun: begun & {"gravity"}, refuse) is None
+    assert versions.spare is spare
+    assert not spare.close.called
+    assert versions.attempt(ROPE.use, lambda begun: begun, lambda *_: None) is False  # it has been tried
+    assert ran(versions, GRAVITY) == 2
+    assert versions.spare is None
+    versions.warm()
+    assert versions.spare is not spare
+
+
+def test_once_it_is_aborted_no_process_runs(versions: Versions) -> None:
+    save(versions, rope=FORCE.format(1), square_sea="def gravity(m):\n    return 1\n")
+    assert ran(versions, GRAVITY) == 2
+    versions.warm()
+    before = [versions.spare, versions.processes["sea", 2, False]]
+    versions.abort()
+    versions.spare = None
+    versions.warm()
+    spare, saved = versions.spare, versions.of("rope.py")
+    versions.spare = None
+    assert saved is not None
+    for one in (*before, spare, versions.process(("rope", 2, False), saved)):
+        assert isinstance(one, Mock)
+        assert one.abort.called

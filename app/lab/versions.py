@@ -274,7 +274,7 @@ class Versions:
         with self.lock:
             self.compiling = None
             self.compiled = {**self.compiled, use: Compiled(saved, tuple(names), why)}
-            if names and not self.is_closed:
+            if names and not self.is_closed and self.of_file[use.file] is saved:
                 self.processes[use.lane, saved.number, True] = runner
                 return
         runner.close()

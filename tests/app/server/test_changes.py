@@ -5,6 +5,7 @@ import contextlib
 import types
 from collections.abc import AsyncGenerator, Callable
 from typing import Any
+from unittest.mock import Mock
 
 import msgspec
 import pytest
@@ -12,7 +13,9 @@ import viser
 import websockets
 from websockets.asyncio.client import ClientConnection, connect
 
-from app.panel.changes import SHOWN_TIME, UNDO
+from app.panel.changes import SHOWN_TIME, UNDO, Change, Changes, Notice
+from app.scenes import scene_named
+from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
 from tests import coroutines
 from tests.stress.clients import CAMERA
@@ -73,6 +76,32 @@ def shown(lab: Viewer) -> str:
     notice = lab.panel.share.notice
     assert notice.text.visible == notice.undo.visible
     return notice.text.content if notice.text.visible else ""
+
+
+def test_the_time_of_a_change_begins_in_the_scene_that_it_opened(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [100.0]
+    monkeypatch.setattr("app.panel.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
+    before = make_setup(scene_named("rope"))
+    changes = Changes()
+    changes.latest = Change("page", "cloth", make_setup(scene_named("cloth")), before)
+    for _ in range(2):  # while the cloth is compiled
+        assert changes.shown_in("rope") is None
+        clock[0] += 2.0 * SHOWN_TIME
+    assert changes.shown_in("cloth") is not None
+    clock[0] += 1.01 * SHOWN_TIME
+    assert changes.shown_in("cloth") is None
+    assert changes.latest is None
+
+
+def test_a_change_is_undone_once() -> None:
+    undone: list[Change] = []
+    changes, gui = Changes(), Mock()
+    notice = Notice(gui, "rope", changes, undone.append)
+    rope = make_setup(scene_named("rope"))
+    changes.latest = change = Change("page", "rope", rope, rope)
+    for _ in range(2):
+        coroutines.run(notice.on_undo(Mock()))
+    assert undone == [change]
 
 
 def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -271,8 +271,8 @@ def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tup
     if preset:
         found = preset_setup("preset", preset, kind)
         setup = with_values(setup, found.values)
-        if found.hull:
-            warnings.warn(f"The hull {found.hull} is not in {preset}: this lab runs without it", stacklevel=4)
+        for option, file in found.files.items():
+            warnings.warn(f"The {option} {file} is not in {preset}: this lab runs without it", stacklevel=4)
     return kind, with_values(setup, parameters).params
 
 

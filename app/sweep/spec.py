@@ -132,8 +132,9 @@ def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], f
     if preset is not None and not isinstance(preset, str):
         raise argument_error("preset", preset, "one of " + ", ".join(scene.presets) + "; or a file FILE.json")
     setup = make_setup(scene, "") if preset is None else preset_setup("preset", preset, scene, folder)
-    if setup.hull:
-        raise argument_error("preset", f"{preset} with the hull {setup.hull}", "a set-up without a hull in a sweep")
+    for option, file in setup.files.items():
+        allowed = f"a set-up without a {option} in a sweep"
+        raise argument_error("preset", f"{preset} with the {option} {file}", allowed)
     plotted = make_setup(scene, "", dict.fromkeys(scene.plots, True))
     return dict(with_values(plotted, {**setup.values, **table(content, "set")}).values)
 

@@ -23,7 +23,7 @@ ALLOWED = r"speed: \S+ is not allowed; allowed: 0\.\d+ to \d"
 
 def by_command_line(kind: AnyKind, preset: str, values: Values) -> BaseParams:
     assignments = [f"{name}={write_value(value)}" for name, value in values.items()]
-    return read_params(kind, argparse.Namespace(preset=preset, set=assignments, hull=None))
+    return read_params(kind, argparse.Namespace(preset=preset, set=assignments, hull=None, mooring=None))
 
 
 def by_link(kind: AnyKind, preset: str, values: Values) -> BaseParams:

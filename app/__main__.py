@@ -318,25 +318,28 @@ def mesh_reading(arguments: argparse.Namespace) -> Any:
     return MeshReading(arguments.hull_unit, arguments.weld, arguments.mirror, arguments.cap)
 
 
-def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
-    """The scene's parameters from --preset and --set; raises ValueError if one is not allowed."""
-    from app.scenes.setups import preset_setup
-    from sim.parameters import check_record, parse_assignments
+def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = "") -> Any:
+    """The scene's parameters from --preset and --set; raises ValueError if one is not allowed.
 
-    values = {}
-    if arguments.preset is not None:
-        setup = preset_setup("--preset", arguments.preset, scene)
-        values = dict(setup.values)
+    preset: without --preset, as `make_setup` takes it.
+    """
+    from app.scenes.setups import make_setup, preset_setup, with_values
+    from sim.parameters import parse_assignments
+
+    values = parse_assignments(scene.params, arguments.set)
+    if arguments.preset is None:
+        setup = make_setup(scene, preset, values)
+    else:
+        setup = with_values(preset_setup("--preset", arguments.preset, scene), values)
         say_missing_files(setup, arguments)
-    given = {**values, **parse_assignments(scene.params, arguments.set)}
-    params = check_record(scene.params, given)
+    params = setup.params
     check_files_named(arguments)
     if arguments.hull is not None:
         params = with_hull(params, arguments.hull, mesh_reading(arguments))
     if arguments.mooring is not None:
-        params = with_mooring(params, arguments.mooring, "time_step" in given)
+        params = with_mooring(params, arguments.mooring, "time_step" in setup.values)
     if arguments.spectrum is not None:
-        params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in given)
+        params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in setup.values)
     return params
 
 
@@ -446,7 +449,7 @@ def serve(arguments: argparse.Namespace, session: Any = None) -> int:
 
     workbook = None
     if session is not None:
-        verdicts = session.check
+        verdicts = session.versions
         states = lambda: {name: verdict.state for name, verdict in verdicts.verdicts.items()}  # noqa: E731
         workbook = Workbook(session.tasks, session.folder, states)
     common = serving(arguments)
@@ -462,11 +465,9 @@ def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
         if last is not None:
             return last.scene, last.params
     name = scene_name(arguments)
-    scene = scene_named(name)
     check_files_named(arguments)
     files = any(getattr(arguments, option) is not None for option in SCENE_OF_FILE)
-    nothing_asked = arguments.preset is None and not arguments.set and not files
-    return name, scene.opening_params() if nothing_asked else read_params(scene, arguments)
+    return name, read_params(scene_named(name), arguments, "" if files else None)
 
 
 def scene_name(arguments: argparse.Namespace) -> str:

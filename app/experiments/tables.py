@@ -88,6 +88,20 @@ def edges(values: np.ndarray, *, logarithmic: bool = False) -> np.ndarray:
     return np.exp(found) if logarithmic else found
 
 
+def draw_map(axes: Any, x: np.ndarray, y: np.ndarray, values: Any, *, log: tuple[bool, bool], **colours: Any) -> Any:
+    """Draw values (rows, cols) as cells about x (cols,) and y (rows,); returns the image.
+
+    log: whether x and y are even in their logarithms. colours: of matplotlib's pcolormesh.
+    """
+    edges_x, edges_y = edges(x, logarithmic=log[0]), edges(y, logarithmic=log[1])
+    image = axes.pcolormesh(edges_x, edges_y, values, rasterized=True, **colours)
+    axes.set_xscale("log" if log[0] else "linear")
+    axes.set_yscale("log" if log[1] else "linear")
+    axes.set_xlim(edges_x[0], edges_x[-1])
+    axes.set_ylim(edges_y[0], edges_y[-1])
+    return image
+
+
 def slope_mark(axes: Any, x: float, y: float, order: int) -> None:
     """A small triangle with the slope of a method of `order`, its upper left corner at (x, y)."""
     right, low = 2.0 * x, y / 2.0**order

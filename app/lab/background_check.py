@@ -9,71 +9,71 @@ import json
 import subprocess
 import sys
 import threading
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 from app.lab.process import BACKGROUND_NICENESS, lower_priority
 from app.lab.program_check import Verdict, check_program, not_checked
-from app.lab.runner import ROOT, RunError, Runner
+from app.lab.runner import ROOT, Runner, unexpected
+from app.lab.saved import Saved
 from app.lab.service import Service
-from app.lab.task import load_tasks
+from app.lab.task import Task, load_tasks
+from app.lab.versions import Versions
 
 RETRY_INTERVAL = 2.0  # [s] until functions are checked again that could not be checked
 START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.background_check import main; main()"
 ENDED = Verdict("not checked", "The check ended twice without a result. Save the file again.")
 
 
-class BackgroundCheck(Service[Path]):
-    """The process, as the lab sees it. `verdicts` and `waiting` are replaced, never changed."""
+class BackgroundCheck(Service):
+    """The process, as the lab sees it. It checks functions on which `Versions` has no verdict."""
 
-    def __init__(self, folders: Iterable[Path] = ()) -> None:
+    def __init__(self, versions: Versions, folders: Iterable[Path] = ()) -> None:
         """folders: with a teacher's own tasks."""
-        self.folders = tuple(folders)
-        self.verdicts: Mapping[str, Verdict] = {}  # function -> what its check came to
-        self.waiting: tuple[str, ...] = ()  # functions that are being checked, in the order of the requests
+        self.versions, self.folders = versions, tuple(folders)
         self.process: subprocess.Popen[str] | None = None
         self.closed = threading.Event()
-        self.lock = threading.Lock()  # requests come from one thread, verdicts from another
         self.starting = threading.Lock()  # held by the one that starts the process or ends it
         super().__init__("student's checks")
 
-    def request(self, folder: Path, names: Sequence[str], begun: frozenset[str]) -> None:
-        """Check these functions of a folder, and those that still wait; those that are not begun need no check."""
-        with self.lock:
-            self.waiting = tuple(name for name in dict.fromkeys((*self.waiting, *names)) if name in begun)
-            done = {name: verdict for name, verdict in self.verdicts.items() if name not in names}
-            self.verdicts = {**done, **{name: Verdict("not begun") for name in names if name not in begun}}
-            self.inbox.put(folder)
+    @property
+    def waiting(self) -> frozenset[str]:
+        """Functions that are being checked."""
+        return frozenset(task.name for task, saved in self.versions.unchecked() if task.name in saved.begun)
 
-    def handle(self, item: Path) -> None:
-        """Check the functions that wait, unless or until there is another request.
+    def look(self) -> None:
+        """Check the functions that were saved."""
+        self.do(self.check)
 
-        Those that cannot be checked go on waiting, and the request is made again.
-        """
-        for name in self.waiting if self.inbox.empty() else ():
-            verdict = self.ask(item, name) or self.ask(item, name) or ENDED
-            with self.lock:
-                if self.closed.is_set() or not self.inbox.empty():
-                    return  # the verdict is out of date
-                if verdict.state == "not checked" and verdict is not ENDED:
-                    again = dataclasses.replace(verdict, text=f"{verdict.text}; trying again")
-                    self.verdicts = {**self.verdicts, name: again}
-                else:
-                    self.settle({name: verdict})
-        if self.waiting and self.inbox.empty() and not self.closed.wait(RETRY_INTERVAL):
-            with self.lock:
-                if self.inbox.empty():  # else a newer request has come, of which the functions that wait are part
-                    self.inbox.put(item)
+    def check(self) -> None:
+        """Check functions until each has a verdict. One that cannot be checked is checked again."""
+        open_names: set[str] = set()  # that could not be checked in this round
+        while not self.closed.is_set():
+            found = [(task, saved) for task, saved in self.versions.unchecked() if task.name not in open_names]
+            if found:
+                task, saved = found[0]
+                verdict, final = self.verdict(task, saved)
+                if not final:
+                    open_names.add(task.name)
+                if not self.closed.is_set():
+                    self.versions.judge(task, saved, verdict, final=final)
+            elif open_names:
+                open_names.clear()
+                self.closed.wait(RETRY_INTERVAL)
+            else:
+                return
 
-    def fail(self, item: Path, error: RunError) -> None:
-        """Say it of all functions that wait."""
-        with self.lock:
-            self.settle(dict.fromkeys(self.waiting, Verdict("not checked", error.text)))
-
-    def settle(self, verdicts: Mapping[str, Verdict]) -> None:
-        """Show these verdicts of functions that waited."""
-        self.verdicts = {**self.verdicts, **verdicts}
-        self.waiting = tuple(name for name in self.waiting if name not in verdicts)
+    def verdict(self, task: Task, saved: Saved) -> tuple[Verdict, bool]:
+        """The verdict on a function of a version, and whether it is final."""
+        if task.name not in saved.begun:
+            return Verdict("not begun"), True
+        try:
+            verdict = self.ask(saved.folder, task.name) or self.ask(saved.folder, task.name) or ENDED
+        except Exception as error:
+            return Verdict("not checked", unexpected(error, task.file).text), True
+        if verdict.state != "not checked" or verdict is ENDED:
+            return verdict, True
+        return dataclasses.replace(verdict, text=f"{verdict.text}; trying again"), False
 
     def ask(self, folder: Path, name: str) -> Verdict | None:
         """The verdict of the process on a function; None where it ends before."""
@@ -113,9 +113,6 @@ class BackgroundCheck(Service[Path]):
             if self.process is not None:
                 self.process.terminate()
         super().close()
-
-    def release(self) -> None:
-        """Reap the process."""
         if self.process is not None:
             end(self.process)
 

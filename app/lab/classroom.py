@@ -1,11 +1,9 @@
 """The folders of a class while a teacher looks on: each is checked again as its files are saved.
 
-Functions run from copies, so that nothing is written into a folder. Of a saved file only its own tasks are checked.
+Functions run from copies, so that nothing is written into a folder. `Versions` says what is to be checked.
 One thread has a folder until it is done with it; what was saved meanwhile is found when the folder is looked at again.
 """
 
-import shutil
-import tempfile
 import threading
 import time
 import traceback
@@ -20,8 +18,6 @@ from app.lab.folder import check_is_folder
 from app.lab.program_check import Verdict, check_program
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_picture import NOT_DRAWN, RopePicture, rope_picture
-from app.lab.runner import Runner
-from app.lab.runners import Runners
 from app.lab.saved import Saved
 from app.lab.source import read_source
 from app.lab.task import Task
@@ -43,30 +39,50 @@ class Student(NamedTuple):
     changed_at: str = ""  # clock time of that
     error: str = ""  # why the folder could not be checked, or its answers not be read
 
-    @property
-    def is_open(self) -> bool:
-        """True if something could not be checked, as the machine was too busy."""
-        return self.rope.text == NOT_DRAWN or any(v.state == "not checked" for v in self.programs.values())
-
 
 class Desk:
-    """One folder, and how far it has been looked at. It belongs to one thread at a time."""
+    """One folder. It belongs to one thread at a time."""
 
-    def __init__(self, folder: Path, tasks: Sequence[Task], copies: Path) -> None:
-        self.versions, self.answers = Versions(folder, tasks, copies), Look(folder, FILE)
+    def __init__(self, folder: Path, tasks: Sequence[Task]) -> None:
+        self.tasks, self.versions, self.answers = tasks, Versions(folder, tasks), Look(folder, FILE)
         self.student = Student(folder)
-        self.is_open = True  # something is to be checked again
+        self.drawn: Saved | None = None  # the version whose rope is drawn
+        self.is_open = True  # something is to be looked at once more
 
-    def look(self) -> bool:
-        """True if something is to be checked. Raises OSError where the files cannot be copied."""
-        before = self.versions.newest
-        if self.versions.look() is not None:
+    def checked(self) -> Student:
+        """The state of the folder as it is now; the same object if nothing has changed.
+
+        Raises OSError if the files cannot be copied.
+        """
+        student = self.student
+        if not student.folder.is_dir():
             self.is_open = True
-            if before is not None:
-                shutil.rmtree(before.folder, ignore_errors=True)
-        if self.answers.has_changed():
-            self.is_open = True
-        return self.is_open
+            return student if student.error == MISSING else student._replace(error=MISSING)
+        is_saved, is_answered = self.versions.look() is not None, self.answers.has_changed()
+        if not (is_saved or is_answered or self.is_open):
+            return student
+        self.is_open = True  # until this is done
+        after = self.judged()
+        self.is_open = bool(self.versions.unchecked()) or after.rope.text == NOT_DRAWN
+        same = after.saved is student.saved and after.rope is student.rope
+        return student if same and (after.results, after.error) == (student.results, student.error) else after
+
+    def judged(self) -> Student:
+        """The state of the folder, after a check of the functions that have no verdict."""
+        versions, before, rope = self.versions, self.student, self.student.rope
+        for task, saved in versions.unchecked():
+            verdict = check_program(saved.folder, versions.process(("check", saved.number, False), saved), task)
+            versions.judge(task, saved, verdict, final=verdict.state != "not checked")
+        saved = versions.of(ROPE_FILE)
+        if saved is not None and (saved is not self.drawn or rope.text == NOT_DRAWN):
+            rope = rope_picture(versions.process(("check", saved.number, False), saved), saved)
+            self.drawn = saved
+        versions.end("check")
+        answers = read_answers(before.folder)
+        programs = dict(versions.verdicts)
+        results = tuple(result_of(task, programs.get(task.name), answers) for task in self.tasks)
+        after = Student(before.folder, versions.newest, programs, results, rope, before.at, before.changed_at)
+        return turned(before, after)._replace(error=answers.error)
 
 
 class Classroom:
@@ -76,15 +92,14 @@ class Classroom:
         """Raises ValueError for what is no folder."""
         for folder in folders:
             check_is_folder(folder)
-        self.tasks = tuple(tasks)
-        self.copies = Path(tempfile.mkdtemp(prefix="springtide-class-"))
         self.students = {folder: Student(folder) for folder in dict.fromkeys(folders)}
         self.revision = 0  # how often a student has changed
         self.news = threading.Condition()
-        self.runners = Runners()
+        self.is_closed = threading.Event()
         self.turns = threading.Condition()
+        self.desks = [Desk(folder, tuple(tasks)) for folder in self.students]
         # When each folder is looked at next [s], and its desk: those that no thread has now, in the order of the times.
-        self.waiting = [(0.0, Desk(folder, tasks, Path(tempfile.mkdtemp(dir=self.copies)))) for folder in self.students]
+        self.waiting = [(0.0, desk) for desk in self.desks]
         self.threads = [threading.Thread(target=self.work, name="class", daemon=True) for _ in range(WORKERS)]
         for thread in self.threads:
             thread.start()
@@ -93,31 +108,33 @@ class Classroom:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.runners.abort()
+        self.is_closed.set()
+        for desk in self.desks:
+            desk.versions.abort()
         for condition in (self.news, self.turns):
             with condition:
                 condition.notify_all()
         for thread in self.threads:
             thread.join()
-        shutil.rmtree(self.copies, ignore_errors=True)
+        for desk in self.desks:
+            desk.versions.close()
 
     def wait(self, revision: int, timeout: float) -> int:
         """Wait until there is something newer than a revision, at most `timeout` [s]; returns the present one."""
         with self.news:
-            self.news.wait_for(lambda: self.runners.aborted.is_set() or self.revision != revision, timeout)
+            self.news.wait_for(lambda: self.is_closed.is_set() or self.revision != revision, timeout)
             return self.revision
 
     def work(self) -> None:
         """Look at folder after folder; one that is checked is looked at again after that, and by no other thread."""
         while (desk := self.next()) is not None:
             try:
-                after = self.checked(desk)
+                after = desk.checked()
             except Exception as error:  # a full disk, no more processes: the page lives, and it is tried again
                 after = desk.student._replace(error=f"The folder could not be checked: {error}")
-                desk.is_open = True
                 if after.error != desk.student.error:
                     traceback.print_exception(error)
-            if after is not desk.student and not self.runners.aborted.is_set():
+            if after is not desk.student and not self.is_closed.is_set():
                 desk.student = after
                 with self.news:
                     self.students[after.folder] = after
@@ -130,45 +147,12 @@ class Classroom:
     def next(self) -> Desk | None:
         """The desk that is due, once one is; None at the end."""
         with self.turns:
-            while not self.runners.aborted.is_set():
+            while not self.is_closed.is_set():
                 due = self.waiting[0][0] - time.monotonic() if self.waiting else None
                 if due is not None and due <= 0.0:
                     return self.waiting.pop(0)[1]
                 self.turns.wait(due)
         return None
-
-    def checked(self, desk: Desk) -> Student:
-        """The state of a folder as it is now; the same object if nothing has changed."""
-        student = desk.student
-        if not student.folder.is_dir():
-            desk.is_open = True
-            return student if student.error == MISSING else student._replace(error=MISSING)
-        if not desk.look():
-            return student
-        saved = desk.versions.newest
-        assert saved is not None
-        with self.runners.runner(saved.folder) as runner:
-            after = checked(student, saved, self.tasks, runner)
-        desk.is_open = after.is_open
-        same = after.saved is student.saved and after.rope is student.rope
-        return student if same and (after.results, after.error) == (student.results, student.error) else after
-
-
-def checked(before: Student, saved: Saved, tasks: Sequence[Task], runner: Runner) -> Student:
-    """The state of a folder with a version of its files. runner: of the copies."""
-    answers = read_answers(before.folder)
-    affected = saved.affected(before.saved, tasks)
-    programs, rope = dict(before.programs), before.rope
-    for task in tasks:
-        verdict = programs.get(task.name)
-        is_open = verdict is None or verdict.state == "not checked"
-        if task.check is not None and (task.file in affected or is_open):
-            programs[task.name] = check_program(saved.folder, runner, task)
-    if ROPE_FILE in affected or rope.text == NOT_DRAWN:
-        rope = rope_picture(runner, saved)
-    results = tuple(result_of(task, programs.get(task.name), answers) for task in tasks)
-    after = Student(before.folder, saved, programs, results, rope, before.at, before.changed_at)
-    return turned(before, after)._replace(error=answers.error)
 
 
 def result_of(task: Task, program: Verdict | None, answers: Answers) -> TaskResult:

@@ -7,11 +7,11 @@ the pull of the mouse are the program's laws; points do not collide with each ot
 import functools
 from collections.abc import Callable, Collection, Mapping
 from types import MappingProxyType, ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from app.lab.rope_march import Functions, Unfit, fitting, not_a_number
+from app.lab.rope_march import Functions, Sheet, Unfit, fitting, not_a_number
 from app.lab.tasks.cloth_forces import cloth_forces
 from app.lab.tasks.cloth_links import cloth_links
 from app.lab.tasks.step_euler import step_euler
@@ -26,20 +26,6 @@ def step_symplectic(x: Any, v: Any, h: float, acceleration: Callable[..., Any]) 
     """One step of symplectic Euler: one acceleration a step, and stable at the longest steps."""
     v = v + h * acceleration(x, v)
     return x + h * v, v
-
-
-class Sheet(NamedTuple):
-    """Data of a cloth in addition to `Forces`, which has the mass of a cell and the stiffness along rows and columns.
-
-    Point (i, j) has the number i cols + j.
-    """
-
-    rows: int
-    cols: int
-    spacing: tuple[float, float]  # [m] at rest, along a row and along a column
-    shear: float  # [N/m] of the links across a cell
-    bend: float  # [N/m] of the links to the next point but one
-    pins: tuple[int, ...]  # numbers of the points that are held; a segment's `path` says where
 
 
 class ClothFunctions(Functions):

@@ -1,79 +1,41 @@
 """The rope or cloth that a student's functions move: a thread that has it computed, in a separate process.
 
-A scene hands jobs over and takes answers; it never waits. Of the versions of the student's files the newest one runs
-that works; which one fails, and why, is kept until the next one is saved.
+A scene asks for steps and takes their result; it never waits. Which version of the functions moves it is up to
+`Versions`.
 """
 
-import itertools
+import functools
 import math
 import queue
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.lab.cloth_march import FILE as CLOTH_FILE
-from app.lab.cloth_march import Sheet
 from app.lab.process import ON_HUB
 from app.lab.rope_march import FILE as ROPE_FILE
-from app.lab.rope_march import Forces, Segment
-from app.lab.runner import BUSY, RunError, Runner, unexpected
+from app.lab.rope_march import Forces, March, Segment, Sheet
+from app.lab.runner import RunError, Runner
 from app.lab.saved import Saved
 from app.lab.service import Service
+from app.lab.versions import Done, Use, Versions
 
 COMPILE_AFTER = 3.0  # [s] of processor time in plain Python: about what compiling takes
 # On a hub: ratio of a rest after a march to the time for which other labs kept it from the processor, and the longest.
 # Containers get equal parts of a busy processor, and a lab that always wants more than its part answers late.
 REST_RATIO, MAX_REST = 16.0, 0.5  # [s]
-
-
-class Job(NamedTuple):
-    """Steps that a scene asks for."""
-
-    run: int  # number of the run that they belong to, from `LiveNet.runs`
-    method: str  # name in INTEGRATORS
-    x: np.ndarray  # (n, 3) [m]
-    v: np.ndarray  # (n, 3) [m/s]
-    segments: Sequence[Segment]
-    answers: "queue.SimpleQueue[Answer]"  # of the scene that asks
-    sheet: Sheet | None = None  # what a cloth is made of; None for a rope
-
-
-class Answer(NamedTuple):
-    """Result of a job."""
-
-    run: int
-    x: np.ndarray  # (segments, n, 3) [m] at the end of each segment
-    v: np.ndarray  # (n, 3) [m/s]
-    seconds: float  # for each step
-    left: bool  # the rope has left all bounds
-    version: int  # of the files; 0: none works, and nothing was computed
-    compiled: tuple[str, ...] = ()
-
-
-class Loaded(NamedTuple):
-    """A version with its process, in which its rope has been tried."""
-
-    saved: Saved
-    runner: Runner
-    compiled: tuple[str, ...] = ()  # the functions that are compiled in this process
-
-
-class Trial(NamedTuple):
-    """State and forces in which a new version takes a few steps."""
-
-    x: np.ndarray  # (n, 3) [m]
-    v: np.ndarray  # (n, 3) [m/s]
-    forces: Forces
-    sheet: Sheet | None = None
+TRIAL_STEPS = 3, 1 / 480  # that a new version is tried with, and their length [s]
+Marched: TypeAlias = Done[March] | None  # None: no version works, and nothing was computed
 
 
 class StudentReport(NamedTuple):
     """A scene's report on the student's rope or cloth, for the panel. It is replaced, never changed."""
 
     version: int = 0  # of the files; 0: no function of the student's moves it
+    own: frozenset[str] = frozenset()  # functions of the student's that move it
     compiled: tuple[str, ...] = ()  # functions that run compiled
     method: str = ""
     sphere: bool = False
@@ -92,12 +54,12 @@ class StudentReport(NamedTuple):
 class Material(NamedTuple):
     """Differences between a rope and a cloth."""
 
-    file: str  # of the student's functions
+    use: Use
     exact: frozenset[str]  # methods by which a right solution moves as the program's, to rounding
     steps: Mapping[str, str]  # method of the scene -> the function that takes its steps
     other_step: str  # that of the other methods
     used: Callable[[Collection[str], str, bool], Sequence[str]]  # begun, step, sphere -> functions that move it
-    trial: Callable[[bool], Trial]  # sphere -> what a new version is tried with
+    trial: Callable[[bool], tuple[np.ndarray, np.ndarray, Segment]]  # sphere -> x, v, (n, 3), and steps to try
 
     def step_of(self, method: str) -> str:
         """The function that takes the steps of a method."""
@@ -118,29 +80,29 @@ def used_by_rope(begun: Collection[str], step: str, sphere: bool) -> Sequence[st
     return (forces, *(["sphere_force"] if sphere else []), step)
 
 
-def bent_rope(sphere: bool) -> Trial:
-    """A bent rope in motion, at a sphere or not."""
+def bent_rope(sphere: bool) -> tuple[np.ndarray, np.ndarray, Segment]:
+    """A bent rope in motion, at a sphere or not, and some steps: x and v, shape (n, 3) [m], [m/s]."""
     n = 6
     x = np.zeros((n, 3))
     x[:, 0], x[:, 2] = -0.2 * np.arange(n), 3.0 - 0.02 * np.arange(n) ** 2
     v = np.linspace(0.0, 1.0, n)[:, None] * np.array([0.3, 0.2, -0.5])
     radius = 0.4 if sphere else 0.0
-    return Trial(
-        x, v, Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, floor=0.0, radius=radius, centre=(-0.6, 0.0, 2.5), friction=0.3)
-    )
+    forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, floor=0.0, radius=radius, centre=(-0.6, 0.0, 2.5), friction=0.3)
+    return x, v, Segment(*TRIAL_STEPS, forces, np.zeros((0, 4, 3)))
 
 
-def stretched_cloth(sphere: bool) -> Trial:
-    """A level cloth that is stretched, in motion."""
+def stretched_cloth(sphere: bool) -> tuple[np.ndarray, np.ndarray, Segment]:
+    """A level cloth that is stretched, in motion, and some steps: x and v, shape (n, 3) [m], [m/s]."""
     rows, cols, spacing = 4, 5, 0.1
     j, i = np.meshgrid(1.1 * spacing * np.arange(cols), 1.2 * spacing * np.arange(rows))
     x = np.stack([j, i, 2.0 + 0.1 * np.sin(3.0 * i + j)], axis=-1).reshape(-1, 3)
     sheet = Sheet(rows, cols, (spacing, spacing), 100.0, 3.0, (0, cols - 1))
-    return Trial(x, 0.1 * x, Forces(0.05, 200.0, 0.1, 0.0, spacing, 9.81), sheet)
+    forces = Forces(0.05, 200.0, 0.1, 0.0, spacing, 9.81)
+    return x, 0.1 * x, Segment(*TRIAL_STEPS, forces, np.zeros((0, 4, 3)), sheet=sheet)
 
 
 ROPE = Material(
-    ROPE_FILE,
+    Use("rope", "rope", ROPE_FILE, goes_on=True),
     frozenset({"explicit_euler", "rk4"}),
     {
         "explicit_euler": "step_euler",
@@ -154,7 +116,7 @@ ROPE = Material(
 )
 # A cloth's step is the program's: by the method of the scene where that is cheap enough for plain Python.
 CLOTH = Material(
-    CLOTH_FILE,
+    Use("cloth", "cloth", CLOTH_FILE, goes_on=True),
     frozenset({"explicit_euler", "rk4", "symplectic_euler"}),
     {"explicit_euler": "step_euler", "rk4": "step_rk4"},
     "step_symplectic",
@@ -163,137 +125,76 @@ CLOTH = Material(
 )
 
 
-class LiveNet(Service[Job | Loaded]):
-    """Runs jobs in a thread. `submit` is for the simulation thread; `attempt` and `adopt` for who loads versions."""
+class LiveNet(Service):
+    """Has steps taken in a thread. `march` is for the simulation thread, `attempt` for the one that looks at files."""
 
-    def __init__(
-        self,
-        material: Material,
-        tell: Callable[[Saved, RunError | None], None],
-        compile_it: Callable[[Saved], None] = lambda saved: None,
-    ) -> None:
-        """tell: is told of a version that fails while it runs, or that runs after all; on this object's thread.
-
-        compile_it: called once with a version that has taken `COMPILE_AFTER` in plain Python.
-        """
-        self.material = material
-        self.runs = itertools.count(1)  # for all scenes
+    def __init__(self, material: Material, versions: Versions, compile_it: Callable[[], None] = lambda: None) -> None:
+        """compile_it: called once the newest version has taken `COMPILE_AFTER` in plain Python."""
+        self.material, self.versions, self.compile_it = material, versions, compile_it
         self.connect(lambda: None, lambda: None)
-        self.method, self.sphere = "rk4", False  # of the last job: what a new version is tried with
-        self.tell, self.compile_it = tell, compile_it
-        self.effort = 0.0  # [s] of processor time that the newest version has taken in plain Python
-        self.is_busy = False  # the machine was too busy for the last job
-        self.waited = 0.0  # [s] for which other labs of a hub kept the last march from the processor
-        # The one that is preferred last: the last version before the newest, the newest, the newest compiled.
-        self.versions: list[Loaded] = []
-        self.taken = 0  # number of the version that was taken last
-        self.failed: set[tuple[int, bool, frozenset[str]]] = set()  # version, whether compiled, functions in use
-        super().__init__("student's rope", material.file)
+        self.method, self.sphere = "rk4", False  # of the last steps: what a new version is tried with
+        self.moved_by: Saved | None = None  # the newest version, once it has taken steps in plain Python
+        self.effort = 0.0  # [s] of processor time that it has taken
+        super().__init__(f"student's {material.use.name}")
 
     def connect(self, wake: Callable[[], None], begin_again: Callable[[], None]) -> None:
-        """Serve another scene. wake: called when there is an answer. begin_again: when another version is taken."""
+        """Serve another scene. wake: called when there is an answer. begin_again: when another version takes over."""
         self.wake, self.begin_again = wake, begin_again
         self.report = StudentReport()  # replaced by the simulation thread
 
-    def submit(self, job: Job) -> None:
-        """Have steps taken; the answer comes through its queue."""
-        self.inbox.put(job)
+    def march(
+        self, method: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment],
+        answers: "queue.SimpleQueue[Marched]",
+    ) -> None:  # fmt: skip
+        """Have steps taken from x and v, shape (n, 3) [m], [m/s]; the result is put into a queue.
 
-    def attempt(self, loaded: Loaded) -> None:
-        """Take a few steps as the last job did, if the student's functions take them. Raises RunError."""
-        own = self.material.own_of(loaded.saved.begun, self.method, sphere=self.sphere)
-        if own:
-            x, v, forces, sheet = self.material.trial(self.sphere)
-            segment = Segment(3, 1 / 480, forces, np.zeros((0, 4, 3)))
-            loaded.runner.march(own, self.material.step_of(self.method), x, v, [segment], sheet)
+        method: name in INTEGRATORS.
+        """
+        self.do(functools.partial(self.answer, method, x, v, segments, answers))
 
-    def adopt(self, loaded: Loaded) -> None:
-        """Take a version that has been tried, in place of those before it."""
-        self.inbox.put(loaded)
+    def attempt(self) -> None:
+        """Try the newest version in a few steps as the last ones were; if it works, the scene begins again with it."""
+        method, sphere = self.method, self.sphere
 
-    def handle(self, item: Job | Loaded) -> None:
-        """Take a version, or answer a job whatever happens: a scene waits for the answer."""
-        if isinstance(item, Loaded):
-            self.take(item)
-            return
-        answer, self.waited = unanswered(item), 0.0
+        def job(runner: Runner, own: frozenset[str]) -> March:
+            x, v, segment = self.material.trial(sphere)
+            return runner.march(own, self.material.step_of(method), x, v, [segment])
+
+        own = functools.partial(self.material.own_of, method=method, sphere=sphere)
+        if self.versions.attempt(self.material.use, own, job):
+            self.begin_again()
+
+    def answer(
+        self, method: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment],
+        answers: "queue.SimpleQueue[Marched]",
+    ) -> None:  # fmt: skip
+        """Take steps, and answer whatever happens: a scene waits for it."""
+        self.method, self.sphere = method, any(segment.forces.radius > 0.0 for segment in segments)
+        own = functools.partial(self.material.own_of, method=method, sphere=self.sphere)
+
+        def job(runner: Runner, own: frozenset[str]) -> March:
+            return runner.march(own, self.material.step_of(method), x, v, segments)
+
+        done, waited = None, MAX_REST
         try:
-            answer = self.advance(item)
+            done = self.versions.run(self.material.use, own, job)
+            waited = max(0.0, done.value.seconds - done.value.effort) if ON_HUB and done is not None else 0.0
+        except RunError:  # the machine is too busy; the scene asks again
+            pass
         finally:
-            item.answers.put(answer)
+            answers.put(done)
             self.wake()
-        time.sleep(min(REST_RATIO * self.waited, MAX_REST))
+        if done is not None:
+            self.count(done, waited)
+        time.sleep(min(REST_RATIO * waited, MAX_REST))
 
-    def fail(self, item: Job | Loaded, error: RunError) -> None:
-        """Say it of the version that was to be taken, or of the newest."""
-        for loaded in [item] if isinstance(item, Loaded) else self.versions[-1:]:
-            self.tell(loaded.saved, error)
-
-    def close(self) -> None:
-        """End the thread without waiting for steps that are being taken."""
-        for loaded in list(self.versions):
-            loaded.runner.abort()
-        super().close()
-
-    def release(self) -> None:
-        """End the process of each version."""
-        for loaded in self.versions:
-            loaded.runner.close()
-
-    def take(self, loaded: Loaded) -> None:
-        """Keep a new version and the last one that worked before it; or the newest in a process that compiled it."""
-        if loaded.compiled and loaded.saved.number != self.taken:
-            loaded.runner.close()
+    def count(self, done: Done[March], waited: float) -> None:
+        """Count the effort of the newest version. waited: [s] for which other labs kept it from the processor."""
+        if done.compiled or done.saved is not self.versions.of(self.material.use.file):
             return
-        for old in self.versions:
-            old.runner.close()  # it starts again where it is needed
-        plain = [old for old in self.versions if not old.compiled]
-        self.versions = [*plain[-2 if loaded.compiled else -1 :], loaded]
-        if loaded.compiled:
-            return
-        self.begin_again()
-        self.taken, self.effort = loaded.saved.number, 0.0
-
-    def advance(self, job: Job) -> Answer:
-        """The steps of a job by the newest version that works."""
-        self.method = job.method
-        self.sphere = any(segment.forces.radius > 0.0 for segment in job.segments)
-        for saved, runner, compiled in reversed(self.versions):
-            own = self.material.own_of(saved.begun, job.method, sphere=self.sphere)
-            if not own:
-                break  # the student has written nothing that moves this
-            attempt = saved.number, bool(compiled), own
-            if attempt in self.failed:
-                continue
-            try:
-                step = self.material.step_of(job.method)
-                done = runner.march(own, step, job.x, job.v, job.segments, job.sheet)
-            except Exception as error:
-                runner.close()
-                if isinstance(error, RunError) and error.kind == BUSY:  # the next job tries the same
-                    self.tell(saved, error)
-                    self.is_busy, self.waited = True, MAX_REST
-                    return unanswered(job)
-                self.failed.add(attempt)
-                if not isinstance(error, RunError):
-                    self.tell(saved, unexpected(error, self.material.file))
-                elif not compiled:  # plain Python is tried next, and says where it was
-                    self.tell(saved, error)
-                continue
-            if self.is_busy:
-                self.tell(saved, None)
-                self.is_busy = False
-            self.waited = max(0.0, done.seconds - done.effort) if ON_HUB else 0.0
-            if saved.number == self.taken and not compiled:
-                self.effort += done.effort
-                if self.effort >= COMPILE_AFTER and self.waited <= done.effort:
-                    self.effort = -math.inf  # not again
-                    self.compile_it(saved)
-            each = done.seconds / max(done.steps, 1)
-            return Answer(job.run, done.x, done.v, each, done.left, saved.number, compiled)
-        return unanswered(job)
-
-
-def unanswered(job: Job) -> Answer:
-    """The answer to a job that no version has done."""
-    return Answer(job.run, job.x[None][:0], job.v, 0.0, False, 0)
+        if done.saved is not self.moved_by:
+            self.moved_by, self.effort = done.saved, 0.0
+        self.effort += done.value.effort
+        if self.effort >= COMPILE_AFTER and waited <= done.value.effort:
+            self.effort = -math.inf  # not again
+            self.compile_it()

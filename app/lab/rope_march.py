@@ -56,8 +56,22 @@ class Forces(NamedTuple):
     air_lift: float = 0.0  # [kg/m3] the same of lift
 
 
+class Sheet(NamedTuple):
+    """Data of a cloth in addition to `Forces`, which has the mass of a cell and the stiffness along rows and columns.
+
+    Point (i, j) has the number i cols + j.
+    """
+
+    rows: int
+    cols: int
+    spacing: tuple[float, float]  # [m] at rest, along a row and along a column
+    shear: float  # [N/m] of the links across a cell
+    bend: float  # [N/m] of the links to the next point but one
+    pins: tuple[int, ...]  # numbers of the points that are held; the path of a segment gives their places
+
+
 class Segment(NamedTuple):
-    """Some steps during which the forces stay the same."""
+    """Some steps during which the forces stay the same; its last two fields are for the scene that asks for them."""
 
     steps: int
     h: float  # [s]
@@ -66,6 +80,9 @@ class Segment(NamedTuple):
     # rest. A rope has one, its root.
     path: np.ndarray
     since: float = 0.0  # time t [s] of the first step, for the path and the sphere
+    sheet: Sheet | None = None  # what a cloth is made of; None for a rope
+    end: float = 0.0  # time [s] of the scene at its end
+    x: np.ndarray | None = None  # (n, 3) [m] the program's net at its end; None within a segment that was divided
 
 
 class March(NamedTuple):
@@ -77,6 +94,11 @@ class March(NamedTuple):
     seconds: float  # that they took
     effort: float  # [s] of processor time that they took
     left: bool  # the rope left all bounds; the rest of the segments was not taken
+
+    @property
+    def step_time(self) -> float:
+        """Time [s] that one step took."""
+        return self.seconds / max(self.steps, 1)
 
 
 class Unfit(Exception):  # noqa: N818 - a judgement on a result, not an error of the program

@@ -25,7 +25,6 @@ from typing import IO, Any, TypeAlias
 import numpy as np
 
 from app.lab.cloth_march import FILE as CLOTH_FILE
-from app.lab.cloth_march import Sheet
 from app.lab.process import COMPILES, FORKS, TRACE_SIGNAL
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import March, Segment, packed
@@ -111,14 +110,14 @@ class Runner:
         return self._ask("call", file, function, list(arguments))
 
     def march(
-        self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment],
-        sheet: Sheet | None = None,
-    ) -> March:  # fmt: skip
+        self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
+    ) -> March:
         """Advance a rope (`rope_march.py`), or a cloth (`cloth_march.py`), by the student's functions.
 
         own: names of the functions that the student has begun. step: name of the method's function. x, v: (n, 3).
-        sheet: what the cloth is made of, None for a rope. Raises RunError.
+        segments: one or more, of one rope or one cloth. Raises RunError.
         """
+        sheet = segments[0].sheet
         arguments = [sorted(own), step, sheet, x, v, [packed(segment) for segment in segments]]
         file = ROPE_FILE if sheet is None else CLOTH_FILE
         answer = self._ask("march", file, step, arguments)
@@ -161,6 +160,10 @@ class Runner:
         if process is not None:
             with contextlib.suppress(OSError):  # it has ended already
                 process.kill()
+
+    def enter(self, folder: Path) -> None:
+        """Work in another folder; possible as long as nothing was called."""
+        self.folder = folder.resolve()
 
     def start(self) -> None:
         """Start the process, so that the next call does not wait for that. Raises RunError where it does not start."""

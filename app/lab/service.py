@@ -1,44 +1,35 @@
-"""A thread that handles one item after another, and lives whatever goes wrong: it has a student's functions run."""
+"""A thread that takes one action after another, and lives whatever goes wrong: it has a student's functions run."""
 
-import abc
 import queue
 import threading
-from typing import Generic, TypeVar
+from collections.abc import Callable
 
 from app.lab.runner import RunError, unexpected
 
-T = TypeVar("T")
 
+class Service:
+    """The thread."""
 
-class Service(abc.ABC, Generic[T]):
-    """`handle`, `fail` and `release` run on its thread."""
-
-    def __init__(self, name: str, file: str = "Python") -> None:
-        """Start the thread. file: of the student's, to which an error of the lab's own is attributed."""
-        self.file = file
-        self.inbox: queue.SimpleQueue[T | None] = queue.SimpleQueue()
+    def __init__(self, name: str) -> None:
+        self.inbox: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
+        self.trouble: RunError | None = None  # an error of the lab's own in the last action
         self.thread = threading.Thread(target=self.run, name=name, daemon=True)
         self.thread.start()
 
+    def do(self, action: Callable[[], None]) -> None:
+        """Queue an action."""
+        self.inbox.put(action)
+
     def run(self) -> None:
-        """Handle items until the end."""
-        while (item := self.inbox.get()) is not None:
+        """Take actions until the end."""
+        while (action := self.inbox.get()) is not None:
             try:
-                self.handle(item)
+                action()
+                self.trouble = None
             except Exception as error:
-                self.fail(item, unexpected(error, self.file))
-        self.release()
-
-    @abc.abstractmethod
-    def handle(self, item: T) -> None: ...
-
-    @abc.abstractmethod
-    def fail(self, item: T, error: RunError) -> None: ...
-
-    @abc.abstractmethod
-    def release(self) -> None: ...
+                self.trouble = unexpected(error, "Python")
 
     def close(self) -> None:
-        """End the thread, and the processes that it holds."""
+        """End the thread after the queued actions; `Versions.abort` ends calls of a student's functions."""
         self.inbox.put(None)
         self.thread.join()

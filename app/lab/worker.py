@@ -25,9 +25,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
-from app.lab.cloth_march import ClothFunctions, Sheet
+from app.lab.cloth_march import ClothFunctions
 from app.lab.process import BACKGROUND_NICENESS, COMPILES, FORKS, ROPE_NICENESS, TRACE_SIGNAL, lower_priority
-from app.lab.rope_march import Functions, Unfit, march, unpacked
+from app.lab.rope_march import Functions, Sheet, Unfit, march, unpacked
 from app.lab.tabulate import Range, tabulate
 from app.lab.template import fork_on_request
 from app.lab.wire import pack, receive, send, unpack

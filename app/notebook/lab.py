@@ -17,11 +17,11 @@ from app.notebook.output import Output, cell_of_now
 from app.notebook.picture import Still, take_still
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind
-from app.scenes.setups import preset_setup, read_query, write_query
+from app.scenes.setups import make_setup, preset_setup, read_query, with_values, write_query
 from app.server.access import Access, make_key
 from app.server.served_scene import ServedScene
 from app.server.viewer import Viewer
-from sim.parameters import check_record, check_value, parameters_of, unknown_parameter
+from sim.parameters import check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_number, is_whole_number
 
 if TYPE_CHECKING:
@@ -265,18 +265,15 @@ def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tup
         raise argument_error("scene, preset", (scene, preset), "names")
     if "?" in scene:
         setup = read_query(scene[scene.index("?") :])
-        kind = scene_named(setup.scene)
-        values = dict(setup.values)
     else:
-        kind, values = scene_named(scene), {}
+        setup = make_setup(scene_named(scene), "" if preset else None, parameters)
+    kind = scene_named(setup.scene)
     if preset:
-        setup = preset_setup("preset", preset, kind)
-        values.update(setup.values)
-        for option, file in setup.files.items():
+        found = preset_setup("preset", preset, kind)
+        setup = with_values(setup, found.values)
+        for option, file in found.files.items():
             warnings.warn(f"The {option} {file} is not in {preset}: this lab runs without it", stacklevel=4)
-    if not values and not parameters and "?" not in scene:
-        return kind, kind.opening_params()
-    return kind, check_record(kind.params, {**values, **parameters})
+    return kind, with_values(setup, parameters).params
 
 
 def stop_former(cell: str, execution: str) -> None:

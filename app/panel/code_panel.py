@@ -77,33 +77,26 @@ class CodePanel:
     @property
     def is_stale(self) -> bool:
         """True if a version was saved, or has failed, since the last update."""
-        return self.session.state is not self.state
+        return self.session.state != self.state
 
     def update(self, live: LiveValues) -> Html:
         """Show changes, and return one line on the state of the files. live: the values of the scene."""
         session = self.session
         self.state = session.state
-        calls = calls_here(self.scene, begun_of(session), live)
+        calls = calls_here(self.scene, session.begun, live)
         if calls.keys() != self.calls.keys() or not all(call.same(self.calls[name]) for name, call in calls.items()):
             self.calls = calls
             session.values.want(calls)
-        said = code_lines(state_of(session), self.net.report, tables_of(session), self.scene)
+        said = code_lines(self.state, self.net.report, tables_of(session), self.scene)
         self.text.content = note(lines([said, function_lines(session, self.scene)]))
         self.choice.visible = bool(session.tables.tables)
-        mistake = mistake_of(session, begun_of(session))
-        return headline(state_of(session), self.net.report, tables_of(session), self.scene, mistake)
-
-
-def state_of(session: Session) -> CodeState:
-    """The state of the files, with the error of a function that should move the scene."""
-    state = session.state
-    error = next(iter(session.tables.errors.values()), None)
-    return state if state.error is not None or error is None else state._replace(error=error)
+        mistake = mistake_of(session, session.begun)
+        return headline(self.state, self.net.report, tables_of(session), self.scene, mistake)
 
 
 def tables_of(session: Session) -> TableReport:
     """Functions that run by tables, and of the others those that the student has begun."""
-    report, begun = session.tables.report, begun_of(session)
+    report, begun = session.tables.report, session.begun
     idle = {name: why for name, why in report.idle.items() if name in begun}
     return report._replace(idle=idle, off=bool(session.tables.tables) and not session.tables.shown)
 
@@ -123,14 +116,9 @@ def busy_text(state: CodeState) -> Html:
     return coloured(f"could not be run ({state.error.text if state.error else ''}); trying again", WARNING_COLOUR)
 
 
-def begun_of(session: Session) -> frozenset[str]:
-    """Functions of the saved version that have a body."""
-    return frozenset() if session.saved is None else session.saved.begun
-
-
 def mistake_of(session: Session, begun: frozenset[str]) -> str:
     """The first mistake of a function that is begun, in the order of the lab; "" if none is known."""
-    verdicts = ((task.name, session.check.verdicts.get(task.name)) for task in session.tasks if task.name in begun)
+    verdicts = ((task.name, session.versions.verdicts.get(task.name)) for task in session.tasks if task.name in begun)
     found = next(((name, verdict) for name, verdict in verdicts if verdict and verdict.state == "wrong"), None)
     return "" if found is None else f"{found[0]} is wrong: {found[1].mistake or found[1].sentence}"
 
@@ -201,7 +189,7 @@ def saved_text(state: CodeState, hint: str, *, runs: bool) -> Html:
 
 def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]:
     """The rope or cloth that the student's functions move."""
-    used = (CLOTH if scene == "cloth" else ROPE).in_use(state.begun, report.method, sphere=report.sphere)
+    used = (CLOTH if scene == "cloth" else ROPE).in_use(report.own, report.method, sphere=report.sphere)
     own = ", ".join(name for name, is_own in used.items() if is_own)
     other = ", ".join(name for name, is_own in used.items() if not is_own)
     said = [fill("Your {} moves by {}{}.", scene, bold(own), fill(" (reference: {})", other) if other else "")]
@@ -279,7 +267,7 @@ def tick_mark(y: float, word: str) -> Html:
 
 def function_lines(session: Session, scene: str) -> Html:
     """State and errors of every function that is begun; the right ones come last."""
-    verdicts, waiting = session.check.verdicts, session.check.waiting
+    verdicts, waiting = session.versions.verdicts, session.check.waiting
     rows: list[tuple[int, Html]] = []
     not_begun = 0
     for task in session.tasks:

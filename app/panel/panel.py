@@ -14,6 +14,7 @@ import viser
 from app.lab import task
 from app.lab.workbook import Workbook
 from app.messages import BaseParams, KeptState, PlotRow, Reset, StepOnce, Take, TogglePlay
+from app.panel.changes import Changes
 from app.panel.compare import Beside, Compare
 from app.panel.controls import Controls
 from app.panel.display import Display, add_switches
@@ -22,19 +23,18 @@ from app.panel.guide import Guide
 from app.panel.head import Actions, Head
 from app.panel.history import History, Settings
 from app.panel.plots import Plots
-from app.panel.questions import Questions
 from app.panel.readings import Readings
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.panel.share import Share
-from app.panel.task_setups import params_of_setup
+from app.panel.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, place_camera
 from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
 from app.scenes.own_setups import own_files
-from app.scenes.setups import Setup
-from sim.parameters import Value, changed_names, check_record
+from app.scenes.setups import Setup, make_setup
+from sim.parameters import Value, changed_names
 
 if TYPE_CHECKING:
     from app.lab.session import Session
@@ -78,13 +78,13 @@ class Panel:
         session: "Session | None" = None,
         beside: Beside | None = None,
         changed: Callable[[BaseParams], None] = lambda params: None,
-        questions: Questions,
+        changes: Changes,
     ) -> None:
         """post: takes commands for the simulation. open_scene: takes a scene to show instead; both at once.
 
         workbook: the tasks of the lab, shown above the parameters. session: of a student's folder. wake: has the
         recording looked at once more. make_replay: makes the page of a replay. beside: shows other set-ups beside this
-        one; None where this one is beside another. changed: takes parameters that were set. questions: of visitors.
+        one; None where this one is beside another. changed: takes parameters that were set. changes: of the server.
         """
         self.server, self.kind, self.view, self.post = server, kind, view, post
         self.open_scene, self.beside, self.changed = open_scene, beside, changed
@@ -104,7 +104,7 @@ class Panel:
         self.controls, self.folders = self.shown.own, self.shown.folders
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
         self.recorder = Recorder(kind.packing)
-        self.share = Share(self, wake, make_replay, questions)
+        self.share = Share(self, wake, make_replay, changes)
         self.guide: Guide | None = None
         self.code: CodePanel | None = None
         self.map: StabilityMapPanel | None = None
@@ -203,8 +203,7 @@ class Panel:
     def params_of(self, preset: str) -> BaseParams:
         """The parameters of a preset. The hull from a file, which is not a parameter, stays."""
         own = self.own.get(preset)
-        params = own.params if own else check_record(type(self.params), self.kind.presets[preset])
-        return with_fields_of(self.params, params)
+        return with_fields_of(self.params, (own or make_setup(self.kind, preset)).params)
 
     def nearest_preset(self, params: BaseParams) -> str:
         """Name of the preset that parameters differ from the least."""
@@ -224,11 +223,7 @@ class Panel:
 
     def set_up(self, setup: task.Setup) -> None:
         """Show the set-up of a task. Raises ValueError if there is no such scene, preset or parameter."""
-        _, params, preset = params_of_setup(setup)
-        if setup.scene == self.kind.name:
-            self.load_params(with_fields_of(self.params, params), preset)
-        else:
-            self.open_scene(setup.scene, params, None)
+        self.show_setup(setup_of_task(setup), None)
 
     def show_setup(self, setup: Setup, client: int | None) -> None:
         """Show a set-up from a link or a file, with its camera for one browser."""

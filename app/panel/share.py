@@ -12,8 +12,8 @@ import numpy as np
 import viser
 
 from app.messages import Vector
+from app.panel.changes import Change, Changes, Notice
 from app.panel.files import Files, MakeReplay, file_name
-from app.panel.questions import Asker, Ballot, Questions, Subject
 from app.panel.task_setups import read_link
 from app.panel.timeline import Timeline
 from app.render.cameras import place_camera
@@ -46,20 +46,20 @@ COMPARE = "?compare="  # begins the address of a comparison that is ready
 class Share:
     """The tab, and the hidden field through which a page sends its address or a file."""
 
-    def __init__(self, panel: "Panel", wake: Callable[[], None], make_replay: MakeReplay, questions: Questions) -> None:
+    def __init__(self, panel: "Panel", wake: Callable[[], None], make_replay: MakeReplay, changes: Changes) -> None:
         """wake: makes the viewer's thread look at the recorder. make_replay: makes the page of a replay.
 
-        questions: those of this server.
+        changes: those of this server.
         """
-        self.server, self.panel, self.questions = panel.server, panel, questions
+        self.server, self.panel, self.changes = panel.server, panel, changes
         gui = panel.gui
         self.wake, self.make_replay = wake, make_replay
         self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
         # Identity of buttons -> the buttons, their names, and the time [s] until which they say that it is done.
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
-        self.ballot = Ballot(panel.server, panel.head.folder, questions, self.show, self.refuse)
         with panel.head.folder:
+            self.notice = Notice(gui, panel.kind.name, changes, self.restore)
             self.moment = gui.add_html("", visible=False)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
@@ -136,13 +136,25 @@ class Share:
             self.place(subject, client)
         elif isinstance(subject, str) and self.panel.beside is None:
             return  # a lab beside another opens no comparison
-        elif len(self.server.get_clients()) > 1:
-            self.questions.ask(subject, Asker(client.client_id, page))
         else:
+            if len(self.server.get_clients()) > 1:
+                self.changes.latest = self.change(subject, page)
             self.show(subject, client.client_id)
 
-    def read(self, text: str) -> Subject:
-        """Content of a page's message. Raises ValueError if it is not allowed."""
+    def change(self, subject: Setup | str, page: str) -> Change:
+        """The change that a page makes by opening something."""
+        panel = self.panel
+        scene = comparison_named(subject)[0].scene if isinstance(subject, str) else subject.scene
+        return Change(page, scene, subject, Setup(panel.kind.name, panel.params, {}, panel.loaded))
+
+    def restore(self, change: Change) -> None:
+        """Undo a change."""
+        if isinstance(change.subject, str) and self.panel.beside is not None:
+            self.panel.beside.end()
+        self.panel.show_setup(change.before, None)
+
+    def read(self, text: str) -> Setup | str:
+        """Content of a page's message: a set-up, or the name of a comparison. Raises ValueError if it is refused."""
         if not text.startswith(COMPARE):
             if not text.startswith("?"):
                 return read_file(text)
@@ -151,7 +163,7 @@ class Share:
         comparison_named(name)
         return name
 
-    def show(self, subject: Subject, client: int) -> None:
+    def show(self, subject: Setup | str, client: int) -> None:
         """Show a set-up, with its camera for one browser, or a comparison."""
         if isinstance(subject, Setup):
             self.turn(subject)
@@ -229,8 +241,8 @@ class Share:
             self.say("Set-up", str(reason))
 
     def update(self) -> None:
-        """Keep questions and timeline up to date."""
-        self.ballot.draw()
+        """Keep notice and timeline up to date."""
+        self.notice.draw()
         self.end_confirmations()
         self.timeline.update()
 

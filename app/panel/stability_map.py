@@ -25,11 +25,8 @@ from app.render.viser_types import ViserEvent
 from app.scenes.contract import SpringParams, StabilityMap
 from sim.parameters import Parameter, parameters_of
 from sim.springs import INTEGRATORS, Integrator, Net
-from sim.springs.analysis.growth import outcome
-from sim.springs.analysis.settling import find_rest_positions
+from sim.springs.analysis.stability_map import MapRow, map_row
 from sim.springs.automatic import AUTO, choose_for_step
-from sim.springs.stability import critical_step
-from sim.springs.state import State
 from sim.validation import ConvergenceError
 
 ROWS, COLS = 20, 28
@@ -51,13 +48,6 @@ class Axes(NamedTuple):
         """True if nothing but step and stiffness has changed since."""
         moved = {"time_step": params.time_step, self.parameter: getattr(params, self.parameter)}
         return shown(dataclasses.replace(self.params, **moved)) == shown(params)
-
-
-class Row(NamedTuple):
-    """One stiffness of a map."""
-
-    outcomes: NDArray[np.int64]  # (COLS,)
-    critical: float  # [s]
 
 
 def shown(params: SpringParams) -> tuple[object, ...]:
@@ -91,16 +81,11 @@ def method_of(params: SpringParams, net: Net) -> Integrator:
     return INTEGRATORS[params.integrator]
 
 
-def measure_row(scene: StabilityMap, axes: Axes, stiffness: float) -> Row:
+def measure_row(scene: StabilityMap, axes: Axes, stiffness: float) -> MapRow:
     """Growth of the scene's network at rest at each step of the map."""
     params = dataclasses.replace(axes.params, **{axes.parameter: stiffness})
     net = scene.build(params)
-    record = method_of(params, net)
-    state = State.at_rest(net)
-    state.x[:] = find_rest_positions(net)
-    most = min(max(WORK // params.points, 256), 4096)
-    outcomes = [outcome(record, net, float(h), state.x, most) for h in axes.steps]
-    return Row(np.array(outcomes), critical_step(net, record, state))
+    return map_row(method_of(params, net), net, axes.steps, min(max(WORK // params.points, 256), 4096))
 
 
 class StabilityMapPanel:
@@ -121,7 +106,7 @@ class StabilityMapPanel:
         self.html = gui.add_html("")
         self.click = gui.add_multi_slider(" ", 0.0, 1.0, step=1e-4, initial_value=(0.0, 0.0), visible=False)
         self.axes: Axes | None = None
-        self.rows: list[Row] = []
+        self.rows: list[MapRow] = []
         self.problem = ""  # why there is no map, or no more of it
         self.asked = 0  # how often: a thread that is no longer the latest stops
 
@@ -153,7 +138,7 @@ class StabilityMapPanel:
                 self.axes, self.problem = None, f"{record.name.upper()} allows no damping: set damping and drag to 0."
                 return
             axes = axes_of(params, self.scene.stiffness(params))
-            rows: list[Row] = []
+            rows: list[MapRow] = []
             for stiffness in axes.stiffnesses:
                 rows.append(measure_row(self.scene, axes, float(stiffness)))
                 if self.asked != number:
@@ -223,7 +208,7 @@ def axis(values: NDArray[np.float64], name: str, *, across: bool) -> str:
     return "".join(parts) + f'<text x="{x}" y="{y}" text-anchor="middle"{turn}>{name}</text>'
 
 
-def picture(axes: Axes, rows: list[Row], params: SpringParams, slider: str) -> str:
+def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -> str:
     """The map as HTML. slider: the uuid of the slider that a click moves."""
     colours = list(OUTCOME_COLOURS.values())
     height, width = HIGH / (ROWS - 1), WIDE / (COLS - 1)

@@ -2,24 +2,15 @@
 
 from app.lab import task
 from app.lab.workbook import Workbook
-from app.messages import BaseParams
 from app.scenes import scene_named
-from app.scenes.contract import AnyKind
-from app.scenes.setups import Setup, read_query, split_task
-from sim.parameters import check_record
+from app.scenes.setups import Setup, make_setup, read_query, split_task
 from sim.validation import argument_error
 
 
-def params_of_setup(setup: task.Setup) -> tuple[AnyKind, BaseParams, str]:
-    """The scene of a task of the lab, its parameters, and the preset that they come from.
-
-    Raises ValueError if the scene, the preset or a parameter does not exist.
-    """
-    kind = scene_named(setup.scene)
-    preset = setup.preset or next(iter(kind.presets))
-    if preset not in kind.presets:
-        raise argument_error("preset", preset, "one of " + ", ".join(kind.presets))
-    return kind, check_record(kind.params, {**kind.presets[preset], **setup.parameters}), preset
+def setup_of_task(own: task.Setup) -> Setup:
+    """The set-up of a task of the lab. Raises ValueError if the scene, the preset or a parameter does not exist."""
+    kind = scene_named(own.scene)
+    return make_setup(kind, own.preset or next(iter(kind.presets)), own.parameters)
 
 
 def read_link(query: str, workbook: Workbook | None) -> Setup:
@@ -38,5 +29,4 @@ def read_link(query: str, workbook: Workbook | None) -> Setup:
         if setup.scene != own.scene:
             raise argument_error("scene", setup.scene, f"{own.scene}, that of task {name}")
         return setup._replace(task=name)
-    kind, params, preset = params_of_setup(own)
-    return Setup(kind.name, params, own.parameters, preset, task=name)
+    return setup_of_task(own)._replace(task=name)

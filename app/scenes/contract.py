@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from app.messages import BaseParams, Command, F, P, PlotRow, R, SceneCommand, Snapshot, Vector
 from app.scenes.charts import Chart, Columns, CurveAxes, PlotAxes
-from sim.parameters import Value, check_record
+from sim.parameters import Value
 
 if TYPE_CHECKING:
     from viser import ClientHandle, ViserServer
@@ -253,10 +253,6 @@ class SceneKind(Generic[P, F, R]):
     # Of a snapshot of a run that diverged: the time step [s] that would hold, 0 for none; None: a run does not diverge.
     remedy: Callable[..., float] | None = None
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
-
-    def opening_params(self) -> P:
-        """The parameters that are shown first where none are asked for."""
-        return check_record(self.params, self.presets[self.opening] if self.opening else {})
 
 
 PostCommand: TypeAlias = Callable[[Command], None]  # takes a command for the simulation

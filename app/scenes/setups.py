@@ -20,6 +20,7 @@ import zipfile
 import zlib
 from collections.abc import Mapping
 from pathlib import Path, PureWindowsPath
+from types import MappingProxyType
 from typing import Any, BinaryIO, NamedTuple
 from urllib.parse import parse_qsl, urlencode
 
@@ -51,6 +52,7 @@ MAX_ABOUT = 100_000  # [bytes] of what a recording says of itself
 BLOCK, BLOCK_END = '<script type="application/json" id="springtide-setup">', "</script>"
 UNREADABLE = (ValueError, KeyError, EOFError, RuntimeError, struct.error, zipfile.BadZipFile, zlib.error)
 FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Springtide"
+NO_VALUES: Mapping[str, Value] = MappingProxyType({})
 # options that add a file to a scene -> the fields of its parameters with their paths
 FILES = {"hull": "hull", "mooring": "moordyn_file", "spectrum": "spectrum_file"}
 FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", *FILES, "name", "note")
@@ -100,9 +102,33 @@ def missing_files(setup: Setup, present: object = None) -> str:
 
 def differing_values(kind: AnyKind, params: BaseParams, preset: str) -> dict[str, Value]:
     """The parameters in which a record differs from a preset of the scene, or from the defaults where it is ""."""
-    base = check_record(kind.params, kind.presets[preset] if preset else {})
+    base = make_setup(kind, preset).params
     names = changed_names(base, params)
     return {name: getattr(params, name) for name in parameters_of(params) if name in names}
+
+
+def make_setup(
+    kind: AnyKind, preset: str | None = None, values: Mapping[str, object] = NO_VALUES, what: str = "preset"
+) -> Setup:
+    """The set-up of a preset, with other values of some parameters.
+
+    preset: a name, or "" for the scene's defaults; None for the preset that the scene opens with, or for the defaults
+    if there are values. Raises ValueError, naming `what`, if there is no such preset or a value is not allowed.
+    """
+    if preset is None:
+        preset = "" if values else kind.opening
+    named = preset_named(what, preset, kind) if preset else NO_VALUES
+    return with_values(Setup(kind.name, kind.params(), named, preset), values)
+
+
+def with_values(setup: Setup, values: Mapping[str, object]) -> Setup:
+    """A set-up with other values of some parameters. Raises ValueError if one is not allowed.
+
+    All records that are made of presets, files, links and values are made here.
+    """
+    named = {**setup.values, **values}
+    params = check_record(scene_named(setup.scene).params, named)
+    return setup._replace(params=params, values={name: getattr(params, name) for name in named})
 
 
 def nearest_preset(kind: AnyKind, params: BaseParams, preset: str) -> str:
@@ -144,11 +170,10 @@ def read_query(query: str) -> Setup:
         kind_named(scene)
     kind = scene_named(next(iter(difflib.get_close_matches(scene, NAMES, 1)), NAMES[0]))
     known = parameters_of(kind.params)
-    preset = given.get("preset", "" if given.keys() & known.keys() else kind.opening)
     values: dict[str, Value] = {}
-    if preset:
+    if given.get("preset"):
         with wrong:
-            values |= preset_named("preset", preset, kind)
+            preset_named("preset", given["preset"], kind)
     for name, text in given.items():
         if name in OWN_KEYS:
             continue
@@ -161,7 +186,7 @@ def read_query(query: str) -> Setup:
         with wrong:
             camera = read_camera([camera_number(text, given["camera"]) for text in given["camera"].split(",")])
     wrong.check()
-    return Setup(kind.name, check_record(kind.params, values), values, preset, camera)
+    return make_setup(kind, given.get("preset"), values)._replace(camera=camera)
 
 
 def split_task(query: str) -> tuple[str, str]:
@@ -282,16 +307,15 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
         raise argument_error(f"{where}: scene", found, scene)
     kind = kind_named(found)
     preset = content.get("preset", "")
-    values = {} if preset == "" else dict(preset_named(f"{where}: preset", preset, kind))
-    given = content.get("parameters", {})
-    checked = check_record(kind.params, given)
-    values.update({name: getattr(checked, name) for name in given})
+    if preset != "":
+        preset_named(f"{where}: preset", preset, kind)
+    setup = make_setup(kind, preset, content.get("parameters", {}))
     camera = read_camera(content["camera"]) if content.get("camera") is not None else None
     name = read_text(f"{where}: name", content.get("name", ""), MAX_NAME)
     note = read_text(f"{where}: note", content.get("note", ""), MAX_NOTE)
     names = {one: file_name(read_text(f"{where}: {one}", content.get(one, ""), MAX_FILE_NAME)) for one in FILES}
     files = {option: file for option, file in names.items() if file}
-    return Setup(kind.name, check_record(kind.params, values), values, preset, camera, name, note, files)
+    return setup._replace(camera=camera, name=name, note=note, files=files)
 
 
 def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -340,8 +364,7 @@ def preset_setup(option: str, preset: str, kind: SceneKind[Any, Any, Any], folde
     Raises ValueError, naming the option, where there is no such preset of this scene or a value is not allowed.
     """
     if preset in kind.presets:
-        values = kind.presets[preset]
-        return Setup(kind.name, check_record(kind.params, values), values, preset)
+        return make_setup(kind, preset)
     path = (folder or Path()) / preset
     if path.suffix != ".json" and not path.is_file():
         raise choice_error(option, preset, kind.presets, "; or a file FILE.json")

@@ -66,7 +66,7 @@ class ServedScene:
             self.server, kind, self.view, params, self.commands.put, scenes=NAMES,
             open_scene=viewer.want, workbook=viewer.workbook, session=viewer.session,
             wake=lambda: self.loop.fresh.set(), make_replay=replay_html, changed=viewer.share_parameters,
-            questions=viewer.questions,
+            changes=viewer.changes,
             beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
         )  # fmt: skip
         self.gate = CompileGate(viewer.compiling, kind, params)

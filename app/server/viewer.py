@@ -13,11 +13,11 @@ import viser
 
 from app.lab.workbook import Workbook
 from app.messages import BaseParams, Command, Release, Reset, StudentAnswer
+from app.panel.changes import Changes
 from app.panel.compare import PaneWords
 from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
-from app.panel.questions import Questions
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_page
@@ -25,6 +25,7 @@ from app.render.viser_inside import send_at_once
 from app.scenes import NAMES, scene_named
 from app.scenes.compiling import Compiling
 from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
+from app.scenes.setups import make_setup
 from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.beside import Comparing, Comparison
 from app.server.guard import open_pane, open_server, quiet
@@ -84,7 +85,7 @@ class Viewer:
         self.port = self.server.get_port()
         self.server.on_client_connect(self.release)  # it holds nothing: the command wakes a lab that was alone
         self.server.on_client_disconnect(self.release)
-        self.questions = Questions(self.server)
+        self.changes = Changes()
         self.ended = False
         self.came = threading.Event()  # a browser is connected, or the lab has ended
         self.current: ServedScene | None = None  # the scene that was opened last; it may be closed
@@ -112,7 +113,7 @@ class Viewer:
             try:
                 kind = scene_named(name)
                 if params is None:
-                    params = self.first_params.get(name) or (kind.opening_params() if first_look else kind.params())
+                    params = self.first_params.get(name) or (make_setup(kind).params if first_look else kind.params())
                 elif not first_look:
                     self.first_params.setdefault(name, params)
                 if not self.compile(kind, params) or self.ended:
@@ -154,7 +155,7 @@ class Viewer:
         try:
             return self.begun_scene(kind, params, post)
         except ValueError:
-            first = kind.opening_params()
+            first = make_setup(kind).params
             if params == first:
                 raise
             return self.begun_scene(kind, first, post)

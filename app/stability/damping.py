@@ -11,6 +11,7 @@ from app.experiments.pool import spread
 from sim.springs import INTEGRATORS, Net, cloth, rope
 from sim.springs.analysis.growth import STABLE, outcome, step_growth
 from sim.springs.analysis.settling import find_rest_positions
+from sim.springs.analysis.stability_map import limit_between
 from sim.springs.integrators import Integrator
 from sim.springs.stability import critical_step, top_modes
 from sim.springs.state import State
@@ -18,7 +19,7 @@ from sim.springs.state import State
 MAX_DAMPING = 1e5  # [N s/m], the end of the slider
 REST_DAMPING = 7.0  # [N s/m] at which a network comes to rest soon; the place of rest depends on no damping
 FIRST, LAST = 0.2, 3.0  # of critical_step, between which growth is looked for
-COARSE, FINE = 1.2, 1.005  # ratios of two steps
+COARSE = 1.2  # ratio of two steps that are tried
 GROWS = 1e-7  # a step, above round-off
 UNLIMITED = (0.01, 0.1, 1.0)  # steps [s] at which methods without a limit are tried
 NEVER_STABLE = 0.02  # h omega at which a method that is never stable is seen to grow
@@ -65,11 +66,7 @@ def measured_step(record: Integrator, net: Net, state: State, theory: float) -> 
         h *= COARSE
         if h > LAST * theory:
             return math.inf
-    low, high = h / COARSE, h
-    while high > FINE * low:
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if step_growth(record, net, middle, state.x) > GROWS else (middle, high)
-    return math.sqrt(low * high)
+    return limit_between(h / COARSE, h, lambda middle: step_growth(record, net, middle, state.x) > GROWS)
 
 
 def limits(net_name: str, name: str, damping: float) -> tuple[float, float]:

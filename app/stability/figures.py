@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from app.experiments.tables import MARKERS, edges
+from app.experiments.tables import MARKERS, draw_map
 from app.render.colormap import OUTCOME_COLOURS
 from app.scenes.charts import PALETTE
 from app.stability.damping import DampingRow
@@ -45,11 +45,11 @@ def linear_figure(maps: list[LinearMap]) -> Any:
     figure, lowest, grid = panels(len(maps), "x'' + 2 ζ ω x' + ω² x = 0, one step of h after the other")
     shades = None
     for axes, found in zip(grid, maps, strict=True):
-        x, y = edges(found.steps), edges(found.zetas)
         extra = np.ma.masked_invalid(np.where(found.rates > 0.0, np.nan, extra_damping(found)))
-        shades = axes.pcolormesh(x, y, extra, cmap="PRGn", vmin=-0.5, vmax=0.5, rasterized=True)
+        plane = found.steps, found.zetas
+        shades = draw_map(axes, *plane, extra, log=(False, False), cmap="PRGn", vmin=-0.5, vmax=0.5)
         grows = np.ma.masked_where(~(found.rates > 0.0), np.ones_like(found.rates))
-        axes.pcolormesh(x, y, grows, cmap=ListedColormap([GROWTH_COLOUR]), rasterized=True)
+        draw_map(axes, *plane, grows, log=(False, False), cmap=ListedColormap([GROWTH_COLOUR]))
         fine = np.linspace(0.0, found.zetas[-1], 400)
         if not np.isnan(found.measured[1:]).all():
             limits = [INTEGRATORS[found.name].limit(float(z)) for z in fine]
@@ -57,8 +57,6 @@ def linear_figure(maps: list[LinearMap]) -> Any:
         every = max(1, len(found.zetas) // 20)
         shown = np.where(np.isfinite(found.measured), found.measured, np.nan)[::every]
         axes.plot(shown, found.zetas[::every], "o", color="white", markeredgecolor="black", markersize=3.5)
-        axes.set_xlim(0.0, x[-1])
-        axes.set_ylim(y[0], y[-1])
         axes.set_title(found.name.replace("_", " "), fontsize=10)
         if not np.isfinite(found.rates[1:]).any():
             axes.text(2.0, 1.0, "takes no damping", ha="center", color="0.4")
@@ -88,13 +86,9 @@ def rope_figure(maps: list[RopeMap]) -> Any:
     figure, lowest, grid = panels(len(maps), "The lab's rope of ten points at rest, with a small disturbance")
     colours = ListedColormap(list(OUTCOME_COLOURS.values()))
     for axes, found in zip(grid, maps, strict=True):
-        x, y = edges(found.steps, logarithmic=True), edges(found.stiffnesses, logarithmic=True)
-        axes.pcolormesh(x, y, found.outcomes, cmap=colours, vmin=0, vmax=2, rasterized=True)
+        plane = found.steps, found.stiffnesses
+        draw_map(axes, *plane, found.outcomes, log=(True, True), cmap=colours, vmin=0, vmax=2)
         axes.plot(found.theory, found.stiffnesses, color="black", linewidth=1.4)
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        axes.set_xlim(x[0], x[-1])
-        axes.set_ylim(y[0], y[-1])
         axes.set_title(found.name.replace("_", " "), fontsize=10)
     for axes in lowest:
         axes.set_xlabel("step h [s]")

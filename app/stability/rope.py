@@ -1,6 +1,5 @@
 """Maps over step and stiffness of the nonlinear rope at rest: whether a small disturbance decays, grows or explodes."""
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,14 +7,11 @@ from numpy.typing import NDArray
 
 from app.experiments.pool import spread
 from sim.springs import INTEGRATORS, Net, rope
-from sim.springs.analysis.growth import BOUNDED_GROWTH, EXPLODING, STABLE, outcome
-from sim.springs.analysis.settling import find_rest_positions
-from sim.springs.stability import critical_step
-from sim.springs.state import State
+from sim.springs.analysis.growth import BOUNDED_GROWTH, EXPLODING, STABLE
+from sim.springs.analysis.stability_map import MapRow, map_row
 
 STEPS = (3e-4, 0.3)  # [s]
 STIFFNESSES = (30.0, 1e6)  # [N/m]
-LIMIT_RESOLUTION = 1.005  # ratio of two steps between which the limit is located
 
 
 class RopeMap(NamedTuple):
@@ -25,31 +21,13 @@ class RopeMap(NamedTuple):
     steps: NDArray[np.float64]  # (cols,) [s]
     stiffnesses: NDArray[np.float64]  # (rows,) [N/m]
     outcomes: NDArray[np.int64]  # (rows, cols) STABLE, BOUNDED_GROWTH or EXPLODING
-    measured: NDArray[np.float64]  # (rows,) [s] step at which a disturbance begins to grow; inf: none does
+    measured: NDArray[np.float64]  # (rows,) [s] of `MapRow`
     theory: NDArray[np.float64]  # (rows,) [s] critical_step
 
 
-def row(
-    name: str, net: Net, stiffness: float, steps: NDArray[np.float64], max_steps: int
-) -> tuple[NDArray[np.int64], float, float]:
-    """(outcomes at each step, the step at which disturbances begin to grow [s], critical_step [s])."""
-    record, net = INTEGRATORS[name], net.with_stiffness(stiffness)
-    rest = find_rest_positions(net)
-    state = State.at_rest(net)
-    state.x[:] = rest
-    found = np.array([outcome(record, net, float(h), rest, max_steps) for h in steps])
-    grows = np.flatnonzero(found != STABLE)
-    measured = math.inf
-    if len(grows):
-        high = float(steps[grows[0]])
-        low = float(steps[grows[0] - 1]) if grows[0] else 0.3 * high
-        while high > LIMIT_RESOLUTION * low:
-            middle = math.sqrt(low * high)
-            low, high = (
-                (middle, high) if outcome(record, net, middle, rest, 16 * max_steps) == STABLE else (low, middle)
-            )
-        measured = math.sqrt(low * high)
-    return found, measured, critical_step(net, name, state)
+def row(name: str, net: Net, stiffness: float, steps: NDArray[np.float64], max_steps: int) -> MapRow:
+    """The row of one stiffness."""
+    return map_row(INTEGRATORS[name], net.with_stiffness(stiffness), steps, max_steps, locate=True)
 
 
 def measure(net: Net | None = None, quick: bool = False, workers: int = 0) -> list[RopeMap]:
@@ -63,8 +41,7 @@ def measure(net: Net | None = None, quick: bool = False, workers: int = 0) -> li
     maps = []
     for i, name in enumerate(names):
         own = found[i * rows : (i + 1) * rows]
-        outcomes, measured, theory = (np.array([part[j] for part in own]) for j in range(3))
-        maps.append(RopeMap(name, steps, stiffnesses, outcomes, measured, theory))
+        maps.append(RopeMap(name, steps, stiffnesses, *(np.array(column) for column in zip(*own, strict=True))))
     return maps
 
 

@@ -14,9 +14,9 @@ from app.messages import DivergenceError
 from app.scenes import scene_named
 from app.scenes.contract import Measure
 from app.scenes.measures import plotted
+from app.scenes.setups import make_setup
 from app.scenes.stepping import steps_to
 from sim.jit import sources_hash
-from sim.parameters import check_record
 
 CHECK_INTERVAL = 1 / 30  # [s] of simulated time between two checks for divergence
 FINISHED, DIVERGED, FAILED = "finished", "diverged", "failed"
@@ -61,7 +61,7 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
     start = time.thread_time()
     try:
         with np.errstate(all="ignore"):
-            running = kind.make(check_record(kind.params, values))
+            running = kind.make(make_setup(kind, "", values).params)
             if note := running.note:
                 # The numbers of another integrator than the one asked for are no result.
                 return failed(note)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from app.experiments.tables import MARKERS, edges
+from app.experiments.tables import MARKERS, draw_map
 from app.scenes.charts import PALETTE
 
 MAX_ROWS, MAX_COLUMNS, MAX_CURVES = 2, 4, 8
@@ -80,10 +80,8 @@ def draw_panel(axes: Any, values: Any, names: list[str], colours: Any, is_first:
     if both:
         x, y = (values[n] for n in names)
         axes.set_facecolor(NO_VALUE_GREY)
-        image = axes.pcolormesh(
-            *(edges(v.values, logarithmic=is_log(v)) for v in (x, y)), values.transpose(names[1], names[0]).values,
-            cmap="viridis", norm=colours,
-        )  # fmt: skip
+        cells = values.transpose(names[1], names[0]).values
+        image = draw_map(axes, x.values, y.values, cells, log=(is_log(x), is_log(y)), cmap="viridis", norm=colours)
         set_axis(axes, "x", x)
         set_axis(axes, "y", y)
         return image

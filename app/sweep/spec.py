@@ -13,9 +13,9 @@ import numpy as np
 
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
-from app.scenes.setups import file_name, preset_setup
+from app.scenes.setups import file_name, make_setup, preset_setup, with_values
 from app.sweep.design import MAX_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
-from sim.parameters import Parameter, check_record, check_value, parameters_of, unknown_parameter
+from sim.parameters import Parameter, check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_choice, check_number, is_whole_number, unreadable
 
 DESIGNS = ("grid", "random")
@@ -52,7 +52,7 @@ class Spec:
 
     def params(self, index: int) -> Any:
         """The scene's parameters in case `index`."""
-        return check_record(self.kind.params, {**self.fixed, **self.cases[index]})
+        return make_setup(self.kind, "", {**self.fixed, **self.cases[index]}).params
 
     def identity(self) -> dict[str, Any]:
         """Everything that determines the results, for JSON."""
@@ -131,16 +131,12 @@ def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], f
     preset = content.get("preset")
     if preset is not None and not isinstance(preset, str):
         raise argument_error("preset", preset, "one of " + ", ".join(scene.presets) + "; or a file FILE.json")
-    from_preset: dict[str, Any] = {}
-    if preset is not None:
-        setup = preset_setup("preset", preset, scene, folder)
-        for option, file in setup.files.items():
-            allowed = f"a set-up without a {option} in a sweep"
-            raise argument_error("preset", f"{preset} with the {option} {file}", allowed)
-        from_preset = dict(setup.values)
-    given = {**dict.fromkeys(scene.plots, True), **from_preset, **table(content, "set")}
-    params = check_record(scene.params, given)
-    return {name: getattr(params, name) for name in given}
+    setup = make_setup(scene, "") if preset is None else preset_setup("preset", preset, scene, folder)
+    for option, file in setup.files.items():
+        allowed = f"a set-up without a {option} in a sweep"
+        raise argument_error("preset", f"{preset} with the {option} {file}", allowed)
+    plotted = make_setup(scene, "", dict.fromkeys(scene.plots, True))
+    return dict(with_values(plotted, {**setup.values, **table(content, "set")}).values)
 
 
 def read_axis(name: str, parameter: Parameter, given: Any, design: str) -> Axis:

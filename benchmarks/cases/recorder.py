@@ -6,6 +6,7 @@ from typing import Any
 from app.panel.recorder import Recorder
 from app.scenes import NAMES, scene_named
 from app.scenes.moments import arrays_in
+from app.scenes.setups import make_setup
 from app.server.loop import SimLoop
 from app.server.snapshots import KEEP_INTERVAL, KEEP_SHARE
 
@@ -20,7 +21,7 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
 def record(name: str, duration: float) -> dict[str, Any]:
     """Record one scene for so long [s], on a clock of its own."""
     kind = scene_named(name)
-    scene = kind.make(kind.opening_params())
+    scene = kind.make(make_setup(kind).params)
     loop, recorder = SimLoop(scene), Recorder(kind.packing)
     wall = noting = keeping = 0.0
     kept = 0

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from app.panel.changes import UNDO
 from app.server.viewer import Viewer
 from tests.browser.conftest import CHROMIUM, FLAGS, Tab
 
@@ -22,7 +23,7 @@ def caching_browser(chromium: Any) -> Iterator[Any]:
 
 
 @pytest.mark.parametrize("links", [2, pytest.param(20, marks=pytest.mark.stress)])
-def test_links_opened_in_one_tab_are_one_visitor_and_no_question(lab: Viewer, caching_browser: Any, links: int) -> None:
+def test_links_opened_in_one_tab_are_one_visitor_and_no_notice(lab: Viewer, caching_browser: Any, links: int) -> None:
     tab = Tab(caching_browser, lab.port, width=400, height=300)
     tab.page.add_init_script(NOTE_RETURN)
     try:
@@ -36,7 +37,7 @@ def test_links_opened_in_one_tab_are_one_visitor_and_no_question(lab: Viewer, ca
         for points in range(20, 20 + links):
             tab.page.goto(f"{address}&scene=rope&points={points}")
             tab.wait(lambda points=points: shows(points), 30)
-            assert not tab.page.get_by_role("button", name="Open it for all").is_visible()
+            assert not tab.page.get_by_role("button", name=UNDO).is_visible()
         tab.page.go_back(wait_until="commit")
         tab.wait(lambda: shows(18 + links), 30)
         assert tab.page.evaluate("sessionStorage.kept") == "yes"  # else the cache was off, and nothing was tested

@@ -11,6 +11,7 @@ import imageio.v3 as iio
 import pytest
 
 from app.messages import Pause, Play, Reset
+from app.panel.changes import UNDO
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import NAMES, scene_named
 from app.scenes.own_setups import own_files
@@ -40,18 +41,25 @@ def load(tab: Tab, path: Path, content: object) -> None:
     tab.page.locator("[data-springtide-load]").set_input_files(str(path))
 
 
-def test_a_link_is_taken_after_a_question_and_made_again(
-    opened: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
+def test_a_link_is_taken_shown_to_the_others_and_made_again(
+    opened: tuple[Viewer, Tab], open_tab: Callable[..., Tab], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a second visitor, who comes by a link."""
     lab, tab = opened
-    open_tab(lab.port, query="&scene=rope&stiffness=2k&time_step=1/600&camera=3,-4,2,0,0,1.5")
+    monkeypatch.setattr("app.panel.changes.SHOWN_TIME", 60.0)  # of a slow machine
+    query = "&scene=rope&stiffness=2k&time_step=1/600&camera=3,-4,2,0,0,1.5"
+    other = open_tab(lab.port, query=query)
     base = f"http://127.0.0.1:{lab.port}/"
-    button = tab.page.get_by_role("button", name="Open it for all")
-    tab.wait(button.is_visible, 60)
-    assert vars(lab.panel.params)["stiffness"] == 800.0
-    button.click()
-    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 2000.0, 20)
+    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 2000.0, 60)
+    tab.wait(tab.page.get_by_text("Another browser opened Rope").is_visible, 20)
+    other.wait(other.page.get_by_text("You opened Rope").is_visible, 20)
+    assert not tab.page.get_by_text("You opened Rope").is_visible()
+    assert not other.page.get_by_text("Another browser opened Rope").is_visible()
+    tab.page.get_by_role("button", name=UNDO).click()
+    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 800.0, 20)
+    tab.wait(lambda: not tab.page.get_by_text("Another browser opened Rope").is_visible(), 20)
+    other.page.reload()
+    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 2000.0, 60)
     assert vars(lab.panel.params)["time_step"] == 1 / 600
     # The link that is made has the same parameters, and the camera of the browser that asks.
     tab.wait(lambda: len({tuple(c.camera.position.round(2)) for c in lab.server.get_clients().values()}) == 2, 30)

@@ -14,7 +14,7 @@ from app.lab.rope_march import REFERENCE
 from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.server.viewer import Viewer
-from tests.app.lab.test_session import ACCIDENTS, HEAD, RIGHT, make_scene, run, save
+from tests.app.lab.test_session import ACCIDENTS, HEAD, RIGHT, make_scene, run, save, taken
 from tests.waiting import wait_for
 
 TASKS = load_tasks()
@@ -59,7 +59,7 @@ def test_the_rope_moves_by_what_is_saved_within_a_second(session: Session, monke
         times = []
         for i in range(5):
             time.sleep(2.0)
-            start, before = time.monotonic(), session.rope.taken
+            start, before = time.monotonic(), taken(session)
             (session.folder / "rope.py").write_text(f"{RIGHT}\n# {i}\n")
             wait_for(lambda before=before: session.rope.report.version > before)
             wait_for(lambda: viewer.loop.latest.frame.reference is not None)
@@ -73,12 +73,12 @@ def test_the_rope_moves_by_what_is_saved_within_a_second(session: Session, monke
 def test_what_numba_can_compile_it_compiles(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e-6)
     save(session, RIGHT)
-    wait_for(lambda: session.rope.taken == session.state.version)
+    wait_for(lambda: taken(session) == session.state.version)
     scene = make_scene(session)
     run(scene)
     plain = session.rope.report
     assert plain.compiled == ()
-    wait_for(lambda: session.rope.versions[-1].compiled, 120.0)
+    wait_for(lambda: ROPE.use in session.versions.compiled, 120.0)
     scene = make_scene(session)
     run(scene)
     report = session.rope.report
@@ -88,7 +88,7 @@ def test_what_numba_can_compile_it_compiles(session: Session, monkeypatch: pytes
     assert report.seconds < plain.seconds
     later = RIGHT.replace("    r = np", "    globals()\n    r = np")  # which numba does not know
     save(session, later)
-    wait_for(lambda: session.rope.taken == session.state.version)
+    wait_for(lambda: taken(session) == session.state.version)
     run(make_scene(session))
     wait_for(lambda: session.state.not_compiled, 120.0)
     run(make_scene(session))

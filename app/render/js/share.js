@@ -1,6 +1,6 @@
 // Links and set-ups: what stands in the address of this page is sent to the lab once, and a file that is chosen is read
 // here and sent as text: of a replay, the set-up file that it holds. The lab checks both. A link that the lab has made
-// is shown with this page's own address. Where all visitors are asked, the page that asks shows its own sentence.
+// is shown with this page's own address. Of a change of a shared lab, the page that made it shows its own sentence.
 // Clips are recorded here from the canvas of the view, and plots are saved as one picture.
 //
 // Of viser this file uses window.__viserMutable (canvas, sendMessage) and window.__viserTestpoints.uplots.
@@ -20,7 +20,7 @@
     "darkMode", "dummyWindowDimensions", "dummyWindowTitle", "fixedDpr", "forceOrbitOriginTool", "hideViserLogo",
     "initialCameraLookAt", "initialCameraPosition", "initialCameraUp", "logCamera", "playbackPath", "showStats", "websocket",
   ]);
-  const PAGE = Math.random().toString(36).slice(2, 10); // tells what this page asks from what others ask
+  const PAGE = Math.random().toString(36).slice(2, 10); // tells what this page opened from what others opened
   const asked = new URLSearchParams(location.search);
   let query = ["scene", "task", "compare"].some((name) => asked.has(name)) ? location.search : "";
   let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
@@ -34,9 +34,9 @@
     return true;
   }
 
-  const own = `[data-springtide-askers~="${PAGE}"]`, sentences = document.createElement("style");
+  const own = `[data-springtide-changer="${PAGE}"]`, sentences = document.createElement("style");
   sentences.textContent =
-    `${own} .springtide-asked, [data-springtide-askers]:not(${own}) .springtide-asker { display: none; }`;
+    `${own} .springtide-others, [data-springtide-changer]:not(${own}) .springtide-own { display: none; }`;
   document.head.append(sentences);
 
   // What viser's client itself takes from an address is not for the lab.

@@ -6,9 +6,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.cloth_march import Sheet
-from app.lab.live_net import CLOTH, Answer, LiveNet
-from app.lab.rope_march import Segment
+from app.lab.live_net import CLOTH, LiveNet, Marched
+from app.lab.rope_march import Segment, Sheet
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.laws import SPRING
@@ -111,11 +110,12 @@ class StudentCloth(StudentNet):
             x = np.ascontiguousarray(np.moveaxis(program.reshape(shape), -1, 0))
         return x, own.reshape(shape).astype(np.float32)
 
-    def take(self, answer: Answer, max_reach: float) -> None:
+    def take(self, done: Marched, max_reach: float) -> None:
         """Take an answer of this run; a coarse cloth that is too slow goes on as a coarser one."""
-        step = self.sent[-1].segment.h if self.sent else 0.0
-        super().take(answer, max_reach)
-        if not self.is_comparable and self.side != COARSE_SIDES[-1] and answer.seconds * SLOWEST_PACE > step:
+        step = self.sent[-1].h if self.sent else 0.0
+        super().take(done, max_reach)
+        seconds = 0.0 if done is None else done.value.step_time
+        if not self.is_comparable and self.side != COARSE_SIDES[-1] and seconds * SLOWEST_PACE > step:
             self.side = COARSE_SIDES[-1]
             self.set_up(self.params)
             x = self.net.x0.reshape(3, -1).T.copy()

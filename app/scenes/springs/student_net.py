@@ -7,14 +7,13 @@ both at the moment that the student's has reached, so that what differs is the n
 import collections
 import math
 import queue
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.cloth_march import Sheet
-from app.lab.live_net import Answer, Job, LiveNet, StudentReport
-from app.lab.rope_march import Forces, Segment
+from app.lab.live_net import LiveNet, Marched, StudentReport
+from app.lab.rope_march import Forces, Segment, Sheet
 from sim.springs import Net
 
 MAX_BEHIND = 1.0  # [s] of simulated time that the student's rope may be late; then it starts again from the program's
@@ -22,15 +21,6 @@ MAX_MATCHED = 0.1  # [s] up to which the program's rope is drawn as late as the 
 JOB_TIME = 0.05  # [s] that a job should take
 MAX_ROWS = 600  # kept of the course of the difference
 MAX_PART = 16  # steps of a job at least: a slow function must not seem endless where a slow machine catches up
-
-
-class Piece(NamedTuple):
-    """A piece of the program's motion."""
-
-    segment: Segment
-    sheet: Sheet | None  # what the cloth is made of in it
-    time: float  # [s] at its end
-    x: NDArray[np.float64] | None  # (n, 3) [m] the program's net at its end; None within a piece that was divided
 
 
 class StudentNet:
@@ -42,18 +32,17 @@ class StudentNet:
 
     def __init__(self, live: LiveNet) -> None:
         self.live = live
-        self.answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
-        self.run = 0  # number of the run, of `LiveNet.runs`
+        self.answers: queue.SimpleQueue[Marched] = queue.SimpleQueue()  # of one run: an earlier one had another
         self.max_speed = 0.0  # [m/s] of the fastest point, along an axis
         self.rows: collections.deque[tuple[float, float]] = collections.deque(maxlen=MAX_ROWS)  # (t, m)
-        self.waiting: collections.deque[Piece] = collections.deque()
-        self.sent: list[Piece] = []  # of the job that is under way
+        self.waiting: collections.deque[Segment] = collections.deque()
+        self.sent: list[Segment] = []  # that are being taken
         self.points: NDArray[np.float64] | None = None  # (n, 3) [m]; None: there is none of the student's
         self.matched: NDArray[np.float64] | None = None  # (n, 3) [m] the program's at the same moment
 
     def begin(self, x: NDArray[np.float64], v: NDArray[np.float64], time: float) -> None:
         """Start at the program's net, x and v of shape (n, 3), at a time [s]."""
-        self.run = next(self.live.runs)
+        self.answers = queue.SimpleQueue()
         self.waiting.clear()
         self.sent = []
         self.x, self.v, self.time = x, v, time
@@ -71,12 +60,7 @@ class StudentNet:
     def follow(self, segment: Segment, end: float, method: str, x: NDArray[np.float64], v: NDArray[np.float64]) -> None:
         """Take a segment up to the time `end` [s], at which the program's net is at x with velocities v, (n, 3)."""
         self.method = method
-        parts = divided(segment)
-        start = end - segment.steps * segment.h
-        for part in parts[:-1]:
-            start += part.steps * part.h
-            self.waiting.append(Piece(part, self.sheet, start, None))
-        self.waiting.append(Piece(parts[-1], self.sheet, end, x))
+        self.waiting += divided(segment._replace(sheet=self.sheet, end=end, x=x))
         if end - self.time > MAX_BEHIND and not self.left:
             restarts = self.live.report.restarts + 1
             self.begin(x, v, end)
@@ -88,56 +72,52 @@ class StudentNet:
         if self.sent or not self.waiting or self.left:
             return
         most = JOB_TIME / self.cost if self.cost else 1.0
-        pieces = [self.waiting.popleft()]
-        sheet, steps = pieces[0].sheet, pieces[0].segment.steps
-        while self.waiting and self.waiting[0].sheet == sheet and steps + self.waiting[0].segment.steps <= most:
-            pieces.append(self.waiting.popleft())
-            steps += pieces[-1].segment.steps
-        self.sent = pieces
-        segments = [piece.segment for piece in pieces]
-        self.live.submit(Job(self.run, self.method, self.x, self.v, segments, self.answers, sheet))
+        self.sent = [self.waiting.popleft()]
+        sheet, steps = self.sent[0].sheet, self.sent[0].steps
+        while self.waiting and self.waiting[0].sheet == sheet and steps + self.waiting[0].steps <= most:
+            self.sent.append(self.waiting.popleft())
+            steps += self.sent[-1].steps
+        self.live.march(self.method, self.x, self.v, self.sent, self.answers)
 
     def collect(self, max_reach: float) -> None:
         """Take the answers that have come. max_reach: [m] from the first point at which a net has left its bounds."""
         while not self.answers.empty():
-            answer = self.answers.get_nowait()
-            if answer.run == self.run:
-                self.take(answer, max_reach)
+            self.take(self.answers.get_nowait(), max_reach)
         self.send()
 
-    def take(self, answer: Answer, max_reach: float) -> None:
+    def take(self, done: Marched, max_reach: float) -> None:
         """Take an answer of this run."""
-        pieces, self.sent = self.sent, []
-        sphere = any(piece.segment.forces.radius > 0.0 for piece in pieces)
-        self.live.report = self.live.report._replace(
-            version=answer.version, compiled=answer.compiled, method=self.method, sphere=sphere, unlike=self.unlike
-        )
-        if not answer.version:
+        segments, self.sent = self.sent, []
+        if done is None:
+            self.live.report = self.live.report._replace(version=0)
             self.points = self.matched = None
             self.max_speed = 0.0
-            for piece in (*pieces, *self.waiting):
-                if piece.x is not None:
-                    self.x, self.v, self.time = piece.x, np.zeros_like(piece.x), piece.time
+            for segment in (*segments, *self.waiting):
+                if segment.x is not None:
+                    self.x, self.v, self.time = segment.x, np.zeros_like(segment.x), segment.end
             self.waiting.clear()
             return
-        self.cost = answer.seconds
-        left = answer.left
-        for piece, x in zip(pieces, answer.x, strict=False):
+        march = done.value
+        self.cost = march.step_time
+        left = march.left
+        for segment, x in zip(segments, march.x, strict=False):
             if np.linalg.norm(x - x[0], axis=1).max() > max_reach:
                 left = True
                 break
-            self.x, self.time = x, piece.time
-            if piece.x is None:
+            self.x, self.time = x, segment.end
+            if segment.x is None:
                 continue
-            self.points, self.matched = x, piece.x
+            self.points, self.matched = x, segment.x
             if self.is_comparable:
-                self.rows.append((piece.time, float(np.linalg.norm(x - piece.x, axis=1).max())))
-        self.v, self.left = answer.v, left
-        self.max_speed = 0.0 if left else float(np.abs(answer.v).max())
+                self.rows.append((segment.end, float(np.linalg.norm(x - segment.x, axis=1).max())))
+        self.v, self.left = march.v, left
+        self.max_speed = 0.0 if left else float(np.abs(march.v).max())
         table = np.array(self.rows).reshape(-1, 2)
-        behind = sum(piece.segment.steps * piece.segment.h for piece in self.waiting)
         self.live.report = self.live.report._replace(
-            seconds=answer.seconds, step=pieces[-1].segment.h, behind=behind,
+            version=done.saved.number, own=done.own, compiled=done.compiled, method=self.method, unlike=self.unlike,
+            sphere=any(segment.forces.radius > 0.0 for segment in segments),
+            seconds=march.step_time, step=segments[-1].h,
+            behind=sum(segment.steps * segment.h for segment in self.waiting),
             left_at=self.time if left else math.nan, difference=self.rows[-1][1] if self.rows else math.nan,
             times=table[:, 0], differences=table[:, 1],
         )  # fmt: skip
@@ -153,10 +133,13 @@ class StudentNet:
 
 def divided(segment: Segment) -> list[Segment]:
     """The same steps in parts of MAX_PART at most."""
-    return [
-        segment._replace(steps=min(MAX_PART, segment.steps - first), since=first * segment.h)
-        for first in range(0, segment.steps, MAX_PART)
-    ]
+    parts = []
+    for first in range(0, segment.steps, MAX_PART):
+        last = min(first + MAX_PART, segment.steps)
+        end = segment.end - (segment.steps - last) * segment.h
+        x = segment.x if last == segment.steps else None
+        parts.append(segment._replace(steps=last - first, since=first * segment.h, end=end, x=x))
+    return parts
 
 
 def forces_of(net: Net, start: float) -> Forces:

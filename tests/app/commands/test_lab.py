@@ -319,5 +319,5 @@ def test_a_folder_to_work_on_needs_no_command_before_it(
     (scene, params, *_), options = served[0]
     assert (scene, params.integrator) == ("rope", "rk4")
     assert options["session"].folder == options["workbook"].folder == folder
-    assert not options["session"].copies.exists()  # it was closed
+    assert not options["session"].versions.copies.exists()  # it was closed
     assert "nothing: no such folder" in error_of(capsys, str(tmp_path / "nothing"))

@@ -7,7 +7,7 @@ import socket
 import struct
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from app.commands.lab_class import make_server
 from app.lab.answers import change_answer, read_answers
 from app.lab.check import check_folder
 from app.lab.class_page import mistakes, page, rows
-from app.lab.classroom import Classroom, Student, checked
+from app.lab.classroom import Classroom, Desk, Student
 from app.lab.folder import folder_names, make_folder
 from app.lab.program_check import Verdict, not_checked
 from app.lab.rope_picture import RopePicture, rope_picture, svg
@@ -27,7 +27,7 @@ from app.lab.runner import Runner
 from app.lab.runners import Runners
 from app.lab.saved import Saved, keep, read_files
 from app.lab.task import Task, load_tasks
-from app.lab.versions import stamps
+from app.lab.versions import Versions, stamps
 from tests.waiting import wait_for
 
 TASKS = tuple(task for task in load_tasks() if task.item.startswith("3.2"))
@@ -51,12 +51,20 @@ def folders(tmp_path: Path) -> list[Path]:
     return found
 
 
-def state_of(folder: Path, tmp_path: Path, before: Student | None = None) -> Student:
-    number = 1 if before is None or before.saved is None else before.saved.number + 1
-    copies = tmp_path / "copies" / folder.name / str(number)
-    copies.mkdir(parents=True, exist_ok=True)
-    with Runner(copies) as runner:
-        return checked(before or Student(folder), keep(read_files(folder), copies, number, TASKS), TASKS, runner)
+@pytest.fixture
+def state_of() -> Iterator[Callable[[Path], Student]]:
+    """The state of a folder, looked at again."""
+    desks: dict[Path, Desk] = {}
+
+    def look(folder: Path) -> Student:
+        if folder not in desks:
+            desks[folder] = Desk(folder, TASKS)
+        desks[folder].student = desks[folder].checked()
+        return desks[folder].student
+
+    yield look
+    for found in desks.values():
+        found.versions.close()
 
 
 def save(folder: Path, sign: str, more: str = "") -> None:
@@ -97,29 +105,27 @@ def test_a_rope_falls_from_the_level_and_hangs_in_the_end(tmp_path: Path) -> Non
     assert np.all(np.diff(tips) < 0.0)
 
 
-def test_a_saved_file_changes_its_tasks_and_the_one_the_student_is_at(folders: list[Path], tmp_path: Path) -> None:
-    first = state_of(folders[0], tmp_path)
+def test_a_saved_file_changes_its_tasks_and_the_one_the_student_is_at(folders: list[Path], state_of) -> None:
+    first = state_of(folders[0])
     assert (first.at, first.changed_at, first.rope.text) == ("", "", "")
     save(folders[0], "+")
-    second = state_of(folders[0], tmp_path, first)
+    second = state_of(folders[0])
     assert second.at == "spring_force"
     assert second.changed_at
     assert second.programs["spring_force"].mistake == "sign of the damping reversed"
     change_answer(folders[0], TASKS, read_answers(folders[0]), "step_euler", "predict", "It explodes after a while.")
-    third = state_of(folders[0], tmp_path, second)
+    third = state_of(folders[0])
     assert third.at == "step_euler"
     assert third.programs["spring_force"] is second.programs["spring_force"]  # not checked again
-    assert state_of(folders[0], tmp_path, third).changed_at == third.changed_at
+    assert state_of(folders[0]).changed_at == third.changed_at
 
 
-def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(
-    folders: list[Path], tmp_path: Path
-) -> None:
+def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(folders: list[Path], state_of) -> None:
     save(folders[0], "+")
     save(folders[1], "+")
     (folders[2] / "rope.py").write_text("def spring_force(:\n")
     change_answer(folders[1], TASKS, read_answers(folders[1]), "spring_force", "stretch", 0.5625)
-    found = mistakes([state_of(folder, tmp_path) for folder in folders], folder_names(folders))
+    found = mistakes([state_of(folder) for folder in folders], folder_names(folders))
     assert [(mistake.place, mistake.folders) for mistake in found] == [
         ("3.2-1 spring_force", ("ada", "bo")),
         ("3.2-1 Stretch", ("bo",)),
@@ -128,10 +134,10 @@ def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(
     assert "stretch of the whole rope" in found[1].text
 
 
-def test_the_page_has_folders_and_no_names_and_escapes_all(folders: list[Path], tmp_path: Path) -> None:
+def test_the_page_has_folders_and_no_names_and_escapes_all(folders: list[Path], state_of) -> None:
     save(folders[2], "+")
     (folders[2] / "answers.toml").write_text(f'name = "Ada Lovelace"\n\n[spring_force]\npredict = "{EVIL}"\n')
-    text = page([state_of(folders[2], tmp_path)], 7, "word")
+    text = page([state_of(folders[2])], 7, "word")
     assert "&lt;b&gt;" in text
     assert "Lovelace" not in text
     assert "<b><" not in text
@@ -140,7 +146,7 @@ def test_the_page_has_folders_and_no_names_and_escapes_all(folders: list[Path], 
     assert 'data-revision="7"' in text
 
 
-def test_a_class_is_followed_and_nothing_is_written(folders: list[Path], tmp_path: Path) -> None:
+def test_a_class_is_followed_and_nothing_is_written(folders: list[Path]) -> None:
     writes = 'open("left_behind", "w").write("x")\n'
     with Classroom(folders, TASKS) as classroom:
         wait_for(lambda: all(student.results for student in classroom.students.values()))
@@ -151,8 +157,9 @@ def test_a_class_is_followed_and_nothing_is_written(folders: list[Path], tmp_pat
         wait_for(lambda: classroom.students[folders[1]].at == "spring_force")
         assert {path for folder in folders for path in folder.rglob("*")} == files
         assert "sign of the damping" in rows(tuple(classroom.students.values()))
-        copies = classroom.copies
-    assert not copies.exists()
+        copies = [desk.versions.copies for desk in classroom.desks]
+        assert all(copy.exists() for copy in copies)
+    assert not any(copy.exists() for copy in copies)
 
 
 def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -206,13 +213,13 @@ def test_a_folder_that_is_removed_and_made_again_is_followed(folders: list[Path]
         wait_for(lambda: "sign of the damping" in rows(tuple(classroom.students.values())))
 
 
-def test_folders_of_one_name_are_told_apart_on_the_page(tmp_path: Path) -> None:
+def test_folders_of_one_name_are_told_apart_on_the_page(tmp_path: Path, state_of) -> None:
     folders = [tmp_path / name / "lab" for name in ("ada", "bo")] + [tmp_path / "carl"]
     students = []
     for folder in folders:
         make_folder(folder, TASKS)
         save(folder, "+")
-        students.append(state_of(folder, tmp_path))
+        students.append(state_of(folder))
     page = rows(students)
     assert ">ada/lab<" in page
     assert ">bo/lab<" in page
@@ -227,10 +234,11 @@ def endless(folder: Path) -> None:
 
 def test_the_end_does_not_wait_for_endless_functions(folders: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.lab.runners.Runner", functools.partial(Runner, time_limit=600.0))
+    monkeypatch.setattr("app.lab.classroom.Versions", functools.partial(Versions, time_limit=600.0))
     for folder in folders:
         endless(folder)
     with Classroom(folders, TASKS) as classroom:
-        wait_for(lambda: [runner for runner in classroom.runners.running if runner.starts])
+        wait_for(lambda: [True for desk in classroom.desks for one in desk.versions.processes.values() if one.starts])
     assert not any(thread.is_alive() for thread in classroom.threads)
     runners = Runners()
     with ThreadPoolExecutor(1) as pool:
@@ -275,16 +283,16 @@ def test_a_folder_that_is_as_it_was_changes_nothing_on_the_page(
             assert classroom.revision == revision
 
 
-def test_a_broken_file_is_where_its_line_is(folders: list[Path], tmp_path: Path) -> None:
+def test_a_broken_file_is_where_its_line_is(folders: list[Path], state_of) -> None:
     save(folders[0], "-")
     (folders[0] / "rope.py").write_text((folders[0] / "rope.py").read_text().replace("    ...\n", "    return 1\n", 1))
-    first = state_of(folders[0], tmp_path)
+    first = state_of(folders[0])
     begun = [name for name, verdict in first.programs.items() if verdict.state != "not begun"]
     assert begun[0] == "spring_force"
     assert len(begun) == 2
     text = (folders[0] / "rope.py").read_text().replace("(length - rest_length)", "(length - rest_length")
     (folders[0] / "rope.py").write_text(text)
-    second = state_of(folders[0], tmp_path, first)
+    second = state_of(folders[0])
     assert second.at == "spring_force"
     states = {name: verdict.state for name, verdict in second.programs.items()}
     assert {states.pop(name) for name in begun} == {"failed"}

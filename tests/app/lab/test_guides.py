@@ -9,7 +9,7 @@ import pytest
 from app.lab.live_values import LiveNumber, LiveValues, fill_in, names_in
 from app.lab.task import Task, load_tasks
 from app.panel.guide import live_values
-from app.panel.task_setups import params_of_setup
+from app.panel.task_setups import setup_of_task
 from app.render.formula import formula
 from app.scenes import scene_named
 from app.server.loop import SimLoop
@@ -24,7 +24,8 @@ TICKS = 4
 def values_of(task: Task, **changes: object) -> LiveValues:
     """The live values a few frames after the task was set up. changes: other parameters."""
     assert task.setup is not None
-    kind, params, _ = params_of_setup(task.setup)
+    setup = setup_of_task(task.setup)
+    kind, params = scene_named(setup.scene), setup.params
     if changes:
         params = type(params)(**{**vars(params), **changes})
     loop = SimLoop(kind.make(params))

@@ -11,8 +11,8 @@ import pytest
 from app.lab.live_code import LiveCode
 from app.lab.live_net import CLOTH, ROPE, LiveNet
 from app.lab.live_tables import LiveTables
-from app.lab.saved import keep
 from app.lab.task import load_tasks
+from app.lab.versions import Versions
 from app.messages import StudentAnswer
 from app.panel.code_panel import sea_texts
 from app.scenes.radial_sea.bodies import box_of
@@ -55,26 +55,30 @@ class Folder:
     """Versions of a student's file, and what runs them."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self.number = path, 0
-        self.tables = LiveTables(TASKS, 1.0)
-        rope, cloth = self.nets = [LiveNet(material, lambda *_: None) for material in (ROPE, CLOTH)]
+        self.path, self.versions = path / "mine", Versions(path / "mine", list(TASKS.values()), 1.0)
+        self.path.mkdir()
+        self.versions.look()
+        self.tables = LiveTables(self.versions, TASKS.values(), "sea")
+        rope, cloth = self.nets = [LiveNet(material, self.versions) for material in (ROPE, CLOTH)]
         self.live = LiveCode(rope, cloth, self.tables)
 
     def save(self, text: str, file: str = "square_sea.py") -> int:
-        self.number += 1
-        folder = self.path / str(self.number)
-        folder.mkdir()
-        self.tables.adopt(keep({file: text.encode()}, folder, self.number, list(TASKS.values())))
-        return self.number
+        (self.path / file).write_text(text)
+        saved = self.versions.look()
+        assert saved is not None
+        self.tables.look()
+        return saved.number
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Iterator[Folder]:
     found = Folder(tmp_path)
     yield found
+    found.versions.abort()
     found.tables.close()
     for net in found.nets:
         net.close()
+    found.versions.close()
 
 
 def settle(scene: SquareSeaScene | RadialSeaScene, folder: Folder, version: int, names: set[str]) -> None:
@@ -176,12 +180,12 @@ def test_a_fault_is_named_and_the_last_version_goes_on(
 
 def test_an_endless_function_is_called_once_however_the_scene_changes(folder: Folder) -> None:
     scene = SquareSeaScene(PHILLIPS, folder.live)
-    folder.save(f"{HEAD}def gravity(mass_ratio):\n    open('calls', 'a').write('x')\n    while True: pass\n")
+    number = folder.save(f"{HEAD}def gravity(mass_ratio):\n    open('calls', 'a').write('x')\n    while True: pass\n")
     wait_for(lambda: folder.tables.errors)
     for mass in (2.0, 3.0):
         scene.change_forces(dataclasses.replace(scene.params, planet_mass=mass))
-        wait_for(lambda mass=mass: folder.tables.tried["gravity"][1].columns[0][0] == mass)
-    assert (folder.path / "1" / "calls").read_text() == "x"
+        wait_for(lambda mass=mass: folder.tables.asked["gravity"][1].columns[0][0] == mass)
+    assert (folder.versions.copies / str(number) / "calls").read_text() == "x"
     assert "endless loop" in folder.tables.errors["gravity"].text
 
 
@@ -260,7 +264,7 @@ def test_an_error_of_the_lab_is_shown_and_the_next_version_runs(
 
     scene = SquareSeaScene(PHILLIPS, folder.live)
     with monkeypatch.context() as patch:
-        patch.setattr(folder.tables, "runner", fail)
+        patch.setattr("app.lab.runner.Runner.table", fail)
         folder.save(source("gravity"))
         wait_for(lambda: folder.tables.errors)
         assert "TypeError: not what was expected" in str(next(iter(folder.tables.errors.values())))

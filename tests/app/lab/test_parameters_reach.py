@@ -21,7 +21,7 @@ from app.scenes.rope.parameters import Params as RopeParams
 from app.scenes.rope.scene import RopeScene
 from sim.parameters import Parameter, Value, effect_of_change, in_words, parameters_of
 from sim.springs import LAWS
-from tests.app.lab.test_session import save
+from tests.app.lab.test_session import save, taken
 from tests.waiting import wait_for
 
 TASKS = load_tasks()
@@ -67,7 +67,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
         for name, file in FILES.items():
             sources = (inspect.getsource(task.function) for task in TASKS if task.file == file)
             save(session, "import numpy as np\n\n\n" + "\n\n".join(sources), file)
-            wait_for(lambda name=name: getattr(session, name).taken == session.state.version)
+            wait_for(lambda name=name: taken(session, name) == session.state.version)
         yield session
         session.close()
 

@@ -2,16 +2,19 @@
 
 import queue
 import types
+from collections.abc import Iterator
 from pathlib import Path
 from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
-from app.lab.live_net import COMPILE_AFTER, MAX_REST, REST_RATIO, ROPE, Answer, Job, LiveNet, Loaded
+from app.lab.live_net import COMPILE_AFTER, MAX_REST, REST_RATIO, ROPE, LiveNet, Marched
 from app.lab.rope_march import Forces, Functions, March, Segment, Unfit, march
-from app.lab.saved import keep
+from app.lab.runner import BUSY, RunError
 from app.lab.task import load_tasks
+from app.lab.versions import Versions
+from tests.waiting import wait_for
 
 FORCES = Forces(
     1.0, 800.0, 7.0, 1.0, 0.2, 10.0, -np.inf, 0.4, (9.0, 0.0, 3.0), (-20.0, 0.0, 0.0), 800.0, 5.0, 0.3, False, -1,
@@ -31,84 +34,133 @@ def test_nan_is_said_of_the_force_of_a_sphere_that_has_come_near() -> None:
         march(functions, x, np.zeros((3, 3)), [segment])
 
 
-def test_an_error_of_the_lab_is_told_and_the_next_version_moves_the_rope(tmp_path: Path) -> None:
-    told: list[str] = []
-    live = LiveNet(ROPE, lambda saved, error: told.append(f"{saved.number} {error}"))
-    x = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0]])
-    job = Job(1, "rk4", x, 0.0 * x, [Segment(1, 0.01, FORCES, np.zeros((0, 4, 3)))], queue.SimpleQueue())
-
-    def loaded(number: int, outcome: object) -> Loaded:
-        """A version whose process gives this outcome, or raises it."""
-        text = b"def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):\n    return x1\n"
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        runner = Mock(**{"march.side_effect": [outcome, outcome]})
-        return Loaded(keep({"rope.py": text}, folder, number, load_tasks()), runner)
-
-    done = March(x[None], x, 1, 1e-3, 1e-3, False)
-    try:
-        live.adopt(loaded(1, TypeError("not what was expected")))
-        live.submit(job)
-        assert job.answers.get(timeout=30.0).version == 0
-        assert [text for text in told if "1 rope.py: the lab could not run" in text and "TypeError: not what" in text]
-        second = loaded(2, done)
-        second.runner.close.side_effect = ValueError("not closed")
-        for version in (second, loaded(3, done), loaded(4, done)):  # the fourth closes the second
-            live.adopt(version)
-        live.submit(job)
-        assert job.answers.get(timeout=30.0).version in (2, 3, 4)
-        assert any("ValueError: not closed" in text for text in told)
-        second.runner.close.side_effect = None
-        live.adopt(loaded(5, done))
-        live.submit(job)
-        assert job.answers.get(timeout=30.0).version == 5
-    finally:
-        live.close()
+X = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0]])
+FORCE = "def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):\n    return x1\n"
 
 
-def test_a_version_is_compiled_once_it_has_taken_as_long_as_compiling_does(tmp_path: Path) -> None:
-    asked: list[int] = []
-    live = LiveNet(ROPE, lambda saved, error: None, lambda saved: asked.append(saved.number))
-    x = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0]])
-    answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
-    job = Job(1, "rk4", x, 0.0 * x, [Segment(1, 0.01, FORCES, np.zeros((0, 4, 3)))], answers)
-    done = March(x[None], x, 1, 100.0, 0.4 * COMPILE_AFTER, False)
-    text = b"def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):\n    return x1\n"
-    try:
-        for number in (1, 2):
-            folder = tmp_path / str(number)
-            folder.mkdir()
-            saved = keep({"rope.py": text}, folder, number, load_tasks())
-            live.adopt(Loaded(saved, Mock(**{"march.return_value": done})))
-            for _ in range(2 * number):  # too few of the first version
-                live.submit(job)
-                assert answers.get(timeout=30.0).version == number
-        assert asked == [2]
-    finally:
-        live.close()
+class Folder:
+    """A folder with one function, and processes that come to given outcomes."""
+
+    def __init__(self, path: Path, asked: list[int]) -> None:
+        self.path, self.processes = path, {}
+        self.versions = Versions(path, load_tasks())
+        self.live = LiveNet(ROPE, self.versions, lambda: asked.append(self.version))
+
+    @property
+    def version(self) -> int:
+        """The version that was saved last."""
+        saved = self.versions.of("rope.py")
+        assert saved is not None
+        return saved.number
+
+    def save(self, *outcomes: object) -> None:
+        """Save a version, which takes over. outcomes: of its marches, the last one of all later ones too."""
+        (self.path / "rope.py").write_text(f"{FORCE}# {len(self.processes)}\n")
+        assert self.versions.look() is not None
+        left = list(outcomes)
+
+        def march(*_: object) -> object:
+            found = left.pop(0) if len(left) > 1 else left[0]
+            if isinstance(found, Exception):
+                raise found
+            return found
+
+        process = self.processes[self.version] = Mock(march=march, is_fresh=False)
+        self.versions.processes["rope", self.version, False] = process
+        assert self.versions.attempt(ROPE.use, lambda begun: begun, lambda runner, own: None)
+
+    def march(self) -> int:
+        """The version that takes a step; 0 for none."""
+        answers: queue.SimpleQueue[Marched] = queue.SimpleQueue()
+        self.live.march("rk4", X, 0.0 * X, [Segment(1, 0.01, FORCES, np.zeros((0, 4, 3)))], answers)
+        done = answers.get(timeout=30.0)
+        return 0 if done is None else done.saved.number
+
+    def close(self) -> None:
+        self.live.close()
+        self.versions.close()
 
 
-def test_on_a_busy_hub_a_function_rests_and_is_not_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def marched(seconds: float, effort: float) -> March:
+    """A step that takes so long [s]."""
+    return March(X[None], X, 1, seconds, effort, False)
+
+
+@pytest.fixture
+def asked() -> list[int]:
+    """The versions that were to be compiled."""
+    return []
+
+
+@pytest.fixture
+def folder(tmp_path: Path, asked: list[int]) -> Iterator[Folder]:
+    found = Folder(tmp_path, asked)
+    yield found
+    found.close()
+
+
+def test_an_error_of_the_lab_is_told_and_the_next_version_moves_the_rope(folder: Folder) -> None:
+    works = marched(1e-3, 1e-3)
+    folder.save(TypeError("not what was expected"))
+    assert folder.march() == 0
+    assert "the lab could not run" in folder.versions.errors[ROPE.use].text
+    assert "TypeError: not what" in folder.versions.errors[ROPE.use].text
+    folder.save(works)
+    assert folder.march() == 2
+    assert not folder.versions.errors
+    folder.processes[2].close.side_effect = ValueError("not closed")
+    folder.save(works, works, TypeError("later"))
+    assert folder.march() == 0
+    wait_for(lambda: folder.live.trouble)
+    assert folder.live.trouble is not None
+    assert "ValueError: not closed" in folder.live.trouble.text
+    assert folder.march() == 3
+    assert folder.march() == 2  # in a new process, as the one before was ended
+    assert "TypeError: later" in folder.versions.errors[ROPE.use].text
+    folder.save(works)
+    assert folder.march() == 4
+    assert not folder.versions.errors
+
+
+def test_a_version_is_compiled_once_it_has_taken_as_long_as_compiling_does(folder: Folder, asked: list[int]) -> None:
+    for number in (1, 2):
+        folder.save(marched(100.0, 0.4 * COMPILE_AFTER))
+        assert [folder.march() for _ in range(2 * number)] == [number] * 2 * number  # too few of the first version
+    wait_for(lambda: asked == [2])
+
+
+def test_on_a_busy_hub_a_function_rests_and_is_not_compiled(
+    folder: Folder, asked: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("app.lab.live_net.ON_HUB", True)
-    asked: list[int] = []
     rests: list[float] = []
     monkeypatch.setattr("app.lab.live_net.time", Mock(sleep=rests.append))
-    live = LiveNet(ROPE, lambda saved, error: None, lambda saved: asked.append(saved.number))
-    x = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0]])
-    answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
-    job = Job(1, "rk4", x, 0.0 * x, [Segment(1, 0.01, FORCES, np.zeros((0, 4, 3)))], answers)
-    text = b"def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):\n    return x1\n"
-    saved = keep({"rope.py": text}, tmp_path, 1, load_tasks())
     waited = [2.0 * COMPILE_AFTER, 2.0 * COMPILE_AFTER, 0.01, -1e-4]  # it takes `COMPILE_AFTER` each time
-    marches = [March(x[None], x, 1, COMPILE_AFTER + wait, COMPILE_AFTER, False) for wait in waited]
-    live.adopt(Loaded(saved, Mock(**{"march.side_effect": marches})))
-    try:
-        compiled = []
-        for _ in marches:
-            live.submit(job)
-            assert answers.get(timeout=30.0).version == 1
-            compiled.append(list(asked))
-        assert compiled == [[], [], [1], [1]]
-    finally:
-        live.close()
+    folder.save(*(marched(COMPILE_AFTER + wait, COMPILE_AFTER) for wait in waited))
+    compiled = []
+    for number in range(1, len(waited) + 1):
+        assert folder.march() == 1
+        wait_for(lambda number=number: len(rests) == number)
+        compiled.append(list(asked))
+    assert compiled == [[], [], [1], [1]]
     assert rests == pytest.approx([MAX_REST, MAX_REST, 0.01 * REST_RATIO, 0.0])
+
+
+def test_a_version_that_fails_later_leaves_the_rope_to_the_one_before(folder: Folder) -> None:
+    works, fails = marched(1e-3, 1e-3), RunError("raised", "too low", "rope.py", 11)
+    folder.save(works)
+    assert folder.march() == 1
+    folder.save(works, fails)
+    assert [folder.march() for _ in range(3)] == [2, 1, 1]
+    assert folder.versions.errors[ROPE.use] is fails
+    folder.save(fails)  # its trial has worked
+    assert folder.march() == 1
+
+
+def test_a_busy_machine_is_no_fault_of_a_version(folder: Folder) -> None:
+    works, busy = marched(1e-3, 1e-3), RunError(BUSY, "no process", "Python")
+    folder.save(works, busy, works)
+    assert [folder.march() for _ in range(2)] == [1, 0]
+    assert folder.versions.errors[ROPE.use] is busy
+    assert folder.march() == 1
+    assert not folder.versions.errors

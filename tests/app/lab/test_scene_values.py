@@ -10,9 +10,9 @@ import pytest
 from app.lab.folder import make_folder
 from app.lab.live_tables import LiveTables
 from app.lab.live_values import LiveNumber
-from app.lab.saved import keep, read_files
 from app.lab.scene_values import VALUES, calls_here
 from app.lab.task import load_tasks
+from app.lab.versions import Versions
 from app.panel.code_panel import compared_text
 from app.panel.guide import live_values
 from app.scenes import scene_named
@@ -35,21 +35,24 @@ CLOTH = {"rows": 5.0, "cols": 4.0, "structural_links": 31.0, "shear_links": 24.0
 
 
 @pytest.fixture
-def values() -> Iterator[LiveTables]:
-    found = LiveTables(TASKS, 20.0)
+def values(tmp_path: Path) -> Iterator[LiveTables]:
+    (tmp_path / "mine").mkdir()
+    versions = Versions(tmp_path / "mine", list(TASKS.values()), 20.0)
+    found = LiveTables(versions, TASKS.values(), "values")
     yield found
     found.close()
+    versions.close()
 
 
 @pytest.mark.parametrize(
     ("scene", "settings", "expected"), SCENES, ids=[f"{scene}-{number}" for number, (scene, _, _) in enumerate(SCENES)]
 )
 def test_the_reference_solutions_give_the_numbers_of_the_program(
-    values: LiveTables, tmp_path: Path, scene: str, settings: dict[str, object], expected: set[str]
+    values: LiveTables, scene: str, settings: dict[str, object], expected: set[str]
 ) -> None:
-    make_folder(tmp_path / "solutions", list(TASKS.values()), solutions=True)
-    saved = keep(read_files(tmp_path / "solutions"), tmp_path / "solutions", 1, list(TASKS.values()))
-    values.adopt(saved)
+    make_folder(values.versions.folder, list(TASKS.values()), solutions=True)
+    saved = values.versions.look()
+    assert saved is not None
     kind = scene_named(scene)
     loop = SimLoop(kind.make(dataclasses.replace(kind.params(), **settings)))
     loop.tick(0.1)
@@ -74,15 +77,14 @@ def test_every_value_is_of_a_task_of_that_scene() -> None:
 
 
 @pytest.mark.parametrize("wrong", ["1 / 0", "5", "[0] * rows + [0] * (rows / cols)"])
-def test_a_function_without_a_number_is_left_to_its_check(values: LiveTables, tmp_path: Path, wrong: str) -> None:
+def test_a_function_without_a_number_is_left_to_its_check(values: LiveTables, wrong: str) -> None:
     calls = calls_here("cloth", {"cloth_links"}, {name: LiveNumber(value) for name, value in CLOTH.items()})
     assert calls["cloth_links"].program == 77.0
     values.want(calls)
     for number, body in enumerate(("[0] * rows", wrong), 1):
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        (folder / "cloth.py").write_text(f"def cloth_links(rows, cols):\n    return {body}\n")
-        values.adopt(keep(read_files(folder), folder, number, list(TASKS.values())))
+        (values.versions.folder / "cloth.py").write_text(f"def cloth_links(rows, cols):\n    return {body}\n")
+        assert values.versions.look() is not None
+        values.look()
         wait_for(lambda expected=number == 2: bool(values.tables) and bool(values.errors) is expected)
         assert values.tables["cloth_links"].values[0] == 5.0  # of the version that works
         assert ("program 77" in compared_text("cloth", "cloth_links", values)) is (number == 1)

@@ -14,7 +14,7 @@ import pytest
 
 from app.lab.background_check import BackgroundCheck
 from app.lab.folder import make_folder
-from app.lab.live_net import StudentReport
+from app.lab.live_net import CLOTH, ROPE, StudentReport, bent_rope
 from app.lab.live_tables import TableReport
 from app.lab.program_check import Verdict, not_checked
 from app.lab.rope_march import REFERENCE
@@ -22,7 +22,7 @@ from app.lab.runner import RunError, Runner
 from app.lab.saved import read_files
 from app.lab.session import CodeState, Session
 from app.lab.task import load_tasks
-from app.lab.versions import stamps
+from app.lab.versions import Versions, stamps
 from app.messages import Grab, Place, StudentAnswer
 from app.panel.code_panel import code_lines, function_lines, headline
 from app.scenes.rope.parameters import Params
@@ -69,7 +69,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
         patch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
         with working_in(tmp_path_factory.mktemp("lab") / "mine") as session:
             yield session
-            copies = session.copies
+            copies = session.versions.copies
     assert not copies.exists()
 
 
@@ -78,6 +78,23 @@ def save(session: Session, text: str, file: str = "rope.py") -> None:
     before = session.state.version
     (session.folder / file).write_text(text)
     wait_for(lambda: session.state.version > before)
+
+
+def taken(session: Session, name: str = "rope") -> int:
+    """The version that moves the rope, or the cloth, or will; 0 without one."""
+    use = (ROPE if name == "rope" else CLOTH).use
+    return max((saved.number for saved in session.versions.worked.get(use, ())), default=0)
+
+
+def of_rope(session: Session) -> int:
+    """The version in which the rope's file was saved last."""
+    saved = session.versions.of("rope.py")
+    return 0 if saved is None else saved.number
+
+
+def process(session: Session) -> Runner:
+    """The process of the rope."""
+    return session.versions.processes["rope", taken(session), False]
 
 
 def run(scene: RopeScene, frames: int = 20) -> None:
@@ -96,10 +113,10 @@ def make_scene(session: Session, **values: object) -> RopeScene:
 @pytest.fixture
 def right(session: Session) -> Session:
     """The session with a right `spring_force`, and nothing else, that moves the rope."""
-    taken = session.rope.versions[-1].saved.texts["rope.py"] if session.rope.versions else b""
-    if session.state.error is not None or taken != RIGHT.encode():
+    saved = session.versions.of("rope.py")
+    if session.state.error is not None or saved is None or saved.texts["rope.py"] != RIGHT.encode():
         save(session, RIGHT)
-    wait_for(lambda: session.state.error is None and session.rope.taken == session.state.version)
+    wait_for(lambda: session.state.error is None and taken(session) == of_rope(session))
     return session
 
 
@@ -154,7 +171,7 @@ def test_floor_sphere_and_mouse_are_those_of_the_program(right: Session, law: st
 
 def test_a_wrong_function_leaves_the_program_s_rope_alone(right: Session) -> None:
     save(right, RIGHT.replace("return stiffness", "return -stiffness"))
-    wait_for(lambda: right.rope.taken == right.state.version)
+    wait_for(lambda: taken(right) == right.state.version)
     scene, alone = make_scene(right), RopeScene(Params(integrator="rk4"))
     run(scene, 60)
     alone.advance(120)
@@ -171,7 +188,7 @@ ELSEWHERE = ("__import__('os')._exit(3)", "for i in range(1_000_000): print(i)",
     "line", [pytest.param(line, marks=pytest.mark.stress if line in ELSEWHERE else []) for line in ACCIDENTS]
 )
 def test_what_goes_wrong_is_named_and_the_last_version_goes_on(right: Session, line: str) -> None:
-    working = right.rope.taken
+    working = taken(right)
     start = time.monotonic()
     save(right, with_line(line))
     wait_for(lambda: right.state.error)
@@ -190,7 +207,7 @@ def test_what_goes_wrong_is_named_and_the_last_version_goes_on(right: Session, l
 
 
 def test_an_error_that_comes_later_is_named_and_the_version_before_goes_on(right: Session) -> None:
-    working = right.rope.taken
+    working = taken(right)
     save(right, with_line("if x2[2] < 2.9: raise ValueError('too low')"))
     wait_for(lambda: right.state.error)  # the rope that it is tried with is lower
     assert right.state.error is not None
@@ -202,12 +219,12 @@ def test_an_error_that_comes_later_is_named_and_the_version_before_goes_on(right
 
 def test_a_file_of_another_scene_does_not_begin_the_rope_again(right: Session) -> None:
     save(right, RIGHT + "\n# a new version\n")
-    wait_for(lambda: right.rope.taken == right.state.version)
+    wait_for(lambda: taken(right) == right.state.version)
     begun: list[int] = []
     right.rope.connect(lambda: None, lambda: begun.append(1))
     save(right, HEAD + "def cloth_links(rows, cols):\n    return []\n", "cloth.py")
     save(right, RIGHT + "\n# changed\n")
-    wait_for(lambda: right.rope.taken == right.state.version)
+    wait_for(lambda: taken(right) == right.state.version)
     assert begun == [1]  # what the rope takes, it takes in order
 
 
@@ -231,7 +248,7 @@ def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Ses
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.lab.runner.Runner._started", refuse)
-        right.rope.versions[-1].runner.close()  # as after an error
+        process(right).close()  # as after an error
         scene = make_scene(right)
         run(scene, 3)
         wait_for(lambda: right.state.error)
@@ -242,11 +259,11 @@ def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Ses
         assert "trying again" in headline(right.state, right.rope.report, TableReport(), "rope")
         assert "stopped" not in text
         saved = right.state.version
-        assert right.spare is not None
-        right.spare.close()
+        assert right.versions.spare is not None
+        right.versions.spare.close()
         (right.folder / "rope.py").write_text(RIGHT + "\n# once more\n")
-        wait_for(lambda: right.state.version > saved and right.state.error and right.postponed)
-    wait_for(lambda: right.rope.taken == right.state.version and right.state.error is None)  # nothing is saved
+        wait_for(lambda: right.state.version > saved and right.state.error)
+    wait_for(lambda: taken(right) == right.state.version and right.state.error is None)  # nothing is saved
     run(scene, 3)
     assert right.rope.report.version == right.state.version
 
@@ -254,13 +271,15 @@ def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Ses
 def test_a_check_that_a_busy_machine_does_not_allow_is_made_again(
     right: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    wait_for(lambda: not right.check.waiting)
     answers = iter([not_checked("the machine is busy"), Verdict("right")])
     monkeypatch.setattr("app.lab.background_check.RETRY_INTERVAL", 0.3)
     monkeypatch.setattr(right.check, "ask", lambda folder, name: next(answers))
-    right.check.request(right.folder, ["spring_force"], frozenset({"spring_force"}))
-    wait_for(lambda: right.check.verdicts.get("spring_force") not in (None, Verdict("right")))
+    save(right, RIGHT + "\n# to be checked\n")
+    wait_for(lambda: right.versions.verdicts.get("spring_force") not in (None, Verdict("right")))
     assert "could not be checked (the machine is busy); trying again." in function_lines(right, "rope")
-    wait_for(lambda: right.check.verdicts.get("spring_force") == Verdict("right"))
+    assert right.check.waiting == {"spring_force"}
+    wait_for(lambda: right.versions.verdicts.get("spring_force") == Verdict("right"))
     assert not right.check.waiting
 
 
@@ -270,12 +289,11 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
 
     before = right.state.version
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(right.check, "request", full_disk)
+        patch.setattr("app.lab.versions.keep", full_disk)
         (right.folder / "rope.py").write_text(RIGHT + "\n# later\n")
         wait_for(lambda: right.state.error and "cannot be taken up" in right.state.error.text)
         assert right.state.version == before
-    wait_for(lambda: right.state.version > before)
-    assert right.state.error is None
+    wait_for(lambda: right.state.version > before and right.state.error is None)
 
 
 def test_files_that_stay_as_they_are_are_not_read_again(right: Session, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -301,21 +319,22 @@ def test_a_folder_that_is_removed_and_made_again_is_followed(right: Session) -> 
         (right.folder / name).write_text(text)
     save(right, RIGHT + "# in the new folder\n")
     assert right.state.version > version
-    wait_for(lambda: right.rope.taken == right.state.version)
+    wait_for(lambda: taken(right) == right.state.version)
 
 
 def test_a_forged_answer_is_named(right: Session) -> None:
-    found = right.rope.versions[-1].runner
+    x, v, segment = bent_rope(False)
+    found = Runner(process(right).folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(found, "_ask", lambda *_: (1, 2, 3))
         with pytest.raises(RunError, match="pipe of the lab"):
-            right.rope.attempt(right.rope.versions[-1])
+            found.march({"spring_force"}, "step_rk4", x, v, [segment])
 
 
 def test_the_end_does_not_wait_for_an_endless_function(tmp_path: Path) -> None:
     (tmp_path / "rope.py").write_text(with_line("while True: pass"))
     session = Session(tmp_path, TASKS, time_limit=600.0)
-    wait_for(lambda: session.trial is not None and session.trial.starts)
+    wait_for(lambda: [runner for runner in session.versions.processes.values() if runner.starts])
     with ThreadPoolExecutor(1) as pool:
         pool.submit(session.close).result(60.0)
     assert not session.thread.is_alive()
@@ -330,8 +349,8 @@ def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Sess
     not_begun = "\n\ndef step_euler(x, v, h, acceleration):\n    ...\n"
     save(right, RIGHT.replace("return stiffness", "return -stiffness") + not_begun)
     save(right, HEAD + "def cloth_links(rows, cols):\n    return 1 / 0\n", "cloth.py")
-    wait_for(lambda: {"spring_force", "cloth_links"} <= set(right.check.verdicts) and not right.check.waiting)
-    verdicts = right.check.verdicts
+    wait_for(lambda: {"spring_force", "cloth_links"} <= set(right.versions.verdicts) and not right.check.waiting)
+    verdicts = right.versions.verdicts
     spring, cloth = verdicts["spring_force"], verdicts["cloth_links"]
     assert (spring.state, spring.mistake) == ("wrong", "sign of the spring reversed")
     assert (cloth.state, cloth.place) == ("failed", "cloth.py:4")
@@ -346,14 +365,16 @@ def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Sess
     process.kill()  # it is started again
     process.wait()
     save(right, RIGHT)
-    wait_for(lambda: right.check.verdicts.get("spring_force") == Verdict("right"))
+    wait_for(lambda: right.versions.verdicts.get("spring_force") == Verdict("right"))
 
 
 def test_a_check_that_is_killed_is_made_once_more_and_then_said(tmp_path: Path) -> None:
-    (tmp_path / "rope.py").write_text("import time\ntime.sleep(60)\n")
-    check = BackgroundCheck()
+    (tmp_path / "rope.py").write_text("import time\ntime.sleep(60)\ndef spring_force(): return 1\n")
+    versions = Versions(tmp_path, [task for task in TASKS if task.name == "spring_force"])
+    check = BackgroundCheck(versions)
     try:
-        check.request(tmp_path, ["spring_force"], frozenset({"spring_force"}))
+        versions.look()
+        check.look()
         assert check.waiting
         wait_for(lambda: check.process is not None)
         first = check.process
@@ -364,9 +385,10 @@ def test_a_check_that_is_killed_is_made_once_more_and_then_said(tmp_path: Path) 
         assert check.process is not None
         check.process.kill()
         wait_for(lambda: not check.waiting)
-        assert check.verdicts["spring_force"].state == "not checked"
+        assert versions.verdicts["spring_force"].state == "not checked"
     finally:
         check.close()
+        versions.close()
 
 
 def test_the_panel_says_what_runs_and_what_is_wrong(right: Session) -> None:
@@ -384,7 +406,7 @@ def test_the_panel_says_what_runs_and_what_is_wrong(right: Session) -> None:
     assert "</b>: rope.py, line 11: " in headline(right.state, right.rope.report, TableReport(), "rope")
     assert "The last version that worked goes on." in text
     save(right, RIGHT.replace("return stiffness", "return 0.9 * stiffness"))
-    wait_for(lambda: right.rope.taken == right.state.version)
+    wait_for(lambda: taken(right) == right.state.version)
     run(scene, 10)
     text = code_lines(right.state, right.rope.report, TableReport(), "rope")
     assert "polyline" in text
@@ -392,24 +414,25 @@ def test_the_panel_says_what_runs_and_what_is_wrong(right: Session) -> None:
 
 
 def test_the_panel_says_which_functions_run_compiled_and_how_fast() -> None:
-    state = CodeState(version=1, begun=frozenset({"spring_force", "step_rk4"}))
-    report = StudentReport(version=1, compiled=("links", "spring_force"), method="rk4", seconds=80e-6, step=0.016)
+    state, own = CodeState(version=1), frozenset({"spring_force", "step_rk4"})
+    compiled = ("links", "spring_force")
+    report = StudentReport(version=1, own=own, compiled=compiled, method="rk4", seconds=80e-6, step=0.016)
     said = "spring_force compiled by numba, step_rk4 plain Python: 80 µs a step, 200 times real time."
     assert said in code_lines(state, report, TableReport(), "rope")
     assert "Plain Python: 80 µs" in code_lines(state, report._replace(compiled=()), TableReport(), "rope")
 
 
 def test_an_error_of_syntax_starts_no_process_and_a_right_version_one(right: Session, monkeypatch) -> None:
-    wait_for(lambda: right.spare is not None and right.spare.is_fresh)
+    wait_for(lambda: right.versions.spare is not None and right.versions.spare.is_fresh)
     started: list[Path] = []
     start = Runner._started
     monkeypatch.setattr(Runner, "_started", lambda self, env: started.append(self.folder) or start(self, env))
-    spare = right.spare
+    spare = right.versions.spare
     save(right, with_line("return ("))
-    wait_for(lambda: right.state.error is not None and right.spare is spare)
+    wait_for(lambda: right.state.error is not None and right.versions.spare is spare)
     assert right.state.error is not None
     assert (right.state.error.kind, right.state.error.file) == ("syntax", "rope.py")
     assert started == []
     save(right, RIGHT)
-    wait_for(lambda: right.rope.taken == right.state.version and right.spare not in (None, spare))
+    wait_for(lambda: taken(right) == right.state.version and right.versions.spare not in (None, spare))
     assert len(started) == 1

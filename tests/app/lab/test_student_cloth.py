@@ -14,7 +14,7 @@ from app.messages import Grab, Place, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothScene
-from tests.app.lab.test_session import save, working_in
+from tests.app.lab.test_session import save, taken, working_in
 from tests.waiting import wait_for
 
 TASKS = load_tasks()
@@ -49,10 +49,10 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
 @pytest.fixture
 def right(session: Session) -> Session:
     """The session with right functions, which move the cloth."""
-    texts = {} if session.saved is None else session.saved.texts
-    if session.state.error is not None or texts.get("cloth.py") != RIGHT.encode():
+    saved = session.versions.of("cloth.py")
+    if session.state.error is not None or saved is None or saved.texts["cloth.py"] != RIGHT.encode():
         save(session, RIGHT, "cloth.py")
-        wait_for(lambda: session.state.error is None and session.cloth.taken == session.state.version)
+        wait_for(lambda: session.state.error is None and taken(session, "cloth") == session.state.version)
     return session
 
 
@@ -121,7 +121,7 @@ def test_a_large_cloth_has_a_coarser_one_beside_it(right: Session) -> None:
 
 def test_a_wrong_function_leaves_the_program_s_cloth_alone(right: Session) -> None:
     save(right, RIGHT.replace("force[j] -= pull", "force[j] += pull"), "cloth.py")
-    wait_for(lambda: right.cloth.taken == right.state.version)
+    wait_for(lambda: taken(right, "cloth") == right.state.version)
     scene, alone = ClothScene(SMALL, right.live), ClothScene(SMALL)
     run(scene, 30)
     for _ in range(30):
@@ -136,7 +136,7 @@ def test_a_wrong_function_leaves_the_program_s_cloth_alone(right: Session) -> No
     "line", [pytest.param(line, marks=[] if "np" in line else pytest.mark.stress) for line in ACCIDENTS]
 )
 def test_what_goes_wrong_is_named_and_the_last_version_goes_on(right: Session, line: str) -> None:
-    working = right.cloth.taken
+    working = taken(right, "cloth")
     save(right, RIGHT.replace("    x, v = np.asarray(x)", f"    {line}\n    x, v = np.asarray(x)"), "cloth.py")
     wait_for(lambda: right.state.error)
     assert right.state.error is not None
@@ -160,7 +160,7 @@ def test_a_cloth_that_is_saved_does_not_begin_another_scene_again(right: Session
     begun: list[int] = []
     right.live.connect("rope", lambda: None, lambda: begun.append(1))
     save(right, RIGHT + "\n# changed\n", "cloth.py")
-    wait_for(lambda: right.cloth.taken == right.state.version)
+    wait_for(lambda: taken(right, "cloth") == right.state.version)
     assert begun == []
 
 
@@ -170,9 +170,9 @@ def test_many_steps_at_once_are_taken_in_parts_that_end_where_they_would(right: 
     assert student is not None
     for steps in (40, 7):
         scene.advance(steps)
-        pieces = [*student.sent, *student.waiting]
-        assert [piece.segment.steps for piece in pieces] == {40: [16, 16, 8], 7: [7]}[steps]
-        assert pieces[-1].time == pytest.approx(scene.time)
+        segments = [*student.sent, *student.waiting]
+        assert [segment.steps for segment in segments] == {40: [16, 16, 8], 7: [7]}[steps]
+        assert segments[-1].end == pytest.approx(scene.time)
         wait_for(lambda: scene.handle(StudentAnswer()) or not (student.sent or student.waiting))
     assert student.time == pytest.approx(scene.time)
     assert right.cloth.report.difference < 1e-6

@@ -111,7 +111,7 @@ def test_a_network_that_does_not_come_to_rest_says_so(monkeypatch, capsys):
     def fail(_: object) -> None:
         raise ConvergenceError("a state of rest", "3 J of motion", 10)
 
-    monkeypatch.setattr(live, "find_rest_positions", fail)
+    monkeypatch.setattr("sim.springs.analysis.stability_map.find_rest_positions", fail)
     shown, _ = make(rope.Params())
     shown.measure(shown.asked)
     shown.draw()

@@ -8,7 +8,7 @@ import pytest
 from app.lab.task import Task, load_tasks
 from app.lab.workbook import Workbook
 from app.panel.share import Share
-from app.panel.task_setups import params_of_setup, read_link
+from app.panel.task_setups import read_link, setup_of_task
 from app.server.viewer import Viewer
 from tests import coroutines
 from tests.waiting import wait_for
@@ -20,10 +20,10 @@ BOOK = Workbook(TASKS, Path("none"))
 @pytest.mark.parametrize("task", BOOK.tasks, ids=lambda task: task.name)
 def test_a_link_opens_each_task_in_its_own_set_up(task: Task) -> None:
     own = BOOK.set_up_of(task)
-    _, params, preset = params_of_setup(own)
+    found = setup_of_task(own)
     for query in (f"?task={task.name}", f"?scene={own.scene}&task={task.name}"):
         setup = read_link(query, BOOK)
-        assert (setup.scene, setup.params, setup.preset, setup.task) == (own.scene, params, preset, task.name)
+        assert setup == found._replace(task=task.name)
     first = next(other for other in BOOK.tasks if other.item == task.item)
     assert BOOK.named(task.item) is first
 

@@ -16,7 +16,7 @@ from app.scenes.comparisons import (
     read_comparison,
     with_shared,
 )
-from app.scenes.setups import read_setup, write_file
+from app.scenes.setups import make_setup, read_setup, write_file
 from sim.parameters import check_record
 
 
@@ -41,7 +41,7 @@ def test_set_ups_are_read_as_scene_preset_link_and_file(tmp_path: Path) -> None:
     stiff = check_record(kind.params, {"stiffness": 2000.0})
     file = tmp_path / "stiff.json"
     file.write_text(write_file(kind, stiff))
-    assert read_setup("rope").params == kind.opening_params()
+    assert read_setup("rope").params == make_setup(kind).params
     assert read_setup("rope:Stiff rope").params == check_record(kind.params, kind.presets["Stiff rope"])
     assert read_setup("?scene=rope&stiffness=2000").params == stiff
     assert read_setup("http://localhost:8080/?scene=rope&stiffness=2000").params == stiff

@@ -7,6 +7,7 @@ from app.panel.recording_files import arrays_of
 from app.render.staff import HEIGHT, PLACE
 from app.scenes import NAMES, scene_named, view_named
 from app.scenes.contract import AnyKind
+from app.scenes.setups import make_setup
 
 DURATION, LATER = 30.0, 0.5  # [s] of simulated time
 LOOKS = 5  # within LATER
@@ -29,7 +30,7 @@ def drawn(kind: AnyKind, frame: object) -> np.ndarray:
 )
 def test_the_first_look_still_moves_after_half_a_minute(name: str, duration: float) -> None:
     kind = scene_named(name)
-    scene = kind.make(kind.opening_params())
+    scene = kind.make(make_setup(kind).params)
     while scene.time < duration:
         scene.advance(max(1, round(1 / 60 / scene.step)))
     before = drawn(kind, scene.frame())
@@ -43,7 +44,7 @@ def test_the_first_look_still_moves_after_half_a_minute(name: str, duration: flo
 @pytest.mark.parametrize("name", ["rope", "race", "cloth"])
 def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
     kind, view = scene_named(name), view_named(name)
-    params = kind.opening_params()
+    params = make_setup(kind).params
     scene = kind.make(params)
     position, target = np.array(view.first_view(object.__new__(view), params))
     ahead = (target - position) / np.linalg.norm(target - position)
@@ -61,7 +62,7 @@ def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
 @pytest.mark.parametrize("name", ["rope", "race", "cloth"])
 def test_the_staff_of_one_metre_is_in_the_first_picture(name: str) -> None:
     kind, view = scene_named(name), view_named(name)
-    position, target = np.array(view.first_view(object.__new__(view), kind.opening_params()))
+    position, target = np.array(view.first_view(object.__new__(view), make_setup(kind).params))
     ahead = (target - position) / np.linalg.norm(target - position)
     right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
     seen = np.array([(*PLACE, 0.0), (*PLACE, HEIGHT)]) - position

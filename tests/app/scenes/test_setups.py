@@ -18,6 +18,7 @@ from app.scenes.setups import (
     MAX_LENGTH,
     MAX_NAME,
     OWN_KEYS,
+    make_setup,
     preset_setup,
     read_file,
     read_query,
@@ -84,7 +85,7 @@ def test_the_shortest_form_names_only_what_differs(name: str) -> None:
     first = next(preset for preset, values in kind.presets.items() if not values)
     alone = {"scene": name, **({"preset": first} if kind.opening else {})}
     assert write_query(kind, kind.params()) == "?" + urlencode(alone)
-    assert read_query(f"?scene={name}").params == kind.opening_params()
+    assert read_query(f"?scene={name}").params == make_setup(kind).params
     assert json.loads(write_file(kind, kind.params())) == {"version": 1, "scene": name, "parameters": {}}
     for preset, values in kind.presets.items():
         params = kind.params(**values)

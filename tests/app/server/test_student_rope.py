@@ -14,6 +14,7 @@ from app.lab.workbook import Workbook
 from app.scenes import scene_named
 from app.scenes.race.parameters import Params
 from app.server.viewer import Viewer
+from tests.app.lab.test_session import taken
 from tests.waiting import wait_for
 
 RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
@@ -29,9 +30,7 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
     session = Session(folder, tasks, time_limit=1.0)
     viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
     try:
-        wait_for(
-            lambda: session.rope.taken == 1
-        )  # what the new folder holds; to begin again with it is no start of a run
+        wait_for(lambda: taken(session) == 1)  # what the new folder holds; to begin again with it is no start of a run
         viewer.open("rope")
         loop = viewer.loop
         assert loop.latest.frame.reference is None
@@ -50,7 +49,7 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
         assert loop.latest.frame.reference is not None
         viewer.make_scene(scene_named("race"), Params(), viewer.commands.put)  # which runs nothing of the student's
         (folder / "rope.py").write_text(RIGHT + "\n# once more\n")
-        wait_for(lambda: session.rope.taken == 4)
+        wait_for(lambda: taken(session) == 4)
         assert loop.counts["starts"] == 1
     finally:
         viewer.shut()

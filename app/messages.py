@@ -224,14 +224,3 @@ class Moment(NamedTuple):
     frame: object  # the scene's own record
     low: Vector  # [m] corners of the box that what moves fills
     high: Vector  # [m]
-
-
-class DivergenceError(Exception):
-    """A run left any sane bound; the text says which h omega did it and which step would hold.
-
-    moments: the last ones before that, for the viewer to show again slowly; () where there are none to show.
-    """
-
-    def __init__(self, text: str, moments: tuple[Moment, ...] = ()) -> None:
-        super().__init__(text)
-        self.moments = moments

@@ -33,6 +33,15 @@ class ConvergenceError(RuntimeError):
         return ConvergenceError, (self.solver, self.residual, self.iterations)
 
 
+class DivergenceError(ArithmeticError):
+    """A run left any sane bound: the text says what was too much for the method, and what would hold."""
+
+    def __init__(self, text: str, moments: tuple[Any, ...] = ()) -> None:
+        """moments: the last ones before that, if there are any to show again slowly."""
+        super().__init__(text)
+        self.moments = moments
+
+
 def argument_error(name: str, value: object, allowed: str) -> ValueError:
     """The one form of an argument error, in one line: the name, the value given, and the allowed values."""
     shown = repr(value) if isinstance(value, str) else " ".join(repr(value).split())  # in one line, arrays too

@@ -17,7 +17,6 @@ from app.messages import (
     Ask,
     BaseParams,
     Command,
-    DivergenceError,
     Grab,
     Halt,
     Pause,
@@ -38,6 +37,7 @@ from app.server.run import Goal, Run
 from app.server.shared_clock import Seat
 from app.server.snapshots import Clock
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
+from sim.validation import DivergenceError
 
 PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do

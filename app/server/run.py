@@ -5,7 +5,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import NamedTuple
 
-from app.messages import BaseParams, DivergenceError, KeptState
+from app.messages import BaseParams, KeptState
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.stepping import steps_to
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
@@ -14,6 +14,7 @@ from app.server.shared_clock import Seat
 from app.server.snapshots import Clock, Snapshots
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
+from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
 BEGUN = "the lab was begun again or went on from another moment"  # why the time that a program waits for does not come

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.formats.formatting import metres, percent
-from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, Vector, vector_of
+from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -42,7 +42,7 @@ from sim.mooring.statics import Rest, rest_of, straight
 from sim.springs import INTEGRATORS
 from sim.springs.lines.energy import set_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of
-from sim.validation import ConvergenceError
+from sim.validation import ConvergenceError, DivergenceError
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short

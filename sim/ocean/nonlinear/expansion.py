@@ -26,6 +26,7 @@ from sim.jit import kernel
 from sim.ocean.nonlinear.modes import Modes, make_modes
 from sim.ocean.nonlinear.padded_transforms import (
     PaddedTransforms,
+    Work,
     add_multiple,
     aligned,
     padded_size,
@@ -40,13 +41,13 @@ BLOCK = 256  # points at a time: the sums of a block stay in the fastest cache
 class Expansion:
     """The rates of one sea, of order 2 or above. Not for two threads at once."""
 
-    def __init__(self, modes: Modes, order: int) -> None:
+    def __init__(self, modes: Modes, order: int, work: Work) -> None:
         self.modes, self.order = modes, order
         (n, m), axes = modes.size, 1 if modes.size[1] == 1 else 2
         shape = padded_size(m, order), padded_size(n, order)
         self.widths = [min(j, order - j + 1) for j in range(1, order + 1)]  # of phi_j, over the sea's
         sizes = {width: (width * n, width * m if m > 1 else 1) for width in self.widths}
-        self._transforms = {width: PaddedTransforms(shape, sizes[width][0] // 2) for width in sizes}
+        self._transforms = {width: PaddedTransforms(shape, sizes[width][0] // 2, work) for width in sizes}
         # d^j phi/dz^j at z = 0 is k^j phi, and for odd j times tanh(k depth). Twice: for real and imaginary parts.
         self._factors = {}
         for width, size in sizes.items():
@@ -63,11 +64,6 @@ class Expansion:
         self.eta, self._product = self.planes(2)
         self.slope, self.flow, self._rate = (self.planes(count) for count in (axes, axes, 2))
         self._block = np.empty((2 * order + 4, BLOCK))
-
-    @property
-    def transform_count(self) -> int:
-        """Transforms run so far."""
-        return sum(transforms.count for transforms in self._transforms.values())
 
     def planes(self, count: int) -> np.ndarray:
         """Grids (count, points) of padded size."""

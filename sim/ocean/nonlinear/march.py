@@ -6,6 +6,7 @@ solution of order 3, and the difference h/10 (k_4 - k_5) controls the step (Bala
 184:1211). Steps run freely past the requested times; Hermite's cubic in the interaction picture interpolates.
 """
 
+import copy
 import dataclasses
 import math
 from collections.abc import Callable
@@ -15,14 +16,11 @@ import numpy as np
 from sim.interruption import raise_if_stopped
 from sim.jit import kernel
 from sim.ocean.nonlinear.modes import Modes
+from sim.validation import DivergenceError
 
 SAFETY, SHRINK, GROW = 0.9, 0.2, 2.0
 SMALLEST = 1e-6  # step over the first one, below which the search is given up
 MAX_GROWTH = 1.2  # of the linear energy's root since the start: it is nearly conserved, and more is no solution
-
-
-class DivergenceError(ArithmeticError):
-    """The waves became too steep for the method."""
 
 
 @dataclasses.dataclass
@@ -86,6 +84,15 @@ class March:
         self._largest = MAX_GROWTH * propagator.distance(u, self._still)
         self.start, self.end, self._new = (End(t, u.copy(), np.zeros_like(u), 0.0, 0.0) for _ in range(3))
         self.end.power = self._evaluate(t, self.end.u, self.end.rate)
+
+    def copied(self, rates: Callable[[float, np.ndarray, np.ndarray], float]) -> "March":
+        """An independent copy for the same thread: it shares arrays that are set before they are read."""
+        other = copy.copy(self)
+        other.rates = rates
+        other.start, other.end = (
+            dataclasses.replace(end, u=end.u.copy(), rate=end.rate.copy()) for end in (self.start, self.end)
+        )
+        return other
 
     def advance(self, t: float) -> None:
         """Step until the last step ends at t [s] or later. Raises DivergenceError, see `NonlinearSea.advance`."""

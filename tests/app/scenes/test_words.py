@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from app.lab.task import load_tasks
-from app.messages import DivergenceError
 from app.scenes import NAMES, scene_named, view_named
 from sim.parameters import check_record, parameters_of
+from sim.validation import DivergenceError
 
 ROOT = Path(__file__).parents[3]
 # A symbol, and the words of which one is to stand in the same text.

@@ -14,7 +14,6 @@ from app.messages import (
     Advance,
     Ask,
     Command,
-    DivergenceError,
     Halt,
     KeptState,
     Pause,
@@ -30,6 +29,7 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, PATIENCE, SimLoop
 from app.server.pacer import SOLVE_SHARE, FixedStep
 from sim.parameters import parameter
+from sim.validation import DivergenceError
 from tests.waiting import wait_for
 
 

@@ -85,6 +85,12 @@ class StepOnce(NamedTuple):
     steps: int = 1
 
 
+class RunOn(NamedTuple):
+    """Run, and pause as soon as an event begins."""
+
+    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # whether it happens just now
+
+
 class Halt(NamedTuple):
     """Pause because of an error, and show its text."""
 
@@ -169,7 +175,7 @@ class Advance(NamedTuple):
 
 
 SceneCommand = Place | Grab | Release | Point | StudentAnswer  # what a scene handles; the rest is the loop's
-Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Take | Ask | Advance | SceneCommand
+Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
 
 
 PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES); a NaN time clears the plots

@@ -25,12 +25,13 @@ from app.messages import (
     Point,
     Release,
     Reset,
+    RunOn,
     StepOnce,
     StudentAnswer,
     Take,
     TogglePlay,
 )
-from app.scenes.contract import FRAME_INTERVAL, AnyScene
+from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
 from app.server.run import Goal, Run
@@ -76,6 +77,8 @@ class SimLoop(Run):
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         self.tick_time = 0.0  # [s] that the last tick took
+        self.awaited: Callable[[AnySnapshot], bool] | None = None  # event at which it pauses
+        self.is_reached = False  # it happened in the last frame
         super().__init__(scene, audience, clock, effort, paused=paused)
 
     @property
@@ -117,9 +120,19 @@ class SimLoop(Run):
             self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
         if changed:
             self.publish()
+            self.pause_at_event()
         if self.goal is not None:
             self.settle(self.goal)
         self.tick_time, self.busy_since = self.clock() - self.busy_since, None
+
+    def pause_at_event(self) -> None:
+        """Pause if the event that is awaited has begun since the last frame."""
+        if self.awaited is None or not self.running:
+            return
+        before, self.is_reached = self.is_reached, self.awaited(self.latest)
+        if self.is_reached and not before:
+            self.awaited, self.running = None, False
+            self.publish()
 
     @property
     def takes_long(self) -> bool:
@@ -237,9 +250,9 @@ class SimLoop(Run):
     def handle(self, command: Command) -> None:
         """Carry out one command. A scene that could not begin takes other values, and has nothing to run."""
         match command:
-            case Play() | StepOnce() | TogglePlay() | Place() | Grab() | Release() | Point() | StudentAnswer() if (
-                self.unmade
-            ):
+            case (
+                Play() | StepOnce() | TogglePlay() | RunOn() | Place() | Grab() | Release() | Point() | StudentAnswer()
+            ) if self.unmade:
                 pass
             case Play():
                 self.running, self.halted = True, ""
@@ -247,6 +260,9 @@ class SimLoop(Run):
                     self.replay = None  # on from the last good state
             case Pause():
                 self.running = False
+            case RunOn(reached):
+                self.handle(Play())
+                self.awaited, self.is_reached = reached, reached(self.latest)
             case TogglePlay():
                 self.handle(Pause() if self.running else Play())
             case StepOnce(steps):

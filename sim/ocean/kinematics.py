@@ -27,7 +27,15 @@ from numpy.typing import ArrayLike
 from sim.jit import kernel
 from sim.ocean.gerstner import Waves
 from sim.ocean.spectra import Conditions
-from sim.validation import argument_error, check_choice, check_finite, check_positions, check_vector, check_within, is_whole_number
+from sim.validation import (
+    argument_error,
+    check_choice,
+    check_finite,
+    check_positions,
+    check_vector,
+    check_within,
+    is_whole_number,
+)
 from sim.wave_motion import flow_at, sincos_turns
 
 STRETCHINGS = ("constant", "wheeler")
@@ -83,7 +91,7 @@ class Components(NamedTuple):
         highest = float(self.amplitude.sum())
         height = check_within("height", height, -0.99 * highest, 0.99 * highest, "m")
         largest = max(float(self.amplitude.max(initial=0.0)), 1e-300)
-        half, low, high = np.tan(0.5 * theta), -MAX_TURN, MAX_TURN
+        half, turned, low, high = np.tan(0.5 * theta), theta, -MAX_TURN, MAX_TURN
         for _ in range(CREST_HALVINGS):  # the flow theta' = -a sin(theta) takes tan(theta/2) to this
             middle = 0.5 * (low + high)
             turned = 2.0 * np.arctan(np.exp(-middle * self.amplitude / largest) * half)

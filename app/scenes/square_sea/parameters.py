@@ -21,6 +21,10 @@ PLANET_TITLES = {
     **{name: f"{name}, {number(planet.gravity)} m/s²" for name, planet in SOLAR_SYSTEM.items()},
 }
 SURFACE_TENSION = 0.0728  # [N/m] of water against air
+MAX_POINTS, MAX_POINTS_OF_HIGH_ORDER = 256, 128  # of a nonlinear sea, up to order 3 and above
+LONG_CRESTED_STARTS = ("breather", "groups")
+MARCHING_STARTS = (*LONG_CRESTED_STARTS, "rogue")  # solved step by step, at order 1 too
+LINEAR_ONLY = {"choppiness", "transition", "viscosity", "dispersion_scale", "loop_period", "rings"}
 in_foam = functools.partial(parameter, group="Foam and rain")
 in_water = functools.partial(parameter, group="Water and planet")
 
@@ -46,8 +50,18 @@ class Params:
         3.0, 0.0, 600.0, "s", "Time for the sea to adapt to new weather", log_from=0.1, title="Time to adapt"
     )
     start: str = in_waves(
-        "as set", choices={"as set": "As set here", "calm": "Calm", "storm": "Storm"},
-        doc="The sea at the start: as set here, or a calm or a storm, from which it then develops", affects="start",
+        "as set",
+        choices={
+            "as set": "As set here", "calm": "Calm", "storm": "Storm", "breather": "Breather",
+            "groups": "Even waves with side bands", "rogue": "Towards a rogue wave",
+        },
+        doc="The sea at the start: as set here; a calm or a storm, from which a linear sea develops; or waves that "
+        "grow: long-crested ones as high as Hs says, or the sea as set with a crest that comes after 4 periods",
+        affects="start",
+    )  # fmt: skip
+    order: int = in_waves(
+        1, 1, 7, "", "Order of nonlinearity: 1 is linear. From 3 on waves steepen, gather in groups, and break",
+        affects="start", title="Order of waves",
     )  # fmt: skip
 
     radius_rule: str = in_water(
@@ -136,6 +150,24 @@ PRESETS: dict[str, dict[str, Any]] = {
         "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 0.4,
         "frame_rate": 24.0, "view": "swimmer", "drops": 600, "foam": False, "clouds": 1.0, "sun": 8.0,
     },
+    "Peregrine breather": {
+        "order": 4, "start": "breather", "spectrum": "regular", "wave_height": 0.51, "wave_period": 3.58,
+        "wind_direction": 0.0, "wind_speed": 4.0, "length": 480.0, "speed": 6.0, "view": "mast",
+    },
+    "Steep waves split into groups": {
+        "order": 4, "start": "groups", "spectrum": "regular", "wave_height": 0.7, "wave_period": 3.58,
+        "wind_direction": 0.0, "wind_speed": 4.0, "length": 480.0, "speed": 6.0, "view": "mast",
+    },
+    "Draupner": {
+        "order": 3, "start": "rogue", "spectrum": "sea_state", "hs": 8.4, "tp": 15.0, "second_height": 8.4,
+        "second_period": 15.0, "wind_direction": -60.0, "second_direction": 60.0, "spreading": "cos2s",
+        "spread_exponent": 25.0, "wind_speed": 20.0, "deep": False, "depth": 70.0, "length": 2000.0, "size": "128",
+        "speed": 2.0, "view": "gull", "clouds": 1.0, "daylight": 0.7, "visibility": 3000.0,
+    },
+    "Steep storm": {
+        "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",
+        "view": "bridge", "clouds": 0.9, "daylight": 0.8, "visibility": 2000.0,
+    },
 }  # fmt: skip
 
 ABOUT = {  # preset -> what it shows and what to try
@@ -145,6 +177,11 @@ ABOUT = {  # preset -> what it shows and what to try
     "Light planet": "On a planet of 1/100 of the Earth's mass the same wind makes higher, longer waves.",
     "Heavy planet": "On a planet of 100 times the Earth's mass the same wind makes lower, shorter waves.",
     "Rain shower": "Rain on nearly calm water: watch the rings spread.",
+    "Peregrine breather": "Even waves gather within a minute into one that is three times as high. Try order 1.",
+    "Steep waves split into groups": "Even, steep waves split into groups within a minute, by the instability that "
+    "Benjamin and Feir found. Try a lower wave, or order 1.",
+    "Draupner": "A crossing sea of Hs 11.9 m makes a crest of 18.5 m after 60 s, as was measured on 1 January 1995.",
+    "Steep storm": "Waves of a short fetch, which steepen and break. Run on until a crest of 1.25 Hs (in Controls).",
 }
 
 
@@ -160,6 +197,19 @@ class RainSettings(NamedTuple):
     amplitude: float  # factor on every drawn height
 
 
+def marches(params: Params) -> bool:
+    """True if the sea is solved step by step, in place of the sum of linear waves, which is known at all times."""
+    return params.order > 1 or params.start in MARCHING_STARTS
+
+
+def solved_points(p: Params) -> int:
+    """Points a side of the grid that is solved; of long-crested waves, along x alone."""
+    size = int(p.size)
+    if not marches(p) or p.start in LONG_CRESTED_STARTS:
+        return size
+    return min(size, MAX_POINTS if p.order <= 3 else MAX_POINTS_OF_HIGH_ORDER)
+
+
 def gravity(params: Params) -> float:
     """Gravity [m/s2] of the chosen planet."""
     if params.planet == "by gravity":
@@ -172,7 +222,7 @@ def gravity(params: Params) -> float:
 def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any]:
     """The arguments of `Sea` and `Sea.change`. wind_speed: U10 [m/s] in place of the one in `params`."""
     wind = params.wind_speed if wind_speed is None else wind_speed
-    return {
+    found = {
         "spectrum": params.spectrum,
         "wind_speed": SPECTRA[params.spectrum].wind_speed(wind),
         "wind_direction": math.radians(params.wind_direction),
@@ -185,6 +235,9 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
         "loop_period": params.loop_period or None,
         **{name: value for name, value in spectrum_values(params).items() if SPECTRA[params.spectrum].uses(name)},
     }
+    if marches(params):
+        found |= {"tension": 0.0, "viscosity": 0.0, "dispersion_scale": 1.0, "loop_period": None}
+    return found
 
 
 def rain_settings(params: Params) -> RainSettings:
@@ -192,7 +245,8 @@ def rain_settings(params: Params) -> RainSettings:
     p = params
     bearing = math.radians(p.wind_direction)
     wind = p.wind_speed * math.cos(bearing), p.wind_speed * math.sin(bearing)
-    return RainSettings(p.rain, p.drops, p.rings, wind, gravity(p), int(p.size), p.amplitude)
+    rings = 0.0 if marches(p) else p.rings
+    return RainSettings(p.rain, p.drops, rings, wind, gravity(p), int(p.size), p.amplitude)
 
 
 def hidden(params: Params) -> set[str]:
@@ -210,4 +264,4 @@ def hidden(params: Params) -> set[str]:
         names.add("foam_threshold")
     if params.rain == 0.0:
         names |= {"drops", "rings"}
-    return names
+    return names | (LINEAR_ONLY if marches(params) else set())

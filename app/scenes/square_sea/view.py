@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import viser
 
-from app.formats.formatting import number
+from app.formats.formatting import fixed, number
 from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
@@ -26,6 +26,7 @@ from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
 from app.scenes.square_sea.rain_view import RainMesh
+from app.scenes.square_sea.tile_mesh import Highest
 from sim.ocean.dispersion import SEA_DENSITY
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
@@ -80,6 +81,8 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         self.water: Water | None = None
         self.rain: RainMesh | None = None
         self.gauge: WaveGaugeMesh | None = None
+        self.mark: viser.LabelHandle | None = None
+        self.marked: Highest | None = None  # crest that the mark is on
         self.mesh_shape: tuple[int, float] = (0, DEFAULTS.length)  # vertices along a side, length [m]
         self.view = DEFAULTS.view
         self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
@@ -128,6 +131,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             frame.sent.numbers = self.water.set_surface(frame.vertices, frame.slopes, frame.foam, frame.time)
             self.show_rain(frame)
             self.show_gauge(frame)
+            self.mark_highest(frame)
         self.last = frame
 
     def material_of(self, frame: SeaFrame) -> Material:
@@ -197,6 +201,19 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             assert self.water is not None
             self.water.set_waterlines(waterlines_of(frame.gauge))
 
+    def mark_highest(self, frame: SeaFrame) -> None:
+        """Mark the highest crest since the start, at its place and height."""
+        highest = frame.highest
+        if highest == self.marked:
+            return
+        self.marked = highest
+        if self.mark is None:
+            self.mark = self.server.scene.add_label("/highest", "", anchor="bottom-center")
+        self.mark.visible = highest is not None
+        if highest is not None:
+            self.mark.text = f"{number(highest.place[2])} m, {fixed(highest.ratio, 2)} Hs"
+            self.mark.position = highest.place
+
     def move_cameras(self, old: float, new: float) -> None:
         """Move every camera from over a tile of side `old` [m] to as far from the middle of one of side `new` [m]."""
         for camera in all_cameras(self.server):
@@ -212,10 +229,11 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         measured = snapshot.readings.report
         if measured is None:
             return ""
-        waves = measured.measured
-        return fill(
+        waves, highest = measured.measured, snapshot.frame.highest
+        text = fill(
             "Waves: {} m high, {} s apart", bold(number(waves.significant_height)), bold(number(waves.peak_period))
         )
+        return text if highest is None else fill("{}<br>{}", text, report.highest_text(highest))
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""

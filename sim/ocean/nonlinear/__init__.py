@@ -1,4 +1,4 @@
-"""Waves beyond linear on the periodic tile: `NonlinearSea`, and `stokes_wave`, `breather` and `modulated_waves` as starts.
+"""Waves beyond linear on the periodic tile: `NonlinearSea`, and starts: `stokes_wave`, `breather`, `modulated_waves`.
 
 `stokes_wave` is a reference too.
 """

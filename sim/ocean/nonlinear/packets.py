@@ -1,10 +1,10 @@
 """Packets of free waves along +x that grow into high ones, as starts of a `NonlinearSea`.
 
-    >>> from sim.ocean.nonlinear import NonlinearSea, breather
-    >>> waves, focus = breather(amplitude=0.3, count=20, length=400.0)  # the highest wave comes after `focus` [s]
-    >>> sea = NonlinearSea(size=(256, 1), length=400.0, order=4, start=waves)
-    >>> sea.surface(0.0).height.shape, round(focus)
-    ((256, 1), 250)
+>>> from sim.ocean.nonlinear import NonlinearSea, breather
+>>> waves, focus = breather(amplitude=0.3, count=20, length=400.0)  # the highest wave comes after `focus` [s]
+>>> sea = NonlinearSea(size=(256, 1), length=400.0, order=4, start=waves)
+>>> sea.surface(0.0).height.shape, round(focus)
+((256, 1), 250)
 """
 
 import math
@@ -17,13 +17,13 @@ from sim.validation import argument_error, check_finite, check_not_negative, che
 SAMPLES = 8  # of an envelope, to a wave
 BEFORE = 3.0  # time of a breather's start before its peak, over 1/(omega (ka)^2): it is 1.3 times the carrier
 DELAY = 1.3  # of the peak of steep waves over that of the equation, measured at orders 4 and 5, ka = 0.06 to 0.1
-SIDE_BAND = 0.05  # amplitude of each side band over the carrier's
+SIDE_BAND = 0.1  # amplitude of each side band over the carrier's
 
 
 def breather(
     amplitude: float, count: int, length: float, place: float = 0.0, gravity: float = 9.81, density: float = 1025.0
 ) -> tuple[Components, float]:
-    """The waves of Peregrine's breather on deep water (1983, J. Aust. Math. Soc. B 25:16), and the time [s] to its peak.
+    """Waves of Peregrine's breather on deep water (1983, J. Aust. Math. Soc. B 25:16), and the time [s] to its peak.
 
     A carrier of this amplitude [m], with `count` waves on the length [m], grows threefold at `place` x [m], and becomes
     even again. In the form of Chabchoub, Hoffmann and Akhmediev (2011, Phys. Rev. Lett. 106:204502), eq. 2. Raises
@@ -47,7 +47,7 @@ def breather(
 def modulated_waves(
     amplitude: float, count: int, length: float, gravity: float = 9.81, density: float = 1025.0
 ) -> Components:
-    """A carrier as in `breather` with the two low side bands that grow fastest (Benjamin and Feir 1967, J. Fluid Mech.
+    """A carrier as in `breather` with the two side bands that grow fastest (Benjamin and Feir 1967, J. Fluid Mech.
     27:417): k (1 +- 2ka), in the phase in which they grow. Raises ValueError for a value that is not allowed."""
     k, _ = carrier(amplitude, count, length, gravity)
     aside = min(max(round(2.0 * k * amplitude * count), 1), max(count - 1, 1))

@@ -119,8 +119,9 @@ def residuals(z: np.ndarray, steepness: float, kd: float, order: int) -> np.ndar
 
 def solved(z: np.ndarray, steepness: float, kd: float, order: int) -> np.ndarray:
     """The unknowns by Newton's method from z, with derivatives by complex steps. Raises ConvergenceError."""
-    left, i = math.nan, 0
-    for i in range(1, MAX_NEWTON_ITERATIONS + 1):
+    left, count = math.nan, 0
+    while count < MAX_NEWTON_ITERATIONS:
+        count += 1
         value = residuals(z, steepness, kd, order)
         left = float(np.abs(value).max())
         slopes = [np.imag(residuals(z + 1j * TINY * unit, steepness, kd, order)) / TINY for unit in np.eye(len(z))]
@@ -134,4 +135,6 @@ def solved(z: np.ndarray, steepness: float, kd: float, order: int) -> np.ndarray
             break
         if np.abs(change).max() < TOLERANCE:
             return z
-    raise ConvergenceError(f"wave of constant form, {order} terms, k H = {steepness:.4g}", f"a residual of {left:.3g}", i)
+    raise ConvergenceError(
+        f"wave of constant form, {order} terms, k H = {steepness:.4g}", f"a residual of {left:.3g}", count
+    )

@@ -94,7 +94,7 @@ class Components(NamedTuple):
         half, turned, low, high = np.tan(0.5 * theta), theta, -MAX_TURN, MAX_TURN
         for _ in range(CREST_HALVINGS):  # the flow theta' = -a sin(theta) takes tan(theta/2) to this
             middle = 0.5 * (low + high)
-            turned = 2.0 * np.arctan(np.exp(-middle * self.amplitude / largest) * half)
+            turned = 2.0 * np.arctan(np.exp(np.clip(-middle / largest * self.amplitude, -300.0, 300.0)) * half)
             is_high = float((self.amplitude * np.cos(turned)).sum()) > height
             low, high = (low, middle) if is_high else (middle, high)
         return self._replace(phase=(turns - theta + turned) / (2.0 * math.pi))

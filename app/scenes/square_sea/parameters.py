@@ -14,7 +14,14 @@ from sim.parameters import parameter, with_parameters
 
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
-VIEW_HEIGHTS = {"swimmer": 1.7, "deck": 2.6, "bridge": 4.5, "mast": 8.0, "gull": 40.0}  # [m] of the camera
+VIEW_HEIGHTS = {
+    "swimmer": 1.7,
+    "deck": 2.6,
+    "bridge": 4.5,
+    "mast": 8.0,
+    "platform": 20.0,
+    "gull": 40.0,
+}  # [m] of the camera
 PLANET_TITLES = {
     "by mass": "By mass",
     "by gravity": "By gravity",
@@ -151,18 +158,20 @@ PRESETS: dict[str, dict[str, Any]] = {
         "frame_rate": 24.0, "view": "swimmer", "drops": 600, "foam": False, "clouds": 1.0, "sun": 8.0,
     },
     "Peregrine breather": {
-        "order": 4, "start": "breather", "spectrum": "regular", "wave_height": 0.51, "wave_period": 3.58,
-        "wind_direction": 0.0, "wind_speed": 4.0, "length": 480.0, "speed": 6.0, "view": "mast",
+        "order": 4, "start": "breather", "spectrum": "regular", "wave_height": 1.27, "wave_period": 5.06,
+        "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 70.0,
     },
     "Steep waves split into groups": {
-        "order": 4, "start": "groups", "spectrum": "regular", "wave_height": 0.7, "wave_period": 3.58,
-        "wind_direction": 0.0, "wind_speed": 4.0, "length": 480.0, "speed": 6.0, "view": "mast",
+        "order": 4, "start": "groups", "spectrum": "regular", "wave_height": 1.4, "wave_period": 5.06,
+        "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 70.0,
+        "view": "bridge",
     },
     "Draupner": {
         "order": 3, "start": "rogue", "spectrum": "sea_state", "hs": 8.4, "tp": 15.0, "second_height": 8.4,
         "second_period": 15.0, "wind_direction": -60.0, "second_direction": 60.0, "spreading": "cos2s",
-        "spread_exponent": 25.0, "wind_speed": 20.0, "deep": False, "depth": 70.0, "length": 2000.0, "size": "128",
-        "speed": 2.0, "view": "gull", "clouds": 1.0, "daylight": 0.7, "visibility": 3000.0,
+        "spread_exponent": 25.0, "wind_speed": 15.0, "deep": False, "depth": 70.0, "length": 1200.0, "size": "128",
+        "seed": 1, "foam_fade": 1.5, "speed": 2.0, "view": "platform", "clouds": 1.0, "daylight": 0.7,
+        "visibility": 3000.0,
     },
     "Steep storm": {
         "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",

@@ -37,6 +37,7 @@ TARGETS = {  # [m] of each view: how far ahead its target is, and the target's h
     "deck": (11.5, 2.2),
     "bridge": (30.0, 3.6),
     "mast": (40.0, 6.0),
+    "platform": (120.0, 12.0),
     "gull": (70.0, 0.0),
 }
 CAMERA_SETBACK = 0.14  # of the tile's side: how far the camera stands behind the middle of the tile,

@@ -16,6 +16,7 @@ SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
 VIEW_HEIGHTS = {
     "swimmer": 1.7,
+    "side": 3.0,
     "deck": 2.6,
     "bridge": 4.5,
     "mast": 8.0,
@@ -27,6 +28,7 @@ PLANET_TITLES = {
     "by gravity": "By gravity",
     **{name: f"{name}, {number(planet.gravity)} m/s²" for name, planet in SOLAR_SYSTEM.items()},
 }
+GAUGE_OFFSET_SHARE = (0.06, -0.015)  # of the tile's side: where the wave gauge stands, from the middle of the tile
 SURFACE_TENSION = 0.0728  # [N/m] of water against air
 MAX_POINTS, MAX_POINTS_OF_HIGH_ORDER = 256, 128  # of a nonlinear sea, up to order 3 and above
 LONG_CRESTED_STARTS = ("breather", "groups")
@@ -159,23 +161,25 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
     "Peregrine breather": {
         "order": 4, "start": "breather", "spectrum": "regular", "wave_height": 1.27, "wave_period": 5.06,
-        "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 70.0,
+        "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 150.0,
+        "foam_by_wind": False, "foam_threshold": 0.6, "view": "side",
     },
     "Steep waves split into groups": {
         "order": 4, "start": "groups", "spectrum": "regular", "wave_height": 1.4, "wave_period": 5.06,
-        "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 70.0,
-        "view": "bridge",
+        "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 150.0,
+        "foam_by_wind": False, "foam_threshold": 0.6, "view": "side",
     },
     "Draupner": {
         "order": 3, "start": "rogue", "spectrum": "sea_state", "hs": 8.4, "tp": 15.0, "second_height": 8.4,
         "second_period": 15.0, "wind_direction": -60.0, "second_direction": 60.0, "spreading": "cos2s",
-        "spread_exponent": 25.0, "wind_speed": 15.0, "deep": False, "depth": 70.0, "length": 1200.0, "size": "128",
-        "seed": 1, "foam_fade": 1.5, "speed": 2.0, "view": "platform", "clouds": 1.0, "daylight": 0.7,
-        "visibility": 3000.0,
+        "spread_exponent": 25.0, "wind_speed": 20.0, "deep": False, "depth": 70.0, "length": 1200.0, "size": "128",
+        "seed": 1, "foam_by_wind": False, "foam_fade": 2.0, "speed": 2.0, "view": "platform", "clouds": 1.0,
+        "daylight": 0.7, "visibility": 3000.0,
     },
     "Steep storm": {
         "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",
-        "view": "bridge", "clouds": 0.9, "daylight": 0.8, "visibility": 2000.0,
+        "foam_by_wind": False, "foam_threshold": 0.6, "view": "bridge", "clouds": 0.9, "daylight": 0.8,
+        "visibility": 2000.0,
     },
 }  # fmt: skip
 

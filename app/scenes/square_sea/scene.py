@@ -20,6 +20,7 @@ from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures, readings_of
 from app.scenes.square_sea.parameters import (
     ABOUT,
+    GAUGE_OFFSET_SHARE,
     PRESETS,
     Params,
     conditions,
@@ -55,8 +56,7 @@ STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 START_WIND_SPEEDS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea at a reset, by the parameter `start`
 SETTLING_TRANSITIONS = 16.0  # transition times after which nothing is left of the old weather (e^-16 = 1e-7)
 PLOT_ROW_INTERVAL = 0.1  # [s] of simulated time between two plot rows
-GAUGE_OFFSET_SHARE = (0.06, -0.015)  # of the tile's side: where the wave gauge stands, from the middle of the tile,
-MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] but no farther than this: before a click has placed it
+MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] of a wave gauge near the camera, before a click has placed it
 
 PACE_INTERVAL = 0.5  # [s] of simulated time between two calculations of the sea's slope and frequency, for the foam
 

@@ -24,7 +24,13 @@ from app.scenes.contract import Pieces
 from app.scenes.contract import View as SceneView
 from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
-from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
+from app.scenes.square_sea.parameters import GAUGE_OFFSET_SHARE, (
+    SURFACE_TENSION,
+    VIEW_HEIGHTS,
+    Params,
+    gravity,
+    rain_settings,
+)
 from app.scenes.square_sea.rain_view import RainMesh
 from app.scenes.square_sea.tile_mesh import Highest
 from sim.ocean.dispersion import SEA_DENSITY
@@ -34,6 +40,7 @@ from sim.particles.rain_rings import ring_flux, ring_wave
 DEFAULTS = Params()
 TARGETS = {  # [m] of each view: how far ahead its target is, and the target's height
     "swimmer": (6.0, 0.5),
+    "side": (60.0, 0.5),
     "deck": (11.5, 2.2),
     "bridge": (30.0, 3.6),
     "mast": (40.0, 6.0),
@@ -59,6 +66,9 @@ GAUGE_COLOUR, SPAR_COLOUR = (0.94, 0.376, 0.125), (0.96, 0.96, 0.94)
 def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
     """Position and target [m] of a view over a tile of side `length` [m]; its height does not depend on the tile."""
     ahead, target_height = TARGETS[view]
+    if view == "side":  # across the wind, along the crests of waves that run to +x
+        x = (0.5 + GAUGE_OFFSET_SHARE[0]) * length
+        return (x, 0.4 * length, VIEW_HEIGHTS[view]), (x, 0.4 * length + ahead, target_height)
     x = 0.5 * length - min(CAMERA_SETBACK * length, MAX_CAMERA_SETBACK)
     return (x, 0.5 * length, VIEW_HEIGHTS[view]), (x + ahead, 0.5 * length, target_height)
 

@@ -16,7 +16,7 @@ from sim.validation import argument_error, check_finite, check_not_negative, che
 
 SAMPLES = 8  # of an envelope, to a wave
 BEFORE = 3.0  # time of a breather's start before its peak, over 1/(omega (ka)^2): it is 1.3 times the carrier
-DELAY = 1.3  # of the peak of steep waves over that of the equation, measured at orders 4 and 5, ka = 0.06 to 0.1
+DELAY = 1.3  # of the peak of steep waves over that of the equation, measured at order 4, ka = 0.06 to 0.1
 SIDE_BAND = 0.1  # amplitude of each side band over the carrier's
 
 

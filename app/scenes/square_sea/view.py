@@ -24,7 +24,8 @@ from app.scenes.contract import Pieces
 from app.scenes.contract import View as SceneView
 from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
-from app.scenes.square_sea.parameters import GAUGE_OFFSET_SHARE, (
+from app.scenes.square_sea.parameters import (
+    GAUGE_OFFSET_SHARE,
     SURFACE_TENSION,
     VIEW_HEIGHTS,
     Params,

@@ -62,6 +62,7 @@ class Expansion:
         self._first = np.cumsum([0, *counts[:-1]])
         self._derivatives = self.planes(sum(counts) - 1)
         self.eta, self._product = self.planes(2)
+        self.steepest = 0.0  # |grad eta|^2 of the last rates
         self.slope, self.flow, self._rate = (self.planes(count) for count in (axes, axes, 2))
         self._block = np.empty((2 * order + 4, BLOCK))
 
@@ -99,8 +100,8 @@ class Expansion:
         self.set_surface(eta)
         self.set_flow(psi)
         self.set_potentials(psi)
-        set_surface_rates(self.order, self.eta, self.slope, self.flow, self._derivatives, self._first, self._block,
-                          self._rate[0], self._rate[1])  # fmt: skip
+        self.steepest = set_surface_rates(self.order, self.eta, self.slope, self.flow, self._derivatives, self._first,
+                                          self._block, self._rate[0], self._rate[1])  # fmt: skip
         self.set_spectrum(self._rate[0], out[0])
         self.set_spectrum(self._rate[1], out[1])
         add_multiple(self.phi[-1].view(float), self._factors[1][1], out[0].view(float))
@@ -157,13 +158,14 @@ def set_potential(m, eta, derivatives, first, power, out):
 
 @kernel(noalias=True)
 def set_surface_rates(order, eta, slope, flow, derivatives, first, scratch, elevation, potential):
-    """Set the rates on the grid without their linear part and without d phi_M/dz.
+    """Set the rates on the grid without their linear part and without d phi_M/dz; returns the largest |grad eta|^2.
 
     slope, flow (axes, points): grad eta, grad psi; scratch (2 order + 4, BLOCK).
     """
     # Rows of scratch: W_1 ... W_M, the sums S of the first 0 ... M of them, and three more. One-dimensional rows only:
     # loops over them are vectorised.
     M = S = order
+    steepest = 0.0
     for start in range(0, eta.size, BLOCK):
         stop = min(start + BLOCK, eta.size)
         n = stop - start
@@ -187,8 +189,13 @@ def set_surface_rates(order, eta, slope, flow, derivatives, first, scratch, elev
             add_product(scratch[m, :n], scratch[S + M - 3 - m, :n], outer)
         rise, push = elevation[start:stop], potential[start:stop]
         set_linear(scratch[S + M, :n], scratch[0, :n], square, rise, push)
+        set_to(0.0, power)
         for a in range(slope.shape[0]):
-            add_axis(scratch[S + max(M - 2, 0), :n], outer, slope[a, start:stop], flow[a, start:stop], rise, push)
+            add_axis(
+                scratch[S + max(M - 2, 0), :n], outer, slope[a, start:stop], flow[a, start:stop], power, rise, push
+            )
+        steepest = max(steepest, largest(power))
+    return steepest
 
 
 @kernel(noalias=True, inline=True)
@@ -206,9 +213,22 @@ def set_linear(total, first, square, elevation, potential):
 
 
 @kernel(noalias=True, inline=True)
-def add_axis(lower, outer, slope, flow, elevation, potential):
-    """Add one axis' part of the products of gradients; lower, outer: sums of W and of W_i W_j to order M - 2."""
+def largest(x):
+    """The largest of numbers from 0; NaN counts as 0."""
+    found = 0.0
+    for i in range(x.size):
+        found = max(found, x[i])
+    return found
+
+
+@kernel(noalias=True, inline=True)
+def add_axis(lower, outer, slope, flow, square, elevation, potential):
+    """Add one axis' part of the products of gradients, and of |grad eta|^2 to `square`.
+
+    lower, outer: sums of W and of W_i W_j to order M - 2.
+    """
     for i in range(elevation.size):
         steepness = slope[i] * slope[i]
+        square[i] += steepness
         elevation[i] += steepness * lower[i] - slope[i] * flow[i]
         potential[i] += 0.5 * (steepness * outer[i] - flow[i] * flow[i])

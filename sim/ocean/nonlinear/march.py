@@ -162,17 +162,13 @@ class March:
         u, k1 = real(a.u), real(a.rate)
         propagate(table, u, k1, 0.5 * h, real(stage))
         power2 = self._evaluate(t + 0.5 * h, stage, k2)
-        propagate(table, u, k1, 0.0, real(moved))
-        set_sum(real(moved), real(k2), 0.5 * h, real(stage))
+        set_third_stage(table, u, real(k2), 0.5 * h, real(moved), real(stage))
         power3 = self._evaluate(t + 0.5 * h, stage, k3)
         propagate(table, real(moved), real(k3), h, real(stage))
         power4 = self._evaluate(t + h, stage, k4)
         new = self._new
         new.t = t + h
-        propagate(table, u, k1, h / 6.0, real(moved))
-        set_sum(real(k2), real(k3), 1.0, real(stage))
-        propagate(table, real(moved), real(stage), h / 3.0, real(moved))
-        set_sum(real(moved), real(k4), h / 6.0, real(new.u))
+        set_end(table, real(moved), k1, real(k2), real(k3), real(k4), h / 6.0, real(new.u))
         new.power = self._evaluate(new.t, new.u, new.rate)
         new.lost = a.lost + h / 6.0 * (a.power + 2.0 * (power2 + power3) + power4)
         return new, 0.1 * h * self.propagator.distance(k4, new.rate)
@@ -210,9 +206,29 @@ def square_distance(u, v, ratio, weight):
 
 
 @kernel(noalias=True)
-def set_sum(u, v, factor, out):
-    """Set out to u + factor v, each (2, rows, 2 columns)."""
-    for field in range(2):
-        for i in range(u.shape[1]):
-            for j in range(u.shape[2]):
-                out[field, i, j] = u[field, i, j] + factor * v[field, i, j]
+def set_third_stage(table, u, k, factor, moved, stage):
+    """Set moved to u (2, rows, 2 columns), evolved by a table of `Propagator`, and stage to moved + factor k."""
+    for i in range(u.shape[1]):
+        for j in range(table.shape[2]):
+            c, up, down = table[0, i, j], table[1, i, j], table[2, i, j]
+            for part in range(2 * j, 2 * j + 2):
+                eta, psi = c * u[0, i, part] + up * u[1, i, part], c * u[1, i, part] - down * u[0, i, part]
+                moved[0, i, part], moved[1, i, part] = eta, psi
+                stage[0, i, part], stage[1, i, part] = eta + factor * k[0, i, part], psi + factor * k[1, i, part]
+
+
+@kernel(noalias=True)
+def set_end(table, moved, k1, k2, k3, k4, sixth, out):
+    """Set out (2, rows, 2 columns) to the end of a step, sixth [s] of six; moved: its start, evolved by half a step."""
+    for i in range(moved.shape[1]):
+        for j in range(table.shape[2]):
+            c, up, down = table[0, i, j], table[1, i, j], table[2, i, j]
+            for part in range(2 * j, 2 * j + 2):
+                eta = moved[0, i, part] + sixth * (
+                    c * k1[0, i, part] + up * k1[1, i, part] + 2.0 * (k2[0, i, part] + k3[0, i, part])
+                )
+                psi = moved[1, i, part] + sixth * (
+                    c * k1[1, i, part] - down * k1[0, i, part] + 2.0 * (k2[1, i, part] + k3[1, i, part])
+                )
+                out[0, i, part] = c * eta + up * psi + sixth * k4[0, i, part]
+                out[1, i, part] = c * psi - down * eta + sixth * k4[1, i, part]

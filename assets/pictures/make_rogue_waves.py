@@ -15,7 +15,7 @@ from app.messages import Advance
 from app.scenes.square_sea.parameters import PRESETS, Params
 from app.server.viewer import Viewer
 
-MOMENTS = {"Peregrine breather": ("breather", 303.0), "Draupner": ("draupner", 58.6)}  # preset -> file, time [s]
+MOMENTS = {"Peregrine breather": ("breather", 301.7), "Draupner": ("draupner", 58.6)}  # preset -> file, time [s]
 SIZE = {"width": 1100, "height": 620}  # [pixels]
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PATIENCE = 40.0  # [s] for the shaders of the page, and for its last frame

@@ -5,9 +5,9 @@ largest stable step of an oscillator of any frequency and damping rate, so a net
 these over the modes that can be the first to leave: the stiffest, the most damped, and one across the
 links. Of isotropic damping that is the most damped there, which is as damped as along them and less stiff, so that
 in a soft rope it is the more overdamped; of axial damping it is the stiffest there. Each mode's damping is its
-Rayleigh quotient, exact where D is a combination of K and M, as along a straight rope. Contact or crossing links
-couple the modes: the step is then right to some per cent, and a sixth too long at worst where they are damped
-critically; explicit Euler's, which hangs on the least damped of all modes, is a guide only.
+Rayleigh quotient, exact where D is a combination of K and M, as along a straight rope. Where it is none, as in a
+cloth, two more modes lie between the stiffest and the most damped one, and the step is right to 1 % (`springtide
+stability`). Explicit Euler's limit, which hangs on the least damped of all modes, is a guide only.
 
 Each link counts as stiff as it or any other could be if it were stretched as the most stretched one now is: a slack
 line is about to be taut, and a wave carries the strain of one link of a stiffening rope to the others. What stretches
@@ -33,6 +33,8 @@ from sim.validation import check_number
 VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
 TOUCHING = 12  # equal spheres that can touch one of them
 LEAST_SLIDING = 1e-6  # below, friction does not count
+SAME = 1.0 - 1e-6  # product of two unit vectors that are one
+ROUNDS = 2  # of the fastest overdamped mode, which is then right to 0.1 %
 SECANTS = 8  # most of them, to 1e-4 of a step
 NEARLY = 1e-7  # relative width at which the search for a stiffness ends
 
@@ -44,6 +46,7 @@ class Mode(NamedTuple):
     links: float  # the links' part of it [1/s^2]
     rate: float  # gamma = u D u / u M u = 2 zeta omega [1/s]
     sliding: float = 0.0  # share of u M u that slides on floor or sphere, which friction damps at up to 1/h
+    mixed: bool = False  # its form depends on how much stiffness and damping weigh
 
     @property
     def omega(self) -> float:
@@ -173,24 +176,50 @@ def along_surfaces(x: NDArray[np.float64], u: NDArray[np.float64], t: float, p: 
 
 
 def ritz(
-    x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int
+    x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int, stiff: float = 0.0
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Lanczos from `start`: rising eigenvalues (m,) of `part` of the tangent about x; their vectors are the columns of
-    the second (m, m), in terms of the rows of the third (m, 3 rows cols)."""
+    """Lanczos from `start`: rising eigenvalues (m,) of `part` of the tangent about x and `stiff` times STIFFEST; their
+    vectors are the columns of the second (m, m), in terms of the rows of the third (m, 3 rows cols)."""
     raise_if_stopped()
     basis = np.zeros((min(VECTORS, x.size), x.size))
     basis[0] = start
     diagonal, beside = np.zeros((2, len(basis)))
-    filled = set_lanczos(x, t, p, part, basis, diagonal, beside)
+    filled = set_lanczos(x, t, p, part, stiff, basis, diagonal, beside)
     across = np.diag(beside[: filled - 1], 1)
     values, vectors = np.linalg.eigh(np.diag(diagonal[:filled]) + across + across.T)
     return values, vectors, basis[:filled]
 
 
-def top_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int) -> NDArray[np.float64]:
-    """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x."""
-    _, vectors, basis = ritz(x, start, t, p, part)
+def top_vector(
+    x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int, stiff: float = 0.0
+) -> NDArray[np.float64]:
+    """The unit vector (3 rows cols,) of the largest eigenvalue of `part` of the tangent about x and `stiff` times
+    STIFFEST."""
+    _, vectors, basis = ritz(x, start, t, p, part, stiff)
     return vectors[:, -1] @ basis
+
+
+def mixed_vectors(
+    x: NDArray[np.float64], stiffest: NDArray[np.float64], damped: NDArray[np.float64], t: float, p: Any
+) -> list[NDArray[np.float64]]:
+    """Unit vectors (3 rows cols,) between the stiffest and the most damped one; none where these are the same.
+
+    One is that of K/omega^2 + D/gamma, on which symplectic Euler's limit hangs near critical damping. The other is of
+    the fastest mode beyond it, which every explicit method's limit hangs on: s^2 M u + s D u + K u = 0 of a real s =
+    -mu says that mu is an eigenvalue of D - K/mu, the largest one; its Rayleigh quotient rises towards it.
+    """
+    stiffness, rate = quotients(x, stiffest, t, p)[0], quotients(x, damped, t, p)[2]
+    if stiffness <= 0.0 or rate <= 0.0 or abs(stiffest @ damped) > SAME:
+        return []
+    both = stiffest + damped
+    found = [top_vector(x, both / np.linalg.norm(both), t, p, DAMPING, rate / stiffness)]
+    for _ in range(ROUNDS):
+        stiffness, _, rate, _ = quotients(x, damped, t, p)
+        root = 0.5 * rate + math.sqrt(max(0.25 * rate * rate - stiffness, 0.0))
+        if root <= 0.0:
+            break
+        damped = top_vector(x, damped, t, p, DAMPING, -1.0 / root)
+    return [*found, damped]
 
 
 def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any) -> NDArray[np.float64] | None:
@@ -230,15 +259,17 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
     if p.damped:
         parts.append((TRANSVERSE, start) if p.axial else (DAMPING, across(net, x, p)))
     vectors = [top_vector(flat, begin, t, p, part) for part, begin in parts]
+    mixed = mixed_vectors(flat, vectors[0], vectors[1], t, p) if len(vectors) > 1 else []
     if p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
         slides = sliding_vector(flat, start, t, p)
         if slides is not None:
             vectors.append(slides)
-    found = [quotients(flat, u, t, p) for u in vectors]
+    found = [quotients(flat, u, t, p) for u in vectors + mixed]
     # Slack links are not stiff across by more than round-off: no frequency is better than a wrong one.
     floor = 1e-12 * abs(found[0][0])
     return [
-        Mode(stiffness if stiffness > floor else 0.0, links, rate, sliding) for stiffness, links, rate, sliding in found
+        Mode(stiffness if stiffness > floor else 0.0, links, rate, sliding, i >= len(vectors))
+        for i, (stiffness, links, rate, sliding) in enumerate(found)
     ]
 
 
@@ -308,8 +339,10 @@ def critical_stiffness(
             modes = modes_at(net.with_stiffness(scale * stiffest), state)
         found = largest_scale(modes, record, h)
         scale *= found
-        # Beside a contact the vectors change with the links' stiffness: once more from the new ones.
-        if scale == 0.0 or math.isinf(scale) or all(math.isclose(mode.links, mode.stiffness) for mode in modes):
+        # Beside a contact, and between stiffness and damping, the vectors change with the links' stiffness: once more
+        # from the new ones.
+        alike = all(math.isclose(mode.links, mode.stiffness) and not mode.mixed for mode in modes)
+        if scale == 0.0 or math.isinf(scale) or alike:
             break
         modes = None
     return scale * stiffest

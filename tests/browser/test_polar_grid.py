@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tests.browser.glsl import in_base_64
 
 SOURCE = (resources.files("app.render") / "js" / "polar_grid.js").read_text("utf-8")
-TRIANGLES = {2: 40_000, 1: 21_000, 0: 12_000}  # at most, by fineness
+TRIANGLES = {2: 40_000, 1: 21_000, 0: 7_000}  # at most, by fineness
 PIXELS = 200  # of each camera that are tried
 # What `aimPolar` needs of three: vectors and 4 x 4 matrices, column by column. Its frame is that of the sea.
 AIM = """([source, fineness, cameras, widest, highest, cell]) => {

@@ -102,7 +102,7 @@ def test_the_script_answers_and_what_is_drawn_is_where_it_should_be(chromium, se
     water = make_water(server)
     page, errors = visit(chromium, server, drawn=False)
     assert wait(page, lambda: water.has_shader is True)
-    assert materials(page) == {"/sea": "springtide-water/sea"}
+    assert materials(page) == {"/sea": "springtide-water/sea lit"}
     assert errors == []
     moved, slopes, foam = surface(phase=1.0)
     moved += [0.3, -0.2, 0.1]
@@ -137,7 +137,7 @@ def test_a_material_that_viser_makes_anew_gets_the_shader_again(chromium, server
     server.flush()
     new = "window.__viserMutable.nodeRefFromName['/sea'].children[0].material.uuid !== window.was"
     assert wait(page, lambda: page.evaluate(new))
-    assert wait(page, lambda: materials(page) == {"/sea": "springtide-water/sea"}, 10)
+    assert wait(page, lambda: materials(page) == {"/sea": "springtide-water/sea lit"}, 10)
     assert errors == []
     page.close()
 
@@ -183,7 +183,7 @@ def test_a_sea_of_rings_is_water_too(chromium, server):
     water.set_surface(vertices, np.zeros((1, len(grid), 2)), np.ones((1, len(grid))))
     page, errors = visit(chromium, server, drawn=False)
     assert wait(page, lambda: water.has_shader is True)
-    assert materials(page) == {"/disc": "springtide-water/disc RINGS"}
+    assert materials(page) == {"/disc": "springtide-water/disc RINGS lit"}
     assert errors == []
     page.close()
 
@@ -248,7 +248,7 @@ def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.goto(f"{file.as_uri()}?fixedDpr=1")
-    assert wait(page, lambda: materials(page) == {"/sea": "springtide-water/sea"})
+    assert wait(page, lambda: materials(page) == {"/sea": "springtide-water/sea lit"})
     assert errors == []
     page.close()
 

@@ -131,7 +131,10 @@ def in_child(tree: Path, tests: list[str], report: Path, mode: Mode, timeout: fl
     if mode.until_failure and not mode.plain:  # a test that fails once by chance has not found the fault
         options += ["--reruns", "1"]
     status = pytest.main([*options, "--timeout", str(timeout), *tests], plugins=plugins)
-    if recorder.failures or status in (pytest.ExitCode.OK, pytest.ExitCode.INTERRUPTED):
+    ran = (pytest.ExitCode.OK, pytest.ExitCode.INTERRUPTED)
+    if mode.with_calls:  # a file may have none but those of a browser or of hours
+        ran += (pytest.ExitCode.NO_TESTS_COLLECTED,)
+    if recorder.failures or status in ran:
         failed = recorder.failures[0] if recorder.failures else ""
         found = Outcome(recorder.durations, failed, recorder.crash, True, calls.called)
         report.write_text(json.dumps(found._asdict()), "utf-8")

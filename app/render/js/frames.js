@@ -85,7 +85,7 @@ function inputsOf(renderer, scene, camera) {
   const list = [
     isDark(), devicePixelRatio, details, pixels, canvas.width, canvas.height, canvas.clientWidth, canvas.clientHeight,
     toneMapping, toneMappingExposure, outputColorSpace, shadowMap.enabled, scene.environmentIntensity,
-    scene.backgroundIntensity, scene.backgroundBlurriness, scene.fog, camera,
+    scene.backgroundIntensity, scene.backgroundBlurriness, scene.fog, camera, awaitsSky(scene),
   ];
   list.textures = new Set();
   for (const part of ["background", "environment", "environmentRotation", "backgroundRotation", "overrideMaterial"]) {

@@ -66,6 +66,7 @@ shaders.push({
     if (!applyPacked(mesh, data, "vertexColor", null)) return null;
     const dark = isDark(), underwater = underwaterOf(base, mesh), open = openPartOf(base, underwater);
     const edit = (shader) => {
+      if (open) shader.fragmentShader = OPEN_BASE[open];
       insertAfter(shader, "vertexShader", "common", "attribute vec3 vertexColor; varying vec3 vVertexColor;");
       insertAfter(shader, "vertexShader", "begin_vertex", `
         vVertexColor = ${dark ? glslLifted("vertexColor") : "vertexColor"};

@@ -91,6 +91,30 @@ const OPEN_BED = `
   gl_FragColor.rgb = mix(gl_FragColor.rgb, DEEP, smoothstep(0.6, 0.98, length(vPlace.xz) / openWater[0].x));
   gl_FragColor.rgb = seenThrough(gl_FragColor.rgb, normalize(vPlace - cameraPosition));`;
 
+// Their shaders without three's lights, which cost more than all of this: the surface mirrors and does not use them, and on
+// the bed, which is level, they are one factor.
+const OPEN_BASE = {
+  surface: `
+  #include <common>
+  varying vec3 vNormal;
+  void main() {
+    #include <dithering_fragment>
+  }`,
+  bed: `
+  #include <common>
+  // Light over the colour of the bed, and what it mirrors: about what three's lights and the sky come to.
+  const vec3 BED_LIGHT = vec3(2.25, 2.5, 2.7);
+  const float BED_GLEAM = 0.045;
+  void main() {
+    vec4 diffuseColor = vec4(1.0);
+    #include <color_fragment>
+    gl_FragColor = vec4(BED_LIGHT * diffuseColor.rgb + BED_GLEAM, 1.0);
+    #include <tonemapping_fragment>
+    #include <colorspace_fragment>
+    #include <dithering_fragment>
+  }`,
+};
+
 const openUniforms = { openWater: { value: null }, openTime: { value: 0 }, farDepth: { value: 1 } };
 let openDome = null; // { mesh of the surface, dome }
 

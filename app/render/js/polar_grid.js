@@ -14,7 +14,7 @@ const LEAST_STEP = 0.3; // step between the nearest rings, in cells of the simul
 const MANY_PIXELS = 600_000; // of a canvas, from which on triangles are smaller
 // Rings with waves, spokes, and the step between rings over the distance from the eye, by `finenessOf`.
 const POLAR = [
-  { rings: 110, spokes: 46, step: 0.06 },
+  { rings: 80, spokes: 40, step: 0.08 },
   { rings: 180, spokes: 56, step: 0.045 },
   { rings: 240, spokes: 72, step: 0.03 },
 ];

@@ -25,8 +25,28 @@ const SKY_TABLE_FRAGMENT = `
     gl_FragColor = vec4(c, 1.0);
   }`;
 
+const SKY_PATIENCE = 3000; // [ms] for which a sea waits for its photograph
+let skyWanted = Infinity; // [ms] when it began to
+
+// Whether a sea still waits for the photograph of the sky: without it its programs are others, which compile for seconds.
+function awaitsSky(scene) {
+  return !scene.environment && performance.now() < skyWanted + SKY_PATIENCE;
+}
+
+function wantSky() {
+  if (skyWanted < Infinity) return;
+  skyWanted = performance.now();
+  setTimeout(() => window.__viserMutable.requestRender(), SKY_PATIENCE);
+}
+
 const skyTables = new Map(); // name of the node -> { target, dome, key }, kept for good as its uniforms
 let skiesDrawn = 0; // tests read it
+
+// Let a material that is drawn outside of the scene have its photograph of the sky.
+function litBy(material, { environment, environmentIntensity, environmentRotation }) {
+  Object.assign(material, { envMap: environment, envMapIntensity: environmentIntensity });
+  material.envMapRotation.copy(environmentRotation);
+}
 
 // Draw the table of the sea `base` if it is not that of this photograph and these uniforms.
 function drawSkyTable(base, sea, renderer, scene) {
@@ -47,9 +67,7 @@ function drawSkyTable(base, sea, renderer, scene) {
   table.key = key;
   skiesDrawn += 1;
   const { material } = table.dome;
-  material.envMap = photograph;
-  material.envMapIntensity = environmentIntensity;
-  material.envMapRotation.copy(environmentRotation);
+  litBy(material, scene);
   material.fog = material.toneMapped = material.depthTest = false;
   replaceShader(material, "springtide-sky-table", (shader) => {
     Object.assign(shader.uniforms, uniforms);

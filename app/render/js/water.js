@@ -25,7 +25,7 @@ function uniformsOf(base, mesh) {
   if (!uniformsByName.has(base)) {
     const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
-    for (const name of ["wavePlaces", "waveSlopes", "skyTable"]) uniforms[name] = { value: null };
+    for (const name of ["wavePlaces", "waveSlopes", "skyTable", "seaPlaces", "seaRest", "seaLight"]) uniforms[name] = { value: null };
     for (const name of ["polarPlace", "polarSteps"]) uniforms[name] = { value: [0, 0, 0, 0] };
     for (const name of ["polarTurn", "farDepth"]) uniforms[name] = { value: 0 };
     uniforms.waterlines = { value: Array.from({ length: 4 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
@@ -36,7 +36,7 @@ function uniformsOf(base, mesh) {
 
 function makeSea(mesh, uniforms) {
   // widest, highest: greatest displacement [m] along the level and upwards; cell: of the simulated grid [m]
-  return { mesh, geometry: mesh.geometry, uniforms, filled: -1, polar: null, dome: null, widest: 0, highest: 0, cell: 1 };
+  return { mesh, geometry: mesh.geometry, uniforms, filled: -1, polar: null, lit: null, dome: null, widest: 0, highest: 0, cell: 1 };
 }
 
 // Fill a texture with width x height x 4 half-precision numbers (half.js), and its smaller copies with their means where
@@ -129,6 +129,7 @@ function disposePolar(sea) {
 
 function disposeSea(sea) {
   disposePolar(sea);
+  disposeLit(sea);
   if (!sea.dome) return;
   sea.dome.removeFromParent();
   sea.dome.geometry.dispose();
@@ -167,7 +168,9 @@ shaders.push({
       seas.set(base, (sea = makeSea(mesh, uniformsOf(base, mesh))));
       mesh.geometry.computeVertexNormals = () => {}; // the slopes replace them: viser need not compute them each frame
     }
-    if (!this.unpack({ base, mesh })) return null;
+    wantSky();
+    mesh.layers.mask = 0;
+    if (!this.unpack({ base, mesh }) || awaitsSky(scene)) return null;
     readMaterial(sea, data);
     drawSkyTable(base, sea, renderer, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);
@@ -182,25 +185,26 @@ shaders.push({
     const defines = named.map((name) => `#define ${name}\n`).join("");
     // viser asks three for a reversed depth buffer; a browser without clip control has none.
     sea.uniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
+    const fineness = finenessOf(renderer.getContext());
+    if (sea.polar?.userData.fineness !== fineness) disposePolar(sea);
+    sea.polar ??= makePolar(sea, fineness);
+    aimPolar(sea, camera);
+    const key = [`springtide-water${base}`, ...named].join(" ");
+    const isLit = sea.polar.visible && lightSea(sea, renderer, scene, camera, defines, key);
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
       shader.vertexShader = defines + WATER_VERTEX;
-      shader.fragmentShader = withSky(defines + WATER_FRAGMENT, sea.uniforms);
+      shader.fragmentShader = isLit ? defines + LIT_FRAGMENT : withSky(defines + WATER_FRAGMENT, sea.uniforms);
     };
-    const key = keyWithDetails([`springtide-water${base}`, ...named].join(" "));
     mesh.layers.mask = 1;
-    if (!replaceShader(mesh.material, key, edit)) {
+    if (!replaceShader(mesh.material, isLit ? `${key} lit` : keyWithDetails(key), edit)) {
       disposeSea(sea);
       delete mesh.geometry.computeVertexNormals;
       showPhotograph(scene, true);
       return null;
     }
     mesh.layers.mask = 0; // the polar grid is drawn in its place, with its material
-    const fineness = finenessOf(renderer.getContext());
-    if (sea.polar?.userData.fineness !== fineness) disposePolar(sea);
-    sea.polar ??= makePolar(sea, fineness);
     sea.polar.material = mesh.material;
-    aimPolar(sea, camera);
 
     if (drawSky && !sea.dome) sea.dome = makeDome(sea);
     if (sea.dome) {

@@ -546,11 +546,10 @@ const WATER_GLSL = {
     const float GLINT_SHARE = 0.7; // of the variance of slopes too fine to be drawn: that between facets that glint
     const float WIDE_GLINT_SHARE = 0.35; // the same at less detail
 
-    // Width [m] for which facets are made, from the steps of the place to the next pixels. At less detail a drawn pixel is
+    // Width [m] for which facets are made, from the steps [m] to the places of the next pixels. At less detail a drawn pixel is
     // wide on the screen, and a sparkle in a single one would be a block: facets span two of them there.
-    float facetWidth(vec2 fx, vec2 fy) {
-      float a = dot(fx, fx), b = dot(fy, fy);
-      return DETAILS > 1 ? sqrt(min(a, b)) : 1.5 * pow(max(a * b, 1e-12), 0.25);
+    float facetWidth(vec2 steps) {
+      return DETAILS > 1 ? min(steps.x, steps.y) : 1.5 * sqrt(max(steps.x * steps.y, 1e-6));
     }
 
     // The facet at x: its random slope, which turns with time, Gaussian with this variance along each axis; and the share
@@ -564,8 +563,9 @@ const WATER_GLSL = {
       return vec3(sqrt(-2.0 * variance * log(max(u.x, 1e-4))) * vec2(cos(turn), sin(turn)), light.x * light.y);
     }
 
-    // The light from a point of the sea. at: the point [m]; rest: its position in still water [m].
-    vec3 shadeSea(vec3 at, vec2 rest) {
+    // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; steps: to the places of
+    // the next pixels along and down the picture [m].
+    vec3 shadeSea(vec3 at, vec2 rest, vec2 steps) {
       float oil = slickCover(at.xy);
       float film = oilThickness(at.xy, oil);
       vec3 clear = lightThrough(film);
@@ -582,12 +582,11 @@ const WATER_GLSL = {
       vec3 around = meanHorizon();
       vec3 haze = mix(around, horizonGlow(-V), smoothstep(0.1, 0.7, length(V.xy)));
       if (lost > 0.995) return haze * lens.y;
-      vec2 fx = dFdx(at.xy), fy = dFdy(at.xy);
-      float footprint = pow(max(dot(fx, fx) * dot(fy, fy), 1e-12), 0.25);
+      float footprint = sqrt(max(steps.x * steps.y, 1e-6));
 
       // Waves finer than a pixel no longer tilt it; they make it rough instead.
       vec2 slope;
-      float rough, height = at.z, foamShare;
+      float rough, foamShare;
       #ifdef RINGS
         vec3 drawn = ringsAt(waveSlopes, rest).xyz;
         float cell = grid.z / 64.0, flatness = ringFlatness(rest);
@@ -601,7 +600,6 @@ const WATER_GLSL = {
         slope = waves.xy;
         rough = waves.w;
         foamShare = waves.z;
-        height = wavesAt(wavePlaces, rest, share, coarse, false).z;
       #endif
       foamShare *= 1.0 - oil;
       vec4 fine = ripples(at.xy, footprint);
@@ -661,7 +659,7 @@ const WATER_GLSL = {
       }
 
       float glints = DETAILS > 1 ? GLINT_SHARE : WIDE_GLINT_SHARE;
-      vec3 facet = facetAt(rest, facetWidth(fx, fy), glints * variance);
+      vec3 facet = facetAt(rest, facetWidth(steps), glints * variance);
       float glitter = 0.5 * smoothstep(-0.02, 0.05, sunDirection.z) * optics.z * lens.z * facet.z
                     * mirroredFrom(sunDirection, V, slope + facet.xy,
                                    (1.0 - glints) * variance + 0.0004, facing, optics.x);
@@ -675,7 +673,7 @@ const WATER_GLSL = {
       float sunUp = max(dot(N, sunDirection), 0.0);
       vec3 fire = fireLight / near;
       vec3 lit = ambient + (sunLight * sunUp + fire * max(dot(N, toFire), 0.0)) * 0.3183;
-      float crest = clamp(height / max(seaState.y, 0.01) + 0.15, 0.0, 1.2);
+      float crest = clamp(at.z / max(seaState.y, 0.01) + 0.15, 0.0, 1.2);
       float through = pow(clamp(dot(-V, normalize(sunDirection - 0.35 * N)) * 0.5 + 0.5, 0.0, 1.0), 3.0);
       vec3 body = deep * lit;
       body += scatter * (ambient * (0.10 + 0.35 * crest * crest) * facing
@@ -760,30 +758,45 @@ const WIRE_GLSL = `
     vec2 line = (1.0 - smoothstep(0.4, 1.1, off)) * (1.0 - smoothstep(0.2, 0.6, wide));
     return max(line.x, line.y);
   }`;
-const WATER_FRAGMENT = `
+
+// The place of the sea that a pixel shows, and where there is no water.
+const WATER_PLACE = `
   #define STANDARD
-  #define MAX_WATERLINES ${MAX_WATERLINES}
   uniform mat4 toSea;
-  ${WATER_GLSL.noise}
-  ${WATER_GLSL.waves}
-  ${WATER_GLSL.sky}
-  ${WATER_GLSL.surface}
-  ${WIRE_GLSL}
   varying vec3 vSea;
   varying vec2 vRest;
   uniform vec3 cutout; // middle x, y of a side of the rectangle without surface, half its length [m] (0: no cutout)
   uniform vec3 cutoutDirection; // unit vector from that side to the opposite one, and their distance [m]
-  void main() {
+  void cutOut() {
     // A shader with "discard" shades the waves that are hidden, too.
     #ifdef CUTOUT
       vec2 from = vSea.xy - cutout.xy;
       float across = dot(from, cutoutDirection.xy), along = dot(from, vec2(-cutoutDirection.y, cutoutDirection.x));
       if (across > 0.0 && across < cutoutDirection.z && abs(along) < cutout.z) discard;
     #endif
-    // The middle of a pixel at the horizon may lie beyond the mesh, where places have passed through infinity.
-    vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz, at = vSea;
-    if (gl_FragCoord.w < 1e-6) at = eye + 1e6 * normalize((vSea - eye) * (gl_FragCoord.w < 0.0 ? -1.0 : 1.0));
-    gl_FragColor = vec4(shadeSea(at, vRest), 1.0);
+  }
+  vec3 eyePlace() { return (toSea * vec4(cameraPosition, 1.0)).xyz; }
+  // The middle of a pixel at the horizon may lie beyond the mesh, where places have passed through infinity.
+  vec3 seaPlace() {
+    vec3 eye = eyePlace();
+    if (gl_FragCoord.w >= 1e-6) return vSea;
+    return eye + 1e6 * normalize((vSea - eye) * (gl_FragCoord.w < 0.0 ? -1.0 : 1.0));
+  }
+  vec2 stepsAt(vec3 at) { return vec2(length(dFdx(at.xy)), length(dFdy(at.xy))); }`;
+const WATER_LIGHT = `
+  #define MAX_WATERLINES ${MAX_WATERLINES}
+  ${WATER_GLSL.noise}
+  ${WATER_GLSL.waves}
+  ${WATER_GLSL.sky}
+  ${WATER_GLSL.surface}`;
+const WATER_FRAGMENT = `
+  ${WATER_PLACE}
+  ${WATER_LIGHT}
+  ${WIRE_GLSL}
+  void main() {
+    cutOut();
+    vec3 at = seaPlace();
+    gl_FragColor = vec4(shadeSea(at, vRest, stepsAt(at)), 1.0);
     #ifdef WIRE
       gl_FragColor.rgb = mix(gl_FragColor.rgb, wireColor, wireAt(vRest));
     #endif

@@ -90,21 +90,30 @@ def force_of_lines(scene: "MooringScene") -> NDArray[np.float64]:
 
 
 def static_curve(inputs: StaticInputs) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Offsets [m] along the waves, and the force [N] against each: of each line by its span."""
+    """Offsets [m] along the waves, and the force [N] against each: of each line by its span.
+
+    Lines that are alike share their statics.
+    """
     wave, rest_place = np.array(inputs.wave), np.array(inputs.rest_place)
-    ways = rest_place + np.array(inputs.places.fairleads) - np.array(inputs.places.anchors)
+    fairleads, anchors = rest_place + np.array(inputs.places.fairleads), np.array(inputs.places.anchors)
+    ways = fairleads - anchors
     straight = np.sqrt(np.maximum(inputs.length**2 - ways[:, 2] ** 2, 0.0))
     slack = float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
     offset = max(SHARE * slack, LEAST_SHARE * inputs.reach, inputs.far) * np.linspace(-1.0, 1.0, POINTS)
+    away = -ways[:, None, :2] - offset[:, None] * wave  # (lines, points, 2) from the fairlead to the anchor
+    span = np.linalg.norm(away, axis=2)
+    along = (away @ wave) / np.maximum(span, 1e-9)
+    alike: dict[tuple[object, ...], list[int]] = {}
+    for i in range(len(ways)):
+        parts = tuple(line for line in inputs.lines if line.id // 10 == i + 1)
+        kind = *((line.type, line.length, line.segments) for line in parts), round(float(ways[i, 2]), 9)
+        alike.setdefault(kind, []).append(i)
     force = np.zeros(POINTS)
-    for i, (anchor, arm) in enumerate(zip(inputs.places.anchors, inputs.places.fairleads, strict=True)):
-        fairlead = rest_place + arm
-        away = np.array(anchor)[:2] - fairlead[:2] - offset[:, None] * wave  # from the fairlead to the anchor
-        span = np.linalg.norm(away, axis=1)
-        at = np.linspace(span.min(), span.max() + 1e-6, SPANS)
-        lines = tuple(line for line in inputs.lines if line.id // 10 == i + 1)
-        level = np.array([level_tension(inputs, lines, one, float(fairlead[2] - anchor[2])) for one in at])
-        force -= np.interp(span, at, level) * (away @ wave) / np.maximum(span, 1e-9)
+    for group in alike.values():
+        parts = tuple(line for line in inputs.lines if line.id // 10 == group[0] + 1)
+        at = np.linspace(span[group].min(), span[group].max() + 1e-6, SPANS)
+        level = np.array([level_tension(inputs, parts, one, float(ways[group[0], 2])) for one in at])
+        force -= (np.interp(span[group], at, level) * along[group]).sum(axis=0)
     return offset, force
 
 

@@ -157,14 +157,18 @@ def test_each_program_that_depends_on_the_details_has_three_variants() -> None:
     """Those of water, dome and rain; a program whose name does not tell them apart would stay as it is."""
     variants = {int(n) for n in re.findall(r"details: (\d)[ }]", source_of("quality.js"))}
     assert variants == {0, 1, 2}
-    scripts = source_of("water.js") + source_of("rain.js")
+    scripts = source_of("water.js") + source_of("lit_sea.js") + source_of("rain.js")
     sources = re.findall(r"fragmentShader = (.*);", scripts)
     assert sorted(sources) == [
+        "defines + PLACES_FRAGMENT",
+        "isLit ? defines + LIT_FRAGMENT : withSky(defines + WATER_FRAGMENT, sea.uniforms)",
         "withSky(DOME_FRAGMENT, sea.uniforms)",
         "withSky(RAIN_FRAGMENT, sea.uniforms)",
-        "withSky(defines + WATER_FRAGMENT, sea.uniforms)",
+        "withSky(defines + LIGHT_FRAGMENT, uniforms)",
     ]
-    assert scripts.count("replaceShader(") == scripts.count("keyWithDetails(") == 3
+    keys = re.findall(r"replaceShader\([\w.]+, (.*), (?:edit\)|\(shader)", scripts)
+    assert [key for key in keys if "keyWithDetails(" not in key] == ["`${key} places`"]
+    assert len(keys) == len(sources)
     assert "withDetails(" in source_of("sky_table.js")
     assert "DETAILS" in source_of("water_shader.js")
 

@@ -149,7 +149,7 @@ def test_between_the_first_frequencies_of_a_table_forces_are_those_of_one_with_m
         np.testing.assert_allclose(found[:, motion], known[:, motion], atol=within)
 
 
-def steady(body: Body, w: float, heading: float, periods: int = 8, skipped: int = 3) -> np.ndarray:
+def steady(body: Body, w: float, heading: float, periods: int = 5, skipped: int = 2) -> np.ndarray:
     """Motion (6,) for 1 m of a regular wave of w [rad/s] that `float_in` finds, about its slow drift."""
     one, k, height = np.ones(1), w * w / 9.81, 1e-3
     sea = RadialSea(Waves(k * math.cos(heading) * one, k * math.sin(heading) * one, height * one, 0.0 * one))
@@ -162,7 +162,7 @@ def steady(body: Body, w: float, heading: float, periods: int = 8, skipped: int 
     return (fit[0] + 1j * fit[1]) / height
 
 
-@pytest.mark.parametrize("number", [1, 2, 9, 17])
+@pytest.mark.parametrize("number", [1, *(pytest.param(number, marks=pytest.mark.stress) for number in (2, 9, 17))])
 def test_in_time_a_body_moves_with_long_waves_too(number: int) -> None:
     body, heading = twenty()[number]
     body = body.afloat()

@@ -99,6 +99,27 @@ def test_extreme_eigenvalues_match_dense_ones_in_contact(model, contact):
     assert most_damped.rate == pytest.approx(np.linalg.eigvalsh(products(net, net.x0, DAMPING))[-1], rel=2e-3)
 
 
+@pytest.mark.parametrize("damping", [0.3, 1.0, 2.0, 3.0, 5.0, 10.0])
+def test_the_limit_of_a_cloth_is_that_of_all_its_modes_where_stiffness_and_damping_have_different_ones(damping):
+    net = cloth(3, 4, damping=damping)
+    state = State.at_rest(net)
+    state.x[:] *= 1.02
+    k, d = (products(net, state.x, part) for part in (STIFFNESS, DAMPING))
+    eigenvalues = np.linalg.eigvals(np.block([[np.zeros_like(k), np.eye(len(k))], [-k, -d]]))
+    for name in ("rk4", "dopri5", "dop853"):
+        # A real eigenvalue is the fast one of an oscillator without stiffness.
+        exact = min(
+            INTEGRATORS[name].stable_step(*((abs(s), -2.0 * s.real) if abs(s.imag) > 1e-6 else (0.0, -s.real)))
+            for s in eigenvalues
+            if s.real < -1e-6
+        )
+        assert critical_step(net, name, state) == pytest.approx(exact, rel=0.01)
+    h = 1.0
+    for _ in range(60):  # symplectic Euler: h^2 K + 2 h D reaches 4
+        h = 2.0 / math.sqrt(np.linalg.eigvalsh(k + 2.0 / h * d)[-1])
+    assert critical_step(net, "symplectic_euler", state) == pytest.approx(h, rel=0.01)
+
+
 @pytest.mark.parametrize("model", ["isotropic", "axial"])
 def test_gershgorin_bounds_every_state(model):
     for net in (rope(200, damping_model=model), patch(model), touching_patch(model, Contact(5000.0, 30.0, 0.0, "lab"))):

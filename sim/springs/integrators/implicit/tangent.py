@@ -200,18 +200,22 @@ def add_multiple(y, s, x):
 
 
 @kernel(noalias=True)
-def set_lanczos(x, t, p, part, basis, diagonal, beside):
+def set_lanczos(x, t, p, part, stiff, basis, diagonal, beside):
     """Lanczos from the unit vector in basis[0]: the tridiagonal T = Q^T A Q, and how many rows of Q were filled.
 
-    basis (count, 3 rows cols); diagonal, beside (count,). Every new vector is made orthogonal to all before it: counts
-    are small, and without that the largest eigenvalue comes back as false copies (Golub & Van Loan, 10.3).
+    A is `part` of the tangent and `stiff` times part STIFFEST. basis (count, 3 rows cols); diagonal, beside (count,).
+    Every new vector is made orthogonal to all before it: counts are small, and without that the largest eigenvalue
+    comes back as false copies (Golub & Van Loan, 10.3).
     """
     count = basis.shape[0]
-    w = np.empty_like(x)
+    w, other = np.empty_like(x), np.empty_like(x)
     largest = 0.0
     longest = longest_strain(x, p)
     for s in range(count):
         set_tangent(x, basis[s], t, p, part, longest, w)
+        if stiff != 0.0:
+            set_tangent(x, basis[s], t, p, STIFFEST, longest, other)
+            add_multiple(w, stiff, other)
         diagonal[s] = dot(w, basis[s])
         for _ in range(2):
             for r in range(s + 1):

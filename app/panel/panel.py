@@ -161,7 +161,7 @@ class Panel:
 
     def add_run_on(self, event: Awaited) -> viser.GuiButtonHandle:
         """The button that runs on to an event."""
-        button = self.gui.add_button(event.label, visible=event.offered(self.params), hint="The lab pauses then")
+        button = self.gui.add_button(event.label, visible=event.offered(self.params), hint=event.hint)
 
         @button.on_click
         async def _(_: ViserEvent) -> None:

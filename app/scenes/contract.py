@@ -212,6 +212,7 @@ class Awaited(NamedTuple):
     """An event that a button of the panel runs on to."""
 
     label: str  # of the button
+    hint: str
     offered: Callable[..., bool]  # params -> whether it can happen
     reached: Callable[..., bool]  # snapshot -> whether it happens just now
 

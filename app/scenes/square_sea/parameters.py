@@ -65,7 +65,7 @@ class Params:
             "groups": "Even waves with side bands", "rogue": "Towards a rogue wave",
         },
         doc="The sea at the start: as set here; a calm or a storm, from which a linear sea develops; or waves that "
-        "grow: long-crested ones as high as Hs says, or the sea as set with a crest that comes after 4 periods",
+        "grow: long-crested ones of this significant height, or the sea as set with a high crest after 4 periods",
         affects="start",
     )  # fmt: skip
     order: int = in_waves(
@@ -193,8 +193,8 @@ ABOUT = {  # preset -> what it shows and what to try
     "Peregrine breather": "Even waves gather within a minute into one that is three times as high. Try order 1.",
     "Steep waves split into groups": "Even, steep waves split into groups within a minute, by the instability that "
     "Benjamin and Feir found. Try a lower wave, or order 1.",
-    "Draupner": "A crossing sea of Hs 11.9 m makes a crest of 18.5 m after 60 s, as was measured on 1 January 1995.",
-    "Steep storm": "Waves of a short fetch, which steepen and break. Run on until a crest of 1.25 Hs (in Controls).",
+    "Draupner": "A crossing sea, significant height 11.9 m, makes a crest of 18.5 m after 60 s, as measured in 1995.",
+    "Steep storm": "Waves of a short fetch, which steepen and break. Run on to a high crest by the button in Controls.",
 }
 
 

@@ -66,7 +66,7 @@ def heights_table(r: Report, frame: SeaFrame) -> Html:
         (("", ""), ("as drawn", ""), ("linear", "theory"), ("second order", "Forristall")),
         (
             (
-                fill("crest over Hs {}", info(CREST, "2. Waves")),
+                fill("crest over significant height {}", info(CREST, "2. Waves")),
                 bold(fixed(p.amplitude * found.crest / hs, 2)),
                 fixed(scale * t.linear, 2),
                 fixed(scale * t.second_order, 2),
@@ -85,7 +85,7 @@ def heights_table(r: Report, frame: SeaFrame) -> Html:
 
 def highest_text(h: Highest) -> str:
     """The highest crest since the start."""
-    return f"Highest crest: {number(h.place[2])} m, {fixed(h.ratio, 2)} Hs, at t = {h.time:.1f} s"
+    return f"Highest crest: {number(h.place[2])} m, {fixed(h.ratio, 2)} × significant height, at {h.time:.1f} s"
 
 
 def foam_text(r: "SeaReadings", g: float) -> str:

@@ -1,6 +1,7 @@
 """The square sea: wind waves on a tile that repeats to the horizon, on any planet, in calm, storm and rain."""
 
 import collections
+import dataclasses
 import functools
 import math
 from typing import TYPE_CHECKING, Any
@@ -51,6 +52,7 @@ CHANGING = (  # as time passes
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
 CURVES = {"plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge", "m²/Hz", "f [Hz]", ("measured", "theory"))}
 HIGH_CREST = 1.25  # over Hs
+AWAITED_HINT = "Of the significant height Hs, as high as a rogue wave. The lab pauses then"
 NONLINEAR = "nonlinear waves"
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 START_WIND_SPEEDS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea at a reset, by the parameter `start`
@@ -91,9 +93,9 @@ def compile_drawn_sea() -> None:
 
 def compile_nonlinear_sea() -> None:
     """Call all kernels of both kinds of nonlinear sea."""
-    small: dict[str, Any] = {"size": "64", "mesh": "32", "length": 64.0, "order": 3, "wind_speed": 15.0}
-    for more in ({}, {"start": "breather", "spectrum": "regular"}):
-        scene = SquareSeaScene(Params(**small, **more))
+    small = Params(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
+    for params in (small, dataclasses.replace(small, start="breather", spectrum="regular")):
+        scene = SquareSeaScene(params)
         for _ in range(4):
             scene.advance(30)
             scene.frame()
@@ -437,6 +439,6 @@ SCENE = SceneKind(
     frame_units={"vertices": "m", "slopes": "", "foam": "0 to 1"},
     packing=FramePacking(pack_frame, unpack_frame),
     live_values=live_values,
-    awaited=Awaited(f"Run on until a crest of {HIGH_CREST:g} Hs", marches, has_high_crest),
+    awaited=Awaited(f"Run on until a crest of {HIGH_CREST:g} Hs", AWAITED_HINT, marches, has_high_crest),
     middle=lambda params: (0.5 * params.length, 0.5 * params.length),
 )

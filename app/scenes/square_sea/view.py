@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import viser
 
-from app.formats.formatting import fixed, number
+from app.formats.formatting import number
 from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Point, Snapshot, Vector, finite_vector
@@ -223,7 +223,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             self.mark = self.server.scene.add_label("/highest", "", anchor="bottom-center")
         self.mark.visible = highest is not None
         if highest is not None:
-            self.mark.text = f"{number(highest.place[2])} m, {fixed(highest.ratio, 2)} Hs"
+            self.mark.text = f"{number(highest.place[2])} m"
             self.mark.position = highest.place
 
     def move_cameras(self, old: float, new: float) -> None:

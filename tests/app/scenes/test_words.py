@@ -27,6 +27,7 @@ SETTINGS: list[tuple[str, dict[str, Any]]] = [
     ("rope", {"integrator": "explicit_euler", "stiffness": 2000.0}),
     ("rope", {"integrator": "implicit_euler"}),
     ("square_sea", {"viscosity": 1e-3, "deep": False, "depth": 2.0}),
+    ("square_sea", {"size": "64", "mesh": "32", "order": 3, "deep": False}),
     ("radial_sea", {"spill": "mixed", "compare": True}),
     ("radial_sea", {"spill": "layer", "thickness": 0.1}),
 ]

@@ -190,11 +190,10 @@ ABOUT = {  # preset -> what it shows and what to try
     "Light planet": "On a planet of 1/100 of the Earth's mass the same wind makes higher, longer waves.",
     "Heavy planet": "On a planet of 100 times the Earth's mass the same wind makes lower, shorter waves.",
     "Rain shower": "Rain on nearly calm water: watch the rings spread.",
-    "Peregrine breather": "Even waves gather within a minute into one that is three times as high. Try order 1.",
-    "Steep waves split into groups": "Even, steep waves split into groups within a minute, by the instability that "
-    "Benjamin and Feir found. Try a lower wave, or order 1.",
-    "Draupner": "A crossing sea, significant height 11.9 m, makes a crest of 18.5 m after 60 s, as measured in 1995.",
-    "Steep storm": "Waves of a short fetch, which steepen and break. Run on to a high crest by the button in Controls.",
+    "Peregrine breather": "Even waves gather within a minute into one that is three times as high.",
+    "Steep waves split into groups": "Even, steep waves split into groups within a minute; at order 1 they do not.",
+    "Draupner": "A crossing sea makes a crest of 18.5 m after 60 s, as it was measured in 1995.",
+    "Steep storm": "Steep waves of a short fetch break: run on to a high crest.",
 }
 
 

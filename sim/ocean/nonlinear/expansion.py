@@ -90,7 +90,7 @@ class Expansion:
         self.phi[0][...] = surface_value
         for m, (phi, width) in enumerate(zip(self.phi, self.widths, strict=True), 1):
             if m > 1:
-                set_potential(m, self.eta, self._derivatives, self._first, self._block[0], self._product)
+                set_potential(m, self.eta, self._derivatives, self._first, self._product)
                 self.set_spectrum(self._product, phi, width)
             for j in range(self.order - m + 1 if m < self.order else 0):
                 self.set_field(phi, self._derivatives[self._first[m - 1] + j], j + 1, width)
@@ -132,9 +132,9 @@ def set_to(value, out):
 
 
 @kernel(noalias=True, inline=True)
-def scale_by(factor, x, out):
+def set_product(x, y, factor, out):
     for i in range(out.size):
-        out[i] *= factor * x[i]
+        out[i] = factor * x[i] * y[i]
 
 
 @kernel(noalias=True, inline=True)
@@ -143,17 +143,46 @@ def add_product(x, y, out):
         out[i] += x[i] * y[i]
 
 
+@kernel(noalias=True, inline=True)
+def scale_by(x, factor, out):
+    for i in range(out.size):
+        out[i] *= factor * x[i]
+
+
+@kernel(noalias=True, inline=True)
+def set_series(x, eta, factor, y, out):
+    """One level of a power series: out = y + factor eta x."""
+    for i in range(out.size):
+        out[i] = y[i] + factor * eta[i] * x[i]
+
+
+@kernel(noalias=True, inline=True)
+def raise_series(eta, factor, y, out):
+    """The same with x in out."""
+    for i in range(out.size):
+        out[i] = y[i] + factor * eta[i] * out[i]
+
+
+@kernel(noalias=True, inline=True)
+def set_sum(x, y, out):
+    for i in range(out.size):
+        out[i] = x[i] + y[i]
+
+
 @kernel(noalias=True)
-def set_potential(m, eta, derivatives, first, power, out):
-    """Set phi_m on the grid: -sum_{j=1}^{m-1} eta^j/j! d^j phi_{m-j}/dz^j. power: scratch (BLOCK,)."""
+def set_potential(m, eta, derivatives, first, out):
+    """Set phi_m on the grid: -sum_{j=1}^{m-1} eta^j/j! d^j phi_{m-j}/dz^j, from the last term on."""
     for start in range(0, eta.size, BLOCK):
         stop = min(start + BLOCK, eta.size)
-        term, here = power[: stop - start], out[start:stop]
-        set_to(-1.0, term)
-        set_to(0.0, here)
-        for j in range(1, m):
-            scale_by(1.0 / j, eta[start:stop], term)
-            add_product(term, derivatives[first[m - j - 1] + j - 1, start:stop], here)
+        height, here = eta[start:stop], out[start:stop]
+        last = derivatives[first[0] + m - 2, start:stop]
+        if m == 2:
+            set_product(last, height, -1.0, here)
+            continue
+        set_series(last, height, 1.0 / (m - 1), derivatives[first[1] + m - 3, start:stop], here)
+        for j in range(m - 3, 0, -1):
+            raise_series(height, 1.0 / (j + 1), derivatives[first[m - j - 1] + j - 1, start:stop], here)
+        scale_by(height, -1.0, here)
 
 
 @kernel(noalias=True)
@@ -162,46 +191,51 @@ def set_surface_rates(order, eta, slope, flow, derivatives, first, scratch, elev
 
     slope, flow (axes, points): grad eta, grad psi; scratch (2 order + 4, BLOCK).
     """
-    # Rows of scratch: W_1 ... W_M, the sums S of the first 0 ... M of them, and three more. One-dimensional rows only:
-    # loops over them are vectorised.
-    M = S = order
-    steepest = 0.0
+    # Rows of scratch: W_1 ... W_M, their sums S_2 ... S_M, and three more. One-dimensional rows only: loops over them
+    # are vectorised.
+    M, steepest = order, 0.0
     for start in range(0, eta.size, BLOCK):
         stop = min(start + BLOCK, eta.size)
-        n = stop - start
-        power, square, outer = scratch[2 * M + 1, :n], scratch[2 * M + 2, :n], scratch[2 * M + 3, :n]
-        set_to(1.0, power)
-        for row in range(2 * M + 4):
-            if row <= S or row > 2 * M + 1:
-                set_to(0.0, scratch[row, :n])
-        for j in range(M):
-            if j > 0:
-                scale_by(1.0 / j, eta[start:stop], power)
-            # d phi_M/dz is left out.
-            for m in range(j, M if j > 0 else M - 1):
-                add_product(power, derivatives[first[m - j] + j, start:stop], scratch[m, :n])
-        for m in range(M):
-            set_sum(scratch[S + m, :n], scratch[m, :n], scratch[S + m + 1, :n])
+        n, height = stop - start, eta[start:stop]
+        square, outer, steep = scratch[2 * M, :n], scratch[2 * M + 1, :n], scratch[2 * M + 2, :n]
+        set_to(1.0, steep)
+        set_product(derivatives[first[0], start:stop], steep, 1.0, scratch[0, :n])
+        for m in range(1, M):
+            W, last = scratch[m, :n], derivatives[first[0] + m, start:stop]
+            for j in range(m - 1, -1, -1):
+                # d phi_M/dz, of the last W at j = 0, is left out.
+                if j == 0 and m == M - 1:
+                    if m == 1:
+                        set_product(last, height, 1.0, W)
+                    else:
+                        scale_by(height, 1.0, W)
+                elif j == m - 1:
+                    set_series(last, height, 1.0 / m, derivatives[first[1] + j, start:stop], W)
+                else:
+                    raise_series(height, 1.0 / (j + 1), derivatives[first[m - j] + j, start:stop], W)
+        for m in range(1, M):
+            set_sum(scratch[sum_row(m, M), :n], scratch[m, :n], scratch[sum_row(m + 1, M), :n])
         # Sums of W_i W_j with i + j <= M, and with i + j <= M - 2.
-        for m in range(M - 1):
-            add_product(scratch[m, :n], scratch[S + M - 1 - m, :n], square)
+        set_product(scratch[0, :n], scratch[sum_row(M - 1, M), :n], 1.0, square)
+        for m in range(1, M - 1):
+            add_product(scratch[m, :n], scratch[sum_row(M - 1 - m, M), :n], square)
+        set_to(0.0, outer)
         for m in range(M - 3):
-            add_product(scratch[m, :n], scratch[S + M - 3 - m, :n], outer)
+            add_product(scratch[m, :n], scratch[sum_row(M - 3 - m, M), :n], outer)
         rise, push = elevation[start:stop], potential[start:stop]
-        set_linear(scratch[S + M, :n], scratch[0, :n], square, rise, push)
-        set_to(0.0, power)
+        set_linear(scratch[sum_row(M, M), :n], scratch[0, :n], square, rise, push)
+        lower = scratch[sum_row(M - 2, M), :n] if M > 2 else outer
+        set_to(0.0, steep)
         for a in range(slope.shape[0]):
-            add_axis(
-                scratch[S + max(M - 2, 0), :n], outer, slope[a, start:stop], flow[a, start:stop], power, rise, push
-            )
-        steepest = max(steepest, largest(power))
+            add_axis(lower, outer, slope[a, start:stop], flow[a, start:stop], steep, rise, push)
+        steepest = max(steepest, largest(steep))
     return steepest
 
 
-@kernel(noalias=True, inline=True)
-def set_sum(x, y, out):
-    for i in range(out.size):
-        out[i] = x[i] + y[i]
+@kernel(inline=True)
+def sum_row(count, order):
+    """Row of scratch with W_1 + ... + W_count."""
+    return 0 if count == 1 else order + count - 2
 
 
 @kernel(noalias=True, inline=True)

@@ -259,7 +259,7 @@ class SimLoop(Run):
                 if self.replay is not None and self.replay.ended:
                     self.replay = None  # on from the last good state
             case Pause():
-                self.running = False
+                self.running, self.awaited = False, None
             case RunOn(reached):
                 self.handle(Play())
                 self.awaited, self.is_reached = reached, reached(self.latest)
@@ -274,6 +274,8 @@ class SimLoop(Run):
             case Halt(reason):
                 self.halt(reason)
             case Take(params, start, state):
+                if start or state is not None:
+                    self.awaited = None
                 if start:
                     self.begin_with(params)
                 elif state is not None:
@@ -281,6 +283,7 @@ class SimLoop(Run):
                 else:
                     self.take(params)
             case Reset():
+                self.awaited = None
                 self.counts["starts"] += 1
                 self.reset()
             case Ask(read, answer):

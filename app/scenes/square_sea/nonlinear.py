@@ -68,6 +68,7 @@ class Marching:
         """The arguments are those of `nonlinear_sea`."""
         self.sea = nonlinear_sea(p, linear, t, place)
         self.highest: Highest | None = None
+        self.scale = p.amplitude  # factor on the heights that `highest` is of
 
     def advance(self, t: float) -> None:
         """Move on to time t [s]. Raises DivergenceError."""
@@ -80,6 +81,8 @@ class Marching:
 
     def fields(self, p: Params) -> Fields:
         """The fields as they are now, the Jacobian where foam is drawn. The highest crest is noted."""
+        if p.amplitude != self.scale:
+            self.highest, self.scale = None, p.amplitude
         surface = self.sea.surface(self.sea.time)
         height = on_tile(surface.height)
         at = int(height.argmax())

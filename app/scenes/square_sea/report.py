@@ -85,7 +85,7 @@ def heights_table(r: Report, frame: SeaFrame) -> Html:
 
 def highest_text(h: Highest) -> str:
     """The highest crest since the start."""
-    return f"Highest crest: {number(h.place[2])} m, {fixed(h.ratio, 2)} × significant height, at {h.time:.1f} s"
+    return f"Highest crest: {number(h.place[2])} m, {fixed(h.ratio, 2)} × significant height"
 
 
 def foam_text(r: "SeaReadings", g: float) -> str:
@@ -217,7 +217,7 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
 def order_line(params: Params, frame: SeaFrame) -> str:
     """What the order does, and the highest crest."""
     if frame.highest is not None:
-        return highest_text(frame.highest)
+        return f"{highest_text(frame.highest)}, at t = {frame.highest.time:.1f} s"
     return "solved step by step; new weather begins it again" if marches(params) else "a sum of linear waves"
 
 

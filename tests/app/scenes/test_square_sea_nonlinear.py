@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.formats.formatting import number
-from app.messages import Pause, Point, RunOn
+from app.messages import Pause, Play, Point, Reset, RunOn
 from app.scenes.square_sea import report
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import LINEAR_ONLY, PRESETS, Params, hidden, solved_points
@@ -202,6 +202,13 @@ def test_a_run_goes_on_until_an_event_begins() -> None:
         assert not loop.latest.status.running
         loop.handle(RunOn(lambda snapshot: 0.5 <= snapshot.status.time % 1.0 < 0.8))
     assert ends == pytest.approx([0.5, 1.5], abs=0.04)  # the event of now is over before the next begins
+    for forget in (Pause(), Reset()):
+        loop.handle(RunOn(lambda snapshot: True))
+        loop.handle(forget)
+        loop.handle(Play())
+        for _ in range(3):
+            loop.tick(1 / 30)
+        assert loop.running
 
 
 def test_the_event_is_a_crest_of_1_25_hs(draupner: Any) -> None:

@@ -90,3 +90,10 @@ def narrow_band_moments(k: float, deviation: float, depth: float) -> tuple[float
         3.0 * math.sqrt(square) / (1.0 + square) ** 1.5,
         (3.0 + 18.0 * square + 9.0 * square**2) / (1.0 + square) ** 2,
     )
+
+
+def moments_of(height: np.ndarray) -> tuple[float, float]:
+    """Skewness and kurtosis of heights of any shape; 0 of level water."""
+    away = np.asarray(height, np.float64) - float(np.mean(height, dtype=np.float64))
+    variance = max(float(np.square(away).mean()), 1e-300)
+    return float((away**3).mean()) / variance**1.5, float((away**4).mean()) / variance**2

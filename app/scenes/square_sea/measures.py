@@ -2,11 +2,10 @@
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from app.scenes.contract import Measure
 from app.scenes.square_sea.frame import SeaReadings
 from app.scenes.square_sea.statistics import measure, theory
+from sim.ocean.high_crests import moments_of
 
 if TYPE_CHECKING:
     from app.scenes.square_sea.scene import SquareSeaScene
@@ -16,8 +15,7 @@ def measures(scene: "SquareSeaScene") -> dict[str, Measure]:
     """Measures of the sea at its present time; no frame is drawn for them."""
     sea, t, p = scene.sea, scene.time, scene.params
     height = scene.fields().height
-    away = height - height.mean(dtype=np.float64)
-    variance = max(float(np.square(away).mean()), 1e-30)
+    skewness, kurtosis = moments_of(height)
     energy = None if scene.marching is None else scene.marching.sea.energy
     found, expected = measure(sea, height, None, p), theory(sea, t, p)
     stated = expected.statistics
@@ -27,8 +25,8 @@ def measures(scene: "SquareSeaScene") -> dict[str, Measure]:
         "peak_period": Measure(found.peak_period, "s", "Peak period of the drawn sea"),
         "mean_square_slope": Measure(found.mean_square_slope, "1", "Mean square slope of the drawn sea"),
         "crest_height": Measure(p.amplitude * float(height.max()), "m", "Highest crest of the drawn sea"),
-        "skewness": Measure(float((away**3).mean()) / variance**1.5, "1", "Skewness of the heights of the drawn sea"),
-        "kurtosis": Measure(float((away**4).mean()) / variance**2, "1", "Kurtosis of the heights of the drawn sea"),
+        "skewness": Measure(skewness, "1", "Skewness of the heights of the drawn sea"),
+        "kurtosis": Measure(kurtosis, "1", "Kurtosis of the heights of the drawn sea"),
         "breaking_loss": Measure(
             0.0 if energy is None else energy.breaking, "J/m²", "Energy that breaking has taken since the start"
         ),

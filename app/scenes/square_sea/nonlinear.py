@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from app.scenes.square_sea.parameters import LONG_CRESTED_STARTS, Params, solved_points
 from app.scenes.square_sea.tile_mesh import Fields, Highest
 from sim.ocean import Sea
-from sim.ocean.high_crests import HighCrests, high_crests
+from sim.ocean.high_crests import HighCrests, high_crests, moments_of
 from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves
 from sim.ocean.statistics import expected
 
@@ -96,11 +96,7 @@ class Marching:
 
     def heights(self, linear: Sea, height: NDArray[np.floating]) -> Heights:
         """Crest, skewness and kurtosis of heights (n, n) [m] of now, beside theory of the linear sea."""
-        away = np.asarray(height, np.float64) - float(height.mean(dtype=np.float64))
-        variance = max(float(np.square(away).mean()), 1e-30)
         energy = self.sea.energy
         whole = energy.kinetic + energy.potential + energy.breaking
-        return Heights(
-            float(height.max()), float((away**3).mean()) / variance**1.5, float((away**4).mean()) / variance**2,
-            high_crests(linear, self.sea.time), energy.breaking / whole if whole > 0.0 else 0.0,
-        )  # fmt: skip
+        lost = energy.breaking / whole if whole > 0.0 else 0.0
+        return Heights(float(height.max()), *moments_of(height), high_crests(linear, self.sea.time), lost)

@@ -93,7 +93,10 @@ def narrow_band_moments(k: float, deviation: float, depth: float) -> tuple[float
 
 
 def moments_of(height: np.ndarray) -> tuple[float, float]:
-    """Skewness and kurtosis of heights of any shape; 0 of level water."""
+    """Skewness and kurtosis of heights of any shape; 0 and 3 of level water."""
     away = np.asarray(height, np.float64) - float(np.mean(height, dtype=np.float64))
-    variance = max(float(np.square(away).mean()), 1e-300)
-    return float((away**3).mean()) / variance**1.5, float((away**4).mean()) / variance**2
+    deviation = math.sqrt(float(np.square(away).mean()))
+    if deviation == 0.0:
+        return 0.0, 3.0
+    away /= deviation
+    return float((away**3).mean()), float((away**4).mean())

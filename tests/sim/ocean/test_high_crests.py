@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.high_crests import forristall_crest, high_crests, most_probable_highest, narrow_band_moments
+from sim.ocean.high_crests import forristall_crest, high_crests, moments_of, most_probable_highest, narrow_band_moments
 
 
 def test_the_highest_crest_of_gaussian_tiles() -> None:
@@ -47,9 +47,12 @@ def test_moments_of_bound_waves_are_those_of_samples() -> None:
     k, deviation = 0.1, 1.2
     height = deviation * x + 0.5 * k * deviation**2 * (x * x - y * y)
     away = height - height.mean()
+    sampled = moments_of(height)
+    assert sampled == pytest.approx(((away**3).mean() / (away**2).mean() ** 1.5, (away**4).mean() / height.var() ** 2))
+    assert moments_of(np.zeros((4, 4))) == (0.0, 3.0)
     skewness, kurtosis = narrow_band_moments(k, deviation, math.inf)
-    assert skewness == pytest.approx((away**3).mean() / (away**2).mean() ** 1.5, abs=0.01)
-    assert kurtosis == pytest.approx((away**4).mean() / (away**2).mean() ** 2, abs=0.03)
+    assert skewness == pytest.approx(sampled[0], abs=0.01)
+    assert kurtosis == pytest.approx(sampled[1], abs=0.03)
     shallow, _ = narrow_band_moments(k, deviation, 10.0)
     assert shallow > 1.5 * skewness
 

@@ -178,7 +178,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
     "Steep storm": {
         "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",
-        "foam_by_wind": False, "foam_threshold": 0.6, "view": "bridge", "clouds": 0.9, "daylight": 0.8,
+        "foam_by_wind": False, "foam_threshold": 0.7, "view": "bridge", "clouds": 0.9, "daylight": 0.8,
         "visibility": 2000.0,
     },
 }  # fmt: skip

@@ -105,12 +105,24 @@ class Parser(argparse.ArgumentParser):
         sys.exit(print_error(message, 2))
 
 
+class Version(argparse.Action):
+    """Prints the machine and the versions, and ends the program."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        """Called for the option."""
+        from app.experiments.tables import machine
+
+        print(machine())
+        parser.exit()
+
+
 def make_parser() -> argparse.ArgumentParser:
     """The parser of all commands; each sets `command`, the function that runs it."""
     parser = Parser(
         prog="springtide",
         description="An interactive 3-D lab for spring-mass systems and ocean waves, in a browser tab.",
     )
+    parser.add_argument("--version", nargs=0, action=Version, help="print what a report of a fault needs")
     parser.set_defaults(command=serve)
     add_serving(parser)
     commands = parser.add_subparsers(metavar="COMMAND")

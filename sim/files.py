@@ -4,6 +4,7 @@ import contextlib
 import errno
 import os
 import secrets
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +12,23 @@ from pathlib import Path
 def draft_of(path: Path) -> Path:
     """The name that a file is first written to: no other thread or process of this machine uses it."""
     return path.with_name(f".{path.stem}.{os.getpid()}-{secrets.token_hex(4)}{path.suffix}")
+
+
+# [s] between tries to replace a file. Windows refuses while another program has it open, as an editor, an indexer or a
+# virus scanner has for a moment.
+PAUSES = (0.05, 0.1, 0.2, 0.3, 0.35) if os.name == "nt" else ()
+
+
+def replace(draft: Path, target: Path) -> None:
+    """Rename a file to the name of another, which it replaces. Raises OSError."""
+    for pause in PAUSES:
+        try:
+            os.replace(draft, target)
+        except PermissionError:
+            time.sleep(pause)
+        else:
+            return
+    os.replace(draft, target)
 
 
 @contextlib.contextmanager
@@ -25,7 +43,7 @@ def replacing(path: Path) -> Iterator[Path]:
         yield draft
         with draft.open("rb+") as file:
             os.fsync(file.fileno())
-        os.replace(draft, target)
+        replace(draft, target)
     except BaseException:
         draft.unlink(missing_ok=True)
         raise

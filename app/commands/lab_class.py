@@ -1,6 +1,7 @@
 """`springtide lab DIR DIR ...`: the teacher's page of a class, on this machine only."""
 
 import hmac
+import os
 import secrets
 import sys
 import threading
@@ -54,6 +55,7 @@ class Server(ThreadingHTTPServer):
     """Prints nothing about a browser that left before its answer."""
 
     daemon_threads = True
+    allow_reuse_address = os.name == "posix"  # elsewhere it would take the port of another server
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Called where an exception leaves a handler."""

@@ -11,6 +11,7 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Generator, Hashable, Iterator, Mapping, Sequence
@@ -24,6 +25,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 K = TypeVar("K", bound=Hashable)
 R = TypeVar("R")
+MAX_WORKERS = 61 if sys.platform == "win32" else 1 << 30  # Windows waits for no more
 Arguments = tuple[Any, ...]
 
 
@@ -92,7 +94,7 @@ def run_in_pool(
     context = multiprocessing.get_context("spawn")
     reader, writer = context.Pipe(duplex=False)
     pool = ProcessPoolExecutor(
-        min(workers, len(waiting)), mp_context=context, initializer=live_with_parent, initargs=(reader,)
+        min(workers, len(waiting), MAX_WORKERS), mp_context=context, initializer=live_with_parent, initargs=(reader,)
     )
     running: dict[Future[R], K] = {}
     try:

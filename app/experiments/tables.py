@@ -26,13 +26,13 @@ def machine() -> str:
         name = models[0].partition(":")[2].strip() if models else name
     except OSError:
         pass
-    versions = []
-    for package in ("springtide", "numpy", "numba"):
+    versions = [f"Python {platform.python_version()}"]
+    for package in ("springtide", "numpy", "numba", "viser"):
         try:
             versions.append(f"{package} {version(package)}")
         except PackageNotFoundError:
             versions.append(f"{package} from its sources")
-    return f"{name}, {os.cpu_count()} cores; Python {platform.python_version()}, " + ", ".join(versions)
+    return f"{name}, {os.cpu_count()} cores; {platform.system()}; {', '.join(versions)}"
 
 
 def save_table(rows: Rows, path: Path) -> None:

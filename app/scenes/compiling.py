@@ -18,7 +18,7 @@ from app.scenes import NAMES
 from app.scenes.warmup import missing
 from sim.jit import CACHE, ROOT
 
-MAX_WORKERS = 2  # processes at once for what is waited for, each of 0.3 GB
+MAX_WORKERS = 4  # processes at once for what is waited for, each of 0.3 GB
 AHEAD = -1  # number of the worker that compiles what nobody waits for
 
 

@@ -12,6 +12,7 @@ import traceback
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 
+from app.lab.process import ON_HUB
 from app.messages import (
     Advance,
     Ask,
@@ -37,6 +38,7 @@ from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, 
 from app.server.run import Goal, Run
 from app.server.shared_clock import Seat
 from app.server.snapshots import Clock
+from app.server.timer import TIMER_STEP, effort_clock, fine_timer
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 from sim.validation import DivergenceError
 
@@ -45,6 +47,7 @@ IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
 LATE_FRAMES = 16.0  # ratio of the frame interval to the time by which sleeps end too late, at least
 MAX_FRAME_INTERVAL = 0.1  # [s] that a busy machine may lead to
+BREATH = 1e-3  # [s] between two ticks where the last sleep ended late: a tick at once would have no steps to take
 LATENESS_WEIGHT = 0.1  # of the last sleep in the mean
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
@@ -61,16 +64,19 @@ class SimLoop(Run):
         admit: Callable[[Iterable[Command]], list[Command]] = list,
         paused: bool = False,
         clock: Clock = time.perf_counter,
-        effort: Clock = time.thread_time,
+        effort: Clock = effort_clock,
+        sleep: Callable[[float], None] = time.sleep,
+        gives_way: bool = ON_HUB,
     ) -> None:
         """audience: how many browsers look.
 
         admit: of the commands that have come, and of those that it held back before, those to handle now.
         clock: wall time [s]. effort: what solving is charged by, this thread's processor time [s], so that a busy
         machine that takes the processor away does not make the scene look expensive.
+        sleep: for so long [s]. gives_way: whether frames become fewer where sleeps end late, as on a hub.
         """
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
-        self.admit = admit
+        self.admit, self.sleep, self.gives_way = admit, sleep, gives_way
         self.is_late = False  # controls were answered in the middle of the last tick
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
         self.lateness = 0.0  # [s] by which sleeps lately ended too late, as others had the processor
@@ -83,8 +89,9 @@ class SimLoop(Run):
 
     @property
     def frame_interval(self) -> float:
-        """Time [s] between frames: longer on a busy machine, whose processor all labs need for their controls."""
-        return max(self.scene.frame_interval, min(LATE_FRAMES * self.lateness, MAX_FRAME_INTERVAL))
+        """Time [s] between frames: longer on a busy hub, whose processor all labs need for their controls."""
+        late = LATE_FRAMES * self.lateness if self.gives_way else 0.0
+        return max(self.scene.frame_interval, min(late, MAX_FRAME_INTERVAL))
 
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
@@ -298,14 +305,19 @@ class SimLoop(Run):
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""
         use_request(self.request, self.give_turn, self.turn_is_due)
-        last = due = self.clock()
+        with fine_timer():
+            self.tick_until(stop)
+
+    def tick_until(self, stop: threading.Event) -> None:
+        """The loop of `run`."""
+        last = due = wanted = self.clock()  # wanted: when a sleep should have ended
         while True:
             self.request[STOP] = self.request[TURN] = 0
             if stop.is_set():
                 return
             busy = self.running and (self.audience() > 0 or self.goal is not None)
             now = self.clock()
-            self.lateness += LATENESS_WEIGHT * (max(0.0, now - due) - self.lateness)
+            self.lateness += LATENESS_WEIGHT * (max(0.0, now - wanted - TIMER_STEP) - self.lateness)
             try:
                 self.tick(now - last)
             except Exception as error:  # outside what `guarded` covers: the thread lives to say so
@@ -316,8 +328,11 @@ class SimLoop(Run):
                 self.busy_since = None
             last = now
             idle = IDLE_INTERVAL if self.audience() else ALONE_INTERVAL
-            due = max(self.clock(), now + (self.frame_interval if busy else idle))
-            rest = due - self.clock()
+            interval = self.frame_interval if busy else idle
+            # A sleep that ended late makes the next one shorter; one that missed a whole frame is not made up for.
+            due = interval + (due if now - due < interval else now)
+            wanted = max(due, self.clock())
+            rest = max(due - self.clock(), BREATH if self.tick_time < interval else 0.0)
             if rest > 0:
                 self.wait(rest, stop)
 
@@ -343,4 +358,4 @@ class SimLoop(Run):
                 return
             left = seconds - (self.clock() - start)
         if left > 0.0:
-            stop.wait(min(left, MAX_DEAF_TIME))
+            self.sleep(min(left, MAX_DEAF_TIME))

@@ -4,6 +4,7 @@ from app.scenes.contract import FRAME_INTERVAL
 
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
 PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the cost of a step is not known
+MAX_LONG_FRAME = 2 * FRAME_INTERVAL  # [s] after a sleep that ended late
 MAX_CATCH_UP = 0.5  # [s] of wall time that one tick makes up for: on a busy machine sleeps end late by tenths
 
 
@@ -18,11 +19,11 @@ class FixedStep:
     def steps(self, wall: float, speed: float, h: float, frame: float = FRAME_INTERVAL) -> tuple[int, bool]:
         """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s].
 
-        frame: [s] between pictures; where that is longer, there is more time to solve in.
+        frame: [s] between pictures; where that is longer, or the last sleep ended late, there is more time to solve in.
         """
         self.debt += min(wall, MAX_CATCH_UP) * speed
         due = int(self.debt / h * (1 + 1e-9))
-        most = self.most(due, frame)
+        most = self.most(due, max(frame, min(wall, MAX_LONG_FRAME)))
         if due > most:
             self.debt = 0.0
             self.dropped += due - most

@@ -2,6 +2,7 @@
 
 import contextvars
 import dataclasses
+import math
 import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
@@ -27,7 +28,7 @@ from app.messages import (
 )
 from app.scenes.contract import FRAME_INTERVAL
 from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, PATIENCE, SimLoop
-from app.server.pacer import SOLVE_SHARE, FixedStep
+from app.server.pacer import MAX_LONG_FRAME, SOLVE_SHARE, FixedStep
 from sim.parameters import parameter
 from sim.validation import DivergenceError
 from tests.waiting import wait_for
@@ -152,12 +153,13 @@ def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
     assert scene.time - before <= 2 * scene.step  # no catching up
 
 
-def test_a_frame_never_solves_longer_than_its_budget_allows() -> None:
+@pytest.mark.parametrize(("wall", "frame"), [(FRAME_INTERVAL, FRAME_INTERVAL), (0.25, MAX_LONG_FRAME)])
+def test_a_frame_never_solves_longer_than_its_budget_allows(wall: float, frame: float) -> None:
     pacer = FixedStep()
     pacer.learn(10, 0.01)
-    steps, capped = pacer.steps(0.25, 8.0, 1e-5)
+    steps, capped = pacer.steps(wall, 8.0, 1e-5)
     assert capped
-    assert steps <= SOLVE_SHARE * FRAME_INTERVAL / 0.001
+    assert steps == int(SOLVE_SHARE * frame / 0.001)
 
 
 def test_a_slider_reaches_the_simulation_in_the_next_frame() -> None:
@@ -364,9 +366,14 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
     assert loop.latest.serial == serial + 1
 
 
-@pytest.mark.parametrize(("late", "interval"), [(0.0, FRAME_INTERVAL), (0.005, 0.08), (0.1, MAX_FRAME_INTERVAL)])
-def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time(late: float, interval: float) -> None:
-    loop, scene = make()
+@pytest.mark.parametrize(
+    ("late", "interval", "apart"),
+    [(0.0, FRAME_INTERVAL, FRAME_INTERVAL), (0.005, 0.08, 0.08), (0.15, MAX_FRAME_INTERVAL, MAX_FRAME_INTERVAL + 0.15)],
+)
+def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time(
+    late: float, interval: float, apart: float
+) -> None:
+    loop, scene = make(gives_way=True)
     clock, stop, starts = scene.clock, threading.Event(), []
 
     def sleep(seconds: float, stop: threading.Event) -> None:
@@ -378,8 +385,36 @@ def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time
     loop.wait = sleep  # type: ignore[method-assign]
     contextvars.copy_context().run(loop.run, stop)
     assert loop.frame_interval == pytest.approx(interval, rel=1e-3)
-    assert starts[-1] - starts[-2] == pytest.approx(interval + late, rel=1e-3)
+    assert starts[-1] - starts[-2] == pytest.approx(apart, rel=1e-3)
     assert scene.time == pytest.approx(starts[-2], abs=interval + late + scene.step)
+
+
+class CoarseClock(Clock):
+    """Wall time of a system that ends every wait at the next step of its timer."""
+
+    def sleep(self, seconds: float) -> None:
+        self.now = math.ceil(64.0 * (self.now + seconds) - 1e-9) / 64.0
+
+
+@pytest.mark.parametrize("cost", [0.0, 0.001, 0.004])
+def test_a_coarse_timer_costs_neither_frames_nor_speed(cost: float) -> None:
+    """Waits end at multiples of 1/64 s, as on Windows: 60 frames a second, at the speed that is set."""
+    clock, stop, shown = CoarseClock(), threading.Event(), []
+    scene = Scene(clock, cost)
+    loop = SimLoop(scene, clock=clock, effort=clock, sleep=clock.sleep)
+    publish = loop.publish
+
+    def count() -> None:
+        shown.append(clock.now)
+        if clock.now >= 10.0:
+            stop.set()
+        publish()
+
+    loop.publish = count  # type: ignore[method-assign]
+    contextvars.copy_context().run(loop.run, stop)
+    assert len(shown) / clock.now == pytest.approx(1.0 / FRAME_INTERVAL, rel=0.02)
+    assert scene.time / clock.now == pytest.approx(1.0, abs=0.01)
+    assert not loop.capped
 
 
 @pytest.mark.parametrize("seconds", [IDLE_INTERVAL, 4 * FRAME_INTERVAL])

@@ -32,7 +32,7 @@ from app.messages import (
     Take,
     TogglePlay,
 )
-from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
+from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.stepping import steps_to
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
 from app.server.run import Goal, Run
@@ -83,8 +83,6 @@ class SimLoop(Run):
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
         self.tick_time = 0.0  # [s] that the last tick took
-        self.awaited: Callable[[AnySnapshot], bool] | None = None  # event at which it pauses
-        self.is_reached = False  # it happened in the last frame
         super().__init__(scene, audience, clock, effort, paused=paused)
 
     @property
@@ -131,15 +129,6 @@ class SimLoop(Run):
         if self.goal is not None:
             self.settle(self.goal)
         self.tick_time, self.busy_since = self.clock() - self.busy_since, None
-
-    def pause_at_event(self) -> None:
-        """Pause if the event that is awaited has begun since the last frame."""
-        if self.awaited is None or not self.running:
-            return
-        before, self.is_reached = self.is_reached, self.awaited(self.latest)
-        if self.is_reached and not before:
-            self.awaited, self.running = None, False
-            self.publish()
 
     @property
     def takes_long(self) -> bool:
@@ -269,7 +258,7 @@ class SimLoop(Run):
                 self.running, self.awaited = False, None
             case RunOn(reached):
                 self.handle(Play())
-                self.awaited, self.is_reached = reached, reached(self.latest)
+                self.wait_for(reached)
             case TogglePlay():
                 self.handle(Pause() if self.running else Play())
             case StepOnce(steps):

@@ -18,7 +18,10 @@ from sim.quantities import read_number
 from sim.validation import ConvergenceError
 
 CLOSED_OUTPUT = 141  # exit status of a program that SIGPIPE ends, by convention of shells
+DEFAULT_SCENE = "rope"
 LIVE = "live"  # the command of the lab that need not be named
+STEP_SAFETY = 0.5  # of the longest stable step at rest, for a mooring from a file
+MAX_MOORING_NODES = 2000  # of a mooring from a file: all its modes are computed for the longest step
 MAX_HULL_FACES = 20_000  # of a hull from a file: pressure is summed over all of them at each step
 
 
@@ -249,7 +252,8 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
 
 def add_serving(parser: argparse.ArgumentParser) -> None:
     """The options of `springtide` without a command."""
-    parser.add_argument("--scene", default="rope", metavar="SCENE", help=", ".join(NAMES) + " (default: rope)")
+    scenes = ", ".join(NAMES) + " (default: rope, or mooring with --mooring)"
+    parser.add_argument("--scene", default="", metavar="SCENE", help=scenes)
     resume = "begin with the set-up that the last lab with this option was left with, if there was one"
     parser.add_argument("--resume", action="store_true", help=resume)
     add_address(parser)
@@ -280,6 +284,7 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
         "--hull", type=Path, metavar="FILE",
         help="add a closed mesh in metres to the radial sea: STL, OBJ or PLY with z up, glTF or GLB with y up",
     )  # fmt: skip
+    parser.add_argument("--mooring", type=Path, metavar="FILE", help="open a MoorDyn file in the scene mooring")
 
 
 def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
@@ -291,18 +296,29 @@ def read_params(scene: Any, arguments: argparse.Namespace) -> Any:
     if arguments.preset is not None:
         setup = preset_setup("--preset", arguments.preset, scene)
         values = dict(setup.values)
-        say_missing_hull(setup, arguments.hull)
-    params = check_record(scene.params, {**values, **parse_assignments(scene.params, arguments.set)})
-    return params if arguments.hull is None else with_hull(params, arguments.hull)
+        say_missing_files(setup, arguments)
+    given = {**values, **parse_assignments(scene.params, arguments.set)}
+    params = check_record(scene.params, given)
+    if arguments.hull is not None:
+        params = with_hull(params, arguments.hull)
+    if arguments.mooring is not None:
+        params = with_mooring(params, arguments.mooring, "time_step" in given)
+    return params
 
 
-def say_missing_hull(setup: Any, hull: Path | None = None) -> None:
-    """Say on the error stream which mesh a set-up had, unless `hull` gives one."""
-    from app.scenes.setups import missing_hull
+def say_missing_files(setup: Any, arguments: argparse.Namespace | None = None) -> None:
+    """Say on the error stream which files a set-up had, except for those that options give."""
+    from app.scenes.setups import missing_files
 
-    text = missing_hull(setup) if hull is None else ""
+    others = {option: file for option, file in setup.files.items() if getattr(arguments, option, None) is None}
+    text = missing_files(setup._replace(files=others))
     if text:
-        print(f"springtide: {text}", file=sys.stderr)
+        say_on_error_stream(text)
+
+
+def say_on_error_stream(text: str) -> None:
+    """Print a line on the error stream."""
+    print(f"springtide: {one_line(text)}", file=sys.stderr)
 
 
 def with_hull(params: Any, path: Path) -> Any:
@@ -319,6 +335,27 @@ def with_hull(params: Any, path: Path) -> Any:
     if faces > MAX_HULL_FACES:
         raise argument_error("--hull", f"{path} of {faces} triangles", f"at most {MAX_HULL_FACES}")
     return dataclasses.replace(params, hull=str(path))
+
+
+def with_mooring(params: Any, path: Path, has_step: bool) -> Any:
+    """The parameters with the mooring of a MoorDyn file, and a stable time step unless one was given.
+
+    Raises ValueError for another scene or a file that cannot be read, ConvergenceError for one without a state of rest.
+    """
+    from sim.mooring import critical_step, read_moordyn
+    from sim.parameters import clamp_value, parameters_of
+    from sim.validation import argument_error
+
+    if not hasattr(params, "moordyn_file"):
+        raise argument_error("--mooring", str(path), "a MoorDyn file with the scene mooring only")
+    system = read_moordyn(path, lambda text: say_on_error_stream(f"{path.name}: {text}"))
+    if system.node_count > MAX_MOORING_NODES:
+        raise argument_error("--mooring", f"{path} of {system.node_count} nodes", f"at most {MAX_MOORING_NODES}")
+    params = dataclasses.replace(params, moordyn_file=str(path))
+    if has_step:
+        return params
+    step = float(f"{STEP_SAFETY * critical_step(system, params.integrator):.1e}")
+    return dataclasses.replace(params, time_step=clamp_value(parameters_of(params)["time_step"], step))
 
 
 def serve(arguments: argparse.Namespace, session: Any = None) -> int:
@@ -344,9 +381,11 @@ def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
         last = read_last()
         if last is not None:
             return last.scene, last.params
-    scene = scene_named(arguments.scene)
-    nothing_asked = arguments.preset is None and not arguments.set and arguments.hull is None
-    return arguments.scene, scene.opening_params() if nothing_asked else read_params(scene, arguments)
+    name = arguments.scene or (DEFAULT_SCENE if arguments.mooring is None else "mooring")
+    scene = scene_named(name)
+    files = arguments.hull is not None or arguments.mooring is not None
+    nothing_asked = arguments.preset is None and not arguments.set and not files
+    return name, scene.opening_params() if nothing_asked else read_params(scene, arguments)
 
 
 def serve_beside(arguments: argparse.Namespace) -> int:
@@ -356,7 +395,7 @@ def serve_beside(arguments: argparse.Namespace) -> int:
 
     first, *others = read_comparison(arguments.setups)
     for setup in (first, *others):
-        say_missing_hull(setup)
+        say_missing_files(setup)
     return serve_lab(first.scene, first.params, **serving(arguments), others=others)
 
 
@@ -428,7 +467,8 @@ def serve_folder(arguments: argparse.Namespace) -> int:
     from app.lab.session import Session
     from app.lab.task import load_tasks
 
-    if arguments.scene == "rope" and arguments.preset is None and not arguments.set:
+    is_rope = arguments.scene in ("", DEFAULT_SCENE) and arguments.mooring is None
+    if is_rope and arguments.preset is None and not arguments.set:
         # Of this method the program's rope and a student's right one are the same to rounding.
         arguments.set = ["integrator=rk4"]
     session = Session(arguments.folders[0], load_tasks(*arguments.tasks), arguments.tasks)

@@ -17,6 +17,8 @@ MAX_WAVENUMBER = 1e20  # [rad/m]: its powers are still finite
 MAX_SHOWN = 200  # characters of a value in an error
 MAX_SHOWN_PATH = 4096  # of one with a path in it, which is shown whole: most systems allow no longer one
 
+MAX_REASONS = 12  # of refusals in one message
+
 Kind = TypeVar("Kind")
 
 
@@ -40,6 +42,29 @@ class DivergenceError(ArithmeticError):
         """moments: the last ones before that, if there are any to show again slowly."""
         super().__init__(text)
         self.moments = moments
+
+
+class Refusals:
+    """Collects the ValueErrors of its `with` blocks, so that a user learns of all mistakes at once."""
+
+    def __init__(self) -> None:
+        self.reasons: list[str] = []
+
+    def __enter__(self) -> None:
+        """Begin a block."""
+
+    def __exit__(self, kind: object, error: object, trace: object) -> bool:
+        """Keep the reason of a block that was refused."""
+        if isinstance(error, ValueError):
+            self.reasons.append(str(error))
+        return isinstance(error, ValueError)
+
+    def check(self) -> None:
+        """Raises ValueError with all reasons, if there are any, or with the first ones and the number of the others."""
+        more = len(self.reasons) - MAX_REASONS
+        if self.reasons:
+            others = [f"{more} more"] if more > 0 else []
+            raise ValueError("; ".join([*self.reasons[:MAX_REASONS], *others]))
 
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:

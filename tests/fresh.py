@@ -1,4 +1,7 @@
-"""Fresh interpreters that have imported numba and have compiled with it once: each is there a second or two sooner."""
+"""Fresh interpreters that have imported numba and have compiled with it once: each is there a second or two sooner.
+
+On Windows, which cannot fork them, they are fresh only.
+"""
 
 import atexit
 import functools
@@ -65,7 +68,7 @@ def server() -> "subprocess.Popen[str]":
 def python(code: str, **environment: str) -> str:
     """What a fresh interpreter prints; one that numba is to be imported in anew where a variable is one of numba's."""
     environment = {"SPRINGTIDE_KERNELS": noted(), **environment}
-    if any(name.startswith("NUMBA_") for name in environment):
+    if not hasattr(os, "fork") or any(name.startswith("NUMBA_") for name in environment):
         done = subprocess.run(
             [sys.executable, "-c", code], cwd=ROOT, env={**os.environ, **environment},
             capture_output=True, text=True, timeout=120, check=False,
@@ -79,3 +82,16 @@ def python(code: str, **environment: str) -> str:
         print(msgspec.json.encode((code, environment, folder)).decode(), file=pipe.stdin, flush=True)
         assert pipe.stdout.readline() == "0\n", Path(folder, "errors").read_text("utf-8")
         return Path(folder, "out").read_text("utf-8").strip()
+
+
+def of_each(code: str, names: tuple[str, ...], folder: Path, environment: dict[str, str]) -> list[list[str]]:
+    """The words of the lines that a program prints that forks for each of its arguments, where the system can."""
+    groups = [names] if hasattr(os, "fork") else [(name,) for name in names]
+    lines: list[str] = []
+    for group in groups:
+        done = subprocess.run(
+            [sys.executable, "-c", code, *group], cwd=folder, env={**os.environ, **environment},
+            capture_output=True, text=True, timeout=280, check=True,
+        )  # fmt: skip
+        lines += done.stdout.splitlines()
+    return [line.split() for line in lines]

@@ -272,8 +272,8 @@ def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tup
     if preset:
         setup = preset_setup("preset", preset, kind)
         values.update(setup.values)
-        if setup.hull:
-            warnings.warn(f"The hull {setup.hull} is not in {preset}: this lab runs without it", stacklevel=4)
+        for option, file in setup.files.items():
+            warnings.warn(f"The {option} {file} is not in {preset}: this lab runs without it", stacklevel=4)
     if not values and not parameters and "?" not in scene:
         return kind, kind.opening_params()
     return kind, check_record(kind.params, {**values, **parameters})

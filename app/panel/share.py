@@ -27,7 +27,7 @@ from app.scenes.setups import (
     MAX_NOTE,
     Camera,
     Setup,
-    missing_hull,
+    missing_files,
     read_file,
     write_file,
     write_query,
@@ -128,9 +128,9 @@ class Share:
         except ValueError as reason:
             self.refuse(client, str(reason))
             return
-        missing = missing_hull(subject, getattr(self.panel.params, "hull", "")) if isinstance(subject, Setup) else ""
+        missing = missing_files(subject, self.panel.params) if isinstance(subject, Setup) else ""
         if missing:
-            client.add_notification("A hull is missing", missing, color="orange", auto_close_seconds=30.0)
+            client.add_notification("A file is missing", missing, color="orange", auto_close_seconds=30.0)
         if isinstance(subject, Setup) and (subject.scene, subject.params) == (self.panel.kind.name, self.panel.params):
             self.turn(subject)
             self.place(subject, client)

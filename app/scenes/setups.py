@@ -5,8 +5,8 @@ The address `/?scene=rope&preset=...&stiffness=2000` and the file
     {"version": 1, "scene": "rope", "preset": "...", "parameters": {"stiffness": 2000}, "name": "...", "note": "..."}
 
 say the same: the values of a preset (by default the scene's defaults), and those that differ from it. A number is
-written so that reading it gives the very same number. A hull from a file is no parameter: a file has its name,
-`"hull": "boat.stl"`, and whoever reads it is told to add the mesh.
+written so that reading it gives the very same number. A hull or a mooring from a file is no parameter: a set-up
+has the file's name, `"hull": "boat.stl"`, and whoever reads it is told to add the file.
 
 A replay (HTML) holds such a file in a block of its own, and a recording (.npz) all parameters: both open as it does.
 """
@@ -38,9 +38,9 @@ from sim.parameters import (
     unknown_parameter,
 )
 from sim.quantities import read_number, write_number
-from sim.validation import argument_error, unreadable
+from sim.validation import Refusals, argument_error, unreadable
 
-VERSION = 2  # of a file with a hull; others are of version 1, so that older programs can read them
+VERSION = 2  # of a file with the name of another file; others are of version 1, so that older programs can read them
 MAX_LENGTH = 5000  # characters of a query or a file
 MAX_NAME, MAX_NOTE, MAX_FILE_NAME = 60, 1000, 255  # characters
 MAX_CAMERA_DISTANCE = 1e4  # [m] from the origin
@@ -51,7 +51,8 @@ MAX_ABOUT = 100_000  # [bytes] of what a recording says of itself
 BLOCK, BLOCK_END = '<script type="application/json" id="springtide-setup">', "</script>"
 UNREADABLE = (ValueError, KeyError, EOFError, RuntimeError, struct.error, zipfile.BadZipFile, zlib.error)
 FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Springtide"
-FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", "hull", "name", "note")
+FILES = {"hull": "hull", "mooring": "moordyn_file"}  # options that add a file, and the fields that have its path
+FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", *FILES, "name", "note")
 
 Camera = tuple[Vector, Vector]  # position and target [m]
 
@@ -66,7 +67,7 @@ class Setup(NamedTuple):
     camera: Camera | None = None
     name: str = ""
     note: str = ""
-    hull: str = ""  # file name of a mesh that floated too; the mesh itself is in no file
+    files: Mapping[str, str] = {}  # of FILES: the name of the file that was added; its content is in no set-up
     task: str = ""  # of the lab, that a link opens too
 
 
@@ -81,12 +82,18 @@ def shared_values(params: BaseParams) -> dict[str, Value]:
     return {name: file_name(value) if name in paths else value for name, value in vars(params).items()}
 
 
-def missing_hull(setup: Setup, present: str = "") -> str:
-    """How to add the hull of a set-up, or "" if there is none or it is the one `present`, a path."""
-    if setup.hull in ("", file_name(present)):
-        return ""
-    return (
-        f"The hull {setup.hull} is missing: files hold its name only. Start with --hull {setup.hull} to add the mesh."
+def added_files(params: object) -> dict[str, str]:
+    """Names of the files that were added to these parameters, by their options."""
+    paths = {option: file_name(getattr(params, field, "")) for option, field in FILES.items()}
+    return {option: name for option, name in paths.items() if name}
+
+
+def missing_files(setup: Setup, present: object = None) -> str:
+    """How to add the files of a set-up, or "" if there are none or the parameters `present` have them."""
+    missing = [(option, name) for option, name in setup.files.items() if added_files(present).get(option) != name]
+    return " ".join(
+        f"The {option} {name} is missing: set-ups hold its name only. Start with --{option} {name} to add the file."
+        for option, name in missing
     )
 
 
@@ -173,27 +180,6 @@ def entries(query: str) -> dict[str, str]:
     return given
 
 
-class Refusals:
-    """Collects the ValueErrors of its `with` blocks, so that a user learns of all mistakes at once."""
-
-    def __init__(self) -> None:
-        self.reasons: list[str] = []
-
-    def __enter__(self) -> None:
-        """Begin a block."""
-
-    def __exit__(self, kind: object, error: object, trace: object) -> bool:
-        """Keep the reason of a block that was refused."""
-        if isinstance(error, ValueError):
-            self.reasons.append(str(error))
-        return isinstance(error, ValueError)
-
-    def check(self) -> None:
-        """Raises ValueError with all reasons, if there are any."""
-        if self.reasons:
-            raise ValueError("; ".join(self.reasons))
-
-
 def read_setup(text: str) -> Setup:
     """The set-up that a word of a command line says: SCENE, SCENE:PRESET, a link or its query, or a set-up file.
 
@@ -249,15 +235,14 @@ def write_file(
 ) -> str:
     """The text of a file that says a set-up. Raises ValueError for a name or note that is not allowed."""
     base = nearest_preset(kind, params, preset)
-    hull = file_name(getattr(params, "hull", ""))
-    content: dict[str, Any] = {"version": VERSION if hull else 1, "scene": kind.name}
+    files = added_files(params)
+    content: dict[str, Any] = {"version": VERSION if files else 1, "scene": kind.name}
     if base:
         content["preset"] = base
     content["parameters"] = differing_values(kind, params, base)
     if camera is not None:
         content["camera"] = camera_numbers(camera)
-    if hull:
-        content["hull"] = hull
+    content |= files
     if name:
         content["name"] = read_text("name", name, MAX_NAME)
     if note:
@@ -303,8 +288,9 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
     camera = read_camera(content["camera"]) if content.get("camera") is not None else None
     name = read_text(f"{where}: name", content.get("name", ""), MAX_NAME)
     note = read_text(f"{where}: note", content.get("note", ""), MAX_NOTE)
-    hull = file_name(read_text(f"{where}: hull", content.get("hull", ""), MAX_FILE_NAME))
-    return Setup(kind.name, check_record(kind.params, values), values, preset, camera, name, note, hull)
+    names = {one: file_name(read_text(f"{where}: {one}", content.get(one, ""), MAX_FILE_NAME)) for one in FILES}
+    files = {option: file for option, file in names.items() if file}
+    return Setup(kind.name, check_record(kind.params, values), values, preset, camera, name, note, files)
 
 
 def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -418,6 +404,6 @@ def recorded_setup(file: BinaryIO) -> str:
         "version": VERSION,
         "scene": kind.name,
         "parameters": values,
-        "hull": content["parameters"].get("hull", ""),
+        **{option: content["parameters"].get(field, "") for option, field in FILES.items()},
     }
     return json.dumps(setup, ensure_ascii=False)

@@ -134,8 +134,9 @@ def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], f
     from_preset: dict[str, Any] = {}
     if preset is not None:
         setup = preset_setup("preset", preset, scene, folder)
-        if setup.hull:
-            raise argument_error("preset", f"{preset} with the hull {setup.hull}", "a set-up without a hull in a sweep")
+        for option, file in setup.files.items():
+            allowed = f"a set-up without a {option} in a sweep"
+            raise argument_error("preset", f"{preset} with the {option} {file}", allowed)
         from_preset = dict(setup.values)
     given = {**dict.fromkeys(scene.plots, True), **from_preset, **table(content, "set")}
     params = check_record(scene.params, given)

@@ -66,7 +66,7 @@ def their_run(system: System, step: float) -> Measured:
     moordyn = importlib.import_module("moordyn")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "line.txt"
-        write_moordyn(path, system)
+        write_moordyn(system, path)
         options = f"rk4 tScheme\n{step} dtM\n2 dtIC\n40 TmaxIC\n1e-4 threshIC\n0 writeLog\n1 disableOutTime\n"
         text = path.read_text(encoding="utf-8")
         mark = next(line for line in text.splitlines() if "OPTIONS" in line)

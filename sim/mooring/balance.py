@@ -12,14 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring.chains import Chains
+from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import forces_on_free, links_at, moved, moves_on_free, six_of
 from sim.springs.lines.arrays import BED_AREA, DISPLACED, HEIGHT, STIFFNESS, LineArrays
+from sim.springs.lines.bending import BEND_STIFFNESS
 from sim.springs.lines.forces import set_rest_forces
 
 Array = NDArray[np.float64]
 
 SETTLED = 1e-9  # largest force left [N] over the largest on any node
 ROUND_OFF = 8.0 * np.finfo(float).eps  # the same over the largest term of a sum of forces
+LARGEST_BEND = 16.0  # eigenvalue of the bends of a line, over the stiffness of one
 RISE = 1e6  # of the largest force left by the first correction, above which the start was not near
 HOLD = 1e-8  # of slack links, over what taut ones have: no place of what lies slack is better than another
 
@@ -48,10 +51,10 @@ def pieces_at(x: Array, p: LineArrays) -> Pieces:
 
 
 class Laws:
-    """The piecewise linear laws of bed and buoyancy."""
+    """The piecewise linear laws of links, bed and buoyancy."""
 
     def __init__(self, p: LineArrays) -> None:
-        self.p = p
+        self.p, self.elastic = p, Elastic(p)
         self.node, self.height = p.places[:, 0], p.parts[:, HEIGHT]
         self.bed, self.lift = p.parts[:, BED_AREA] * p.bed_stiffness, p.parts[:, DISPLACED] * p.gravity
 
@@ -70,14 +73,14 @@ def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) 
     p = laws.p
     a, b = p.ends.T
     length, pulls = links_at(x, p)[:2]
-    rest, stiffness = p.links[:, 0], p.links[:, 1]
+    rest, (chord, stiffness) = p.links[:, 0], laws.elastic.tension(length)
     unit = ((x[:, b] - x[:, a]) / np.maximum(length, 1e-12)).T
     taut = (tension > 0.0) | (length > rest)
     hold = HOLD * max(float(tension.max()), 1e-12 * float((stiffness * rest).max())) / rest
     along = np.where(taut, stiffness, hold)
     across = np.where(taut, tension / np.maximum(length, 1e-12), 0.0) + hold
     # A taut link that is shorter by round-off pushes, for this correction.
-    pushes = (np.where(taut, stiffness * (length - rest), 0.0) - pulls)[:, None] * unit
+    pushes = (np.where(taut, chord, 0.0) - pulls)[:, None] * unit
     more, upright = np.zeros((p.nodes, 3)), np.zeros((p.nodes, 3, 3))
     np.add.at(more, a, pushes)
     np.add.at(more, b, -pushes)
@@ -90,7 +93,7 @@ def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) 
     step = chains.solve(blocks, upright, force)
     d = moved(np.zeros_like(x), step, p)  # with no round-off of the places
     growth = np.einsum("ij,ij->i", (d[:, b] - d[:, a]).T, unit)
-    return moved(x, step, p), np.where(taut, np.maximum(stiffness * (length - rest + growth), 0.0), 0.0)
+    return moved(x, step, p), np.where(taut, np.maximum(chord + stiffness * growth, 0.0), 0.0)
 
 
 def pull(x: Array, p: LineArrays) -> tuple[Array, float]:
@@ -123,8 +126,12 @@ def what_is_left(x: Array, p: LineArrays) -> tuple[float, bool]:
     """The largest force [N] on a free coordinate, and whether it is next to nothing."""
     force, largest = pull(x, p)
     left = float(np.abs(force).max(initial=0.0))
-    # Round-off of the force of a link or of the bed, and of all that a body sums, with its arms.
-    stiffest = max(float(p.links[:, 1].max()), p.bed_stiffness * float(p.parts[:, BED_AREA].max(initial=0.0)))
+    # Round-off of the force of a link, of a bend or of the bed, and of all that a body sums, with its arms.
+    stiffest = max(
+        float(p.links[:, 1].max()),
+        p.bed_stiffness * float(p.parts[:, BED_AREA].max(initial=0.0)),
+        LARGEST_BEND * float(p.bends[:, BEND_STIFFNESS].max(initial=0.0)),
+    )
     summed = max(1.0, float(np.maximum(np.abs(p.arms).max(axis=1, initial=0.0), 1.0).sum()))
     terms = stiffest * float(np.abs(x).max()) * summed
     for b, row in enumerate(p.bodies):

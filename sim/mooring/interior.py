@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring.balance import Pieces
+from sim.mooring.bending import bending_forces
 from sim.mooring.chains import Chains, Eliminated
 from sim.mooring.cones import (
     MIRROR,
@@ -29,6 +30,7 @@ from sim.mooring.cones import (
     product,
     quotient,
 )
+from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import forces_on_free, moved, moves_on_free
 from sim.springs.lines.arrays import BED_AREA, DISPLACED, HEIGHT, MASS, STIFFNESS, LineArrays
 from sim.springs.lines.forces import set_rest_forces
@@ -91,10 +93,19 @@ class Pairs:
         self.node, self.on_bed, self.afloat = node, node[bed > 0.0], node[lift > 0.0]
         self.bed, self.whole, self.height = bed[bed > 0.0], lift[lift > 0.0], p.parts[lift > 0.0, HEIGHT]
         self.count = len(self.rest) + len(self.bed) + 2 * len(self.whole)
-        self.load = float(np.abs(lift - self.weight).sum())  # [N]
+        self.load = float(np.abs(lift - self.weight).sum() + np.abs(p.loads).sum())  # [N]
         # What is left of the forces of the water: the drag of a current.
-        none = p.links * [1.0, 0.0, 0.0]
-        self.current_only = p._replace(links=none, bed_stiffness=0.0, bed_damping=0.0, friction=0.0, gravity=0.0)
+        none, no_bends = p.links * [1.0, 0.0, 0.0, 0.0, 0.0], p.bends[:0]
+        self.elastic = Elastic(p)
+        self.current_only = p._replace(
+            links=none,
+            bends=no_bends,
+            loads=0.0 * p.loads,
+            bed_stiffness=0.0,
+            bed_damping=0.0,
+            friction=0.0,
+            gravity=0.0,
+        )
 
     def span(self, x: Array) -> Array:
         """Vectors (links, 3) from start to end of every link."""
@@ -126,6 +137,7 @@ class Pairs:
             set_rest_forces(np.ascontiguousarray(x).reshape(-1), self.current_only, drag)
             found += drag[: 3 * p.cols].reshape(3, p.cols)[:, : p.nodes].T
         np.add.at(found[:, 2], self.node, -self.weight)
+        found += p.loads[: p.nodes] + bending_forces(x, p)
         return found + self.forces_of(state.pull[:, 1:], state.press, state.lift)
 
     def forces_of(self, pull: Array, press: Array, lift: Array) -> Array:
@@ -161,7 +173,7 @@ class Pairs:
 
     def errors(self, x: Array, state: State) -> tuple[Array, Array, Array]:
         """Lengths [m] by which slack (links, 4), gaps (m,) and heights (k,) of a state differ from those at x."""
-        length = self.rest + state.pull[:, 0] / self.stiffness
+        length, _ = self.elastic.length(state.pull[:, 0])
         slack = np.concatenate((length[:, None], self.span(x)), axis=1) - state.slack
         gap = x[2, self.on_bed] - self.p.bed + state.press / self.bed - state.gap
         height = x[2, self.afloat] + self.height * (state.lift / self.whole - 0.5) - (state.above - state.below)
@@ -181,7 +193,8 @@ class Tangent:
         # With G = W^2 + diag(1/k, 0, 0, 0) a step of the pull is G^-1 (target - errors - (0, step of the span)).
         w, self.square = self.scaling.w, self.scaling.beta**2
         self.first, self.rest = w[:, 0], -w[:, 1:]
-        self.ratio = pairs.stiffness * self.square
+        _, self.stiffness = pairs.elastic.length(state.pull[:, 0])
+        self.ratio = self.stiffness * self.square
         self.divisor = self.ratio + 2.0 * self.first**2 - 1.0
         along = 2.0 * (self.ratio - 1.0) / self.divisor
         outer = self.rest[:, :, None] * self.rest[:, None]
@@ -213,7 +226,7 @@ class Tangent:
         lift = lift - up / self.rises
         return step, State(
             np.concatenate((stretch[:, None], span), axis=1) + slack,
-            np.concatenate(((pairs.stiffness * stretch)[:, None], pull), axis=1),
+            np.concatenate(((self.stiffness * stretch)[:, None], pull), axis=1),
             press,
             down + press / pairs.bed + gap,
             lift,

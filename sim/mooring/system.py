@@ -6,6 +6,7 @@ z is up from still water [m]; node 0 of a line is at its start. What a System ho
 
 import dataclasses
 import functools
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -14,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import stop_request
+from sim.mooring.bending import bends_of
+from sim.mooring.elastic import Curves
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
 from sim.ocean.kinematics import Components
@@ -36,6 +39,7 @@ Vector = tuple[float, float, float]
 KINDS = ("fixed", "coupled", "free", "body")
 FARTHEST = 1e5  # [m] from the origin
 MOST_SEGMENTS = 2000  # of a line
+MOST_PARTS = 10_000  # lines or points of a system
 MOST_DAMPING = 100.0  # ratio, of a segment
 MAX_DISPERSION_ERROR = 0.02  # of omega: what surface tension and rounded numbers may make
 
@@ -52,6 +56,9 @@ class LineType(NamedTuple):
     drag_across: float = 1.2  # C_dn
     added_along: float = 0.0  # C_at
     drag_along: float = 0.05  # C_dt
+    bending: float = 0.0  # EI [N m^2]
+    # (strain, tension [N]) rows, from (0, 0) on, instead of a constant EA; `stiffness` then is that of `damping`.
+    curve: tuple[tuple[float, float], ...] = ()
 
     @property
     def volume(self) -> float:
@@ -70,6 +77,7 @@ class Point(NamedTuple):
     drag_area: float = 0.0  # C_d A [m^2]
     added_mass: float = 0.0  # C_a
     body: int | None = None  # id of the body that carries it
+    force: Vector = (0.0, 0.0, 0.0)  # [N] steady, on a free point or on one that a body carries
 
 
 class Line(NamedTuple):
@@ -81,6 +89,9 @@ class Line(NamedTuple):
     end: int
     length: float  # [m], unstretched
     segments: int
+    # Direction of the line, from its start to its end, in which a clamp holds it; None: free to turn. Of bending only.
+    clamp_at_start: Vector | None = None
+    clamp_at_end: Vector | None = None
 
 
 class Body(NamedTuple):
@@ -112,6 +123,7 @@ class System:
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
     bed_damping: float = 3e5  # [Pa s/m]
     friction: float = 0.0  # Coulomb coefficient
+    slack_damping: bool = False  # internal damping acts in slack links too, as in MoorDyn
     current: Vector = (0.0, 0.0, 0.0)  # [m/s]; it pushes lines and points, but no body
     waves: Components | None = None  # in the same water, None: still water
 
@@ -119,6 +131,9 @@ class System:
         """Raises ValueError with the name of the value that cannot be: kernels check no index."""
         for name in ("lines", "points", "bodies"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
+        for name in ("lines", "points", "bodies"):
+            if len(getattr(self, name)) > MOST_PARTS:
+                raise argument_error(name, len(getattr(self, name)), f"at most {MOST_PARTS}")
         check_number("depth", self.depth, 0, FARTHEST, "m", above=True)
         check_number("gravity", self.gravity, 0, 1e4, "m/s^2")
         for name, unit in (
@@ -128,6 +143,7 @@ class System:
             ("friction", ""),
         ):
             check_number(name, getattr(self, name), 0, math.inf, unit)
+        check_kind("slack_damping", self.slack_damping, bool, "True or False")
         check_vector("current", self.current, "m/s")
         self.check_waves()
         check_ids("bodies", self.bodies)
@@ -177,6 +193,7 @@ class System:
             raise argument_error(f"{name}: position", point.position, f"on or above the bed at z = {-self.depth:g} m")
         for field, unit in (("mass", "kg"), ("volume", "m^3"), ("drag_area", "m^2"), ("added_mass", "")):
             check_number(f"{name}: {field}", getattr(point, field), 0, math.inf, unit)
+        check_vector(f"{name}: force", point.force, "N")
         if (point.kind == "body") != (point.body is not None):
             raise argument_error(f"{name}: body", point.body, "the id of a body, for points of kind 'body' only")
         if point.body is not None and point.body not in [body.id for body in self.bodies]:
@@ -194,6 +211,17 @@ class System:
         check_number(f"{name}: length", line.length, 0, FARTHEST, "m", above=True)
         if not is_whole_number(line.segments) or not 1 <= line.segments <= MOST_SEGMENTS:
             raise argument_error(f"{name}: segments", line.segments, f"a whole number from 1 to {MOST_SEGMENTS}")
+        for field, end in (("clamp_at_start", line.start), ("clamp_at_end", line.end)):
+            self.check_clamp(f"{name}: {field}", getattr(line, field), line.type, end)
+
+    def check_clamp(self, name: str, direction: Vector | None, kind: LineType, end: int) -> None:
+        """Raises ValueError for a clamp of a line without EI, or at an end that is free."""
+        if direction is None:
+            return
+        if not math.sqrt(sum(c * c for c in check_vector(name, direction, ""))) > 0.0:
+            raise argument_error(name, direction, "a direction")
+        if kind.bending == 0.0 or self.points[[p.id for p in self.points].index(end)].kind not in ("fixed", "coupled"):
+            raise argument_error(name, direction, "None, but for a line with EI at a fixed or coupled point")
 
     def at_rest(self) -> Rest:
         """The static state: see `sim.mooring.statics.at_rest`."""
@@ -230,6 +258,7 @@ class System:
         n = nodes + 2 * bodies
         mass = np.zeros(n)
         ends, links, places, parts = [], [], [], []
+        curves = Curves(line.type for line in self.lines)
         for line in self.lines:
             kind, at = line.type, self.nodes_of[line.id]
             length = line.length / line.segments
@@ -239,7 +268,7 @@ class System:
             drag = 0.5 * self.density * kind.diameter
             for i in range(line.segments):
                 ends.append((at[i], at[i + 1]))
-                links.append((length, kind.stiffness / length, damping / length))
+                links.append((length, kind.stiffness / length, damping / length, *curves.rows_of(kind)))
             for i in range(line.segments + 1):
                 share = 0.5 * length if i in (0, line.segments) else length
                 places.append((at[i], at[max(i - 1, 0)], at[min(i + 1, line.segments)]))
@@ -273,6 +302,10 @@ class System:
             mass=mass,
             gravity=float(self.gravity),
             law=LAWS["slack"].numbers,
+            slack_damping=bool(self.slack_damping),
+            loads=self.loads(n),
+            bends=bends_of(self),
+            curves=curves.table,
             ends=np.array(ends, dtype=np.int64),
             links=np.array(links, dtype=np.float64),
             places=np.array(places, dtype=np.int64),
@@ -294,6 +327,13 @@ class System:
             excitation=self.excitations(waves.shape[1]),
             stop=stop_request(),
         )
+
+    def loads(self, n: int) -> NDArray[np.float64]:
+        """Steady force (n, 3) [N] on each of the kernels' points."""
+        found = np.zeros((n, 3))
+        for i, point in enumerate(self.points):
+            found[i] = point.force
+        return found
 
     def excitations(self, waves: int) -> NDArray[np.float64]:
         """`excitation` of the kernels' view, of so many waves; none where no wave pushes a body."""
@@ -362,9 +402,22 @@ def check_type(kind: LineType) -> None:
     name = f"line type {kind.name}"
     for field, unit in (("diameter", "m"), ("mass", "kg/m"), ("stiffness", "N")):
         check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, unit, above=True)
+    check_number(f"{name}: bending", kind.bending, 0, math.inf, "N m^2")
+    check_curve(f"{name}: curve", kind.curve)
     check_number(f"{name}: damping", kind.damping, -MOST_DAMPING, math.inf, "N s, or a ratio where negative")
     for field in ("added_across", "drag_across", "added_along", "drag_along"):
         check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, "")
+
+
+def check_curve(name: str, curve: Sequence[tuple[float, float]]) -> None:
+    """Raises ValueError unless strain and tension grow from (0, 0) on, so that the energy is convex."""
+    allowed = "rows (strain, tension [N]) from (0, 0) on, both growing from row to row"
+    rows = [check_vector(name, row, "1, N", 2) for row in curve]
+    if rows and not (len(rows) > 1 and rows[0] == (0.0, 0.0)):
+        raise argument_error(name, curve, allowed)
+    for before, after in itertools.pairwise(rows):
+        if not (after[0] > before[0] and after[1] > before[1]):
+            raise argument_error(name, (before, after), allowed)
 
 
 def check_body(body: Body, waves: int) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.mooring.bending import bending_entries
 from sim.springs.lines.arrays import BED_AREA, DAMPING, DISPLACED, HEIGHT, STIFFNESS, LineArrays
 from sim.springs.lines.forces import link_state
 
@@ -88,9 +89,12 @@ def with_bodies(matrix: Array, p: LineArrays, start: int) -> Array:
 
 
 def stiffness_matrix(x: Array, p: LineArrays) -> Array:
-    """The matrix K [N/m] of links, bed, surface and bodies about x (3, n), in free coordinates."""
+    """The matrix K [N/m] of links, bends, bed, surface and bodies about x (3, n), in free coordinates."""
     length, tension, slope, _ = links_at(x, p)
     found = links_matrix(x, p, slope, tension / length)
+    rows, columns, values = bending_entries(p)
+    for e in range(3):
+        np.add.at(found, (e * p.nodes + rows, e * p.nodes + columns), values)
     add_upright(found, p, upright_stiffness(x, p))
     return with_bodies(found, p, STIFFNESS)
 

@@ -2,14 +2,18 @@
 
 import io
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
 from app.messages import Pause
+from app.scenes.mooring.parameters import Params
 from app.server.viewer import Viewer
-from tests.browser.conftest import NO_NOTES, Tab
+from tests.browser.conftest import LATE_UPDATE, NO_NOTES, Tab
 from tests.browser.test_water import PANEL_HIDDEN
+
+FILES = Path(__file__).parents[1] / "sim/mooring/files"
 
 
 def test_open_water_lies_around_the_mooring(open_tab: Callable[..., Tab]) -> None:
@@ -32,4 +36,46 @@ def test_open_water_lies_around_the_mooring(open_tab: Callable[..., Tab]) -> Non
     assert sky.std(axis=(0, 1)).min() > 2.0  # clouds
     assert bed.mean() > 1.5 * corners.mean()
     assert corners[..., 2].mean() > 1.5 * corners[..., 0].mean()  # blue, and not the white hall of the springs
+    assert errors == []
+
+
+def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Callable[..., Tab]) -> None:
+    lab = Viewer("127.0.0.1", 0)
+    try:
+        lab.open("mooring", Params(moordyn_file=str(FILES / "shared_line.txt"), wave_height=0.0, time_step=4e-3))
+        tab = open_tab(lab.port)
+        tab.wait(lambda: lab.view.built and len(tab.vertices("/line_3")) > 0)
+        assert len(lab.view.tubes) == 3
+        assert len(lab.view.anchors.batched_positions) == 2
+        assert len(lab.view.fairleads.batched_positions) == 4
+        assert not any(gizmo.handle.visible for gizmo in lab.view.gizmos.values())
+        tab.wait(lambda: lab.loop.scene.readings().most_offset == 0.0)
+        x, y = tab.pixel(lab.loop.scene.middle)
+        tab.drag((x, y), (x - 60, y))
+        tab.wait(lambda: lab.loop.scene.readings().offset > 0.2)
+        errors = tab.errors
+    finally:
+        lab.shut()
+    assert errors == []
+
+
+def test_files_without_a_vessel_or_without_anchors_are_drawn(tmp_path: Path, open_tab: Callable[..., Tab]) -> None:
+    path = tmp_path / "hanging.txt"
+    text = (FILES / "stiff_cable.txt").read_text(encoding="utf-8")
+    path.write_text(text.replace("Coupled", "Fixed"), encoding="utf-8")
+    lab = Viewer("127.0.0.1", 0)
+    try:
+        lab.open("mooring", Params(moordyn_file=str(path), time_step=2e-4))
+        tab = open_tab(lab.port)
+        tab.wait(lambda: lab.view.built and len(tab.vertices("/line_1")) > 0)
+        assert not lab.view.body.visible
+        tab.wait(lambda: lab.loop.scene.time > 0.1)
+        assert lab.loop.scene.readings().most_offset == 0.0
+        lab.open("mooring", Params(moordyn_file=str(FILES / "hanging_body.txt"), time_step=5e-4))
+        tab.wait(lambda: lab.view.built and len(tab.vertices("/line_2")) > 0)
+        assert lab.view.body.visible
+        assert len(lab.view.fairleads.batched_positions) == 4  # two on the vessel, and the body's with that of its drag
+        errors = [error for error in tab.errors if LATE_UPDATE not in error]
+    finally:
+        lab.shut()
     assert errors == []

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.fresh import of_each
+
 ROOT = Path(__file__).parents[2]
 PUBLIC = {"llvmlite", "llvmlite.binding", "numba", "numba.extending", "numba.types"}
 
@@ -75,7 +77,7 @@ import os, sys, warnings
 import numba
 for name in sys.argv[1:]:
     sys.stdout.flush()
-    child = os.fork()
+    child = hasattr(os, "fork") and os.fork()  # Windows cannot: there is one name
     if child:
         os.waitpid(child, 0)
         continue
@@ -102,16 +104,7 @@ def run_without(names: tuple[str, ...], tmp_path: Path) -> dict[str, tuple[float
             (sources / f"{module}.py").write_bytes((ROOT / "sim" / f"{module}.py").read_bytes())
         (sources / "compiler.py").write_text(re.sub(rf"\b{name}\b", f"{name}_changed", compiler))
         (tmp_path / name / "kernels.py").write_text(KERNELS)
-    done = subprocess.run(
-        [sys.executable, "-c", WITHOUT, *names],
-        cwd=tmp_path,
-        env={"SPRINGTIDE_CACHE": str(tmp_path / "cache"), "PATH": ""},
-        capture_output=True,
-        text=True,
-        timeout=280,
-        check=True,
-    )
-    rows = [line.split() for line in done.stdout.splitlines()]
+    rows = of_each(WITHOUT, names, tmp_path, {"SPRINGTIDE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""})
     return {row[0]: (float(row[1]), int(row[2])) if len(row) == 3 else (float("nan"), 0) for row in rows}
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector, vector_of
+from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.parameters import Params
 from sim import floating
 from sim.mooring import Body, Line, LineType, Point, System, moored
@@ -20,6 +21,8 @@ WAVE_COUNT = 16  # of an irregular sea: each node feels each of them
 BODY = 1
 BODY_DRAG = 1.0  # coefficient of drag on the wet side of the body
 HEIGHT_OVER_WIDTH = 0.55  # of a buoy and of a box
+# Of a vessel from a file as drawn: over the distance of its fairleads, over the extent, and its height over its width.
+VESSEL_WIDTH, LEAST_VESSEL, LARGEST_VESSEL, VESSEL_HEIGHT = 2.0, 0.04, 0.25, 0.3
 BOX_LENGTH = 1.6  # of a box, over its width
 FLOATING_PART = 0.4, 0.65  # of the length from the anchor: where floats are
 MAX_SURFACE_POINTS = 49  # along a side of the drawn surface
@@ -33,13 +36,58 @@ class Places(NamedTuple):
     fairleads: tuple[Vector, ...]  # [m] from the body's centre
 
 
+class Water(NamedTuple):
+    """The water of a mooring."""
+
+    depth: float  # [m]
+    density: float  # [kg/m3]
+    gravity: float  # [m/s2]
+
+
+def water_of(params: Params) -> Water:
+    """The water of the parameters, or that of their file."""
+    if not params.moordyn_file:
+        return Water(params.depth, DENSITY, GRAVITY)
+    system = mooring_of(params.moordyn_file).system
+    return Water(system.depth, system.density, system.gravity)
+
+
+def depth_of(params: Params) -> float:
+    """Depth of the water [m]."""
+    return water_of(params).depth
+
+
 def extent(params: Params) -> float:
     """A length [m] that the picture is made for."""
+    if params.moordyn_file:
+        return mooring_of(params.moordyn_file).extent
     return max(params.reach, 1.2 * params.depth)
+
+
+def diameter_of(params: Params) -> float:
+    """Diameter [m] of the lines; of a file the largest."""
+    if params.moordyn_file:
+        return max(line.type.diameter for line in mooring_of(params.moordyn_file).system.lines)
+    return params.diameter
+
+
+def has_body(params: Params) -> bool:
+    """False of a file without coupled points, which has no vessel."""
+    return not params.moordyn_file or bool(mooring_of(params.moordyn_file).vessel)
+
+
+def width_of(params: Params) -> float:
+    """Width [m] of the body; a vessel from a file is drawn within its fairleads, as no file has its shape."""
+    if not params.moordyn_file:
+        return params.size
+    found = mooring_of(params.moordyn_file)
+    return min(max(VESSEL_WIDTH * found.radius, LEAST_VESSEL * found.extent), LARGEST_VESSEL * found.extent)
 
 
 def hull_of(params: Params) -> floating.Hull:
     """The body's hull."""
+    if params.moordyn_file:
+        return floating.Hull.cylinder(0.5 * width_of(params), VESSEL_HEIGHT * width_of(params))
     width, height = params.size, HEIGHT_OVER_WIDTH * params.size
     if params.body == "buoy":
         return floating.Hull.cylinder(0.5 * width, height)
@@ -69,9 +117,8 @@ def sea_of(params: Params) -> Components | None:
     if params.wave_height == 0.0:
         return None
     spectrum = SPECTRA["sea_state"]
-    conditions = spectrum.conditions(
-        hs=params.wave_height, tp=params.wave_period, depth=params.depth, density=DENSITY, gravity=GRAVITY
-    )
+    water = water_of(params)._asdict()
+    conditions = spectrum.conditions(hs=params.wave_height, tp=params.wave_period, **water)
     c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
     if params.regular:
         k = conditions.wavenumber(2.0 * math.pi / params.wave_period)
@@ -113,6 +160,14 @@ def line_types(params: Params) -> tuple[LineType, LineType]:
     )  # fmt: skip
     area = (params.line_mass + params.lift / GRAVITY) / DENSITY
     return plain, plain._replace(name="line with floats", diameter=math.sqrt(4.0 * area / math.pi))
+
+
+def first_line(params: Params) -> tuple[LineType, float]:
+    """Type and length [m] of line 1."""
+    if params.moordyn_file:
+        line = mooring_of(params.moordyn_file).system.lines[0]
+        return line.type, line.length
+    return line_types(params)[0], params.length
 
 
 def sections(params: Params) -> tuple[tuple[LineType, float, int], ...]:

@@ -25,7 +25,9 @@ class MooringFrame(NamedTuple):
     path: NDArray[np.float32]  # (k, 2) [m] where the body has been
     rest: Vector  # [m] where the body's centre rests
     offset: float  # [m] largest level distance from there
-    uplift: NDArray[np.bool_]  # (lines,) whether the anchor is pulled upwards
+    anchors: NDArray[np.float32]  # (a, 3) [m]
+    fairleads: NDArray[np.float32]  # (f, 3) [m], and other points that move
+    uplift: NDArray[np.bool_]  # (a,) whether an anchor is pulled upwards
     pull: Vector | None  # [m] where the mouse pulls the body to
 
 

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 from app.scenes.contract import Measure
 
 if TYPE_CHECKING:
-    from app.scenes.mooring.scene import MooringScene
+    from app.scenes.mooring.line_scene import LineScene
 
 
-def measures(scene: "MooringScene") -> dict[str, Measure]:
+def measures(scene: "LineScene") -> dict[str, Measure]:
     """The measures since the start."""
     found = scene.readings()
     lines = found.lines
@@ -21,6 +21,6 @@ def measures(scene: "MooringScene") -> dict[str, Measure]:
         ),
         "lying_length": Measure(sum(line.lying for line in lines), "m", "Length of all lines on the bed"),
         "largest_offset": Measure(found.most_offset, "m", "Largest level distance of the body from its place of rest"),
-        "heave": Measure(float(scene.body_place()[2] - scene.body.place[2]), "m", "Height of the body over its rest"),
+        "heave": Measure(float(scene.body_place()[2] - scene.middle[2]), "m", "Height of the body over its rest"),
         "critical_step": Measure(found.stability.critical_step, "s", "Largest stable time step"),
     }

@@ -6,7 +6,7 @@ from typing import Any
 
 from app.scenes.groups import in_look, in_main, in_plots, speed_parameter
 from app.scenes.springs.methods import METHODS
-from sim.parameters import parameter
+from sim.parameters import parameter, parameters_of
 from sim.springs import INTEGRATORS
 
 EXPLICIT = {
@@ -70,6 +70,10 @@ class Params:
     )
     current: float = in_sea(0.0, 0.0, 4.0, "m/s", "Speed of the water, the same at all depths")
     steady_force: float = in_sea(0.0, 0.0, 5000.0, "kN", "Force of the wind on the body", log_from=0.1)
+    follow: float = in_sea(
+        1.0, 0.0, 1.0, "", "Motion of the vessel over that of the water where it is; 0 holds it",
+        title="Vessel follows waves",
+    )  # fmt: skip
     friction: float = in_sea(0.3, 0.0, 2.0, "", "Coefficient of friction of the bed")
 
     speed: float = speed_parameter(0.01, 8.0)
@@ -88,6 +92,7 @@ class Params:
     plot_restoring: bool = in_plots(
         False, doc="Static force of all lines over the offset, and the force now", title="Restoring force"
     )
+    moordyn_file: str = ""  # a MoorDyn file; it is named on the command line only, never by a browser
 
 
 ROPE: dict[str, Any] = {
@@ -127,11 +132,21 @@ ABOUT = {  # preset -> what it shows and what to try
 }
 
 
+# What a MoorDyn file says itself, or what a vessel without a hull does not have.
+OF_NO_FILE = {
+    "lines", "length", "reach", "depth", "friction", "steady_force", "handles",
+    *(name for name, one in parameters_of(Params).items() if one.group in ("Line", "Body")),
+}  # fmt: skip
+
+
 def hidden(params: Params) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = set() if params.floats else {"lift"}
+    names |= OF_NO_FILE if params.moordyn_file else {"follow"}
     if params.wave_height == 0.0:
         names |= {"wave_period", "regular"}
-        if params.current == 0.0 and params.steady_force == 0.0:
+        if params.moordyn_file:
+            names.add("follow")
+        if params.current == 0.0 and (params.moordyn_file or params.steady_force == 0.0):
             names.add("direction")
     return names

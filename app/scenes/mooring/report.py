@@ -1,11 +1,13 @@
 """Texts of the mooring's panel."""
 
 import math
+from pathlib import PureWindowsPath
 
 from app.formats.formatting import metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import ERROR_COLOUR, Html, bold, coloured, faint, fill, info, join, table
 from app.scenes.mooring.frame import LineReading, MooringReadings
+from app.scenes.mooring.from_file import mooring_of
 from app.scenes.springs.html import colour_scale, step_mark
 
 COLOURS = "Brown parts of a line lie on the bed. A red anchor is pulled upwards."
@@ -66,10 +68,24 @@ def offset_text(snapshot: Snapshot) -> Html:
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     said = faint("Slack: the share of time, or since when, in which the last segment is not stretched.")
-    return {
+    notes: dict[str, str] = {
         "Tensions": join((offset_text(snapshot), tension_table(snapshot))),
         "Bed and slack": join((bed_table(snapshot), said)),
     }
+    path = snapshot.params.moordyn_file
+    return {"File": file_text(path), **notes} if path else notes
+
+
+def file_text(path: str) -> Html:
+    """The file of the mooring, and the parts of it without effect here."""
+    found = mooring_of(path)
+    system = found.system
+    count = fill(
+        "<div>{}: {} lines, {} points, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(path).name),
+        len(system.lines), len(system.points), len(found.vessel), metres(system.depth),
+    )  # fmt: skip
+    sketch = faint("The vessel is a sketch: the file has no shape, mass or waves for it.")
+    return join((count, *(fill("<div>{}</div>", note) for note in found.notes), sketch))
 
 
 def readout_of(snapshot: Snapshot) -> Html:

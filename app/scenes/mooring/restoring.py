@@ -1,7 +1,7 @@
 """The static restoring curve: the force of all lines over the offset along the waves, and the force now."""
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,8 @@ from sim.interruption import raise_if_stopped
 from sim.mooring import Line, Point, System, at_rest
 
 if TYPE_CHECKING:
-    from app.scenes.mooring.scene import MooringScene
+    from app.scenes.mooring.body_scene import MooringScene
+    from app.scenes.mooring.line_scene import LineScene
 
 SPANS = 32  # places at which a line's statics are solved
 POINTS = 41  # of the drawn curve
@@ -22,6 +23,14 @@ SHARE = 0.9  # of the way to where the first line is straight, which the curve g
 LEAST_SHARE = 0.03  # of the distance of the anchors, of lines that are straight at rest
 
 STATIC_LINE, NOW_LINE = ChartLine("static", PALETTE[0], 2.0), ChartLine("now", PALETTE[1], 5.0)
+
+
+class CurveInputs(Protocol):
+    """Everything that a restoring curve depends on; equal where the curve is the same."""
+
+    def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Offsets [m] along the waves, and the force [N] against each."""
+        ...
 
 
 class StaticInputs(NamedTuple):
@@ -47,6 +56,10 @@ class StaticInputs(NamedTuple):
             far, system.depth, system.gravity, system.density,
         )  # fmt: skip
 
+    def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Offsets [m] along the waves, and the force [N] against each."""
+        return static_curve(self)
+
 
 class RestoringCurve:
     """The curve of the arrangement as it was last asked for."""
@@ -55,18 +68,18 @@ class RestoringCurve:
         self.made_of: object = None
         self.curve: tuple[NDArray[np.float64], NDArray[np.float64]] = (np.zeros(0), np.zeros(0))  # [m], [N]
 
-    def chart(self, scene: "MooringScene") -> Chart:
+    def chart(self, scene: "LineScene") -> Chart:
         """The chart; the curve is found again where anything that it depends on is another."""
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
         far = 2.0 ** math.ceil(math.log2(max(scene.most_offset, 1e-3)))
-        key = StaticInputs.of(scene, far)
+        key = scene.static_inputs(far)
         if key != self.made_of:
-            self.curve = static_curve(key)
+            self.curve = key.curve()
             self.made_of = key
         offset, force = self.curve
         wave = direction_of(scene)
         now = float((scene.body_place() - scene.rest_place)[:2] @ wave)
-        pull = -float(force_of_lines(scene) @ wave)
+        pull = -float(scene.force_of_lines() @ wave)
         # A bar from the lowest force of the curve to the force now, at the offset now.
         x = np.concatenate((offset, [now, now]))
         static = np.concatenate((force, np.interp([now, now], offset, force)))
@@ -76,7 +89,7 @@ class RestoringCurve:
         return Chart("Offset along the waves [m]", (STATIC_LINE, NOW_LINE), columns)
 
 
-def direction_of(scene: "MooringScene") -> NDArray[np.float64]:
+def direction_of(scene: "LineScene") -> NDArray[np.float64]:
     """Unit vector (2,) along the waves."""
     bearing = math.radians(scene.params.direction)
     return np.array([math.cos(bearing), math.sin(bearing)])

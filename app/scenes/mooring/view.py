@@ -20,7 +20,7 @@ from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.contract import View as SceneView
-from app.scenes.mooring.arrangement import extent, hull_of
+from app.scenes.mooring.arrangement import depth_of, diameter_of, extent, has_body, hull_of, width_of
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
 from app.scenes.mooring.report import figures_of, marks_of, notes_of, readout_of
@@ -126,19 +126,20 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
     def first_view(self, params: Params) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: beside the surface, which it sees edge on."""
         far = extent(params)
-        return (0.35 * far, -2.2 * far, 0.42 * far), (0.0, 0.0, -0.4 * params.depth)
+        return (0.35 * far, -2.2 * far, 0.42 * far), (0.0, 0.0, -0.4 * depth_of(params))
 
     def build(self, frame: MooringFrame) -> None:
         """Make everything for another arrangement."""
         for node in self.nodes:
             node.remove()
         p, scene = frame.params, self.server.scene
+        depth = depth_of(p)
         far, (lines, n, _) = extent(p), frame.points.shape
         set_clipping(self.server, 0.002 * far, FAR_VIEW * far)
         cell = cell_of(far)
         self.bed = scene.add_grid(
             "/bed", width=frame.side, height=frame.side, cell_size=cell, section_size=5 * cell,
-            position=(0.0, 0.0, -p.depth + GRID_ABOVE * far), fade_distance=GRID_SIDE * frame.side,
+            position=(0.0, 0.0, -depth + GRID_ABOVE * far), fade_distance=GRID_SIDE * frame.side,
             fade_from="origin", shadow_opacity=0.0,
             cell_color=CELL_COLOUR, section_color=SECTION_COLOUR,
         )  # fmt: skip
@@ -158,35 +159,37 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
                 )
             )  # fmt: skip
         hull = hull_of(p)
-        width, low, high = p.size, *(float(edge) for edge in hull.extents[2])
+        width, low, high = width_of(p), *(float(edge) for edge in hull.extents[2])
+        is_round = bool(p.moordyn_file) or p.body == "buoy"
         line = min(max(-frame.rest[2], low + 2 * STRIPE * width), high - 2 * STRIPE * width)  # as it floats
         edges = [low, line, line + STRIPE * width, high, *(high + width * np.cumsum([part for _, part, _ in ON_DECK]))]
         self.slices = np.array(edges[:-1]) + 0.5 * np.diff(edges)  # heights [m] of their middles over the body's centre
         wide = [part for part, *_ in (*PAINTS, *ON_DECK)]
-        self.outline = (0.0, 0.0, 0.5 * width) if p.body == "buoy" else (*hull.extents[:2, 1], 0.0)
+        self.outline = (0.0, 0.0, 0.5 * width) if is_round else (*hull.extents[:2, 1], 0.0)
         place = self.body_place(frame)
         self.body = scene.add_batched_meshes_simple(
             "/body", (hull.vertices / (1.0, 1.0, high - low)).astype(np.float32), hull.faces.astype(np.uint32),
-            flat_shading=p.body == "box", lod="off", **place,
+            flat_shading=not is_round, lod="off", **place,
             batched_scales=np.column_stack([wide, wide, np.diff(edges)]).astype(np.float32),
             batched_colors=np.array([linear(colour) for *_, colour in (*PAINTS, *ON_DECK)], np.uint8),
         )  # fmt: skip
+        self.body.visible = has_body(p)
         self.body.on_drag("left")(self.on_body)
-        self.anchors = self.balls("/anchors", frame.points[:, 0], ANCHOR_SIZE * far, ANCHOR_COLOUR)
-        self.fairleads = self.balls("/fairleads", frame.points[:, -1], FAIRLEAD_SIZE * far, FAIRLEAD_COLOUR)
+        self.anchors = self.balls("/anchors", frame.anchors, ANCHOR_SIZE * far, ANCHOR_COLOUR)
+        self.fairleads = self.balls("/fairleads", frame.fairleads, FAIRLEAD_SIZE * far, FAIRLEAD_COLOUR)
         self.shadows = self.strokes("/shadows", lines * (n - 1), SHADOW_COLOUR, 2.0)
         # On the water, and once more on the bed, where the body hides nothing.
         self.watch = [
             (part, self.strokes(f"/watch/{part}_{i}", 1, colour, width), height)
-            for i, height in enumerate((0.0, -p.depth + self.radius))
+            for i, height in enumerate((0.0, -depth + self.radius))
             for part, colour, width in (("circle", WATCH_COLOUR, 3.5), ("path", PATH_COLOUR, 2.0))
         ]
         self.labels = [
             scene.add_label(f"/number_{i + 1}", str(i + 1), position=tuple(place), anchor="bottom-center")
             for i, place in enumerate((frame.points[:, 0] + (0.0, 0.0, 2 * ANCHOR_SIZE * far)).tolist())
         ]
-        behind = -0.35 * far, 0.65 * far, -p.depth  # as first seen
-        self.labels.append(scene.add_label("/depth", f"{p.depth:g} m deep", position=behind, anchor="bottom-center"))
+        behind = -0.35 * far, 0.65 * far, -depth  # as first seen
+        self.labels.append(scene.add_label("/depth", f"{depth:g} m deep", position=behind, anchor="bottom-center"))
         rows = len(frame.surface)
         self.places = 0.5 * frame.side * square_points(rows)
         vertices = self.surface_of(frame)
@@ -196,7 +199,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         )  # fmt: skip
         self.sand, self.around = self.add_sand(frame), None
         if injector_of(self.server) is not None:
-            webs = np.array([[1.0, min(WEB_SIZE * p.depth, MAX_WEB_SIZE), 0.0]])  # as `js/underwater.js` reads it
+            webs = np.array([[1.0, min(WEB_SIZE * depth, MAX_WEB_SIZE), 0.0]])  # as `js/underwater.js` reads it
             add_data_mesh(self.server, f"{self.sand.name}/underwater", webs)
             self.around = add_data_mesh(self.server, f"{self.water.name}/open_water", self.open_water(frame))
         self.nodes = [
@@ -204,12 +207,12 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             *(handle for _, handle, _ in self.watch), *self.labels, self.water, self.sand,
         ]  # fmt: skip
         self.built = self.shape_of(frame)
-        self.lifted = np.zeros(lines, bool)
+        self.lifted = np.zeros(len(frame.anchors), bool)
 
     def add_sand(self, frame: MooringFrame) -> ColouredMesh:
         """The bed: mottled sand, which is lost in the water with the distance from the middle."""
         places = 0.5 * frame.side * square_points(BED_ROWS)
-        depth = frame.params.depth
+        depth = depth_of(frame.params)
         return ColouredMesh(
             self.server, "/sand", np.column_stack([places, np.full(len(places), -depth)]), square_faces(BED_ROWS),
             bed_colours(depth), columns=BED_ROWS, step=BED_STEP, color=DEEP_BED, side="double",
@@ -220,7 +223,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
     def shape_of(frame: MooringFrame) -> Shape:
         """The inputs of a drawing: all that `build` reads, except for those that `show` assigns."""
         p = frame.params
-        return frame.points.shape, p.reach, p.depth, p.body, p.size, frame.surface.shape, frame.rest[2]
+        return frame.points.shape, p.moordyn_file, p.reach, p.depth, p.body, p.size, frame.surface.shape, frame.rest[2]
 
     def balls(self, name: str, places: NDArray[np.float32], radius: float, colour: tuple[int, int, int]) -> Any:
         """A ball at each place (n, 3) [m]."""
@@ -258,13 +261,13 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         """Rows for `js/open_water.js`: the water (3,) [m], and the body seen from above (2, 3)."""
         w, _, _, z = frame.rotation.tolist()
         place = (*frame.body[:2].tolist(), 2.0 * math.atan2(z, w))
-        return np.array([(0.5 * frame.side, frame.params.depth, extent(frame.params)), place, self.outline])
+        return np.array([(0.5 * frame.side, depth_of(frame.params), extent(frame.params)), place, self.outline])
 
     def shape_tube(self, frame: MooringFrame, i: int) -> None:
         """Compute the tube of line i: vertices, and colours by the tension, or brown where it lies on the bed."""
-        bed = -frame.params.depth
+        bed = -depth_of(frame.params)
         smooth_line(frame.points[i], self.samples, self.line)
-        lies = self.line[:, 2] <= bed + frame.params.diameter
+        lies = self.line[:, 2] <= bed + diameter_of(frame.params)
         # A line is drawn thicker than it is: what lies is drawn on the bed, not half in it.
         self.line[:, 2] = np.maximum(self.line[:, 2], bed + self.radius)
         sweep(self.line, self.radius, SIDES, self.vertices)
@@ -282,15 +285,15 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             self.shape_tube(frame, i)
             tube.set(self.vertices, self.rgb)
         set_arrays(self.body, **self.body_place(frame))
-        set_arrays(self.anchors, batched_positions=frame.points[:, 0])
-        set_arrays(self.fairleads, batched_positions=frame.points[:, -1])
+        set_arrays(self.anchors, batched_positions=frame.anchors)
+        set_arrays(self.fairleads, batched_positions=frame.fairleads)
         if (frame.uplift != self.lifted).any():
             self.lifted = frame.uplift
             self.anchors.batched_colors = np.array(
                 [linear(LIFTED_COLOUR if one else ANCHOR_COLOUR) for one in self.lifted], np.uint8
             )
         shadows = frame.points.copy()
-        shadows[:, :, 2] = -p.depth + 0.3 * self.radius
+        shadows[:, :, 2] = -depth_of(p) + 0.3 * self.radius
         set_arrays(self.shadows, points=np.stack([shadows[:, :-1], shadows[:, 1:]], axis=2).reshape(-1, 2, 3))
         if self.water.mesh.visible != p.surface:
             self.water.mesh.visible = p.surface
@@ -325,7 +328,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         """The arrows of anchors and fairleads."""
         p, far = frame.params, extent(frame.params)
         for i in range(MAX_LINES):
-            is_shown = p.handles and i < len(frame.points)
+            is_shown = p.handles and not p.moordyn_file and i < len(frame.points)
             for kind, node, scale in (("anchor", 0, ARROW_SIZE), ("fairlead", -1, SMALL_ARROW_SIZE)):
                 gizmo = self.gizmos[f"{kind} {i + 1}"]
                 if is_shown and gizmo.handle.scale != scale * far:

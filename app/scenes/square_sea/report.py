@@ -215,7 +215,7 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
 
 
 def order_line(params: Params, frame: SeaFrame) -> str:
-    """What the order does, and the highest crest."""
+    """Line under the order: the highest crest, or the solver."""
     if frame.highest is not None:
         return f"{highest_text(frame.highest)}, at t = {frame.highest.time:.1f} s"
     return "solved step by step; new weather begins it again" if marches(params) else "a sum of linear waves"

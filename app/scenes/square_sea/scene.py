@@ -102,7 +102,7 @@ def compile_nonlinear_sea() -> None:
 
 
 def pieces_on_use() -> Pieces:
-    """What is compiled when an order above 1, or a start that grows, is first asked for."""
+    """Pieces that only nonlinear waves need."""
     return {NONLINEAR: compile_nonlinear_sea}
 
 

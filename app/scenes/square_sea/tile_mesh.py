@@ -122,7 +122,7 @@ def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade,
 
 @kernel(noalias=True)
 def set_foam(jacobian, scale, stride, threshold, soft, fade, foam):
-    """Fade the foam of the mesh and add what is new, as `set_mesh` does, by a Jacobian (n, n) that is known.
+    """Fade the foam of the mesh and add new foam by a given Jacobian (n, n), as `set_mesh` does.
 
     scale: factor on the height. Returns (share of the mesh that is foam, rms of J - 1).
     """

@@ -145,7 +145,7 @@ class NonlinearSea:
         self._surface = NonlinearSurface(self._modes, self._fields, u[0], t)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "NonlinearSea":
-        """An independent copy for the same thread; it shares the transforms and what never changes in place."""
+        """An independent copy for the same thread, with shared transforms and constant arrays."""
         other = copy.copy(self)
         if self._march is not None:
             other._march = self._march.copied(other._evaluate)

@@ -16,7 +16,7 @@ ALLOWED = "a Sea, Components, or elevation and potential, two finite arrays (n, 
 
 
 class Start(NamedTuple):
-    """What a nonlinear sea starts with."""
+    """The start of a nonlinear sea."""
 
     modes: Modes
     u: np.ndarray  # (2, rows, columns) spectra of elevation [m] and potential [m2/s] at z = 0

@@ -29,8 +29,13 @@ class LineArrays(NamedTuple):
     mass: NDArray[np.float64]  # (n,) [kg] without the water's
     gravity: float  # [m/s^2], downwards
     law: Any  # numbers of the law of the links, see sim/springs/laws
+    slack_damping: bool  # damping acts in slack links, too
     ends: NDArray[np.int64]  # (links, 2) nodes
-    links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m]
+    # (links, 5): rest length [m], stiffness [N/m], damping [N s/m], first row and number of rows in `curves`, or 0
+    links: NDArray[np.float64]
+    curves: NDArray[np.float64]  # (rows, 3): strain, tension [N], energy per length [N], see `sim.springs.lines.curves`
+    bends: NDArray[np.float64]  # (bends, 12): see `sim.springs.lines.bending`
+    loads: NDArray[np.float64]  # (n, 3) [N] steady forces on nodes
     places: NDArray[np.int64]  # (parts, 3): node, and the nodes before and after it along the line
     # (parts, 8): mass, displaced mass [kg], added masses and drags over speed, bed area, height [m] of its volume
     parts: NDArray[np.float64]

@@ -10,7 +10,6 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.laws import energy as link_energy
 from sim.springs.lines.arrays import (
     BED_AREA,
     BODY_MASS,
@@ -22,11 +21,13 @@ from sim.springs.lines.arrays import (
     MASS,
     STIFFNESS,
 )
+from sim.springs.lines.bending import add_bending_tension, bending_energy, bending_rate
 from sim.springs.lines.forces import (
     accelerate_lines,
     bed_force,
     damping_of,
     lines_scratch_size,
+    link_energy_of,
     matrix_times,
     rate_of,
     six,
@@ -77,12 +78,15 @@ def lift_height(p, i, z):
 
 @kernel(allocates=False)
 def lines_energies(x, v, t, p):
-    """(kinetic, elastic, gravity, contact) [J]; gravity holds buoyancy, and elastic the stiffness of bodies."""
+    """(kinetic, elastic, gravity, contact) [J].
+
+    Elastic holds bending and the stiffness of bodies, gravity buoyancy and steady forces.
+    """
     n = p.cols
-    elastic = gravity = contact = 0.0
+    elastic, gravity, contact = bending_energy(x, p), 0.0, 0.0
     for q in range(p.ends.shape[0]):
         _, _, _, length = span_of(x, p, q)
-        elastic += link_energy(p.law, p.links[q, 1], p.links[q, 0], length)
+        elastic += link_energy_of(p, q, length)
     for b in range(p.bodies.shape[0]):
         elastic += half_form(p, b, STIFFNESS, six(x, n, p.nodes + 2 * b))
     for i in range(p.places.shape[0]):
@@ -92,6 +96,9 @@ def lines_energies(x, v, t, p):
             gravity += p.gravity * (p.parts[i, MASS] * z - p.parts[i, DISPLACED] * lift_height(p, i, z))
             depth = max(0.0, p.bed - x[2 * n + j])
             contact += 0.5 * p.parts[i, BED_AREA] * p.bed_stiffness * depth * depth
+    for j in range(p.nodes):
+        if is_moving(p, j):
+            gravity -= p.loads[j, 0] * x[j] + p.loads[j, 1] * x[n + j] + p.loads[j, 2] * x[2 * n + j]
     return lines_kinetic_energy(v, p), elastic, gravity, contact
 
 
@@ -99,8 +106,10 @@ def lines_energies(x, v, t, p):
 def stored_rate(x, v, a, p):
     """Rate of the stored energy [W], with the accelerations a."""
     n = p.cols
-    rate = 0.0
+    rate = bending_rate(x, v, p)
     for j in range(p.nodes):
+        if is_moving(p, j):
+            rate -= p.loads[j, 0] * v[j] + p.loads[j, 1] * v[n + j] + p.loads[j, 2] * v[2 * n + j]
         if p.inverse_masses[j] > 0.0:
             rate += p.mass[j] * (v[j] * a[j] + v[n + j] * a[n + j] + v[2 * n + j] * a[2 * n + j])
     for q in range(p.ends.shape[0]):
@@ -182,7 +191,8 @@ def lines_pins_damping_power(x, v, p):
 
 @kernel
 def set_tensions(x, v, p, out):
-    """Set the tension (links,) [N] of every link, its damping included."""
+    """Set the tension (links,) [N] of every link, with its damping and what bending adds."""
     for q in range(p.ends.shape[0]):
         rx, ry, rz, length = span_of(x, p, q)
         out[q] = tension_of(p, q, length) + damping_of(p, q, length) * rate_of(v, p, q, rx, ry, rz, length)
+    add_bending_tension(x, p, out)

@@ -17,7 +17,7 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.forces.pins import set_paths
-from sim.springs.laws import damps, stiffness, tension
+from sim.springs.laws import damps, energy, stiffness, tension
 from sim.springs.lines.arrays import (
     ACROSS,
     ALONG,
@@ -32,6 +32,8 @@ from sim.springs.lines.arrays import (
     PLACE,
     STIFFNESS,
 )
+from sim.springs.lines.bending import add_bending
+from sim.springs.lines.curves import curve_at
 from sim.wave_motion import flow_at, sincos_turns
 
 TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction, and no force
@@ -61,13 +63,31 @@ def rate_of(v, p, q, rx, ry, rz, length):
 @kernel(inline=True)
 def damping_of(p, q, length):
     """Damping [N s/m] of link q that acts at a length [m]."""
-    return p.links[q, 2] if damps(p.law, p.links[q, 0], length) else 0.0
+    return p.links[q, 2] if p.slack_damping or damps(p.law, p.links[q, 0], length) else 0.0
 
 
 @kernel(inline=True)
 def tension_of(p, q, length):
     """Tension [N] of link q at a length [m], without its damping."""
+    if p.links[q, 4] > 0.0:
+        return curve_at(p.curves, p.links[q, 3], p.links[q, 4], length / p.links[q, 0] - 1.0)[0]
     return tension(p.law, p.links[q, 1], p.links[q, 0], length)
+
+
+@kernel(inline=True)
+def stiffness_of(p, q, length):
+    """Derivative [N/m] of the tension of link q at a length [m]."""
+    if p.links[q, 4] > 0.0:
+        return curve_at(p.curves, p.links[q, 3], p.links[q, 4], length / p.links[q, 0] - 1.0)[1] / p.links[q, 0]
+    return stiffness(p.law, p.links[q, 1], p.links[q, 0], length)
+
+
+@kernel(inline=True)
+def link_energy_of(p, q, length):
+    """Energy [J] of link q at a length [m]."""
+    if p.links[q, 4] > 0.0:
+        return curve_at(p.curves, p.links[q, 3], p.links[q, 4], length / p.links[q, 0] - 1.0)[2] * p.links[q, 0]
+    return energy(p.law, p.links[q, 1], p.links[q, 0], length)
 
 
 @kernel(inline=True)
@@ -261,8 +281,9 @@ def add_water_and_bed(x, v, t, p, with_damping, f):
 def set_forces(x, v, t, p, with_damping, f):
     """Set the forces [N] on every node, prescribed ones too."""
     n = p.cols
-    for j in range(3 * n):
-        f[j] = 0.0
+    for j in range(n):
+        f[j], f[n + j], f[2 * n + j] = p.loads[j, 0], p.loads[j, 1], p.loads[j, 2]
+    add_bending(x, p, f)
     add_link_forces(x, v, p, with_damping, f)
     add_water_and_bed(x, v, t, p, with_damping, f)
 
@@ -387,6 +408,6 @@ def link_state(x, p):
     for q in range(p.ends.shape[0]):
         _, _, _, length = span_of(x, p, q)
         found[q, 0], found[q, 1] = length, tension_of(p, q, length)
-        found[q, 2] = stiffness(p.law, p.links[q, 1], p.links[q, 0], length)
+        found[q, 2] = stiffness_of(p, q, length)
         found[q, 3] = damping_of(p, q, length)
     return found

@@ -13,14 +13,15 @@ import pytest
 from app.messages import Grab, Place, Release, vector_of
 from app.scenes import scene_named
 from app.scenes.mooring.arrangement import DENSITY, body_of, build, first_places, heights, hull_of, line_types, sea_of
+from app.scenes.mooring.body_scene import MooringScene
+from app.scenes.mooring.line_scene import FADE, MAX_PATH, PATH_INTERVAL
 from app.scenes.mooring.parameters import PRESETS, Params
 from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_curve
-from app.scenes.mooring.scene import FADE, MAX_PATH, PATH_INTERVAL, MooringScene
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import BED_ROWS, View, bed_colours
 from app.server.loop import SimLoop
 from sim.mooring import balance, critical_step, interior
-from sim.parameters import Parameter, check_record
+from sim.parameters import Parameter, check_record, parameters_of
 from sim.validation import ConvergenceError, DivergenceError
 from tests.sim.mooring.catenary import catenary
 
@@ -266,7 +267,7 @@ def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
     def fail(system):
         raise ConvergenceError("static state of the mooring", "3 N", 40)
 
-    monkeypatch.setattr("app.scenes.mooring.scene.at_rest", fail)
+    monkeypatch.setattr("app.scenes.mooring.line_scene.at_rest", fail)
     scene = MooringScene(Params(**SMALL))
     assert np.isfinite(scene.frame().points).all()
     with pytest.raises(DivergenceError, match=r"no state of rest .*3 N left.* Change their length"):
@@ -306,11 +307,10 @@ def an_end(rng: random.Random, one: Parameter) -> float:
 def random_params(rng: random.Random, value: Callable[[random.Random, Parameter], float] = anywhere) -> Params:
     """A mooring inside the sliders."""
     values = {}
-    for field in dataclasses.fields(Params):
-        one = field.metadata["parameter"]
-        if field.name in STATIC:
+    for name, one in parameters_of(Params).items():
+        if name in STATIC:
             number = value(rng, one)
-            values[field.name] = round(number) if isinstance(one.default, int) else number
+            values[name] = round(number) if isinstance(one.default, int) else number
     return Params(**values, body=rng.choice(["buoy", "box"]), floats=rng.random() < 0.5, wave_height=0.0)
 
 

@@ -9,11 +9,12 @@ import pytest
 
 from app.scenes.mooring import report
 from app.scenes.mooring.arrangement import DENSITY, GRAVITY, bearings, first_places, line_types, sections
+from app.scenes.mooring.body_scene import MooringScene
+from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.live_values import live_values
 from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import Params
 from app.scenes.mooring.restoring import force_of_lines
-from app.scenes.mooring.scene import FADE, MooringScene
 from app.scenes.mooring.tensions import Tensions
 from sim.mooring import critical_step
 

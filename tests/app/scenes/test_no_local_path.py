@@ -19,7 +19,7 @@ from app.scenes import scene_named
 from app.scenes.setups import (
     Setup,
     file_name,
-    missing_hull,
+    missing_files,
     preset_setup,
     read_file,
     read_query,
@@ -98,16 +98,16 @@ def test_a_reader_is_told_how_to_add_the_mesh(
     file.write_bytes(written[name])
     setup = read_setup(str(file))
     assert setup == read_file(read_setup_text("set-up", file), scene="radial_sea")
-    assert setup.hull == "boat.obj"
+    assert setup.files == {"hull": "boat.obj"}
     assert setup.params == KIND.params(**SMALL)
-    assert "hull boat.obj is missing" in missing_hull(setup)
-    assert "--hull boat.obj" in missing_hull(setup)
-    assert missing_hull(setup, str(mesh)) == ""
+    assert "hull boat.obj is missing" in missing_files(setup)
+    assert "--hull boat.obj" in missing_files(setup)
+    assert missing_files(setup, dataclasses.replace(KIND.params(), hull=str(mesh))) == ""
     out = ["run", "radial_sea", "--seconds", "0.1", "--out", str(tmp_path / "again.npz"), "--preset", str(file)]
     capsys.readouterr()
     assert main(out) == 0
     said = capsys.readouterr().err
-    assert said == f"springtide: {missing_hull(setup)}\n"
+    assert said == f"springtide: {missing_files(setup)}\n"
     assert main([*out, "--hull", str(mesh)]) == 0
     assert "missing" not in capsys.readouterr().err
     with pytest.raises(ValueError, match=r"preset: .* with the hull boat\.obj. is not allowed"):
@@ -132,8 +132,8 @@ def test_without_a_mesh_nothing_is_said(tmp_path: Path, capsys: pytest.CaptureFi
     file = tmp_path / "setup.json"
     file.write_text(write_file(KIND, KIND.params(**SMALL)))
     assert json.loads(file.read_text())["version"] == 1
-    assert missing_hull(preset_setup("--preset", str(file), KIND)) == ""
-    assert missing_hull(read_query("?scene=rope")) == ""
+    assert missing_files(preset_setup("--preset", str(file), KIND)) == ""
+    assert missing_files(read_query("?scene=rope")) == ""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         read_notebook_setup("radial_sea", str(file), {})
@@ -145,6 +145,6 @@ def test_of_a_path_of_any_system_only_the_last_part_is_read_and_written() -> Non
         file_name("/home/anna/boat.stl") == file_name(r"C:\Users\anna\boat.stl") == file_name("boat.stl") == "boat.stl"
     )
     text = json.dumps({"version": 2, "scene": "radial_sea", "parameters": {}, "hull": "/home/anna/boat.stl"})
-    assert read_file(text) == Setup("radial_sea", KIND.params(), {}, hull="boat.stl")
+    assert read_file(text) == Setup("radial_sea", KIND.params(), {}, files={"hull": "boat.stl"})
     with pytest.raises(ValueError, match=r"hull: .* is not allowed"):
         read_file(json.dumps({"version": 2, "scene": "radial_sea", "parameters": {}, "hull": 3}))

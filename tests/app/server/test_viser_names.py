@@ -4,12 +4,11 @@ Those of its page are held by tests/browser/test_water.py and test_rope.py.
 """
 
 import ast
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+
+from tests.fresh import of_each
 
 ROOT = Path(__file__).parents[3]
 OWN = {"_replace", "_asdict", "_fields", "_exit"}  # of named tuples and of the os module
@@ -71,7 +70,7 @@ def try_lab(name):
 
 for name in sys.argv[1:]:
     sys.stdout.flush()
-    child = os.fork()
+    child = hasattr(os, "fork") and os.fork()  # Windows cannot: there is one name
     if child:
         os.waitpid(child, 0)
         continue
@@ -85,16 +84,8 @@ for name in sys.argv[1:]:
 
 def run_without(names: tuple[str, ...]) -> dict[str, list[str]]:
     """Browsers counted, whether the scene moved and a replay was made, number of losses; without each of the names."""
-    done = subprocess.run(
-        [sys.executable, "-c", WITHOUT, *names],
-        cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    rows = [line.split() for line in done.stdout.splitlines() if line.startswith("found ")]
-    return {row[1]: row[2:] for row in rows}
+    rows = of_each(WITHOUT, names, ROOT, {"PYTHONPATH": str(ROOT)})
+    return {row[1]: row[2:] for row in rows if row[0] == "found"}
 
 
 @pytest.mark.parametrize(

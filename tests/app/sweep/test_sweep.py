@@ -101,7 +101,11 @@ def test_a_random_design_has_a_dimension_of_cases_and_its_seed(here, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "how", [pytest.param(signal.SIGINT, id="Ctrl-C"), pytest.param(signal.SIGKILL, id="kill", marks=pytest.mark.stress)]
+    "how",
+    [
+        pytest.param(signal.SIGINT, id="Ctrl-C"),
+        pytest.param(getattr(signal, "SIGKILL", None), id="kill", marks=pytest.mark.stress),
+    ],
 )
 def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, here, tmp_path, capsys):
     (tmp_path / "s.toml").write_text(LONG)

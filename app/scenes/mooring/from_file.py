@@ -1,0 +1,125 @@
+"""A mooring from a MoorDyn file: its lines as the scene shows them, and the vessel that its coupled points make."""
+
+import functools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import Vector, vector_of
+from sim.mooring import System, read_moordyn
+
+LEAST_EXTENT = 1e-3  # [m]
+STRETCH = 0.01  # of the shortest line at the vessel, to which the vessel may be dragged beyond where it is straight
+ELSEWHERE = 0.1  # of the extent, to which a vessel may be dragged if no line leads from it to a fixed point
+
+
+class Shown(NamedTuple):
+    """Lines of unlike numbers of segments as rows of equally many pieces, each from its anchor on."""
+
+    before: NDArray[np.int64]  # (lines, n) node before each point, or at it
+    after: NDArray[np.int64]  # (lines, n) the next one
+    share: NDArray[np.float64]  # (lines, n, 1) of the way between them
+    links: NDArray[np.int64]  # (lines, n - 1) link of each piece
+    lengths: NDArray[np.float64]  # (lines,) [m] unstretched
+
+    def points(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points (lines, n, 3) of nodes x (3, nodes)."""
+        nodes = x.T
+        return nodes[self.before] + self.share * (nodes[self.after] - nodes[self.before])
+
+
+class FileMooring(NamedTuple):
+    """A file that was read."""
+
+    system: System
+    notes: tuple[str, ...]  # on what was left out
+    shown: Shown
+    vessel: tuple[int, ...]  # nodes of the coupled points
+    anchors: tuple[int, ...]  # nodes of the fixed points
+    others: tuple[int, ...]  # nodes of free points and of those that free bodies carry
+    ends: tuple[tuple[int, int], ...]  # (line, 0 or -1) of each end at the vessel, in the rows of `shown`
+    middle: Vector  # [m] of the vessel, at the surface
+    radius: float  # [m] from there to its farthest point
+    extent: float  # [m] that the picture is made for
+    farthest: float  # [m] to which the vessel may be dragged
+
+
+@functools.lru_cache(maxsize=4)
+def mooring_of(path: str) -> FileMooring:
+    """The mooring of a file, which is read once. Raises ValueError as `read_moordyn` does."""
+    notes: list[str] = []
+    system = read_moordyn(path, notes.append)
+    kinds = {point.id: point.kind for point in system.points}
+    nodes = {kind: tuple(i for i, p in enumerate(system.points) if p.kind == kind) for kind in (*kinds.values(), "")}
+    vessel = nodes.get("coupled", ())
+    places = np.array([point.position for point in system.points])
+    middle = np.mean(places[list(vessel)] if vessel else places, axis=0)[:2]
+    reach = float(np.hypot(*places[:, :2].T).max())
+    extent = max(reach, 1.2 * system.depth, LEAST_EXTENT)
+    arms = np.linalg.norm(places[list(vessel), :2] - middle, axis=1)
+    reverse = [is_reversed(system, line.start, line.end) for line in system.lines]
+    ends = tuple(
+        (i, end)
+        for i, (line, turned) in enumerate(zip(system.lines, reverse, strict=True))
+        for end, point in ((0, line.end if turned else line.start), (-1, line.start if turned else line.end))
+        if kinds[point] == "coupled"
+    )
+    return FileMooring(
+        system, tuple(notes), shown_lines(system, reverse), vessel, nodes.get("fixed", ()),
+        (*nodes.get("free", ()), *nodes.get("body", ())), ends, vector_of(np.append(middle, 0.0)),
+        float(arms.max(initial=0.0)), extent, farthest_offset(system, extent),
+    )  # fmt: skip
+
+
+def is_reversed(system: System, start: int, end: int) -> bool:
+    """True if a line begins at its fairlead: its anchor is the fixed point, or else the lower end."""
+    first, last = (next(point for point in system.points if point.id == one) for one in (start, end))
+    if (first.kind == "fixed") != (last.kind == "fixed"):
+        return last.kind == "fixed"
+    if (first.kind == "coupled") != (last.kind == "coupled"):
+        return first.kind == "coupled"
+    return last.position[2] < first.position[2]
+
+
+def shown_lines(system: System, reverse: list[bool]) -> Shown:
+    """The rows of all lines, with as many pieces as the line of most segments has."""
+    pieces = max(line.segments for line in system.lines)
+    before, after, share, links = [], [], [], []
+    for line, turned in zip(system.lines, reverse, strict=True):
+        nodes, of = system.nodes_of[line.id], system.links_of[line.id]
+        numbers = np.arange(of.start, of.stop)
+        if turned:
+            nodes, numbers = nodes[::-1], numbers[::-1]
+        at = np.arange(pieces + 1) * line.segments / pieces
+        i = np.minimum(at.astype(np.int64), line.segments - 1)
+        before.append(nodes[i])
+        after.append(nodes[i + 1])
+        share.append(at - i)
+        links.append(
+            numbers[np.minimum((np.arange(pieces) + 0.5) * line.segments / pieces, line.segments - 1).astype(int)]
+        )
+    lengths = np.array([line.length for line in system.lines])
+    return Shown(np.array(before), np.array(after), np.array(share)[..., None], np.array(links), lengths)
+
+
+def slack_of(system: System) -> tuple[float, float] | None:
+    """Level distance [m] to where the first line between vessel and fixed point is straight, and the shortest length.
+
+    None without such a line.
+    """
+    points = {point.id: point for point in system.points}
+    found = []
+    for line in system.lines:
+        ends = points[line.start], points[line.end]
+        if {end.kind for end in ends} == {"fixed", "coupled"}:
+            x, y, z = np.subtract(ends[0].position, ends[1].position)
+            found.append((math.sqrt(max(line.length**2 - z * z, 0.0)) - math.hypot(x, y), line.length))
+    return (min(slack for slack, _ in found), min(length for _, length in found)) if found else None
+
+
+def farthest_offset(system: System, extent: float) -> float:
+    """Level distance [m] to which the vessel may be dragged."""
+    slack = slack_of(system)
+    return ELSEWHERE * extent if slack is None else max(slack[0], 0.0) + STRETCH * slack[1]

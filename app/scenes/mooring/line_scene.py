@@ -1,0 +1,307 @@
+"""Lines on the simulation thread, for a scene whose lines the parameters describe and for one of a file."""
+
+import abc
+import dataclasses
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import PlotRow, SceneCommand, Vector, vector_of
+from app.scenes.charts import Chart
+from app.scenes.moments import copied, restore
+from app.scenes.mooring.arrangement import surface_heights, surface_side
+from app.scenes.mooring.frame import MooringFrame, MooringReadings
+from app.scenes.mooring.parameters import MAX_LINES, Params
+from app.scenes.mooring.restoring import CurveInputs, RestoringCurve
+from app.scenes.mooring.tensions import Tensions
+from app.scenes.plot_rows import PlotRows
+from app.scenes.springs.divergence import LastMoments
+from app.scenes.springs.speed_advice import faster_steps
+from sim.mooring import System, at_rest
+from sim.mooring.gauge import modes
+from sim.mooring.simulate import LineState
+from sim.mooring.statics import Rest, rest_of, straight
+from sim.ocean.kinematics import Components
+from sim.springs import INTEGRATORS
+from sim.springs.lines.energy import set_tensions
+from sim.springs.stability import Gauge, Mode, gauge_of
+from sim.validation import ConvergenceError, DivergenceError
+
+FRAME_INTERVAL = 1 / 30  # [s] between frames
+SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
+FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
+MAX_PATH = 1200  # places of the body's path that are kept
+PATH_INTERVAL = 0.25  # [s]
+# At rest, over a line's length: beyond it the line is too short for its anchor, which no shorter step mends.
+MAX_STRETCH = 0.2
+MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
+LINE_SERIES = tuple(f"line {i + 1}" for i in range(MAX_LINES))
+ANCHOR_SERIES = tuple(f"anchor {i + 1}" for i in range(MAX_LINES))
+SERIES = (*LINE_SERIES, "largest so far", *ANCHOR_SERIES, "offset")
+
+
+class LineScene(abc.ABC):
+    """Lines on the simulation thread, whatever holds them; see `app.scenes.contract.Scene`."""
+
+    frame_interval = FRAME_INTERVAL
+    note = ""
+    changing: tuple[str, ...]  # attributes that a checkpoint holds
+    system: System
+    sea: Components | None
+
+    links: NDArray[np.int64]  # (lines, n) of each piece of a line, from its anchor
+
+    @property
+    @abc.abstractmethod
+    def middle(self) -> Vector:
+        """[m] of the body or vessel, where it rests without lines or begins."""
+
+    def __init__(self, params: Params) -> None:
+        self.params = params
+        self.plot_rows = PlotRows(len(SERIES))
+        self.last_moments = LastMoments()
+        self.restoring = RestoringCurve()
+        self.reset()
+
+    @property
+    def step(self) -> float:
+        """Time step [s]."""
+        return self.params.time_step
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self.state.t
+
+    @property
+    def faster(self) -> str:
+        """Advice on a faster step."""
+        return faster_steps(INTEGRATORS[self.params.integrator], self.stability, "segments")
+
+    def reset(self) -> None:
+        """At rest in level water, with all things in their first places."""
+        self.hold: tuple[int, Vector] | None = None
+        self.arrange()
+        rest, self.failure = rest_or_start(self.system)
+        self.state = LineState(self.system, rest)
+        self.rest_place = self.body_place()
+        self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
+        spans = np.linalg.norm(np.diff(self.points_of_lines(), axis=1), axis=2).sum(axis=1)
+        self.rest_stretch = spans / self.lengths() - 1.0
+        self.path, self.path_count = np.empty((0, 2), np.float32), 0
+        self.most_offset = 0.0
+        self.assess_stability()
+        self.tensions = Tensions(len(self.links))
+        self.measure()
+        self.plot_rows.restart()
+        self.last_moments.clear()
+
+    @abc.abstractmethod
+    def arrange(self) -> None:
+        """Make the system and all trackers of the parameters."""
+
+    @abc.abstractmethod
+    def take_system(self) -> None:
+        """Go on with the mooring as it is arranged now."""
+
+    @abc.abstractmethod
+    def change_forces(self, params: Params) -> None:
+        """Take parameters; the motion goes on."""
+
+    @abc.abstractmethod
+    def handle(self, command: SceneCommand) -> None:
+        """Carry out a command of the mouse."""
+
+    @abc.abstractmethod
+    def lengths(self) -> NDArray[np.float64]:
+        """(lines,) [m], unstretched."""
+
+    @abc.abstractmethod
+    def points_of_lines(self) -> NDArray[np.float64]:
+        """(lines, n + 1, 3) [m] of points of each line, from its anchor."""
+
+    @abc.abstractmethod
+    def lying(self) -> NDArray[np.float64]:
+        """(lines,) [m] of unstretched length on the bed."""
+
+    @abc.abstractmethod
+    def body_place(self) -> NDArray[np.float64]:
+        """(3,) [m] of the middle of the body or vessel."""
+
+    @abc.abstractmethod
+    def rotation(self) -> NDArray[np.float64]:
+        """(3,) [rad] of it."""
+
+    @abc.abstractmethod
+    def paths(self, duration: float) -> NDArray[np.float64]:
+        """(moved points, 5, 3) for `duration` [s], as `LineArrays` has them."""
+
+    @abc.abstractmethod
+    def is_bounded(self) -> bool:
+        """False once anything is not finite or is farther away than lines reach."""
+
+    @abc.abstractmethod
+    def diagnosis(self) -> str:
+        """Cause of the divergence, and settings that would hold."""
+
+    @abc.abstractmethod
+    def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
+        """The state for a file: name -> (array, unit)."""
+
+    @abc.abstractmethod
+    def static_inputs(self, far: float = 0.0) -> CurveInputs:
+        """Everything that the restoring curve depends on. far: [m] offset to which it goes at least."""
+
+    @abc.abstractmethod
+    def force_of_lines(self) -> NDArray[np.float64]:
+        """Level force (2,) [N] of the lines on the body or vessel now."""
+
+    def assess_stability(self) -> None:
+        """Find the modes about the state, and with them the longest stable step."""
+        rest = Rest({}, {}, {}, self.state.x)
+        self.step_modes: list[Mode] = modes(self.system, rest)
+        self.take_step()
+
+    def take_step(self) -> None:
+        """Compare the time step with the modes that were found last."""
+        self.stability: Gauge = gauge_of(self.step_modes, INTEGRATORS[self.params.integrator], self.step)
+
+    def driven(self) -> dict[str, NDArray[np.float64]]:
+        """Fields of the kernels' view that change with time: waves and current, which begin smoothly."""
+        if self.time >= FADE:
+            return {}
+        p = self.system.kernel_view(self.step)
+        waves = p.waves.copy()
+        waves[[6, 8]] *= self.fade
+        return {"waves": waves, "current": self.fade * p.current}
+
+    @property
+    def fade(self) -> float:
+        """Factor on waves and current, which begin smoothly."""
+        return fade_at(self.state.t)
+
+    def advance(self, steps: int) -> None:
+        """Take steps. Raises DivergenceError where the state leaves its bounds, and keeps the last good one."""
+        if self.failure:
+            raise DivergenceError(self.failure)
+        self.add_due_row()  # of the start
+        method, h = INTEGRATORS[self.params.integrator], self.step
+        piece = max(1, round(SAMPLE / h))
+        for first in range(0, steps, piece):
+            count = min(piece, steps - first)
+            good = copied({"state": self.state}, self.system)["state"]
+            self.state.advance(method, h, count, self.paths(h * count), driven=self.driven())
+            if not self.is_bounded():
+                self.state = good
+                raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
+            self.measure()
+        self.add_due_row()
+
+    def add_due_row(self) -> None:
+        """Add the plot row of now, if one is due."""
+        if self.plot_rows.is_due(self.time):
+            self.add_plot_row()
+
+    def measure(self) -> None:
+        """Take tensions, offset and path of the state."""
+        p, state = self.system.kernel_view(self.step), self.state
+        tension = np.empty(len(p.ends))
+        v = state.velocities(p, 0.0)
+        set_tensions(state.x.reshape(-1), v, p, tension)
+        self.tension, self.points = tension[self.links], self.points_of_lines()
+        self.tensions.measure(state.t, self.tension, self.points)
+        place = self.body_place()
+        self.offset = float(np.linalg.norm((place - self.rest_place)[:2]))
+        self.most_offset = max(self.most_offset, self.offset)
+        if state.t >= PATH_INTERVAL * self.path_count:
+            self.path = np.concatenate((self.path[1 - MAX_PATH :], place[None, :2].astype(np.float32)))
+            self.path_count += 1
+
+    def add_plot_row(self) -> None:
+        """Add tensions and offset at the scene's time."""
+        now = self.tensions
+        fairleads, anchors = (1e-3 * one[:MAX_LINES] for one in (now.fairlead, now.anchor))
+        missing = (math.nan,) * (MAX_LINES - len(fairleads))
+        self.plot_rows.add(
+            self.time, *fairleads.tolist(), *missing, 1e-3 * float(now.most_fairlead.max()), *anchors.tolist(),
+            *missing, self.offset,
+        )  # fmt: skip
+
+    def readings(self) -> MooringReadings:
+        """Numbers for the panel."""
+        now = self.tensions
+        stretch = float(self.rest_stretch.max())
+        lines = now.readings(self.lying())
+        return MooringReadings(lines, self.offset, self.most_offset, now.most_at, self.stability, stretch)
+
+    def frame(self) -> MooringFrame:
+        """Frame to draw; kept for a while, to be shown again if the run diverges."""
+        p = self.params
+        x, y, z = self.rotation().tolist()
+        half = 0.5 * math.hypot(x, y, z)
+        share = math.sin(half) / (2.0 * half) if half > 0.0 else 0.5
+        frame = MooringFrame(
+            params=p,
+            time=self.time,
+            body=self.body_place().astype(np.float32),
+            rotation=np.array([math.cos(half), share * x, share * y, share * z], np.float32),
+            points=self.points.astype(np.float32),
+            tension=self.tension.astype(np.float32),
+            full_scale=MAX_TENSION_SCALE * self.rest_scale,
+            surface=surface_heights(p, self.sea, self.time, self.fade),
+            side=surface_side(p),
+            path=self.path,
+            rest=vector_of(self.rest_place),
+            offset=self.most_offset,
+            anchors=self.points[:, 0].astype(np.float32),
+            fairleads=self.points[:, -1].astype(np.float32),
+            uplift=self.tensions.uplift > 0.0,
+            pull=None if self.hold is None else self.hold[1],
+        )
+        self.last_moments.add(self.time, frame, frame.points)
+        return frame
+
+    def take_plot_rows(self) -> tuple[PlotRow, ...]:
+        """The plot rows since the last call."""
+        return self.plot_rows.take()
+
+    def curves(self) -> dict[str, Chart] | None:
+        """The static restoring curve, with the force of the lines now."""
+        if not self.params.plot_restoring:
+            return None
+        return {"plot_restoring": self.restoring.chart(self)}
+
+    def keep(self) -> dict[str, object]:
+        """Checkpoint: everything that changes."""
+        return copied({name: getattr(self, name) for name in self.changing}, self.system, self.sea)
+
+    def resume(self, kept: object) -> None:
+        """Go on from a checkpoint of `keep`."""
+        restore(self, kept)
+        self.hold = None
+        self.state.system = self.system
+        self.take_step()
+        self.measure()
+        self.plot_rows.resume()
+        self.last_moments.clear()
+
+
+def fade_at(t: float) -> float:
+    """Factor on what begins smoothly, at time t [s]."""
+    share = min(t / FADE, 1.0)
+    return share * share * (3.0 - 2.0 * share)
+
+
+def rest_or_start(system: System) -> tuple[Rest, str]:
+    """The state of rest in still water: a current would carry away what lies, which only friction holds.
+
+    If none is found, the shape that the search begins with, and the reason: the panel stays, and nothing moves.
+    """
+    still = dataclasses.replace(system, current=(0.0, 0.0, 0.0))
+    try:
+        return at_rest(still), ""
+    except ConvergenceError as error:
+        reason = f"The lines find no state of rest ({error}). Change their length, their anchors or EA."
+        return rest_of(still, straight(still), still.kernel_view(1.0)), reason

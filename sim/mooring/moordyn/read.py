@@ -1,0 +1,132 @@
+"""`read_moordyn`: the System of a MoorDyn file."""
+
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from sim.mooring.moordyn.options import read_options
+from sim.mooring.moordyn.rows import FileBody, ends_first, read_body, read_line, read_point, read_type
+from sim.mooring.moordyn.sections import BODIES, LINES, OPTIONS, POINTS, TYPES, Row, Section, read_text, split_sections
+from sim.mooring.system import Body, Point, System
+from sim.mooring.turning import with_turning
+from sim.validation import ConvergenceError, Refusals, argument_error
+
+HELD = (
+    1e-6  # of a free body's weight on an arm of 1 m, as stiffness of rotation: statics need one where no line turns it
+)
+
+T = TypeVar("T")
+
+
+def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> System:
+    """The System of a MoorDyn file of version 1 or 2.
+
+    Coupled bodies become coupled points at their places. A free one becomes a Body, which turns by small angles with
+    the stiffness that its lines at rest give it. A link is damped where it is slack, too, as MoorDyn has it. Steady
+    forces on points are in N.
+
+    say: takes a line on each thing of the file that is left out. None: a UserWarning on what may change forces.
+    Raises ValueError with everything that cannot be read, and its sections and lines.
+    """
+    path, wrong = Path(path), Refusals()
+    found = split_sections(read_text(path), wrong)
+    for name in (TYPES, POINTS, LINES):
+        if name not in found or not found[name].rows:
+            with wrong:
+                raise argument_error("file", str(path.name), f"a MoorDyn file with a section {name}")
+    kinds = read_rows(found.get(TYPES), TYPES, "name", lambda row: read_type(row, path.parent), lambda t: t.name, wrong)
+    bodies = read_rows(found.get(BODIES), BODIES, "ID", read_body, lambda body: body.id, wrong)
+    points: dict[int, Point] = {}
+    if len(bodies) == count_of(found.get(BODIES)):  # else their points would be refused, too
+        points = read_rows(found.get(POINTS), POINTS, "ID", lambda row: read_point(row, bodies), lambda p: p.id, wrong)
+    lines: dict[int, Any] = {}
+    if len(kinds) == count_of(found.get(TYPES)) and len(points) == count_of(found.get(POINTS)) and LINES in found:
+        order = ends_first(found[LINES], points)
+        read = lambda row: read_line(row, order, kinds, points)  # noqa: E731
+        lines = read_rows(found[LINES], LINES, "ID", read, lambda line: line.id, wrong)
+    options = read_options(found[OPTIONS].rows if OPTIONS in found else [], wrong)
+    wrong.check()
+    depth = depth_of(options.fields, points.values(), options.warnings)
+    fields: dict[str, Any] = {name: value for name, value in options.fields.items() if name != "depth"}
+    free = [body for body in bodies.values() if body.kind == "free"]
+    dragged = [drag_of(body) for body in free if body.drag_area > 0.0]
+    water = {"gravity": fields.get("gravity", System.gravity), "density": fields.get("density", System.density)}
+    system = System(
+        tuple(lines.values()), (*points.values(), *dragged), depth, tuple(free_body(body, **water) for body in free),
+        slack_damping=True, **fields,
+    )  # fmt: skip
+    if free:
+        system = turned(system, options.warnings)
+    if options.steering and say is not None:
+        say(f"left out, as they steer MoorDyn only: {', '.join(options.steering)}")
+    for text in options.warnings:
+        say(text) if say is not None else warnings.warn(f"{path.name}: {text}", stacklevel=2)
+    return system
+
+
+def turned(system: System, said: list[str]) -> System:
+    """The system with the stiffness of its bodies by their lines at rest."""
+    try:
+        return with_turning(system, system.at_rest())
+    except ConvergenceError as error:
+        said.append(f"free bodies turn without the stiffness that their lines give ({error})")
+        return system
+
+
+def count_of(section: Section | None) -> int:
+    """Number of rows of a section, 0 if it is missing."""
+    return 0 if section is None else len(section.rows)
+
+
+def read_rows(
+    section: Section | None, name: str, key: str, read: Callable[[Row], T], key_of: Callable[[T], Any], wrong: Refusals
+) -> dict[Any, T]:
+    """The rows of a section by their keys; refusals go to `wrong`."""
+    found: dict[Any, T] = {}
+    for row in section.rows if section is not None else ():
+        with wrong:
+            one = read(row)
+            if key_of(one) in found:
+                raise argument_error(f"{name}, line {row.number}: {key}", key_of(one), "one that no other has")
+            found[key_of(one)] = one
+    return found
+
+
+def depth_of(fields: Mapping[str, float], points: Iterable[Point], said: list[str]) -> float:
+    """The depth of the water [m]: that of the lowest fixed point if it is not given, or is less, as in MoorDyn."""
+    lowest = -min((point.position[2] for point in points if point.kind == "fixed"), default=0.0)
+    given = fields.get("depth", 0.0)
+    if not max(lowest, given) > 0.0:
+        raise argument_error(f"{OPTIONS}: WtrDpth", fields.get("depth"), "the depth of the water [m]")
+    if "depth" in fields and lowest > given * (1.0 + 1e-6):
+        said.append(f"WtrDpth {given:g}: the water is {lowest:g} m deep, as a fixed point is below the bed")
+        return lowest
+    return fields.get("depth", lowest)
+
+
+def drag_of(body: FileBody) -> Point:
+    """The point in the middle of a body on which its drag acts; its ID is below 0."""
+    x, y, z = body.place.tolist()
+    return Point(-body.id, "body", (x, y, z), drag_area=body.drag_area, body=body.id)
+
+
+def free_body(body: FileBody, gravity: float, density: float) -> Body:
+    """The Body of a row: weight and the buoyancy of all its volume act at its centre of gravity, as in MoorDyn."""
+    arm, turn = body.turn @ body.centre, body.turn
+    cross = np.cross(np.eye(3), arm)  # cross @ v = arm x v
+    mass = np.zeros((6, 6))
+    mass[:3, :3] = body.mass * np.eye(3) + density * body.volume * (turn * body.added) @ turn.T
+    mass[3:, 3:] = (turn * body.inertia) @ turn.T - body.mass * cross @ cross
+    mass[3:, :3] = body.mass * cross
+    mass[:3, 3:] = mass[3:, :3].T
+    lift = (density * body.volume - body.mass) * gravity
+    # What sinks hangs below the middle, and what floats is above it; the other way round nothing but lines turns it.
+    upright = max(lift * float(arm[2]), 0.0)
+    held = HELD * max(abs(lift), body.mass * gravity, 1.0)
+    stiffness = np.diag([0.0, 0.0, 0.0, upright + held, upright + held, held])
+    moment = np.cross(arm, (0.0, 0.0, lift))
+    x, y, z = body.place.tolist()
+    return Body(body.id, (x, y, z), mass, stiffness, steady=(0.0, 0.0, lift, *moment.tolist()))

@@ -371,8 +371,9 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
     [(0.0, FRAME_INTERVAL, FRAME_INTERVAL), (0.005, 0.08, 0.08), (0.15, MAX_FRAME_INTERVAL, MAX_FRAME_INTERVAL + 0.15)],
 )
 def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time(
-    late: float, interval: float, apart: float
+    late: float, interval: float, apart: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("app.server.loop.TIMER_STEP", 0.0)
     loop, scene = make(gives_way=True)
     clock, stop, starts = scene.clock, threading.Event(), []
 

@@ -85,6 +85,12 @@ class StepOnce(NamedTuple):
     steps: int = 1
 
 
+class RunOn(NamedTuple):
+    """Run, and pause as soon as an event begins."""
+
+    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # whether it happens just now
+
+
 class Halt(NamedTuple):
     """Pause because of an error, and show its text."""
 
@@ -169,7 +175,7 @@ class Advance(NamedTuple):
 
 
 SceneCommand = Place | Grab | Release | Point | StudentAnswer  # what a scene handles; the rest is the loop's
-Command = Play | Pause | TogglePlay | StepOnce | Halt | Reset | Take | Ask | Advance | SceneCommand
+Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
 
 
 PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES); a NaN time clears the plots
@@ -224,14 +230,3 @@ class Moment(NamedTuple):
     frame: object  # the scene's own record
     low: Vector  # [m] corners of the box that what moves fills
     high: Vector  # [m]
-
-
-class DivergenceError(Exception):
-    """A run left any sane bound; the text says which h omega did it and which step would hold.
-
-    moments: the last ones before that, for the viewer to show again slowly; () where there are none to show.
-    """
-
-    def __init__(self, text: str, moments: tuple[Moment, ...] = ()) -> None:
-        super().__init__(text)
-        self.moments = moments

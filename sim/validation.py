@@ -35,6 +35,15 @@ class ConvergenceError(RuntimeError):
         return ConvergenceError, (self.solver, self.residual, self.iterations)
 
 
+class DivergenceError(ArithmeticError):
+    """A run left any sane bound: the text says what was too much for the method, and what would hold."""
+
+    def __init__(self, text: str, moments: tuple[Any, ...] = ()) -> None:
+        """moments: the last ones before that, if there are any to show again slowly."""
+        super().__init__(text)
+        self.moments = moments
+
+
 class Refusals:
     """Collects the ValueErrors of its `with` blocks, so that a user learns of all mistakes at once."""
 

@@ -10,12 +10,11 @@ from rich.progress import Progress
 
 from app.files import check_out_file
 from app.formats.text_tables import say
-from app.messages import DivergenceError
 from app.scenes.contract import Scene, SceneKind
 from app.scenes.setups import shared_values
 from app.scenes.stepping import steps_to
 from sim.files import replacing
-from sim.validation import argument_error, check_number
+from sim.validation import DivergenceError, argument_error, check_number
 
 MAX_DURATION = 1e6  # [s] of simulated time
 MAX_RATE = 1e5  # [Hz]

@@ -14,10 +14,9 @@ from app.export.cloth_meshes import ClothMeshes
 from app.export.sea_pictures import SeaPictures
 from app.export.sequence import Exporter, Sequence
 from app.formats.text_tables import say
-from app.messages import DivergenceError
 from app.scenes.setups import shared_values
 from sim.files import draft_of
-from sim.validation import argument_error, check_number
+from sim.validation import DivergenceError, argument_error, check_number
 
 EXPORTERS: Mapping[str, Exporter] = {
     "square_sea": Exporter(sea_pictures.FORMATS, SeaPictures),

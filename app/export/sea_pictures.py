@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.export.sequence import file_name
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import Params, solved_points
 from app.scenes.square_sea.scene import SquareSeaScene
 
 FORMATS = ("exr", "exr16", "png")
@@ -41,7 +41,7 @@ class SeaPictures:
         panel = {"statistics": False, "plot_wave_gauge": False, "plot_wave_spectrum": False}
         self.params = dataclasses.replace(params, mesh=params.size, **panel)
         self.passes = 2 if form == "png" else 1
-        self.length, self.size = params.length, int(params.size)
+        self.length, self.size = params.length, solved_points(params)
         self.bytes_per_frame = 4 * self.size**2 * (2 if form in ("png", "exr16") else 4)
         self.unit_per_pixel = dict.fromkeys(PARTS, 0.0)  # [m], of a PNG
 
@@ -57,11 +57,11 @@ class SeaPictures:
                 scene.advance(1)
                 scene.frame()
             foam = scene.frame().foam
-            surface = scene.sea.surface(scene.time)
+            fields = scene.fields()
             displacement = np.zeros((self.size, self.size, 3), np.float32)
-            if scene.sea.choppiness > 0.0:
-                displacement[..., :2] = surface.displacement
-            displacement[..., 2] = np.float32(self.params.amplitude) * surface.height
+            if fields.displacement is not None:
+                displacement[..., :2] = fields.displacement
+            displacement[..., 2] = np.float32(self.params.amplitude) * fields.height
             yield scene.time, displacement, foam
 
     def write(self, folder: Path, start: float, count: int) -> Iterator[float | None]:

@@ -13,7 +13,7 @@ import viser
 
 from app.lab import task
 from app.lab.workbook import Workbook
-from app.messages import BaseParams, KeptState, PlotRow, Reset, StepOnce, Take, TogglePlay
+from app.messages import BaseParams, KeptState, PlotRow, Reset, RunOn, StepOnce, Take, TogglePlay
 from app.panel.changes import Changes
 from app.panel.compare import Beside, Compare
 from app.panel.controls import Controls
@@ -31,7 +31,7 @@ from app.panel.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, place_camera
 from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
-from app.scenes.contract import AnyKind, AnySnapshot, AnyView, PostCommand, SpringParams
+from app.scenes.contract import AnyKind, AnySnapshot, AnyView, Awaited, PostCommand, SpringParams
 from app.scenes.own_setups import own_files
 from app.scenes.setups import Setup, make_setup
 from sim.parameters import Value, changed_names
@@ -148,6 +148,7 @@ class Panel:
             if name not in VIEW_GROUPS:
                 self.shown.add_group(name, is_open=name == OPEN_GROUP)
             if name == OPEN_GROUP:
+                self.run_on = None if kind.awaited is None else self.add_run_on(kind.awaited)
                 self.readings = Readings(gui, self.view, tab)
         if kind.stability_map is not None:
             from app.panel import stability_map  # no sea imports what springs need
@@ -157,6 +158,16 @@ class Panel:
                 self.map = stability_map.StabilityMapPanel(gui, kind.stability_map, read, self.set)
         with gui.add_folder("Help", expand_by_default=False):
             self.help = gui.add_html("")
+
+    def add_run_on(self, event: Awaited) -> viser.GuiButtonHandle:
+        """The button that runs on to an event."""
+        button = self.gui.add_button(event.label, visible=event.offered(self.params), hint=event.hint)
+
+        @button.on_click
+        async def _(_: ViserEvent) -> None:
+            self.post(RunOn(event.reached))
+
+        return button
 
     def add_keys(self) -> None:
         """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
@@ -197,6 +208,8 @@ class Panel:
         self.params, self.loaded = command.params, preset
         self.post(command)
         self.shown.show(self.kind.hidden(self.params))
+        if self.run_on is not None and self.kind.awaited is not None:
+            self.run_on.visible = self.kind.awaited.offered(self.params)
         self.show_preset()
         self.changed(self.params)
 

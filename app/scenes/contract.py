@@ -208,6 +208,15 @@ class StabilityMap(NamedTuple):
     build: Callable[..., "Net"]  # params -> the net that they describe
 
 
+class Awaited(NamedTuple):
+    """An event that a button of the panel runs on to."""
+
+    label: str  # of the button
+    hint: str
+    offered: Callable[..., bool]  # params -> whether it can happen
+    reached: Callable[..., bool]  # snapshot -> whether it happens just now
+
+
 class FramePacking(NamedTuple):
     """How a recording keeps the frames of a scene in less memory. The packed form is a tuple."""
 
@@ -252,6 +261,7 @@ class SceneKind(Generic[P, F, R]):
     )  # preset -> a sentence: what it shows and what to try
     # Of a snapshot of a run that diverged: the time step [s] that would hold, 0 for none; None: a run does not diverge.
     remedy: Callable[..., float] | None = None
+    awaited: Awaited | None = None  # event that the panel offers to run on to
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
 
 

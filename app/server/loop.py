@@ -18,7 +18,6 @@ from app.messages import (
     Ask,
     BaseParams,
     Command,
-    DivergenceError,
     Grab,
     Halt,
     Pause,
@@ -27,6 +26,7 @@ from app.messages import (
     Point,
     Release,
     Reset,
+    RunOn,
     StepOnce,
     StudentAnswer,
     Take,
@@ -40,6 +40,7 @@ from app.server.shared_clock import Seat
 from app.server.snapshots import Clock
 from app.server.timer import TIMER_STEP, effort_clock, fine_timer
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
+from sim.validation import DivergenceError
 
 PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
@@ -124,6 +125,7 @@ class SimLoop(Run):
             self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
         if changed:
             self.publish()
+            self.pause_at_event()
         if self.goal is not None:
             self.settle(self.goal)
         self.tick_time, self.busy_since = self.clock() - self.busy_since, None
@@ -244,16 +246,19 @@ class SimLoop(Run):
     def handle(self, command: Command) -> None:
         """Carry out one command. A scene that could not begin takes other values, and has nothing to run."""
         match command:
-            case Play() | StepOnce() | TogglePlay() | Place() | Grab() | Release() | Point() | StudentAnswer() if (
-                self.unmade
-            ):
+            case (
+                Play() | StepOnce() | TogglePlay() | RunOn() | Place() | Grab() | Release() | Point() | StudentAnswer()
+            ) if self.unmade:
                 pass
             case Play():
                 self.running, self.halted = True, ""
                 if self.replay is not None and self.replay.ended:
                     self.replay = None  # on from the last good state
             case Pause():
-                self.running = False
+                self.running, self.awaited = False, None
+            case RunOn(reached):
+                self.handle(Play())
+                self.wait_for(reached)
             case TogglePlay():
                 self.handle(Pause() if self.running else Play())
             case StepOnce(steps):
@@ -265,6 +270,8 @@ class SimLoop(Run):
             case Halt(reason):
                 self.halt(reason)
             case Take(params, start, state):
+                if start or state is not None:
+                    self.awaited = None
                 if start:
                     self.begin_with(params)
                 elif state is not None:
@@ -272,6 +279,7 @@ class SimLoop(Run):
                 else:
                     self.take(params)
             case Reset():
+                self.awaited = None
                 self.counts["starts"] += 1
                 self.reset()
             case Ask(read, answer):

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import NamedTuple
 
-from app.messages import BaseParams, DivergenceError, KeptState
-from app.scenes.contract import FRAME_INTERVAL, AnyScene
+from app.messages import BaseParams, KeptState
+from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
 from app.server.replay import Replay
@@ -14,6 +14,7 @@ from app.server.shared_clock import Seat
 from app.server.snapshots import Clock, Snapshots
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
+from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
 BEGUN = "the lab was begun again or went on from another moment"  # why the time that a program waits for does not come
@@ -37,6 +38,8 @@ class Run(Snapshots):
         self.pacer = FixedStep()
         self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
         self.goal: Goal | None = None  # that a program waits for
+        self.awaited: Callable[[AnySnapshot], bool] | None = None  # event at which it pauses
+        self.is_reached = False  # it happened in the last frame
         self.taking = False  # the scene takes other forces: its parameters are the old or the new ones
         super().__init__(scene, audience, clock, effort, paused=paused)
 
@@ -89,6 +92,19 @@ class Run(Snapshots):
             goal.answer.set_exception(DivergenceError(reason))
         else:
             goal.answer.set_result(self.scene.time)
+
+    def wait_for(self, reached: Callable[[AnySnapshot], bool]) -> None:
+        """Pause when an event begins; of one that happens just now, when it happens again."""
+        self.awaited, self.is_reached = reached, reached(self.latest)
+
+    def pause_at_event(self) -> None:
+        """Pause if the event that is awaited has begun since the last frame."""
+        if self.awaited is None or not self.running:
+            return
+        before, self.is_reached = self.is_reached, self.awaited(self.latest)
+        if self.is_reached and not before:
+            self.awaited, self.running = None, False
+            self.publish()
 
     def hurry(self, until: float) -> None:
         """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has.

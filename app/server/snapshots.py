@@ -8,12 +8,13 @@ from typing import TypeAlias
 
 import numpy as np
 
-from app.messages import DivergenceError, KeptState, Pause, PlotRow, Snapshot, Status, where_not_finite
+from app.messages import KeptState, Pause, PlotRow, Snapshot, Status, where_not_finite
 from app.scenes.contract import AnyScene, AnySnapshot
 from app.scenes.moments import arrays_in
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
 from sim.interruption import InterruptionError
+from sim.validation import DivergenceError
 
 MAX_BLIND_TIME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least

@@ -10,13 +10,13 @@ import numpy as np
 
 import app
 import sim
-from app.messages import DivergenceError
 from app.scenes import scene_named
 from app.scenes.contract import Measure
 from app.scenes.measures import plotted
 from app.scenes.setups import make_setup
 from app.scenes.stepping import steps_to
 from sim.jit import sources_hash
+from sim.validation import DivergenceError
 
 CHECK_INTERVAL = 1 / 30  # [s] of simulated time between two checks for divergence
 FINISHED, DIVERGED, FAILED = "finished", "diverged", "failed"

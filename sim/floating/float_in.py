@@ -25,6 +25,7 @@ from sim.floating.motion import STANDARD, MotionCoefficients, step
 from sim.floating.stability import Loaded, is_stable, near_upright
 from sim.interruption import raise_if_stopped
 from sim.ocean import Sea
+from sim.ocean.nonlinear import NonlinearSea
 from sim.ocean.radial import RadialSea, SurfaceAt
 from sim.ocean.tile_sea import TileSea
 from sim.validation import argument_error, check_kind, check_positive, is_whole_number
@@ -46,7 +47,7 @@ class FloatRun(NamedTuple):
 
 
 def float_in(
-    sea: Sea | RadialSea,
+    sea: Sea | NonlinearSea | RadialSea,
     bodies: Sequence[Body],
     duration: float,
     frames: int = 61,
@@ -54,18 +55,18 @@ def float_in(
 ) -> FloatRun:
     """Let bodies float in a sea from its time 0 for a duration [s]; `Body.afloat` lets them begin at rest.
 
-    On a sum of waves they feel linear wave forces; on the FFT sea those of waves long beside the hull (motion.py). The
+    On a sum of waves they feel linear wave forces; on the tiles those of waves long beside the hull (motion.py). The
     gravity is the sea's. A step is 1/60 s, or shorter to divide the frames. A UserWarning gives the GM of a body that
     is not stable upright. Raises ValueError for a value that is not allowed, for a hull with a dataset of another depth
     or heading than the sea's, and as `make_fleet`, `RadialSea.at` and `step`.
     """
-    check_kind("sea", sea, Sea | RadialSea, "a Sea or a RadialSea")
+    check_kind("sea", sea, Sea | NonlinearSea | RadialSea, "a Sea, a NonlinearSea or a RadialSea")
     check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
     duration = check_positive("duration", duration, "s")
     if not is_whole_number(frames) or frames < 2:
         raise argument_error("frames", frames, "a whole number from 2")
     layers = layers_of(sea)
-    gravity = sea.conditions.gravity if isinstance(sea, Sea) else sea.column.gravity
+    gravity = sea.column.gravity if isinstance(sea, RadialSea) else sea.conditions.gravity
     coefficients = coefficients._replace(gravity=gravity)
     fleet = make_fleet(bodies, layers)
     for i, body in enumerate(bodies):
@@ -122,9 +123,9 @@ def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:
     return [words for words in found.values() if words]
 
 
-def layers_of(sea: Sea | RadialSea) -> Layers:
+def layers_of(sea: Sea | NonlinearSea | RadialSea) -> Layers:
     """(density [kg/m3], thickness [m]) of the fluids of a sea, from the top."""
-    return ((sea.conditions.density, math.inf),) if isinstance(sea, Sea) else sea.column.layers
+    return sea.column.layers if isinstance(sea, RadialSea) else ((sea.conditions.density, math.inf),)
 
 
 def interface_of(at: SurfaceAt, thickness: float) -> dict[str, np.ndarray]:

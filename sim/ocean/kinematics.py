@@ -27,10 +27,19 @@ from numpy.typing import ArrayLike
 from sim.jit import kernel
 from sim.ocean.gerstner import Waves
 from sim.ocean.spectra import Conditions
-from sim.validation import argument_error, check_choice, check_finite, check_positions, is_whole_number
+from sim.validation import (
+    argument_error,
+    check_choice,
+    check_finite,
+    check_positions,
+    check_vector,
+    check_within,
+    is_whole_number,
+)
 from sim.wave_motion import flow_at, sincos_turns
 
 STRETCHINGS = ("constant", "wheeler")
+MAX_TURN, CREST_HALVINGS = 1e4, 60  # of the search for the phases of a crest
 LONGEST = 1e-12  # [rad/m] in place of a wavenumber of 0
 
 
@@ -68,6 +77,27 @@ class Components(NamedTuple):
             elevation_error=math.sqrt(self.elevation_error**2 + float(squares.sum())),
             velocity_error=math.sqrt(self.velocity_error**2 + float((squares * self.omega[left] ** 2).sum())),
         )
+
+    def with_crest(self, height: float, place: tuple[float, float], t: float) -> "Components":
+        """These waves with a linear crest of this height [m] at a place (x, y) [m] at time t [s].
+
+        Amplitudes stay, and so does Hs. Phases follow the gradient of the height there, as far as needed: a wave turns
+        in proportion to its amplitude, so that in the mean a group of the form of NewWave is added (Tromans, Anaturk
+        and Hagemeijer 1991, Proc. ISOPE 3:64). Raises ValueError for a height that these amplitudes cannot have.
+        """
+        x, y = check_vector("place", place, "m", 2)
+        turns = 2.0 * math.pi * self.phase
+        theta = turns + self.kx * x + self.ky * y - self.omega * check_finite("t", t, "s")
+        highest = float(self.amplitude.sum())
+        height = check_within("height", height, -0.99 * highest, 0.99 * highest, "m")
+        largest = max(float(self.amplitude.max(initial=0.0)), 1e-300)
+        half, turned, low, high = np.tan(0.5 * theta), theta, -MAX_TURN, MAX_TURN
+        for _ in range(CREST_HALVINGS):  # the flow theta' = -a sin(theta) takes tan(theta/2) to this
+            middle = 0.5 * (low + high)
+            turned = 2.0 * np.arctan(np.exp(np.clip(-middle / largest * self.amplitude, -300.0, 300.0)) * half)
+            is_high = float((self.amplitude * np.cos(turned)).sum()) > height
+            low, high = (low, middle) if is_high else (middle, high)
+        return self._replace(phase=(turns - theta + turned) / (2.0 * math.pi))
 
     def table(self) -> np.ndarray:
         """Rows (9, n) for `set_flow`: kx, ky [turns/m], phase [turns], omega [turns/s], cos and sin of the bearing,

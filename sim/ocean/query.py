@@ -66,19 +66,19 @@ def weights(f):
 @kernel
 def bicubic(field, u, v):
     """(value, d/du, d/dv) of a periodic field at u, v in cells."""
-    n = field.shape[0]
+    n, m = field.shape
     i, j = int(np.floor(u)), int(np.floor(v))
     wu, du = weights(u - i)
     wv, dv = weights(v - j)
     value, by_u, by_v = 0.0, 0.0, 0.0
-    row, first = (i - 1) % n, (j - 1) % n  # a division takes as long as the rest of a line
+    row, first = (i - 1) % n, (j - 1) % m  # a division takes as long as the rest of a line
     for a in range(4):
         line, slope, column = 0.0, 0.0, first
         for b in range(4):
             f = field[row, column]
             line += wv[b] * f
             slope += dv[b] * f
-            column = column + 1 if column + 1 < n else 0
+            column = column + 1 if column + 1 < m else 0
         value += wu[a] * line
         by_u += du[a] * line
         by_v += wu[a] * slope

@@ -1,7 +1,7 @@
 """One moment of a sea: fields on the grid, each computed when first read and by the transforms it needs."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -20,10 +20,10 @@ class Multiple(Protocol):
     ) -> None: ...
 
 
-def field(make: Callable[["Surface"], np.ndarray]) -> property:
+def field(make: Callable[[Any], np.ndarray]) -> property:
     """A property that is computed when first read and kept with the other fields of its moment."""
 
-    def read(surface: "Surface") -> np.ndarray:
+    def read(surface: Any) -> np.ndarray:
         if make.__name__ not in surface.fields:
             raise_if_stopped()
             surface.fields[make.__name__] = make(surface)

@@ -2,12 +2,16 @@
 
 import collections
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.ocean import Sea
 from sim.ocean.wave_record import ZeroCrossings, zero_crossings
+
+if TYPE_CHECKING:
+    from sim.ocean.nonlinear import NonlinearSea
 
 SAMPLE_RATE = 10.0  # [Hz] to which the trace is resampled before its spectrum is computed
 MAX_TRACE_DURATION = 600.0  # [s] older samples of the trace are dropped
@@ -33,7 +37,7 @@ class WaveGauge:
         self.at = at
         self.trace.clear()
 
-    def read(self, sea: Sea, t: float, scale: float) -> None:
+    def read(self, sea: "Sea | NonlinearSea", t: float, scale: float) -> None:
         """Take the height at time t [s]; scale: factor on the height as drawn."""
         height, _ = sea.height_at([self.at], t)
         self.height = scale * float(height[0])
@@ -73,7 +77,9 @@ class WaveGauge:
         return f[1:shown], measured[1:shown], theory[1:shown]
 
 
-def where_hit(sea: Sea, t: float, origin: Vector, direction: Vector, scale: float) -> tuple[float, float] | None:
+def where_hit(
+    sea: "Sea | NonlinearSea", t: float, origin: Vector, direction: Vector, scale: float
+) -> tuple[float, float] | None:
     """(x, y) [m] of the first hit of a ray on the water at time t [s]; None if it misses."""
     start, way = np.array(origin), np.array(direction)
     length = float(np.linalg.norm(way))

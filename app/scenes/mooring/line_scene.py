@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, PlotRow, SceneCommand, Vector, vector_of
+from app.messages import PlotRow, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
 from app.scenes.moments import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
@@ -27,7 +27,7 @@ from sim.ocean.kinematics import Components
 from sim.springs import INTEGRATORS
 from sim.springs.lines.energy import set_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of
-from sim.validation import ConvergenceError
+from sim.validation import ConvergenceError, DivergenceError
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short

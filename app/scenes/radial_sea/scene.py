@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer
+from app.messages import Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -44,6 +44,7 @@ from sim.ocean.weathering import Weathering, weather
 from sim.parameters import Value, check_record
 from sim.particles.fire import Fire
 from sim.particles.jet import Jet
+from sim.validation import DivergenceError
 
 if TYPE_CHECKING:
     from app.lab.live_code import LiveCode

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import DivergenceError, PlotRow
+from app.messages import PlotRow
 from app.scenes.contract import MethodParams
 from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
@@ -19,6 +19,7 @@ from sim.springs.automatic import AUTO
 from sim.springs.integrators import Integrator
 from sim.springs.resampling import resample
 from sim.springs.state import State, advance, energy, velocities
+from sim.validation import DivergenceError
 
 P = TypeVar("P", bound=MethodParams)
 

@@ -3,13 +3,20 @@
 import math
 
 from app.scenes.square_sea.parameters import Params
-from sim.ocean.foam import threshold
+from sim.ocean.foam import threshold, whitecaps
 
 FULL_FOAM_DEPTH = 0.35  # the Jacobian of full foam lies this many standard deviations of the Jacobian below the limit
 FOAM_CORRECTION_RATE = 0.15  # [1/s] standard deviations by which the limit moves where e times too little is drawn
 INITIAL_FOAM_CORRECTION = 0.5  # standard deviations that the limit starts above the formula's
 MIN_FOAM_COVER = 1e-4  # share of the sea below which differences of foam do not count
 FOAM_VISIBLE_SHARE = 1.2  # multiple of the fading time for which a patch of foam counts as foam
+
+
+def cover_in(wind_speed: float, before: float, since: float, transition: float) -> float:
+    """Share of the sea that is foam in a wind [m/s] by Monahan's law, `since` [s] after it was `before`; it adapts as
+    the waves do, within `transition` [s]."""
+    cover = whitecaps(wind_speed)
+    return cover if transition == 0.0 else cover + (before - cover) * math.exp(-since / transition)
 
 
 class FoamLimit:

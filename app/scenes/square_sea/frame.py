@@ -11,6 +11,7 @@ from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
 from app.scenes.square_sea.parameters import Params
 from app.scenes.square_sea.rainfall import RainFrame, RainReadings
 from app.scenes.square_sea.statistics import Report
+from app.scenes.square_sea.tile_mesh import Highest
 
 
 class SeaFrame(NamedTuple):
@@ -25,6 +26,7 @@ class SeaFrame(NamedTuple):
     rain: RainFrame | None
     gauge: Vector | None  # [m] position of the wave gauge; None while it is not shown
     sent: SentSurface
+    highest: Highest | None = None  # wave since the start, of a sea that is solved step by step
 
 
 class PackedFrame(NamedTuple):

@@ -21,13 +21,26 @@ from sim.parameters import parameter, with_parameters
 
 SIZES = ("64", "128", "256", "512")
 MESHES = ("32", "64", "128", "256")
-VIEW_HEIGHTS = {"swimmer": 1.7, "deck": 2.6, "bridge": 4.5, "mast": 8.0, "gull": 40.0}  # [m] of the camera
+VIEW_HEIGHTS = {
+    "swimmer": 1.7,
+    "side": 3.0,
+    "deck": 2.6,
+    "bridge": 4.5,
+    "mast": 8.0,
+    "platform": 20.0,
+    "gull": 40.0,
+}  # [m] of the camera
 PLANET_TITLES = {
     "by mass": "By mass",
     "by gravity": "By gravity",
     **{name: f"{name}, {number(planet.gravity)} m/s²" for name, planet in SOLAR_SYSTEM.items()},
 }
+GAUGE_OFFSET_SHARE = (0.06, -0.015)  # of the tile's side: where the wave gauge stands, from the middle of the tile
 SURFACE_TENSION = 0.0728  # [N/m] of water against air
+MAX_POINTS, MAX_POINTS_OF_HIGH_ORDER = 256, 128  # of a nonlinear sea, up to order 3 and above
+LONG_CRESTED_STARTS = ("breather", "groups")
+MARCHING_STARTS = (*LONG_CRESTED_STARTS, "rogue")  # solved step by step, at order 1 too
+LINEAR_ONLY = {"choppiness", "transition", "viscosity", "dispersion_scale", "loop_period", "rings"}
 in_foam = functools.partial(parameter, group="Foam and rain")
 in_water = functools.partial(parameter, group="Water and planet")
 
@@ -53,8 +66,18 @@ class Params:
         3.0, 0.0, 600.0, "s", "Time for the sea to adapt to new weather", log_from=0.1, title="Time to adapt"
     )
     start: str = in_waves(
-        "as set", choices={"as set": "As set here", "calm": "Calm", "storm": "Storm"},
-        doc="The sea at the start: as set here, or a calm or a storm, from which it then develops", affects="start",
+        "as set",
+        choices={
+            "as set": "As set here", "calm": "Calm", "storm": "Storm", "breather": "Breather",
+            "groups": "Even waves with side bands", "rogue": "Towards a rogue wave",
+        },
+        doc="The sea at the start: as set here; a calm or a storm, from which a linear sea develops; or waves that "
+        "grow: long-crested ones of this significant height, or the sea as set with a high crest after 4 periods",
+        affects="start",
+    )  # fmt: skip
+    order: int = in_waves(
+        1, 1, 7, "", "Order of nonlinearity: 1 is linear. From 3 on waves steepen, gather in groups, and break",
+        affects="start", title="Order of waves",
     )  # fmt: skip
 
     radius_rule: str = in_water(
@@ -146,6 +169,28 @@ PRESETS: dict[str, dict[str, Any]] = {
         "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 0.4,
         "frame_rate": 24.0, "view": "swimmer", "drops": 600, "foam": False, "clouds": 1.0, "sun": 8.0,
     },
+    "Peregrine breather": {
+        "order": 4, "start": "breather", "spectrum": "regular", "wave_height": 1.27, "wave_period": 5.06,
+        "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 150.0,
+        "foam_by_wind": False, "foam_threshold": 0.6, "view": "side",
+    },
+    "Steep waves split into groups": {
+        "order": 4, "start": "groups", "spectrum": "regular", "wave_height": 1.4, "wave_period": 5.06,
+        "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 150.0,
+        "foam_by_wind": False, "foam_threshold": 0.6, "view": "side",
+    },
+    "Draupner": {
+        "order": 3, "start": "rogue", "spectrum": "sea_state", "hs": 8.4, "tp": 15.0, "second_height": 8.4,
+        "second_period": 15.0, "wind_direction": -60.0, "second_direction": 60.0, "spreading": "cos2s",
+        "spread_exponent": 25.0, "wind_speed": 20.0, "deep": False, "depth": 70.0, "length": 1200.0, "size": "128",
+        "seed": 1, "foam_by_wind": False, "foam_fade": 2.0, "speed": 2.0, "view": "platform", "clouds": 1.0,
+        "daylight": 0.7, "visibility": 3000.0,
+    },
+    "Steep storm": {
+        "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",
+        "foam_by_wind": False, "foam_threshold": 0.7, "view": "bridge", "clouds": 0.9, "daylight": 0.8,
+        "visibility": 2000.0,
+    },
 }  # fmt: skip
 
 ABOUT = {  # preset -> what it shows and what to try
@@ -155,6 +200,10 @@ ABOUT = {  # preset -> what it shows and what to try
     "Light planet": "On a planet of 1/100 of the Earth's mass the same wind makes higher, longer waves.",
     "Heavy planet": "On a planet of 100 times the Earth's mass the same wind makes lower, shorter waves.",
     "Rain shower": "Rain on nearly calm water: watch the rings spread.",
+    "Peregrine breather": "Even waves gather within a minute into one that is three times as high.",
+    "Steep waves split into groups": "Even, steep waves split into groups within a minute; at order 1 they do not.",
+    "Draupner": "A crossing sea makes a crest of 18.5 m after 60 s, as it was measured in 1995.",
+    "Steep storm": "Steep waves of a short fetch break: run on to a high crest.",
 }
 
 
@@ -170,6 +219,19 @@ class RainSettings(NamedTuple):
     amplitude: float  # factor on every drawn height
 
 
+def marches(params: Params) -> bool:
+    """True if the sea is solved step by step, in place of the sum of linear waves, which is known at all times."""
+    return params.order > 1 or params.start in MARCHING_STARTS
+
+
+def solved_points(p: Params) -> int:
+    """Points a side of the grid that is solved; of long-crested waves, along x alone."""
+    size = int(p.size)
+    if not marches(p) or p.start in LONG_CRESTED_STARTS:
+        return size
+    return min(size, MAX_POINTS if p.order <= 3 else MAX_POINTS_OF_HIGH_ORDER)
+
+
 def gravity(params: Params) -> float:
     """Gravity [m/s2] of the chosen planet."""
     if params.planet == "by gravity":
@@ -182,7 +244,7 @@ def gravity(params: Params) -> float:
 def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any]:
     """The arguments of `Sea` and `Sea.change`. wind_speed: U10 [m/s] in place of the one in `params`."""
     wind, spectrum = params.wind_speed if wind_speed is None else wind_speed, chosen_spectrum(params)
-    return {
+    found = {
         "spectrum": spectrum,
         "wind_speed": spectrum.wind_speed(wind),
         "wind_direction": math.radians(params.wind_direction),
@@ -195,6 +257,9 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
         "loop_period": params.loop_period or None,
         **{name: value for name, value in spectrum_values(params).items() if spectrum.uses(name)},
     }
+    if marches(params):
+        found |= {"tension": 0.0, "viscosity": 0.0, "dispersion_scale": 1.0, "loop_period": None}
+    return found
 
 
 def rain_settings(params: Params) -> RainSettings:
@@ -202,7 +267,8 @@ def rain_settings(params: Params) -> RainSettings:
     p = params
     bearing = math.radians(p.wind_direction)
     wind = p.wind_speed * math.cos(bearing), p.wind_speed * math.sin(bearing)
-    return RainSettings(p.rain, p.drops, p.rings, wind, gravity(p), int(p.size), p.amplitude)
+    rings = 0.0 if marches(p) else p.rings
+    return RainSettings(p.rain, p.drops, rings, wind, gravity(p), int(p.size), p.amplitude)
 
 
 def hidden(params: Params) -> set[str]:
@@ -220,4 +286,4 @@ def hidden(params: Params) -> set[str]:
         names.add("foam_threshold")
     if params.rain == 0.0:
         names |= {"drops", "rings"} | (set() if follows_wind(params) else {"wind_direction"})
-    return names
+    return names | (LINEAR_ONLY if marches(params) else set())

@@ -7,11 +7,12 @@ from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, lines, table
 from app.scenes.measured_sea import measured_text
 from app.scenes.sea_parameters import chosen_spectrum
-from app.scenes.square_sea.frame import SeaReadings
+from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.live_values import spectrum_conditions
-from app.scenes.square_sea.parameters import Params, gravity
+from app.scenes.square_sea.parameters import Params, gravity, marches, solved_points
 from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
+from app.scenes.square_sea.tile_mesh import Highest
 from sim.ocean.dispersion import viscous_root
 from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, gravity_of
 from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
@@ -23,6 +24,10 @@ MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this sti
 HEIGHT = (
     "Significant height: the mean of the highest third of the waves, from trough to crest. "
     "The band holds 19 of 20 seas."
+)
+CREST = "The highest crest of the tile now. Theory: the most probable highest crest of as many waves."
+MOMENTS = (
+    "Skewness is above 0 where crests are higher than troughs are deep. Kurtosis is above 3 where high waves are many."
 )
 SLOPE = "Mean square slope: the mean of the squared slope of the water, on which its glitter depends."
 BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
@@ -36,6 +41,8 @@ def readout(snapshot: Snapshot) -> Html:
     texts: list[object] = [measured_text(frame.params)] if is_measured else []
     if r.report is not None:
         texts.append(statistics_table(r.report, chosen_spectrum(frame.params).title if is_measured else "an open sea"))
+        if r.report.heights is not None:
+            texts.append(heights_table(r.report, frame))
     if frame.params.foam:
         texts.append(foam_text(r, gravity(frame.params)))
     breaking = breaking_text(frame.params)
@@ -47,6 +54,40 @@ def readout(snapshot: Snapshot) -> Html:
         x, y, z = frame.gauge
         texts.append(f"Wave gauge at ({x:.1f}, {y:.1f}) m: {fixed(z, 2, sign=True)} m.")
     return lines(texts)
+
+
+def heights_table(r: Report, frame: SeaFrame) -> Html:
+    """Crest, skewness and kurtosis of a sea that is solved step by step, beside theory; its highest wave, its loss."""
+    found, hs, hs_expected = r.heights, r.measured.significant_height, r.theory.statistics.significant_height
+    assert found is not None
+    if not hs > 0.0 or not hs_expected > 0.0:
+        return Html("")
+    p, t = frame.params, found.theory
+    scale = p.amplitude / hs_expected
+    measured = table(
+        (("", ""), ("as drawn", ""), ("linear", "theory"), ("second order", "Forristall")),
+        (
+            (
+                fill("crest over significant height {}", info(CREST, "2. Waves")),
+                bold(fixed(p.amplitude * found.crest / hs, 2)),
+                fixed(scale * t.linear, 2),
+                fixed(scale * t.second_order, 2),
+            ),
+            (
+                fill("skewness {}", info(MOMENTS, "2. Waves")),
+                bold(fixed(found.skewness, 2)),
+                "0",
+                fixed(t.skewness, 2),
+            ),
+            ("kurtosis", bold(fixed(found.kurtosis, 2)), "3", fixed(t.kurtosis, 2)),
+        ),
+    )
+    return join((measured, faint(f"Breaking has taken {percent(found.lost)} of the energy.")))
+
+
+def highest_text(h: Highest) -> str:
+    """The highest crest since the start."""
+    return f"Highest crest: {number(h.place[2])} m, {fixed(h.ratio, 2)} × significant height"
 
 
 def foam_text(r: "SeaReadings", g: float) -> str:
@@ -146,16 +187,19 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     p: Params = snapshot.frame.params
     limit = snapshot.readings.foam_limit
-    cell = p.length / int(p.size)
+    points = solved_points(p)
+    cell = p.length / points
     c = spectrum_conditions(p, p.wind_speed, gravity(p))
     found = {
+        "order": order_line(p, snapshot.frame),
         "wind_speed": wind_line(p),
         "planet": f"gravity {number(gravity(p))} m/s²",
         "radius_rule": radius_line(p),
         "low_pass": low_pass_line(p),
         "viscosity": viscosity_line(p, snapshot.readings.viscous_area),
         "loop_period": loop_line(p),
-        "size": f"grid spacing {metres(cell)}, shortest wave {metres(2 * cell)}",
+        "size": f"grid spacing {metres(cell)}, shortest wave {metres(2 * cell)}"
+        + (f"; at this order {points} × {points} at most" if points < int(p.size) else ""),
         "mesh": f"grid spacing {metres(p.length / len(snapshot.frame.vertices))}",
         "foam_by_wind": f"foam where the surface is pressed below {percent(limit)} of its area"
         if math.isfinite(limit)
@@ -170,6 +214,13 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
         period = snapshot.readings.report.theory.statistics.peak_period
         found["wave_period"] = f"the nearest wave that fits the tile: {metres(length)}, {seconds(period)}"
     return found
+
+
+def order_line(params: Params, frame: SeaFrame) -> str:
+    """Line under the order: the highest crest, or the solver."""
+    if frame.highest is not None:
+        return f"{highest_text(frame.highest)}, at t = {frame.highest.time:.1f} s"
+    return "solved step by step; new weather begins it again" if marches(params) else "a sum of linear waves"
 
 
 def wind_line(params: Params) -> str:

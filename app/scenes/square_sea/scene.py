@@ -1,6 +1,7 @@
 """The square sea: wind waves on a tile that repeats to the horizon, on any planet, in calm, storm and rain."""
 
 import collections
+import dataclasses
 import functools
 import math
 from typing import TYPE_CHECKING, Any
@@ -8,20 +9,30 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, Point, SceneCommand, StudentAnswer
+from app.messages import PlotRow, Point, SceneCommand, Snapshot, StudentAnswer
 from app.scenes.charts import CurveAxes, PlotAxes
-from app.scenes.contract import FramePacking, Pieces, SceneKind
+from app.scenes.contract import Awaited, FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
-from app.scenes.square_sea.foam_limit import FoamLimit
+from app.scenes.square_sea.foam_limit import FoamLimit, cover_in
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings, pack_frame, unpack_frame
 from app.scenes.square_sea.live_values import live_values
-from app.scenes.square_sea.measures import measures
-from app.scenes.square_sea.parameters import ABOUT, PRESETS, Params, conditions, hidden, rain_settings
+from app.scenes.square_sea.measures import measures, readings_of
+from app.scenes.square_sea.parameters import (
+    ABOUT,
+    GAUGE_OFFSET_SHARE,
+    PRESETS,
+    Params,
+    conditions,
+    hidden,
+    marches,
+    rain_settings,
+    solved_points,
+)
 from app.scenes.square_sea.rainfall import Rainfall
 from app.scenes.square_sea.statistics import INTERVAL, LiveStatistics
-from app.scenes.square_sea.tile_mesh import set_mesh
+from app.scenes.square_sea.tile_mesh import Fields, set_mesh_of
 from sim.ocean import Sea
 from sim.ocean.foam import pace, whitecaps
 from sim.ocean.wave_gauge import WaveGauge, where_hit
@@ -29,29 +40,36 @@ from sim.parameters import effect_of_change
 
 if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
+    from app.scenes.square_sea.nonlinear import Marching
     from app.scenes.square_sea.student_sea import StudentSea
+    from sim.ocean.nonlinear import NonlinearSea
 
 SERIES = ("wave gauge",)
 CHANGING = (  # as time passes
     "steps", "sea", "rainfall", "foam", "drawn_at", "foam_cover", "foam_limit", "foam_cover_before", "slope_left",
-    "pace", "paced_at", "paced_of", "changed_at", "transition", "viscous_area",
+    "pace", "paced_at", "paced_of", "changed_at", "transition", "viscous_area", "marching",
 )  # fmt: skip
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
 CURVES = {"plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge", "m²/Hz", "f [Hz]", ("measured", "theory"))}
+HIGH_CREST = 1.25  # over Hs
+AWAITED_HINT = "Of the significant height Hs, as high as a rogue wave. The lab pauses then"
+NONLINEAR = "nonlinear waves"
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 START_WIND_SPEEDS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea at a reset, by the parameter `start`
 SETTLING_TRANSITIONS = 16.0  # transition times after which nothing is left of the old weather (e^-16 = 1e-7)
 PLOT_ROW_INTERVAL = 0.1  # [s] of simulated time between two plot rows
-GAUGE_OFFSET_SHARE = (0.06, -0.015)  # of the tile's side: where the wave gauge stands, from the middle of the tile,
-MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] but no farther than this: before a click has placed it
+MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] of a wave gauge near the camera, before a click has placed it
 
 PACE_INTERVAL = 0.5  # [s] of simulated time between two calculations of the sea's slope and frequency, for the foam
 
 
-def gauge_home(length: float) -> tuple[float, float]:
-    """Initial place of the wave gauge [m] on a tile of this length [m], until a click moves it."""
+def gauge_home(length: float, *, is_near: bool = True) -> tuple[float, float]:
+    """Initial place of the wave gauge [m] on a tile of this length [m], until a click moves it.
+
+    is_near: to the camera; else where a rogue wave is seen as a whole.
+    """
     x, y = (
-        math.copysign(min(abs(share) * length, limit), share)
+        math.copysign(min(abs(share) * length, limit if is_near else math.inf), share)
         for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
     )
     return 0.5 * length + x, 0.5 * length + y
@@ -73,10 +91,31 @@ def compile_drawn_sea() -> None:
             scene.frame()
 
 
+def compile_nonlinear_sea() -> None:
+    """Call all kernels of both kinds of nonlinear sea."""
+    small = Params(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
+    for params in (small, dataclasses.replace(small, start="breather", spectrum="regular")):
+        scene = SquareSeaScene(params)
+        for _ in range(4):
+            scene.advance(30)
+            scene.frame()
+
+
+def pieces_on_use() -> Pieces:
+    """Pieces that only nonlinear waves need."""
+    return {NONLINEAR: compile_nonlinear_sea}
+
+
+def needs(params: Params) -> tuple[str, ...]:
+    """The pieces that these parameters run."""
+    return (*warm_up(), *((NONLINEAR,) if marches(params) else ()))
+
+
 class SquareSeaScene:
     """The sea on the simulation thread.
 
-    Its waves are analytic in time: a step only moves the clock, and a frame evaluates the surface.
+    Linear waves are analytic in time: a step only moves the clock. Nonlinear ones are solved step by step; `sea` is
+    then the linear sea of the same conditions, for theory.
     """
 
     faster = "a smaller grid"
@@ -108,7 +147,7 @@ class SquareSeaScene:
     def reset(self) -> None:
         """The sea at time 0, with the wave gauge where a new scene has it."""
         self.steps = 0
-        self.gauge.put(gauge_home(self.params.length))
+        self.gauge.put(gauge_home(self.params.length, is_near=not marches(self.params)))
         self.gauge_placed = False  # by a click
         self.begin_plots()
         self.make_sea()
@@ -138,7 +177,7 @@ class SquareSeaScene:
     def make_sea(self) -> None:
         """Make the sea at time 0. If `start` is a calm or a storm, it starts so and changes to the weather set."""
         p = self.params
-        start_wind = START_WIND_SPEEDS.get(p.start)
+        start_wind = None if marches(p) else START_WIND_SPEEDS.get(p.start)
         self.sea = Sea(int(p.size), p.length, seed=p.seed, **conditions(p, start_wind))
         self.sea.choppiness = p.choppiness * p.amplitude
         self.foam_cover_before = whitecaps(p.wind_speed if start_wind is None else start_wind)
@@ -149,8 +188,22 @@ class SquareSeaScene:
             self.sea.change(self.time, transition, **self.conditions())
         self.changed_at, self.transition, self.viscous_area = self.time, transition, 0.0
         self.statistics = LiveStatistics()
+        self.begin_marching()
         self.clear_mesh()
         self.make_rainfall()
+
+    def begin_marching(self) -> None:
+        """Begin a nonlinear sea at the present time, where there is to be one."""
+        self.marching: Marching | None = None
+        if marches(self.params):
+            from app.scenes.square_sea import nonlinear  # only nonlinear waves pay for it
+
+            self.marching = nonlinear.Marching(self.params, self.sea, self.time, self.gauge.at)
+
+    @property
+    def water(self) -> "tuple[Sea | NonlinearSea, float]":
+        """The sea that is drawn, and its time [s]: a nonlinear one may have stopped before the clock."""
+        return (self.sea, self.time) if self.marching is None else (self.marching.sea, self.marching.sea.time)
 
     def make_rainfall(self) -> None:
         """Make the rain that the parameters ask for."""
@@ -162,7 +215,7 @@ class SquareSeaScene:
 
     def clear_mesh(self) -> None:
         """Start a new drawn mesh, without foam."""
-        n = min(int(self.params.mesh), self.sea.size)
+        n = min(int(self.params.mesh), solved_points(self.params))
         self.foam = np.zeros((n, n), np.float32)
         self.drawn: SeaFrame | None = None
         self.drawn_at = self.time
@@ -180,6 +233,8 @@ class SquareSeaScene:
         self.statistics.theory = None
         if params.size != old.size:
             self.sea = self.sea.resized(int(params.size))
+            if self.marching is not None:
+                self.marching.resize(params)
         if params.size != old.size or params.mesh != old.mesh:
             self.clear_mesh()
         if conditions(params) != conditions(old):
@@ -195,8 +250,10 @@ class SquareSeaScene:
             self.make_rainfall()
 
     def change_sea(self, transition: float) -> None:
-        """Let the sea adapt to its conditions in this time [s]."""
+        """Let the sea adapt to its conditions in this time [s]; a nonlinear one begins again with them."""
+        transition = 0.0 if marches(self.params) else transition
         self.sea.change(self.time, transition, **self.conditions())
+        self.begin_marching()
         self.changed_at, self.transition = self.time, transition
         self.paced_at = self.statistics.measured_at = -math.inf
 
@@ -224,7 +281,7 @@ class SquareSeaScene:
             case StudentAnswer() if self.student is not None:
                 self.take_student(self.student)
             case Point(origin, direction):
-                at = where_hit(self.sea, self.time, origin, direction, self.params.amplitude)
+                at = where_hit(*self.water, origin, direction, self.params.amplitude)
                 if at is not None:
                     self.gauge.put(at)
                     self.gauge_placed = True
@@ -232,7 +289,9 @@ class SquareSeaScene:
                     self.drawn = None
 
     def advance(self, steps: int) -> None:
-        """Move the clock."""
+        """Move the clock, and a nonlinear sea with it."""
+        if self.marching is not None:
+            self.marching.advance((self.steps + steps) * self.step)
         self.steps += steps
         self.counts["steps"] += steps
 
@@ -263,46 +322,48 @@ class SquareSeaScene:
         p, t = self.params, self.time
         dt = max(t - self.drawn_at, 0.0)
         self.drawn_at = t
-        transforms_before = self.sea.transforms.count
-        surface = self.sea.surface(t)
-        height = surface.height
-        displacement = surface.displacement if self.sea.choppiness > 0.0 else None
-        frame = self.make_frame(height, displacement, dt)
+        transforms_before = self.water[0].transforms.count
+        fields = self.fields()
+        frame = self.make_frame(fields, dt)
         rain = None
         if self.rainfall is not None:
-            self.counts["rings"] += self.rainfall.advance(self.sea, t, dt, height, displacement, p.amplitude)
+            self.counts["rings"] += self.rainfall.advance(self.sea, t, dt, *fields[:2], p.amplitude)
             self.counts["rainfall steps"] += 1
             rain = self.rainfall.frame()
         gauge, row_is_due = None, self.plot_rows.is_due(t)
         if self.gauge_shown or row_is_due:
-            self.gauge.read(self.sea, t, p.amplitude)
+            self.gauge.read(*self.water, p.amplitude)
             self.counts["gauge readings"] += 1
         if self.gauge_shown:
             gauge = (*self.gauge.at, self.gauge.height)
         if row_is_due:
             self.plot_rows.add(t, self.gauge.height)
         changing = p.viscosity > 0.0 or t - self.changed_at < SETTLING_TRANSITIONS * self.transition
-        self.counts["statistics"] += self.statistics.update(self.sea, p, t, height, dt, changing=changing)
+        new = self.statistics.update(self.sea, p, t, fields.height, dt, changing=changing, marching=self.marching)
+        self.counts["statistics"] += new
         self.update_spectrum()
         self.counts["frames"] += 1
-        self.counts["transforms"] += self.sea.transforms.count - transforms_before
-        return frame._replace(rain=rain, gauge=gauge)
+        self.counts["transforms"] += self.water[0].transforms.count - transforms_before
+        return frame._replace(rain=rain, gauge=gauge, highest=fields.highest)
 
-    def make_frame(
-        self, height: NDArray[np.floating], displacement: NDArray[np.floating] | None, dt: float
-    ) -> SeaFrame:
-        """The mesh of these fields, (n, n) and (n, n, 2) [m], with the foam of the last one faded over dt [s]."""
+    def fields(self) -> Fields:
+        """The fields of the sea as it is now."""
+        if self.marching is not None:
+            return self.marching.fields(self.params)
+        surface = self.sea.surface(self.time)
+        return Fields(surface.height, surface.displacement if self.sea.choppiness > 0.0 else None)
+
+    def make_frame(self, fields: Fields, dt: float) -> SeaFrame:
+        """The mesh of these fields with the foam of the last one faded over dt [s]."""
         p, n = self.params, len(self.foam)
-        D = np.empty((1, 1, 2), np.float32) if displacement is None else displacement
         self.update_pace()
         full_depth = self.foam_limit.update(p, dt, *self.pace, self.expected_foam_cover(self.time), self.foam_cover)
+        limit, fade = self.foam_limit.value, math.exp(-dt / p.foam_fade)
         vertices, slopes = np.empty((n, n, 3), np.float32), np.empty((n, n, 2), np.float32)
         self.foam = self.foam.copy()
-        self.foam_cover, self.foam_limit.deviation = set_mesh(
-            height, D[..., 0], D[..., 1], displacement is not None, p.amplitude, self.sea.size // n,
-            self.sea.length / self.sea.size, self.foam_limit.value, full_depth, math.exp(-dt / p.foam_fade), vertices,
-            slopes, self.foam,
-        )  # fmt: skip
+        self.foam_cover, self.foam_limit.deviation = set_mesh_of(
+            fields, p.amplitude, p.length, limit, full_depth, fade, vertices, slopes, self.foam
+        )
         return SeaFrame(p, self.time, vertices, slopes, self.foam, self.pace[0], None, None, SentSurface())
 
     def update_spectrum(self) -> None:
@@ -320,10 +381,7 @@ class SquareSeaScene:
 
     def undamped_foam_cover(self, t: float) -> float:
         """The same as if no wave were damped."""
-        cover = whitecaps(self.params.wind_speed)
-        if self.transition == 0.0:
-            return cover
-        return cover + (self.foam_cover_before - cover) * math.exp(-(t - self.changed_at) / self.transition)
+        return cover_in(self.params.wind_speed, self.foam_cover_before, t - self.changed_at, self.transition)
 
     def update_pace(self) -> None:
         """Calculate slope and frequency of the waves anew, where they are out of date."""
@@ -343,16 +401,7 @@ class SquareSeaScene:
 
     def readings(self) -> SeaReadings:
         """Numbers for the panel."""
-        return SeaReadings(
-            foam_cover=self.foam_cover,
-            expected_foam_cover=self.expected_foam_cover(self.time),
-            slope_left=self.slope_left,
-            foam_limit=self.foam_limit.value,
-            is_choppy=self.sea.choppiness > 0.0,
-            viscous_area=self.viscous_area + self.params.viscosity * (self.time - self.changed_at),
-            rain=None if self.rainfall is None else self.rainfall.readings(),
-            report=self.statistics.report if self.params.statistics else None,
-        )
+        return readings_of(self)
 
     def curves(self) -> dict[str, tuple[NDArray[np.floating], ...]] | None:
         """The columns of `CURVES`, where it is open."""
@@ -362,6 +411,12 @@ class SquareSeaScene:
         """The state for a file: name -> (array, unit)."""
         frame = self.frame()
         return {"vertices": (frame.vertices, "m"), "slopes": (frame.slopes, ""), "foam": (frame.foam, "0 to 1")}
+
+
+def has_high_crest(snapshot: Snapshot) -> bool:
+    """True if a drawn crest is 1.25 times Hs high or more: a rogue wave, by a usual definition."""
+    height = snapshot.frame.vertices[..., 2]
+    return bool(height.max() >= HIGH_CREST * 4.0 * height.std() > 0.0)
 
 
 SCENE = SceneKind(
@@ -375,6 +430,8 @@ SCENE = SceneKind(
     make_with_student=SquareSeaScene,
     hidden=hidden,
     warm_up=warm_up,
+    needs=needs,
+    warm_up_on_use=pieces_on_use,
     series=SERIES,
     plots=PLOTS,
     curves=CURVES,
@@ -382,5 +439,6 @@ SCENE = SceneKind(
     frame_units={"vertices": "m", "slopes": "", "foam": "0 to 1"},
     packing=FramePacking(pack_frame, unpack_frame),
     live_values=live_values,
+    awaited=Awaited(f"Run on until a crest of {HIGH_CREST:g} Hs", AWAITED_HINT, marches, has_high_crest),
     middle=lambda params: (0.5 * params.length, 0.5 * params.length),
 )

@@ -1,13 +1,16 @@
 """The statistics of the sea as drawn, beside those that theory gives for its tile."""
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from app.scenes.square_sea.parameters import Params
 from sim.ocean import Sea
 from sim.ocean.statistics import Statistics, expected, height_scatter, measured, open_sea_height
+
+if TYPE_CHECKING:
+    from app.scenes.square_sea.nonlinear import Heights, Marching
 
 INTERVAL = 0.5  # [s] of simulated time between two reports, and between two spectra at the wave gauge
 PEAK_WIDTH = 0.08  # of the peak frequency: waves no farther from the peak are called dominant
@@ -28,6 +31,7 @@ class Report(NamedTuple):
     measured: Statistics
     theory: Theory
     interval: float = 0.0  # [s] between the two frames that tell the direction
+    heights: "Heights | None" = None  # of a sea that is solved step by step
 
 
 def scaled(s: Statistics, factor: float) -> Statistics:
@@ -84,16 +88,28 @@ class LiveStatistics:
         """True if reports are shown and the last one is out of date."""
         return params.statistics and abs(t - self.measured_at) >= INTERVAL
 
-    def update(self, sea: Sea, params: Params, t: float, height: np.ndarray, dt: float, *, changing: bool) -> bool:
+    def update(
+        self,
+        sea: Sea,
+        params: Params,
+        t: float,
+        height: np.ndarray,
+        dt: float,
+        *,
+        changing: bool,
+        marching: "Marching | None" = None,
+    ) -> bool:
         """Compare the drawn sea with theory if that is due; True if it was.
 
         height: (n, n) [m] at time t [s]; dt: [s] since the frame before. changing: the sea adapts to other conditions.
+        marching: the nonlinear sea, if it is one.
         """
         due = self.is_due(params, t)
         if due:
             if self.theory is None or changing:
                 self.theory = theory(sea, t, params)
-            self.report = Report(measure(sea, height, self.earlier_height, params, dt), self.theory, dt)
+            found = None if marching is None else marching.heights(sea, height)
+            self.report = Report(measure(sea, height, self.earlier_height, params, dt), self.theory, dt, found)
             self.measured_at = t
         self.earlier_height = height if params.statistics else None
         return due

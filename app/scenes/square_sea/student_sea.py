@@ -8,7 +8,7 @@ import numpy as np
 from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
 from app.lab.tabulate import Range
 from app.scenes.sea_parameters import spectrum_values
-from app.scenes.square_sea.parameters import Params, conditions, gravity
+from app.scenes.square_sea.parameters import Params, conditions, gravity, marches
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA, Spectrum
 from sim.ocean.spectra.record import MIN_WIND_SPEED
@@ -34,6 +34,9 @@ class StudentSea(TableUser):
     def want(self, p: Params) -> None:
         """Ask for the tables that the parameters need; tables that are no longer needed are not taken."""
         calls, idle = {}, {}
+        if marches(p):
+            self.ask({}, dict.fromkeys(WHAT, "choose order 1, and a start that is as set, calm or storm"))
+            return
         if p.planet == "by mass" and p.radius_rule == "same_density":
             declared = parameters_of(Params)["gravity"]
             calls[GRAVITY] = Call((np.array([p.planet_mass]),), Range(declared.low, declared.high, declared.unit))

@@ -5,8 +5,13 @@ of its positions, or one without choppiness, where exact derivatives would cost 
 1 % too flat in them, one of four 15 %.
 """
 
-import numpy as np
+import math
+from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import Vector
 from sim.jit import kernel
 
 LEAST_STRETCH = np.float32(0.15)  # Jacobian below which slopes are those at this value: a folded surface has no slope
@@ -113,3 +118,63 @@ def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade,
         strain += row_strain
     count = rows * cols
     return foamy / count, np.sqrt(strain / count)
+
+
+@kernel(noalias=True)
+def set_foam(jacobian, scale, stride, threshold, soft, fade, foam):
+    """Fade the foam of the mesh and add new foam by a given Jacobian (n, n), as `set_mesh` does.
+
+    scale: factor on the height. Returns (share of the mesh that is foam, rms of J - 1).
+    """
+    limit, sharpness, kept, lift = np.float32(threshold), np.float32(1.0 / soft), np.float32(fade), np.float32(scale)
+    rows, cols = foam.shape
+    foamy, strain = 0.0, 0.0
+    for i in range(rows):
+        for j in range(cols):
+            strained = lift * (jacobian[i * stride, j * stride] - ONE)
+            foam[i, j] = max(foam[i, j] * kept, min(max((limit - ONE - strained) * sharpness, ZERO), ONE))
+            foamy += foam[i, j]
+            strain += strained * strained
+    return foamy / (rows * cols), np.sqrt(strain / (rows * cols))
+
+
+class Highest(NamedTuple):
+    """The highest crest since the start."""
+
+    place: Vector  # [m]
+    time: float  # [s]
+    ratio: float  # over Hs then
+
+
+class Fields(NamedTuple):
+    """A sea on its grid."""
+
+    height: NDArray[np.floating]  # (n, n) [m]
+    displacement: NDArray[np.floating] | None = None  # (n, n, 2) [m]; None: there is none
+    jacobian: NDArray[np.floating] | None = None  # (n, n) that makes foam; None: that of the displacement
+    highest: Highest | None = None  # of a nonlinear sea
+
+
+def set_mesh_of(
+    fields: Fields,
+    scale: float,
+    length: float,
+    threshold: float,
+    soft: float,
+    fade: float,
+    vertices: NDArray[np.float32],
+    slopes: NDArray[np.float32],
+    foam: NDArray[np.float32],
+) -> tuple[float, float]:
+    """`set_mesh` of fields on a tile of side `length` [m], with foam by their Jacobian where they have one."""
+    D = np.empty((1, 1, 2), np.float32) if fields.displacement is None else fields.displacement
+    n, jacobian = len(fields.height), fields.jacobian
+    stride = n // len(foam)
+    limit, kept = (threshold, fade) if jacobian is None else (-math.inf, 1.0)
+    cover, deviation = set_mesh(
+        fields.height, D[..., 0], D[..., 1], fields.displacement is not None, scale, stride, length / n, limit, soft,
+        kept, vertices, slopes, foam,
+    )  # fmt: skip
+    if jacobian is not None:
+        cover, deviation = set_foam(jacobian, scale, stride, threshold, soft, fade, foam)
+    return cover, deviation

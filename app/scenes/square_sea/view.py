@@ -25,8 +25,16 @@ from app.scenes.contract import View as SceneView
 from app.scenes.measured_sea import height_and_period
 from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
-from app.scenes.square_sea.parameters import SURFACE_TENSION, VIEW_HEIGHTS, Params, gravity, rain_settings
+from app.scenes.square_sea.parameters import (
+    GAUGE_OFFSET_SHARE,
+    SURFACE_TENSION,
+    VIEW_HEIGHTS,
+    Params,
+    gravity,
+    rain_settings,
+)
 from app.scenes.square_sea.rain_view import RainMesh
+from app.scenes.square_sea.tile_mesh import Highest
 from sim.ocean.dispersion import SEA_DENSITY
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
@@ -34,9 +42,11 @@ from sim.particles.rain_rings import ring_flux, ring_wave
 DEFAULTS = Params()
 TARGETS = {  # [m] of each view: how far ahead its target is, and the target's height
     "swimmer": (6.0, 0.5),
+    "side": (60.0, 0.5),
     "deck": (11.5, 2.2),
     "bridge": (30.0, 3.6),
     "mast": (40.0, 6.0),
+    "platform": (120.0, 12.0),
     "gull": (70.0, 0.0),
 }
 CAMERA_SETBACK = 0.14  # of the tile's side: how far the camera stands behind the middle of the tile,
@@ -58,6 +68,9 @@ GAUGE_COLOUR, SPAR_COLOUR = (0.94, 0.376, 0.125), (0.96, 0.96, 0.94)
 def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
     """Position and target [m] of a view over a tile of side `length` [m]; its height does not depend on the tile."""
     ahead, target_height = TARGETS[view]
+    if view == "side":  # across the wind, along the crests of waves that run to +x
+        x = (0.5 + GAUGE_OFFSET_SHARE[0]) * length
+        return (x, 0.4 * length, VIEW_HEIGHTS[view]), (x, 0.4 * length + ahead, target_height)
     x = 0.5 * length - min(CAMERA_SETBACK * length, MAX_CAMERA_SETBACK)
     return (x, 0.5 * length, VIEW_HEIGHTS[view]), (x + ahead, 0.5 * length, target_height)
 
@@ -81,6 +94,8 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         self.water: Water | None = None
         self.rain: RainMesh | None = None
         self.gauge: WaveGaugeMesh | None = None
+        self.mark: viser.LabelHandle | None = None
+        self.marked: Highest | None = None  # crest that the mark is on
         self.mesh_shape: tuple[int, float] = (0, DEFAULTS.length)  # vertices along a side, length [m]
         self.view = DEFAULTS.view
         self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
@@ -129,6 +144,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             frame.sent.numbers = self.water.set_surface(frame.vertices, frame.slopes, frame.foam, frame.time)
             self.show_rain(frame)
             self.show_gauge(frame)
+            self.mark_highest(frame)
         self.last = frame
 
     def material_of(self, frame: SeaFrame) -> Material:
@@ -198,6 +214,19 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             assert self.water is not None
             self.water.set_waterlines(waterlines_of(frame.gauge))
 
+    def mark_highest(self, frame: SeaFrame) -> None:
+        """Mark the highest crest since the start, at its place and height."""
+        highest = frame.highest
+        if highest == self.marked:
+            return
+        self.marked = highest
+        if self.mark is None:
+            self.mark = self.server.scene.add_label("/highest", "", anchor="bottom-center")
+        self.mark.visible = highest is not None
+        if highest is not None:
+            self.mark.text = f"{number(highest.place[2])} m"
+            self.mark.position = highest.place
+
     def move_cameras(self, old: float, new: float) -> None:
         """Move every camera from over a tile of side `old` [m] to as far from the middle of one of side `new` [m]."""
         for camera in all_cameras(self.server):
@@ -214,9 +243,12 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         if measured is None:
             return ""
         waves, theory, p = measured.measured, measured.theory, snapshot.frame.params
+        highest = snapshot.frame.highest
         text = fill(
             "Waves: {} m high, {} s apart", bold(number(waves.significant_height)), bold(number(waves.peak_period))
         )
+        if highest is not None:
+            return fill("{}<br>{}", text, report.highest_text(highest))
         if not p.spectrum_file or not theory.whole > 0.0:
             return text
         height, period = height_and_period(p.spectrum_file, p.spectrum_time)

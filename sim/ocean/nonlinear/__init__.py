@@ -1,6 +1,10 @@
-"""Waves beyond linear on the periodic tile: `NonlinearSea`, and `stokes_wave` as a start and a reference."""
+"""Waves beyond linear on the periodic tile: `NonlinearSea`, and starts: `stokes_wave`, `breather`, `modulated_waves`.
 
+`stokes_wave` is a reference too.
+"""
+
+from sim.ocean.nonlinear.packets import breather, modulated_waves
 from sim.ocean.nonlinear.sea import NonlinearSea
 from sim.ocean.nonlinear.stokes import stokes_wave
 
-__all__ = ["NonlinearSea", "stokes_wave"]
+__all__ = ["NonlinearSea", "breather", "modulated_waves", "stokes_wave"]

@@ -56,9 +56,10 @@ class Eddies:
         Returns False, and sets nothing, if the surface is nowhere too steep.
         """
         e = self.expansion
-        if not set_eddy_viscosity(e.slope, SLOPE_LIMIT, EDDY_VISCOSITY * self.scale, MAX_EDDY_VISCOSITY * self.scale,
-                                  self.viscosity):  # fmt: skip
+        if e.steepest <= SLOPE_LIMIT**2:
             return False
+        set_eddy_viscosity(e.slope, SLOPE_LIMIT, EDDY_VISCOSITY * self.scale, MAX_EDDY_VISCOSITY * self.scale,
+                           self.viscosity)  # fmt: skip
         self.damping[...] = 0.0
         for gradient, out in zip((e.slope, e.flow), self.damping, strict=True):
             for axis, plane in zip(e.axes, gradient, strict=True):
@@ -97,12 +98,9 @@ def damp(u, rates, damping, omega, gravity, decay, weight, faded):
 
 @kernel(noalias=True)
 def set_eddy_viscosity(slope, limit, scale, largest, out):
-    """Set out (points,) [m2/s]: scale ((slope/limit)^2 - 1), between 0 and `largest`. True if any is above 0."""
-    found = False
+    """Set out (points,) [m2/s]: scale ((slope/limit)^2 - 1), between 0 and `largest`."""
     for i in range(out.size):
         square = 0.0
         for a in range(slope.shape[0]):
             square += slope[a, i] * slope[a, i]
         out[i] = min(max(scale * (square / (limit * limit) - 1.0), 0.0), largest)
-        found |= out[i] > 0.0
-    return found

@@ -26,6 +26,7 @@ from sim.jit import kernel
 from sim.ocean.nonlinear.modes import Modes, make_modes
 from sim.ocean.nonlinear.padded_transforms import (
     PaddedTransforms,
+    Work,
     add_multiple,
     aligned,
     padded_size,
@@ -40,13 +41,13 @@ BLOCK = 256  # points at a time: the sums of a block stay in the fastest cache
 class Expansion:
     """The rates of one sea, of order 2 or above. Not for two threads at once."""
 
-    def __init__(self, modes: Modes, order: int) -> None:
+    def __init__(self, modes: Modes, order: int, work: Work) -> None:
         self.modes, self.order = modes, order
         (n, m), axes = modes.size, 1 if modes.size[1] == 1 else 2
         shape = padded_size(m, order), padded_size(n, order)
         self.widths = [min(j, order - j + 1) for j in range(1, order + 1)]  # of phi_j, over the sea's
         sizes = {width: (width * n, width * m if m > 1 else 1) for width in self.widths}
-        self._transforms = {width: PaddedTransforms(shape, sizes[width][0] // 2) for width in sizes}
+        self._transforms = {width: PaddedTransforms(shape, sizes[width][0] // 2, work) for width in sizes}
         # d^j phi/dz^j at z = 0 is k^j phi, and for odd j times tanh(k depth). Twice: for real and imaginary parts.
         self._factors = {}
         for width, size in sizes.items():
@@ -61,13 +62,9 @@ class Expansion:
         self._first = np.cumsum([0, *counts[:-1]])
         self._derivatives = self.planes(sum(counts) - 1)
         self.eta, self._product = self.planes(2)
+        self.steepest = 0.0  # |grad eta|^2 of the last rates
         self.slope, self.flow, self._rate = (self.planes(count) for count in (axes, axes, 2))
         self._block = np.empty((2 * order + 4, BLOCK))
-
-    @property
-    def transform_count(self) -> int:
-        """Transforms run so far."""
-        return sum(transforms.count for transforms in self._transforms.values())
 
     def planes(self, count: int) -> np.ndarray:
         """Grids (count, points) of padded size."""
@@ -93,7 +90,7 @@ class Expansion:
         self.phi[0][...] = surface_value
         for m, (phi, width) in enumerate(zip(self.phi, self.widths, strict=True), 1):
             if m > 1:
-                set_potential(m, self.eta, self._derivatives, self._first, self._block[0], self._product)
+                set_potential(m, self.eta, self._derivatives, self._first, self._product)
                 self.set_spectrum(self._product, phi, width)
             for j in range(self.order - m + 1 if m < self.order else 0):
                 self.set_field(phi, self._derivatives[self._first[m - 1] + j], j + 1, width)
@@ -103,8 +100,8 @@ class Expansion:
         self.set_surface(eta)
         self.set_flow(psi)
         self.set_potentials(psi)
-        set_surface_rates(self.order, self.eta, self.slope, self.flow, self._derivatives, self._first, self._block,
-                          self._rate[0], self._rate[1])  # fmt: skip
+        self.steepest = set_surface_rates(self.order, self.eta, self.slope, self.flow, self._derivatives, self._first,
+                                          self._block, self._rate[0], self._rate[1])  # fmt: skip
         self.set_spectrum(self._rate[0], out[0])
         self.set_spectrum(self._rate[1], out[1])
         add_multiple(self.phi[-1].view(float), self._factors[1][1], out[0].view(float))
@@ -135,9 +132,9 @@ def set_to(value, out):
 
 
 @kernel(noalias=True, inline=True)
-def scale_by(factor, x, out):
+def set_product(x, y, factor, out):
     for i in range(out.size):
-        out[i] *= factor * x[i]
+        out[i] = factor * x[i] * y[i]
 
 
 @kernel(noalias=True, inline=True)
@@ -146,59 +143,99 @@ def add_product(x, y, out):
         out[i] += x[i] * y[i]
 
 
-@kernel(noalias=True)
-def set_potential(m, eta, derivatives, first, power, out):
-    """Set phi_m on the grid: -sum_{j=1}^{m-1} eta^j/j! d^j phi_{m-j}/dz^j. power: scratch (BLOCK,)."""
-    for start in range(0, eta.size, BLOCK):
-        stop = min(start + BLOCK, eta.size)
-        term, here = power[: stop - start], out[start:stop]
-        set_to(-1.0, term)
-        set_to(0.0, here)
-        for j in range(1, m):
-            scale_by(1.0 / j, eta[start:stop], term)
-            add_product(term, derivatives[first[m - j - 1] + j - 1, start:stop], here)
+@kernel(noalias=True, inline=True)
+def scale_by(x, factor, out):
+    for i in range(out.size):
+        out[i] *= factor * x[i]
 
 
-@kernel(noalias=True)
-def set_surface_rates(order, eta, slope, flow, derivatives, first, scratch, elevation, potential):
-    """Set the rates on the grid without their linear part and without d phi_M/dz.
+@kernel(noalias=True, inline=True)
+def set_series(x, eta, factor, y, out):
+    """One level of a power series: out = y + factor eta x."""
+    for i in range(out.size):
+        out[i] = y[i] + factor * eta[i] * x[i]
 
-    slope, flow (axes, points): grad eta, grad psi; scratch (2 order + 4, BLOCK).
-    """
-    # Rows of scratch: W_1 ... W_M, the sums S of the first 0 ... M of them, and three more. One-dimensional rows only:
-    # loops over them are vectorised.
-    M = S = order
-    for start in range(0, eta.size, BLOCK):
-        stop = min(start + BLOCK, eta.size)
-        n = stop - start
-        power, square, outer = scratch[2 * M + 1, :n], scratch[2 * M + 2, :n], scratch[2 * M + 3, :n]
-        set_to(1.0, power)
-        for row in range(2 * M + 4):
-            if row <= S or row > 2 * M + 1:
-                set_to(0.0, scratch[row, :n])
-        for j in range(M):
-            if j > 0:
-                scale_by(1.0 / j, eta[start:stop], power)
-            # d phi_M/dz is left out.
-            for m in range(j, M if j > 0 else M - 1):
-                add_product(power, derivatives[first[m - j] + j, start:stop], scratch[m, :n])
-        for m in range(M):
-            set_sum(scratch[S + m, :n], scratch[m, :n], scratch[S + m + 1, :n])
-        # Sums of W_i W_j with i + j <= M, and with i + j <= M - 2.
-        for m in range(M - 1):
-            add_product(scratch[m, :n], scratch[S + M - 1 - m, :n], square)
-        for m in range(M - 3):
-            add_product(scratch[m, :n], scratch[S + M - 3 - m, :n], outer)
-        rise, push = elevation[start:stop], potential[start:stop]
-        set_linear(scratch[S + M, :n], scratch[0, :n], square, rise, push)
-        for a in range(slope.shape[0]):
-            add_axis(scratch[S + max(M - 2, 0), :n], outer, slope[a, start:stop], flow[a, start:stop], rise, push)
+
+@kernel(noalias=True, inline=True)
+def raise_series(eta, factor, y, out):
+    """The same with x in out."""
+    for i in range(out.size):
+        out[i] = y[i] + factor * eta[i] * out[i]
 
 
 @kernel(noalias=True, inline=True)
 def set_sum(x, y, out):
     for i in range(out.size):
         out[i] = x[i] + y[i]
+
+
+@kernel(noalias=True)
+def set_potential(m, eta, derivatives, first, out):
+    """Set phi_m on the grid: -sum_{j=1}^{m-1} eta^j/j! d^j phi_{m-j}/dz^j, from the last term on."""
+    for start in range(0, eta.size, BLOCK):
+        stop = min(start + BLOCK, eta.size)
+        height, here = eta[start:stop], out[start:stop]
+        last = derivatives[first[0] + m - 2, start:stop]
+        if m == 2:
+            set_product(last, height, -1.0, here)
+            continue
+        set_series(last, height, 1.0 / (m - 1), derivatives[first[1] + m - 3, start:stop], here)
+        for j in range(m - 3, 0, -1):
+            raise_series(height, 1.0 / (j + 1), derivatives[first[m - j - 1] + j - 1, start:stop], here)
+        scale_by(height, -1.0, here)
+
+
+@kernel(noalias=True)
+def set_surface_rates(order, eta, slope, flow, derivatives, first, scratch, elevation, potential):
+    """Set the rates on the grid without their linear part and without d phi_M/dz; returns the largest |grad eta|^2.
+
+    slope, flow (axes, points): grad eta, grad psi; scratch (2 order + 4, BLOCK).
+    """
+    # Rows of scratch: W_1 ... W_M, their sums S_2 ... S_M, and three more. One-dimensional rows only: loops over them
+    # are vectorised.
+    M, steepest = order, 0.0
+    for start in range(0, eta.size, BLOCK):
+        stop = min(start + BLOCK, eta.size)
+        n, height = stop - start, eta[start:stop]
+        square, outer, steep = scratch[2 * M, :n], scratch[2 * M + 1, :n], scratch[2 * M + 2, :n]
+        set_to(1.0, steep)
+        set_product(derivatives[first[0], start:stop], steep, 1.0, scratch[0, :n])
+        for m in range(1, M):
+            W, last = scratch[m, :n], derivatives[first[0] + m, start:stop]
+            for j in range(m - 1, -1, -1):
+                # d phi_M/dz, of the last W at j = 0, is left out.
+                if j == 0 and m == M - 1:
+                    if m == 1:
+                        set_product(last, height, 1.0, W)
+                    else:
+                        scale_by(height, 1.0, W)
+                elif j == m - 1:
+                    set_series(last, height, 1.0 / m, derivatives[first[1] + j, start:stop], W)
+                else:
+                    raise_series(height, 1.0 / (j + 1), derivatives[first[m - j] + j, start:stop], W)
+        for m in range(1, M):
+            set_sum(scratch[sum_row(m, M), :n], scratch[m, :n], scratch[sum_row(m + 1, M), :n])
+        # Sums of W_i W_j with i + j <= M, and with i + j <= M - 2.
+        set_product(scratch[0, :n], scratch[sum_row(M - 1, M), :n], 1.0, square)
+        for m in range(1, M - 1):
+            add_product(scratch[m, :n], scratch[sum_row(M - 1 - m, M), :n], square)
+        set_to(0.0, outer)
+        for m in range(M - 3):
+            add_product(scratch[m, :n], scratch[sum_row(M - 3 - m, M), :n], outer)
+        rise, push = elevation[start:stop], potential[start:stop]
+        set_linear(scratch[sum_row(M, M), :n], scratch[0, :n], square, rise, push)
+        lower = scratch[sum_row(M - 2, M), :n] if M > 2 else outer
+        set_to(0.0, steep)
+        for a in range(slope.shape[0]):
+            add_axis(lower, outer, slope[a, start:stop], flow[a, start:stop], steep, rise, push)
+        steepest = max(steepest, largest(steep))
+    return steepest
+
+
+@kernel(inline=True)
+def sum_row(count, order):
+    """Row of scratch with W_1 + ... + W_count."""
+    return 0 if count == 1 else order + count - 2
 
 
 @kernel(noalias=True, inline=True)
@@ -210,9 +247,22 @@ def set_linear(total, first, square, elevation, potential):
 
 
 @kernel(noalias=True, inline=True)
-def add_axis(lower, outer, slope, flow, elevation, potential):
-    """Add one axis' part of the products of gradients; lower, outer: sums of W and of W_i W_j to order M - 2."""
+def largest(x):
+    """The largest of numbers from 0; NaN counts as 0."""
+    found = 0.0
+    for i in range(x.size):
+        found = max(found, x[i])
+    return found
+
+
+@kernel(noalias=True, inline=True)
+def add_axis(lower, outer, slope, flow, square, elevation, potential):
+    """Add one axis' part of the products of gradients, and of |grad eta|^2 to `square`.
+
+    lower, outer: sums of W and of W_i W_j to order M - 2.
+    """
     for i in range(elevation.size):
         steepness = slope[i] * slope[i]
+        square[i] += steepness
         elevation[i] += steepness * lower[i] - slope[i] * flow[i]
         potential[i] += 0.5 * (steepness * outer[i] - flow[i] * flow[i])

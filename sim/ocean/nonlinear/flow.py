@@ -74,6 +74,13 @@ def height_at(x, y, eta, kx, ky):
 
 
 @kernel
+def set_heights(points, eta, kx, ky, out):
+    """Set out (n,) [m] to the elevation above points (n, 2) [m]."""
+    for p in range(points.shape[0]):
+        out[p] = height_at(points[p, 0], points[p, 1], eta, kx, ky)
+
+
+@kernel
 def set_flow(points, eta, sums, kx, ky, k, tanh, depth, out):
     """Set out (n, 4): a harmonic function and its derivatives along x, y, z at points (n, 3).
 

@@ -6,6 +6,7 @@ solution of order 3, and the difference h/10 (k_4 - k_5) controls the step (Bala
 184:1211). Steps run freely past the requested times; Hermite's cubic in the interaction picture interpolates.
 """
 
+import copy
 import dataclasses
 import math
 from collections.abc import Callable
@@ -15,14 +16,11 @@ import numpy as np
 from sim.interruption import raise_if_stopped
 from sim.jit import kernel
 from sim.ocean.nonlinear.modes import Modes
+from sim.validation import DivergenceError
 
 SAFETY, SHRINK, GROW = 0.9, 0.2, 2.0
 SMALLEST = 1e-6  # step over the first one, below which the search is given up
 MAX_GROWTH = 1.2  # of the linear energy's root since the start: it is nearly conserved, and more is no solution
-
-
-class DivergenceError(ArithmeticError):
-    """The waves became too steep for the method."""
 
 
 @dataclasses.dataclass
@@ -86,6 +84,15 @@ class March:
         self._largest = MAX_GROWTH * propagator.distance(u, self._still)
         self.start, self.end, self._new = (End(t, u.copy(), np.zeros_like(u), 0.0, 0.0) for _ in range(3))
         self.end.power = self._evaluate(t, self.end.u, self.end.rate)
+
+    def copied(self, rates: Callable[[float, np.ndarray, np.ndarray], float]) -> "March":
+        """An independent copy for the same thread: it shares arrays that are set before they are read."""
+        other = copy.copy(self)
+        other.rates = rates
+        other.start, other.end = (
+            dataclasses.replace(end, u=end.u.copy(), rate=end.rate.copy()) for end in (self.start, self.end)
+        )
+        return other
 
     def advance(self, t: float) -> None:
         """Step until the last step ends at t [s] or later. Raises DivergenceError, see `NonlinearSea.advance`."""
@@ -155,17 +162,13 @@ class March:
         u, k1 = real(a.u), real(a.rate)
         propagate(table, u, k1, 0.5 * h, real(stage))
         power2 = self._evaluate(t + 0.5 * h, stage, k2)
-        propagate(table, u, k1, 0.0, real(moved))
-        set_sum(real(moved), real(k2), 0.5 * h, real(stage))
+        set_third_stage(table, u, real(k2), 0.5 * h, real(moved), real(stage))
         power3 = self._evaluate(t + 0.5 * h, stage, k3)
         propagate(table, real(moved), real(k3), h, real(stage))
         power4 = self._evaluate(t + h, stage, k4)
         new = self._new
         new.t = t + h
-        propagate(table, u, k1, h / 6.0, real(moved))
-        set_sum(real(k2), real(k3), 1.0, real(stage))
-        propagate(table, real(moved), real(stage), h / 3.0, real(moved))
-        set_sum(real(moved), real(k4), h / 6.0, real(new.u))
+        set_end(table, real(moved), k1, real(k2), real(k3), real(k4), h / 6.0, real(new.u))
         new.power = self._evaluate(new.t, new.u, new.rate)
         new.lost = a.lost + h / 6.0 * (a.power + 2.0 * (power2 + power3) + power4)
         return new, 0.1 * h * self.propagator.distance(k4, new.rate)
@@ -203,9 +206,29 @@ def square_distance(u, v, ratio, weight):
 
 
 @kernel(noalias=True)
-def set_sum(u, v, factor, out):
-    """Set out to u + factor v, each (2, rows, 2 columns)."""
-    for field in range(2):
-        for i in range(u.shape[1]):
-            for j in range(u.shape[2]):
-                out[field, i, j] = u[field, i, j] + factor * v[field, i, j]
+def set_third_stage(table, u, k, factor, moved, stage):
+    """Set moved to u (2, rows, 2 columns), evolved by a table of `Propagator`, and stage to moved + factor k."""
+    for i in range(u.shape[1]):
+        for j in range(table.shape[2]):
+            c, up, down = table[0, i, j], table[1, i, j], table[2, i, j]
+            for part in range(2 * j, 2 * j + 2):
+                eta, psi = c * u[0, i, part] + up * u[1, i, part], c * u[1, i, part] - down * u[0, i, part]
+                moved[0, i, part], moved[1, i, part] = eta, psi
+                stage[0, i, part], stage[1, i, part] = eta + factor * k[0, i, part], psi + factor * k[1, i, part]
+
+
+@kernel(noalias=True)
+def set_end(table, moved, k1, k2, k3, k4, sixth, out):
+    """Set out (2, rows, 2 columns) to the end of a step, sixth [s] of six; moved: its start, evolved by half a step."""
+    for i in range(moved.shape[1]):
+        for j in range(table.shape[2]):
+            c, up, down = table[0, i, j], table[1, i, j], table[2, i, j]
+            for part in range(2 * j, 2 * j + 2):
+                eta = moved[0, i, part] + sixth * (
+                    c * k1[0, i, part] + up * k1[1, i, part] + 2.0 * (k2[0, i, part] + k3[0, i, part])
+                )
+                psi = moved[1, i, part] + sixth * (
+                    c * k1[1, i, part] - down * k1[0, i, part] + 2.0 * (k2[1, i, part] + k3[1, i, part])
+                )
+                out[0, i, part] = c * eta + up * psi + sixth * k4[0, i, part]
+                out[1, i, part] = c * psi - down * eta + sixth * k4[1, i, part]

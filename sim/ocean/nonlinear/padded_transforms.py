@@ -40,13 +40,19 @@ def aligned(shape: tuple[int, ...], dtype: type) -> np.ndarray:
     return block[start : start + count].view(dtype).reshape(shape)
 
 
+class Work:
+    """Work done so far by the transforms that share it."""
+
+    count = 0  # transforms
+
+
 class PaddedTransforms:
     """The transforms of spectra with as many columns as given. Not for two threads at once."""
 
-    def __init__(self, shape: tuple[int, int], columns: int) -> None:
+    def __init__(self, shape: tuple[int, int], columns: int, work: Work) -> None:
         """shape (rows, cells): of the grid, along y and x."""
         self.shape = rows, cells = shape
-        self.count = 0  # transforms run so far
+        self.work = work
         # What is not written stays 0: rows between those of a spectrum in `spectrum`, the last columns of `_half`.
         self._half = aligned((rows, cells // 2 + 1), np.complex128)
         self.spectrum = self._half[:, :columns] if rows == 1 else aligned((rows, columns), np.complex128)
@@ -68,7 +74,7 @@ class PaddedTransforms:
             self._columns_back.execute()
         self._rows_back.update_arrays(self._half, plane.reshape(self.shape))
         self._rows_back.execute()
-        self.count += 1
+        self.work.count += 1
 
     def field_of(self, spectrum: np.ndarray) -> np.ndarray:
         """New field (cells, rows) [x, y] of a spectrum as high as the grid."""
@@ -82,7 +88,7 @@ class PaddedTransforms:
         self._rows.execute()
         if self._columns is not None:
             self._columns.execute()
-        self.count += 1
+        self.work.count += 1
 
 
 @kernel(noalias=True)

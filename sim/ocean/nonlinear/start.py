@@ -1,38 +1,58 @@
 """Starts of a nonlinear sea: from a linear one, or from elevation and surface potential."""
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from sim.ocean.kinematics import Components
 from sim.ocean.medium import Medium
 from sim.ocean.nonlinear.modes import Modes, make_modes, spectrum_of
 from sim.ocean.sea import LENGTHS, SIZES, Sea
 from sim.ocean.spectra import Conditions
 from sim.validation import argument_error, as_array, check_number, is_whole_number
 
-ALLOWED = "a Sea, or elevation and potential, two finite arrays (n, m) or (n,) of one shape"
+ALLOWED = "a Sea, Components, or elevation and potential, two finite arrays (n, m) or (n,) of one shape"
 
 
-def started(start: Any, size: Any, length: Any, water: dict[str, Any]) -> tuple[Modes, np.ndarray, Conditions]:
-    """Waves, spectra (2, rows, columns) of elevation and potential, and conditions of a start.
+class Start(NamedTuple):
+    """The start of a nonlinear sea."""
 
-    Arguments as of `NonlinearSea`; water: depth, gravity and density, or None for each. Raises ValueError for a value
-    that is not allowed or not that of the start.
+    modes: Modes
+    u: np.ndarray  # (2, rows, columns) spectra of elevation [m] and potential [m2/s] at z = 0
+    conditions: Conditions
+    time: float  # [s]
+    is_linear: bool  # the start has no bound waves
+
+
+def started(start: Any, size: Any, length: Any, water: dict[str, Any], time: float) -> Start:
+    """The start of a `NonlinearSea`, of which these are arguments; water: depth, gravity and density, or None for each.
+
+    Raises ValueError for a value that is not allowed or not that of the start.
     """
     given = {name: value for name, value in water.items() if value is not None}
     if isinstance(start, Sea):
-        conditions = start.conditions
-        if start.medium != Medium() or conditions.tension != 0.0:
+        if start.medium != Medium() or start.conditions.tension != 0.0:
             raise argument_error("start", start, "a sea without tension, viscosity, film or a dispersion of its own")
-        given["length"] = start.length if length is None else length
-        for name, value in given.items():
-            own = start.length if name == "length" else getattr(conditions, name)
-            if value not in (own, (own, own)):
-                raise argument_error(name, value, f"that of the sea it starts from, {own:g}")
-        cells = checked_size(start.size if size is None else size)
-        modes = make_modes(cells, (start.length, start.length), conditions.depth, conditions.gravity)
-        return modes, linear_start(start, modes), conditions
+        c, time = start.conditions, start.time
+        own = {"length": start.length, "depth": c.depth, "gravity": c.gravity, "density": c.density}
+        length, size = start.length if length is None else length, start.size if size is None else size
+        waves = start.components(time)
+    elif isinstance(start, Components):
+        waves, own = start, {"depth": start.depth, "density": start.density}
+    else:
+        return of_fields(start, size, length, {"density": 1025.0} | given, time)
+    for name, value in {**given, "length": length}.items():
+        if name in own and value not in (own[name], (own[name],) * 2):
+            raise argument_error(name, value, f"that of the waves it starts from, {own[name]:g}")
+    own.pop("length", None)
+    conditions = Conditions(**(given | own))
+    modes = make_modes(checked_size(size), sides_of(length), conditions.depth, conditions.gravity)
+    return Start(modes, linear_start(waves, modes, time), conditions, time, True)
+
+
+def of_fields(start: Any, size: Any, length: Any, water: dict[str, Any], time: float) -> Start:
+    """The same of a start by elevation [m] and potential [m2/s]."""
     if not isinstance(start, tuple | list) or len(start) != 2:
         raise argument_error("start", start, ALLOWED)
     fields = [as_array("start", field, ALLOWED) for field in start]
@@ -41,10 +61,10 @@ def started(start: Any, size: Any, length: Any, water: dict[str, Any]) -> tuple[
     n, m = checked_size((len(fields[0]), fields[0].size // max(len(fields[0]), 1)))
     if size is not None and checked_size(size) != (n, m):
         raise argument_error("size", size, f"that of the arrays, {(n, m)}")
-    conditions = Conditions(**({"density": 1025.0} | given))
+    conditions = Conditions(**water)
     u = np.array([spectrum_of(field.reshape(n, m)) for field in fields])
     u[1, 0, 0] = 0.0  # a constant of the potential moves nothing
-    return make_modes((n, m), sides_of(length), conditions.depth, conditions.gravity), u, conditions
+    return Start(make_modes((n, m), sides_of(length), conditions.depth, conditions.gravity), u, conditions, time, False)
 
 
 def checked_size(size: Any) -> tuple[int, int]:
@@ -64,17 +84,17 @@ def sides_of(length: Any) -> tuple[float, float]:
     return check_number("length", x, *LENGTHS, "m"), check_number("length", y, *LENGTHS, "m")
 
 
-def linear_start(sea: Sea, modes: Modes) -> np.ndarray:
-    """Spectra (2, rows, columns) of elevation and potential at z = 0 of a linear sea at its time, without its rings.
+def linear_start(waves: Components, modes: Modes, t: float) -> np.ndarray:
+    """Spectra (2, rows, columns) of elevation and potential at z = 0 of linear waves at time t [s].
 
-    Waves that only one of the two grids has are left out.
+    Waves that the grid does not have are left out; others count for its nearest.
     """
-    waves = sea.components(sea.time)
     n, m = modes.size
-    i, j = (np.rint(k * (sea.length / (2.0 * math.pi))).astype(int) for k in (waves.kx, waves.ky))
+    i, j = (np.rint(k * (side / (2.0 * math.pi))).astype(int)
+            for k, side in zip((waves.kx, waves.ky), modes.length, strict=True))  # fmt: skip
     # a cos(k.x - omega t + 2 pi phase), and its potential (g/omega) a sin(...)
-    wave = 0.5 * waves.amplitude * np.exp(1j * (2.0 * math.pi * waves.phase - waves.omega * sea.time))
-    spectra = wave, -1j * modes.gravity / waves.omega * wave
+    wave = 0.5 * waves.amplitude * np.exp(1j * (2.0 * math.pi * waves.phase - waves.omega * t))
+    spectra = wave, -1j * modes.gravity / np.where(waves.omega > 0.0, waves.omega, math.inf) * wave
     u = np.zeros((2, m, n // 2), complex)
     there = (np.abs(i) < n // 2) & (np.abs(j) < max(m // 2, 1))
     for field, values in zip(u, spectra, strict=True):
@@ -83,6 +103,28 @@ def linear_start(sea: Sea, modes: Modes) -> np.ndarray:
             inside = there & (column >= 0)
             np.add.at(field, (row[inside], column[inside]), value[inside])
     return u
+
+
+def free_waves(modes: Modes, u: np.ndarray, t: float, density: float) -> Components:
+    """The linear waves that have these spectra (2, rows, columns) of elevation and potential at time t [s]."""
+    there = (modes.k > 0.0) & u.any(axis=0)
+    kx, ky = (k[there] for k in np.broadcast_arrays(modes.kx, modes.ky[:, None]))
+    omega, weight = modes.omega[there], np.broadcast_to(modes.weight, there.shape)[there]
+    turned = 1j * omega / modes.gravity * u[1][there]
+    onward, back = 0.5 * weight * (u[0][there] + turned), 0.5 * weight * np.conj(u[0][there] - turned)
+    waves, frequency = np.concatenate([onward, back]), np.tile(omega, 2)
+    phase = (np.angle(waves) + frequency * t) / (2.0 * math.pi)
+    kx, ky = np.concatenate([kx, -kx]), np.concatenate([ky, -ky])
+    return Components(kx, ky, np.abs(waves), frequency, phase, modes.depth, density)
+
+
+def resized(modes: Modes, u: np.ndarray, size: tuple[int, int]) -> tuple[Modes, np.ndarray]:
+    """Modes of a grid of another size on the same rectangle, and the spectra (2, rows, columns) on it."""
+    new = make_modes(size, modes.length, modes.depth, modes.gravity)
+    columns, rows = min(size[0], modes.size[0]) // 2, max(min(size[1], modes.size[1]) // 2, 1)
+    out, row = np.zeros((2, len(new.ky), len(new.kx)), complex), np.arange(1 - rows, rows)
+    out[:, row, :columns] = u[:, row, :columns]
+    return new, out
 
 
 def mean_wavenumber(modes: Modes, eta: np.ndarray) -> float:

@@ -20,7 +20,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.validation import argument_error, as_array, check_positive, is_whole_number
+from sim.validation import ConvergenceError, argument_error, as_array, check_positive, is_whole_number
 
 ORDERS = (1, 60)
 HIGHEST = 0.1412  # height over wavelength of the highest wave on deep water (Michell 1893)
@@ -64,7 +64,8 @@ def stokes_wave(
 ) -> StokesWave:
     """The wave of this height [m] and wavelength [m] on water of this depth [m] or inf; order: Fourier terms, 1 to 60.
 
-    Raises ValueError for a value that is not allowed, and for a height for which no wave is found.
+    Raises ValueError for a value that is not allowed, as a height that no wave has, and ConvergenceError where Newton's
+    method finds none: near the highest wave more terms are needed.
     """
     height = check_positive("height", height, "m")
     k = 2.0 * math.pi / check_positive("wavelength", wavelength, "m")
@@ -73,20 +74,17 @@ def stokes_wave(
     if not is_whole_number(order) or not ORDERS[0] <= order <= ORDERS[1]:
         raise argument_error("order", order, f"a whole number from {ORDERS[0]} to {ORDERS[1]}")
     limit = HIGHEST * wavelength * math.tanh(kd)
-    if height < limit:
-        steps = math.ceil(height / wavelength / HEIGHT_STEP)
-        z = linear_wave(k * height / steps, kd, order)
-        for step in range(1, steps + 1):
-            z = solved(z, k * height * step / steps, kd, order)
-        if np.isfinite(z).all():
-            n = np.arange(order + 1)
-            ends = np.where((n == 0) | (n == order), 0.5, 1.0)
-            cosines = 2.0 / order * ends * (np.cos(np.outer(n, n) * math.pi / order) @ (ends * z[: order + 1])) / k
-            speed = float(z[-3]) * math.sqrt(gravity / k)
-            return StokesWave(
-                height, wavelength, depth, gravity, speed, cosines, z[order + 1 : -3] * math.sqrt(gravity / k**3)
-            )
-    raise argument_error("height", height, f"below the highest wave, here about {limit:.3g} m, with enough terms")
+    if height >= limit:
+        raise argument_error("height", height, f"below the highest wave, here about {limit:.3g} m")
+    steps = math.ceil(height / wavelength / HEIGHT_STEP)
+    z = linear_wave(k * height / steps, kd, order)
+    for step in range(1, steps + 1):
+        z = solved(z, k * height * step / steps, kd, order)
+    n = np.arange(order + 1)
+    ends = np.where((n == 0) | (n == order), 0.5, 1.0)
+    cosines = 2.0 / order * ends * (np.cos(np.outer(n, n) * math.pi / order) @ (ends * z[: order + 1])) / k
+    sines = z[order + 1 : -3] * math.sqrt(gravity / k**3)
+    return StokesWave(height, wavelength, depth, gravity, float(z[-3]) * math.sqrt(gravity / k), cosines, sines)
 
 
 def linear_wave(steepness: float, kd: float, order: int) -> np.ndarray:
@@ -120,9 +118,12 @@ def residuals(z: np.ndarray, steepness: float, kd: float, order: int) -> np.ndar
 
 
 def solved(z: np.ndarray, steepness: float, kd: float, order: int) -> np.ndarray:
-    """The unknowns by Newton's method from z, with derivatives by complex steps; NaN without convergence."""
-    for _ in range(MAX_NEWTON_ITERATIONS):
+    """The unknowns by Newton's method from z, with derivatives by complex steps. Raises ConvergenceError."""
+    left, count = math.nan, 0
+    while count < MAX_NEWTON_ITERATIONS:
+        count += 1
         value = residuals(z, steepness, kd, order)
+        left = float(np.abs(value).max())
         slopes = [np.imag(residuals(z + 1j * TINY * unit, steepness, kd, order)) / TINY for unit in np.eye(len(z))]
         try:
             change = np.linalg.solve(np.array(slopes).T, -value)
@@ -134,4 +135,6 @@ def solved(z: np.ndarray, steepness: float, kd: float, order: int) -> np.ndarray
             break
         if np.abs(change).max() < TOLERANCE:
             return z
-    return np.full_like(z, math.nan)
+    raise ConvergenceError(
+        f"wave of constant form, {order} terms, k H = {steepness:.4g}", f"a residual of {left:.3g}", count
+    )

@@ -63,6 +63,18 @@ def test_foam_is_that_of_the_scene_on_the_solved_grid(tmp_path):
     np.testing.assert_array_equal(field_of(pixels), foam)
 
 
+@pytest.mark.parametrize("start", ["as set", "groups"])
+def test_nonlinear_waves_are_written_as_they_are_drawn(tmp_path, start):
+    params = Params(**{**vars(SEA), "order": 3, "start": start})
+    assert export("square_sea", params, 2 / RATE, RATE, 0.0, "exr", tmp_path / "a") == 0
+    scene = SquareSeaScene(params, step=1.0 / 48.0)
+    scene.advance(2)
+    height = np.broadcast_to(scene.marching.sea.height, (64, 64))
+    pixels = field_of(OpenEXR.File(str(tmp_path / "a" / "displacement.0002.exr")).channels()["RGB"].pixels)
+    np.testing.assert_allclose(pixels[..., 2], SEA.amplitude * height, atol=1e-5)
+    assert not pixels[..., :2].any()
+
+
 def test_the_tile_closes(tmp_path):
     write_sea(tmp_path / "a", "exr")
     pixels = OpenEXR.File(str(tmp_path / "a" / "displacement.0001.exr")).channels()["RGB"].pixels

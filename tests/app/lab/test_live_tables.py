@@ -146,6 +146,13 @@ def test_a_change_of_the_wind_is_followed_and_another_spectrum_is_the_program_s(
     assert scene.student.taken == {}
     assert scene.sea.spectrum.name == "jonswap"
     assert "choose the spectrum Phillips" in folder.tables.report.idle["spectrum"]
+    scene.params = dataclasses.replace(PHILLIPS, order=2, size="64", mesh="32")
+    scene.reset()
+    assert set(folder.tables.report.idle) == {"gravity", "spectrum", "dispersion"}
+    assert "choose order 1" in folder.tables.report.idle["dispersion"]
+    assert scene.marching is not None
+    scene.handle(StudentAnswer())
+    assert scene.student.taken == {}
 
 
 @pytest.mark.parametrize(

@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 import app
-from app.messages import DivergenceError
 from app.notebook.dataset import to_dataset
 from app.notebook.lab import Lab, read_setup
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import write_query
 from app.scenes.stepping import steps_to
 from sim.parameters import check_record, parameters_of
+from sim.validation import DivergenceError
 from tests.waiting import wait_for
 
 pytest.importorskip("xarray", reason="the extra jupyter is not installed")

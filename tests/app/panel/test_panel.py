@@ -1,5 +1,6 @@
 """The panel on a viser server without a browser."""
 
+import asyncio
 import inspect
 import time
 from collections.abc import Callable, Iterator
@@ -13,8 +14,9 @@ from app.lab.folder import make_folder
 from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.messages import Take
+from app.messages import RunOn, Take
 from app.scenes import NAMES
+from app.scenes.square_sea.parameters import Params
 from app.server.viewer import Viewer
 from tests import coroutines
 from tests.waiting import wait_for
@@ -96,3 +98,19 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
         coroutines.run(callback(SimpleNamespace(target=panel.head.preset, client_id=1)))
     time.sleep(0.3)
     assert [c.start for c in posted] == [True, True]
+
+
+def test_a_sea_that_is_stepped_offers_to_run_on_to_a_high_crest(viewer: Viewer) -> None:
+    viewer.open("square_sea", Params(size="64", mesh="32"))
+    panel = viewer.panel
+    assert panel.run_on is not None
+    assert not panel.run_on.visible
+    panel.on_change("order", 2)
+    assert panel.run_on.visible
+    posted: list[object] = []
+    panel.post = posted.append
+    for callback in panel.run_on._impl.update_cb:
+        asyncio.run(callback(SimpleNamespace(client_id=1, target=panel.run_on)))
+    assert [type(command) for command in posted] == [RunOn]
+    panel.on_change("order", 1)
+    assert not panel.run_on.visible

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import DivergenceError, Grab, Place, Release
+from app.messages import Grab, Place, Release
 from app.panel.head import status_line
 from app.scenes.cloth.parameters import PRESETS, Params
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
@@ -16,6 +16,7 @@ from app.scenes.contract import Measure
 from app.scenes.measures import plotted
 from app.server.loop import SimLoop
 from sim.parameters import check_record
+from sim.validation import DivergenceError
 
 SMALL = Params(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
 Loop: Any = SimLoop  # of a scene whose types the tests know

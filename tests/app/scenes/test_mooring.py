@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import DivergenceError, Grab, Place, Release, vector_of
+from app.messages import Grab, Place, Release, vector_of
 from app.scenes import scene_named
 from app.scenes.mooring.arrangement import DENSITY, body_of, build, first_places, heights, hull_of, line_types, sea_of
 from app.scenes.mooring.body_scene import MooringScene
@@ -22,7 +22,7 @@ from app.scenes.mooring.view import BED_ROWS, View, bed_colours
 from app.server.loop import SimLoop
 from sim.mooring import balance, critical_step, interior
 from sim.parameters import Parameter, check_record, parameters_of
-from sim.validation import ConvergenceError
+from sim.validation import ConvergenceError, DivergenceError
 from tests.sim.mooring.catenary import catenary
 
 SMALL: dict[str, Any] = {"segments": 12, "lines": 1, "steady_force": 10.0, "time_step": 1 / 120}

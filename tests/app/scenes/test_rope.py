@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import DivergenceError, Grab, Place, Release, finite_vector
+from app.messages import Grab, Place, Release, finite_vector
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, coloured
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.measures import measures
@@ -25,6 +25,7 @@ from sim.springs.analysis.extremes import extremes
 from sim.springs.stability import Gauge
 from sim.springs.state import velocities
 from sim.springs.statics import hanging_chain
+from sim.validation import DivergenceError
 
 Rope: Any = RopeScene  # whose types the tests know
 Loop: Any = SimLoop  # of a scene whose types the tests know

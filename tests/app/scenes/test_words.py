@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from app.lab.task import load_tasks
-from app.messages import DivergenceError
 from app.scenes import NAMES, scene_named, view_named
 from sim.parameters import check_record, parameters_of
+from sim.validation import DivergenceError
 
 ROOT = Path(__file__).parents[3]
 # A symbol, and the words of which one is to stand in the same text.
@@ -27,6 +27,7 @@ SETTINGS: list[tuple[str, dict[str, Any]]] = [
     ("rope", {"integrator": "explicit_euler", "stiffness": 2000.0}),
     ("rope", {"integrator": "implicit_euler"}),
     ("square_sea", {"viscosity": 1e-3, "deep": False, "depth": 2.0}),
+    ("square_sea", {"size": "64", "mesh": "32", "order": 3, "deep": False}),
     ("radial_sea", {"spill": "mixed", "compare": True}),
     ("radial_sea", {"spill": "layer", "thickness": 0.1}),
 ]

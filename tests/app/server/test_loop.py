@@ -15,7 +15,6 @@ from app.messages import (
     Advance,
     Ask,
     Command,
-    DivergenceError,
     Halt,
     KeptState,
     Pause,
@@ -31,6 +30,7 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, PATIENCE, SimLoop
 from app.server.pacer import MAX_LONG_FRAME, SOLVE_SHARE, FixedStep
 from sim.parameters import parameter
+from sim.validation import DivergenceError
 from tests.waiting import wait_for
 
 

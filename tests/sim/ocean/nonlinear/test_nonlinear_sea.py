@@ -7,7 +7,7 @@ import pytest
 
 from sim.ocean import Sea
 from sim.ocean.nonlinear import NonlinearSea, stokes_wave
-from sim.ocean.nonlinear.march import DivergenceError
+from sim.validation import DivergenceError
 
 LENGTH = 50.0  # [m]
 K = 2.0 * math.pi / LENGTH
@@ -182,13 +182,13 @@ LEVEL = np.zeros((16, 8))
         ({"step": 0.0}, "step: 0.0"),
         ({"rtol": 1.0}, "rtol: 1.0"),
         ({"breaking": 1}, "breaking: 1"),
-        ({"start": None}, "start: None.*a Sea, or elevation and potential"),
+        ({"start": None}, "start: None.*a Sea, Components, or elevation and potential"),
         ({"start": (LEVEL, LEVEL[:8])}, "start: "),
         ({"start": (LEVEL, LEVEL + math.nan)}, "start: "),
         ({"start": (LEVEL[:, :3], LEVEL[:, :3])}, "size: "),
         ({"start": ([], [])}, "size: "),
-        ({"start": Sea(**LINEAR), "length": 99.0}, "length: 99.0.*that of the sea it starts from, 100"),
-        ({"start": Sea(**LINEAR), "depth": 5.0}, "depth: 5.0.*that of the sea it starts from, inf"),
+        ({"start": Sea(**LINEAR), "length": 99.0}, "length: 99.0.*that of the waves it starts from, 100"),
+        ({"start": Sea(**LINEAR), "depth": 5.0}, "depth: 5.0.*that of the waves it starts from, inf"),
         ({"start": Sea(**LINEAR, tension=0.07)}, "without tension, viscosity"),
         ({"start": Sea(**LINEAR, viscosity=1e-6)}, "without tension, viscosity"),
     ],

@@ -7,6 +7,7 @@ import pytest
 
 from sim.ocean.dispersion import phase_speed
 from sim.ocean.nonlinear import stokes_wave
+from sim.validation import ConvergenceError
 
 LENGTH, GRAVITY = 50.0, 9.81
 K = 2.0 * math.pi / LENGTH
@@ -75,3 +76,9 @@ def test_a_steep_wave_needs_more_terms():
 def test_refusals(arguments, message):
     with pytest.raises(ValueError, match=message):
         stokes_wave(**({"height": 1.0, "wavelength": LENGTH} | arguments))
+
+
+def test_a_wave_that_newton_does_not_find_says_so():
+    """Close below the highest wave, where few terms cannot hold the crest."""
+    with pytest.raises(ConvergenceError, match=r"wave of constant form, 7 terms, k H = .*no solution after"):
+        stokes_wave(0.1405 * LENGTH, LENGTH, order=7)

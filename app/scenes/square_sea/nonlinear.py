@@ -1,0 +1,102 @@
+"""The nonlinear sea of the square sea: its start, its highest wave, and its heights beside theory."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.scenes.square_sea.parameters import LONG_CRESTED_STARTS, Params, solved_points
+from app.scenes.square_sea.tile_mesh import Fields, Highest
+from sim.ocean import Sea
+from sim.ocean.high_crests import HighCrests, high_crests, moments_of
+from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves
+from sim.ocean.statistics import expected
+
+TOLERANCE = 1e-4  # of a step, over the waves' amplitude
+FADE_PERIODS, ROGUE_FADE_PERIODS = 5.0, 2.0  # peak periods over which the nonlinear terms are faded in
+ROGUE_PERIODS = 4.0  # peak periods to the rogue wave
+ROGUE_CREST = 1.245  # of its linear sum, over Hs: at order 3 it is 1.55 in the preset, as of the Draupner wave
+
+
+class Heights(NamedTuple):
+    """The heights of a drawn sea, and theory of its tile."""
+
+    crest: float  # [m]
+    skewness: float
+    kurtosis: float
+    theory: HighCrests
+    lost: float  # share of the energy at the start that breaking has taken
+
+
+def nonlinear_sea(p: Params, linear: Sea, t: float, place: tuple[float, float]) -> NonlinearSea:
+    """The sea at time t [s]. linear: the waves of the conditions; place [m]: of the wave that is to grow."""
+    c, n = linear.conditions, solved_points(p)
+    hs, period = linear.significant_height_at(t), expected(linear, t).peak_period
+    period = period if period > 0.0 else 1.0
+    waves, fade = linear.components(t), FADE_PERIODS * period
+    if p.start == "rogue" and hs > 0.0:
+        crest = min(ROGUE_CREST * hs, 0.9 * float(waves.amplitude.sum()))
+        waves, fade = waves.with_crest(crest, place, t + ROGUE_PERIODS * period), ROGUE_FADE_PERIODS * period
+    elif p.start in LONG_CRESTED_STARTS:
+        carrier = waves.largest(1)
+        count = max(round(float(np.hypot(carrier.kx, carrier.ky).sum()) * p.length / (2.0 * math.pi)), 1)
+        amplitude = hs / (2.0 * math.sqrt(2.0))
+        if p.start == "breather":
+            waves, _ = breather(amplitude, count, p.length, place[0], c.gravity, c.density)
+        else:
+            waves = modulated_waves(amplitude, count, p.length, c.gravity, c.density)
+        # Its phases are those of its start; water that is not deep has a dispersion of its own.
+        omega = c.omega(waves.kx)
+        waves = waves._replace(depth=c.depth, omega=omega, phase=waves.phase + omega * t / (2.0 * math.pi))
+    size = (n, 1) if p.start in LONG_CRESTED_STARTS else n
+    return NonlinearSea(
+        size, p.length, p.order, start=waves, gravity=c.gravity, density=c.density, fade=fade, rtol=TOLERANCE, time=t
+    )
+
+
+def on_tile(field: NDArray[np.floating]) -> NDArray[np.float32]:
+    """A field (n, m) on the square (n, n): that of waves along x alone, (n, 1), is the same across."""
+    n, m = field.shape
+    return np.repeat(field.astype(np.float32), n // m, axis=1)
+
+
+class Marching:
+    """The nonlinear sea of a scene."""
+
+    def __init__(self, p: Params, linear: Sea, t: float, place: tuple[float, float]) -> None:
+        """The arguments are those of `nonlinear_sea`."""
+        self.sea = nonlinear_sea(p, linear, t, place)
+        self.highest: Highest | None = None
+        self.scale = p.amplitude  # factor on the heights that `highest` is of
+
+    def advance(self, t: float) -> None:
+        """Move on to time t [s]. Raises DivergenceError."""
+        self.sea.advance(max(t, self.sea.time))
+
+    def resize(self, p: Params) -> None:
+        """Go on on the grid of the parameters."""
+        n = solved_points(p)
+        self.sea = self.sea.resized((n, 1 if self.sea.size[1] == 1 else n))
+
+    def fields(self, p: Params) -> Fields:
+        """The fields as they are now, the Jacobian where foam is drawn. The highest crest is noted."""
+        if p.amplitude != self.scale:
+            self.highest, self.scale = None, p.amplitude
+        surface = self.sea.surface(self.sea.time)
+        height = on_tile(surface.height)
+        at = int(height.argmax())
+        crest, cell = p.amplitude * float(height.flat[at]), p.length / len(height)
+        if crest > (0.0 if self.highest is None else self.highest.place[2]):
+            i, j = divmod(at, len(height))
+            j = j if self.sea.size[1] > 1 else len(height) // 2
+            hs = p.amplitude * 4.0 * float(height.std())
+            self.highest = Highest((i * cell, j * cell, crest), self.sea.time, crest / max(hs, 1e-9))
+        return Fields(height, None, on_tile(surface.jacobian) if p.foam else None, self.highest)
+
+    def heights(self, linear: Sea, height: NDArray[np.floating]) -> Heights:
+        """Crest, skewness and kurtosis of heights (n, n) [m] of now, beside theory of the linear sea."""
+        energy = self.sea.energy
+        whole = energy.kinetic + energy.potential + energy.breaking
+        lost = energy.breaking / whole if whole > 0.0 else 0.0
+        return Heights(float(height.max()), *moments_of(height), high_crests(linear, self.sea.time), lost)

@@ -12,6 +12,7 @@ import threading
 from collections.abc import Iterable
 from pathlib import Path
 
+from app.lab.job import end_with_this_program
 from app.lab.process import BACKGROUND_NICENESS, lower_priority
 from app.lab.program_check import Verdict, check_program, not_checked
 from app.lab.runner import ROOT, Runner, unexpected
@@ -97,14 +98,17 @@ class BackgroundCheck(Service):
         """The process, started unless it runs."""
         if self.process is not None and self.process.poll() is None:
             return self.process
-        return subprocess.Popen(
+        process = subprocess.Popen(
             [sys.executable, "-P", "-c", START, str(ROOT), *map(str, self.folders)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
+            encoding="utf-8",
             start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle
         )
+        end_with_this_program(process, background=True)
+        return process
 
     def close(self) -> None:
         """End the process, for good; it ends its children."""

@@ -25,6 +25,7 @@ from typing import IO, Any, TypeAlias
 import numpy as np
 
 from app.lab.cloth_march import FILE as CLOTH_FILE
+from app.lab.job import end_with_this_program, kill_with_children
 from app.lab.process import COMPILES, FORKS, TRACE_SIGNAL
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import March, Segment, packed
@@ -289,7 +290,7 @@ class Runner:
         trace = self._trace = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
         if TEMPLATE is not None:
             return TEMPLATE.fork((*COMMAND, FORKS), surroundings, trace.fileno(), compiles=self.compiles)
-        return subprocess.Popen(
+        process = subprocess.Popen(
             [*COMMAND, str(trace.fileno()), COMPILES if self.compiles else ""],
             pass_fds=(trace.fileno(),) if TRACE_SIGNAL is not None else (),
             stdin=subprocess.PIPE,
@@ -298,6 +299,8 @@ class Runner:
             env=surroundings,
             start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle; see also `lower_priority`
         )
+        end_with_this_program(process, background=self.compiles)
+        return process
 
     def _where(self) -> tuple[str, int, str] | None:
         """File, line and function of the student's at which the process is; None where that cannot be found out."""
@@ -403,7 +406,10 @@ def kill_group(process: Process) -> None:
         if os.name == "posix":
             os.killpg(process.pid, signal.SIGKILL)
             return
-    process.kill()
+    if isinstance(process, Forked):
+        process.kill()
+    else:
+        kill_with_children(process)
 
 
 def dispose(process: Process, trace: IO[bytes] | None) -> None:

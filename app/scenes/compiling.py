@@ -13,6 +13,7 @@ import threading
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from app.lab.job import end_with_this_program
 from app.messages import BaseParams
 from app.scenes import NAMES
 from app.scenes.warmup import missing
@@ -168,7 +169,7 @@ class Compiling:
 def start_process(*, ahead: bool) -> "subprocess.Popen[str]":
     """A process that compiles the pieces that it reads. ahead: at low priority."""
     path = os.pathsep.join(part for part in (str(ROOT), os.environ.get("PYTHONPATH", "")) if part)
-    return subprocess.Popen(
+    process = subprocess.Popen(
         [sys.executable, "-m", "app.scenes.compile_worker", *(["--ahead"] if ahead else [])],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
@@ -176,6 +177,8 @@ def start_process(*, ahead: bool) -> "subprocess.Popen[str]":
         text=True,
         encoding="utf-8",
     )
+    end_with_this_program(process, background=ahead)
+    return process
 
 
 def describe(jobs: Iterable[Job], waiting: int) -> str:

@@ -7,7 +7,6 @@ fixed step on the whole equations: no exact linear part, no compiled code.
 import math
 
 import numpy as np
-from scipy import fft
 
 
 class PlainSea:
@@ -16,6 +15,9 @@ class PlainSea:
     def __init__(
         self, elevation: np.ndarray, potential: np.ndarray, length: tuple[float, float], order: int, gravity: float
     ) -> None:
+        from scipy import fft  # type: ignore[import-not-found]
+
+        self.fft = fft
         self.order, self.gravity = order, gravity
         self.shape = n, m = elevation.shape
         self.wide = [1 if c == 1 else int(fft.next_fast_len(-(-c * (order + 1) // 2), True) or c) for c in (n, m)]
@@ -30,20 +32,20 @@ class PlainSea:
     @property
     def height(self) -> np.ndarray:
         """Elevation (n, m) [m]."""
-        return np.asarray(fft.irfft2(self.eta, self.shape[::-1])).T
+        return np.asarray(self.fft.irfft2(self.eta, self.shape[::-1])).T
 
     def field(self, spectrum: np.ndarray) -> np.ndarray:
         """A spectrum on the padded grid."""
         padded = np.zeros((self.wide[1], self.wide[0] // 2 + 1), complex)
         padded[self.rows, : self.k.shape[1] - 1] = spectrum[:, :-1]  # without the Nyquist waves
-        return np.asarray(fft.irfft2(padded, self.wide[::-1])) * (
+        return np.asarray(self.fft.irfft2(padded, self.wide[::-1])) * (
             self.wide[0] * self.wide[1] / (self.shape[0] * self.shape[1])
         )
 
     def spectrum(self, field: np.ndarray) -> np.ndarray:
         """The waves of the sea of a field on the padded grid."""
         out = np.zeros(self.k.shape, complex)
-        out[:, :-1] = np.asarray(fft.rfft2(field))[self.rows, : self.k.shape[1] - 1]
+        out[:, :-1] = np.asarray(self.fft.rfft2(field))[self.rows, : self.k.shape[1] - 1]
         return out / (self.wide[0] * self.wide[1] / (self.shape[0] * self.shape[1]))
 
     def rates(self, eta: np.ndarray, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

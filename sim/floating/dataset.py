@@ -69,6 +69,17 @@ def with_dataset(
     (`pip install xarray netCDF4`).
     """
     check_hull("hull", hull)
+    # Before the file is read, which takes a second.
+    if draft is not None:
+        check_positive("draft", draft, "m")
+    if depth is not None:
+        check_positive("depth", depth, "m", allow_infinite=True)
+    if body is not None:
+        check_kind("body", body, str, "the name of a body")
+    if heading is not None:
+        check_angle("heading", heading)
+    if rotation_center is not None:
+        check_vector("rotation_center", rotation_center, "m")
     dataset = read_dataset(path)
     choice = {"body": body, "depth": depth, "heading": heading, "rotation_center": rotation_center}
     table = converted(dataset, str(path), hull, draft, **choice)

@@ -113,7 +113,7 @@ CALLS = (
     call(floating.make_water, ("height", "acceleration", "interface", "interface_rise"), fleet=FLEET, layers=STILL,
          height=np.zeros(1)),
     call(floating.pull, fleet=FLEET, body=0, point=ORIGIN, target=ORIGIN, limit=1.0),
-    call(floating.with_dataset, hull=BOX, path="none.nc"),
+    call(floating.with_dataset, ("body",), hull=BOX, path="none.nc"),
     call(rainfall, rate=1.0), call(terminal_speed, diameter=1e-3), call(flame_height, power=1e6, diameter=1.0),
 )  # fmt: skip
 # (error's name, call, words of what is allowed) of slips that are easily made

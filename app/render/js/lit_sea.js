@@ -78,7 +78,7 @@ function disposeLit(sea) {
 }
 
 // Find the light of every pixel of the sea; false where this browser cannot.
-function lightSea(sea, renderer, scene, camera, defines, key) {
+function lightSea(base, sea, renderer, scene, camera, defines, key) {
   const { uniforms } = sea;
   if (!uniforms.skyTable.value) return false;
   const lit = (sea.lit ??= makeLit(sea)), before = renderer.getRenderTarget(), gl = renderer.getContext();
@@ -88,7 +88,7 @@ function lightSea(sea, renderer, scene, camera, defines, key) {
     lit.size = [width, height].join();
     lit.places?.dispose();
     lit.light?.dispose();
-    const Target = scene.environment.renderTarget.constructor, how = { format: RGBA, minFilter: NEAREST, magFilter: NEAREST };
+    const Target = skyTables.get(base).target.constructor, how = { format: RGBA, minFilter: NEAREST, magFilter: NEAREST };
     lit.places = new Target(width, height, { ...how, type: FLOAT, count: 2 });
     lit.light = new Target(width, height, { ...how, type: HALF_FLOAT, depthBuffer: false });
     [uniforms.seaPlaces.value, uniforms.seaRest.value] = lit.places.textures;

@@ -190,7 +190,7 @@ shaders.push({
     sea.polar ??= makePolar(sea, fineness);
     aimPolar(sea, camera);
     const key = [`springtide-water${base}`, ...named].join(" ");
-    const isLit = sea.polar.visible && lightSea(sea, renderer, scene, camera, defines, key);
+    const isLit = sea.polar.visible && lightSea(base, sea, renderer, scene, camera, defines, key);
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
       shader.vertexShader = defines + WATER_VERTEX;

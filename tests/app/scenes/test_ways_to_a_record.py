@@ -1,12 +1,11 @@
 """A preset with other values makes the same record, whichever way it is asked for."""
 
-import argparse
 import json
 from collections.abc import Callable
 
 import pytest
 
-from app.__main__ import read_params
+from app.__main__ import make_parser, read_params
 from app.lab import task
 from app.messages import BaseParams
 from app.notebook.lab import read_setup as read_notebook
@@ -23,7 +22,8 @@ ALLOWED = r"speed: \S+ is not allowed; allowed: 0\.\d+ to \d"
 
 def by_command_line(kind: AnyKind, preset: str, values: Values) -> BaseParams:
     assignments = [f"{name}={write_value(value)}" for name, value in values.items()]
-    return read_params(kind, argparse.Namespace(preset=preset, set=assignments, hull=None, mooring=None))
+    arguments = make_parser().parse_args(["run", kind.name, "--preset", preset, "--set", *assignments])
+    return read_params(kind, arguments)
 
 
 def by_link(kind: AnyKind, preset: str, values: Values) -> BaseParams:

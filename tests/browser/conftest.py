@@ -1,7 +1,9 @@
 """A real Chromium for the tests that look, rendering in software: slow, and the same everywhere."""
 
 import base64
+import os
 import shutil
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -13,6 +15,7 @@ from app.messages import Pause
 from app.server.viewer import Viewer
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+MAX_TEMPORARY = 50  # characters of the path of a folder for temporary files
 FLAGS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -72,6 +75,12 @@ def new_page(chromium: Any, width: int, height: int, drawn: bool | str, flat: st
     return page
 
 
+def surroundings() -> dict[str, str]:
+    """The environment of a browser: its socket lies in the folder for temporary files, and has a name of 108 bytes."""
+    is_long = os.name == "posix" and len(tempfile.gettempdir()) > MAX_TEMPORARY
+    return {**os.environ, "TMPDIR": "/tmp"} if is_long else {**os.environ}
+
+
 @pytest.fixture(scope="package")
 def chromium() -> Iterator[Any]:
     """A running Chromium; the test is skipped where there is none.
@@ -82,7 +91,7 @@ def chromium() -> Iterator[Any]:
     if CHROMIUM is None:
         pytest.skip("no Chromium on the search path")
     with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=surroundings())
         yield browser
         browser.close()
 

@@ -7,7 +7,7 @@ import pytest
 
 from app.panel.changes import UNDO
 from app.server.viewer import Viewer
-from tests.browser.conftest import CHROMIUM, FLAGS, Tab
+from tests.browser.conftest import CHROMIUM, FLAGS, Tab, surroundings
 
 NOTE_RETURN = "addEventListener('pageshow', (event) => { if (event.persisted) sessionStorage.kept = 'yes'; });"
 
@@ -16,7 +16,7 @@ NOTE_RETURN = "addEventListener('pageshow', (event) => { if (event.persisted) se
 def caching_browser(chromium: Any) -> Iterator[Any]:
     """A Chromium with its back/forward cache, which Playwright switches off."""
     browser = chromium.browser_type.launch(
-        executable_path=CHROMIUM, args=FLAGS, ignore_default_args=["--disable-back-forward-cache"]
+        executable_path=CHROMIUM, args=FLAGS, ignore_default_args=["--disable-back-forward-cache"], env=surroundings()
     )
     yield browser
     browser.close()

@@ -70,14 +70,14 @@ class Head:
             case name:
                 self.actions.post(COMMANDS[name])
 
-    def show_preset(self, names: tuple[str, ...], loaded: str, *, changed: bool) -> None:
-        """The list of presets, with "(changed)" where a parameter is not as the loaded one has it.
+    def show_preset(self, names: tuple[str, ...], loaded: str, other: str = "") -> None:
+        """The list of presets. other: what is shown where a parameter is not as the loaded one has it.
 
-        "(changed)" is an entry of its own, so that the preset itself can be chosen again.
+        That is an entry of its own, so that the preset itself can be chosen again.
         """
         self.names = names
-        shown = f"{loaded} (changed)" if changed else loaded
-        options = (*names, *((shown,) if changed else ()))
+        shown = other or loaded
+        options = (*names, *((other,) if other else ()))
         if self.preset.options != options:
             self.preset.options = options
         self.preset.value = shown

@@ -33,7 +33,7 @@ from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import AnyKind, AnySnapshot, AnyView, Awaited, PostCommand, SpringParams
 from app.scenes.own_setups import own_files
-from app.scenes.setups import Setup, make_setup
+from app.scenes.setups import FILES, Setup, file_name, make_setup
 from sim.parameters import Value, changed_names
 
 if TYPE_CHECKING:
@@ -288,7 +288,9 @@ class Panel:
         """Show which preset is loaded, and whether a parameter that matters is not as it has it."""
         look = {name for name, parameter in self.shown.parameters.items() if parameter.affects == "look"}
         changed = changed_names(self.params_of(self.loaded), self.params) - look
-        self.head.show_preset((*self.kind.presets, *self.own), self.loaded, changed=bool(changed))
+        files = [file_name(path) for field in FILES.values() if (path := getattr(self.params, field, ""))]
+        other = ", ".join(files) or f"{self.loaded} (changed)"
+        self.head.show_preset((*self.kind.presets, *self.own), self.loaded, other if changed else "")
         self.help.content = note(fill("{} {}<br>{}", Html(self.kind.help), self.kind.about.get(self.loaded, ""), KEYS))
 
     async def reset_view(self, event: ViserEvent) -> None:

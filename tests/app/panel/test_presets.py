@@ -1,7 +1,10 @@
 """Presets: shown as changed, loaded again, undone."""
 
+from pathlib import Path
+
 from app.messages import Pause
 from app.panel.history import History, Settings
+from app.scenes.mooring.parameters import Params as MooringParams
 from app.scenes.rope.parameters import Params
 from app.server.viewer import Viewer
 
@@ -27,6 +30,18 @@ def test_a_value_set_back_is_no_change(lab: Viewer) -> None:
     lab.panel.set("stiffness", 2000.0)
     lab.panel.set("stiffness", 800.0)
     assert "changed" not in lab.panel.head.preset.value
+
+
+def test_a_file_is_named_in_place_of_the_preset() -> None:
+    file = Path(__file__).parents[2] / "sim" / "mooring" / "files" / "chain.txt"
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open("mooring", MooringParams(moordyn_file=str(file), time_step=1e-3))
+        assert viewer.panel.head.preset.value == "chain.txt"
+        viewer.panel.load(next(iter(viewer.panel.kind.presets)))
+        assert "chain.txt" not in viewer.panel.head.preset.options
+    finally:
+        viewer.shut()
 
 
 def test_a_preset_starts_running(lab: Viewer) -> None:

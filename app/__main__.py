@@ -326,6 +326,7 @@ def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = 
     from app.scenes.setups import make_setup, preset_setup, with_values
     from sim.parameters import parse_assignments
 
+    check_files_named(arguments)
     values = parse_assignments(scene.params, arguments.set)
     if arguments.preset is None:
         setup = make_setup(scene, preset, values)
@@ -333,7 +334,6 @@ def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = 
         setup = with_values(preset_setup("--preset", arguments.preset, scene), values)
         say_missing_files(setup, arguments)
     params = setup.params
-    check_files_named(arguments)
     if arguments.hull is not None:
         params = with_hull(params, arguments.hull, mesh_reading(arguments))
     if arguments.mooring is not None:
@@ -367,7 +367,7 @@ def say_on_error_stream(text: str) -> None:
 
 
 def with_hull(params: Any, path: Path, reading: Any) -> Any:
-    """The parameters with one more hull, of which size, volume and draft are printed.
+    """The parameters with one more hull. Its size, volume and draft are printed.
 
     Raises ValueError for a scene without bodies, or a mesh that is no hull.
     """
@@ -465,7 +465,6 @@ def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
         if last is not None:
             return last.scene, last.params
     name = scene_name(arguments)
-    check_files_named(arguments)
     files = any(getattr(arguments, option) is not None for option in SCENE_OF_FILE)
     return name, read_params(scene_named(name), arguments, "" if files else None)
 

@@ -71,9 +71,9 @@ class Head:
                 self.actions.post(COMMANDS[name])
 
     def show_preset(self, names: tuple[str, ...], loaded: str, other: str = "") -> None:
-        """The list of presets. other: what is shown where a parameter is not as the loaded one has it.
+        """The list of presets. other: the entry to show where a parameter is not as the loaded one has it.
 
-        That is an entry of its own, so that the preset itself can be chosen again.
+        It is a separate entry, so that the preset itself can be chosen again.
         """
         self.names = names
         shown = other or loaded

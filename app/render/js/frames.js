@@ -5,7 +5,7 @@
 // Frames for clips and for images that the server asks for are always drawn.
 //
 // Of three this file uses the renderer's render and setSize, the versions of attributes, materials and textures, and the
-// values of materials and uniforms. Anything of which it does not know whether it has changed counts as changed.
+// values of materials and uniforms. Anything that it cannot compare counts as changed.
 
 const SMALL = 16384; // numbers up to which a texture is compared itself: viser counts that of labels on in each frame
 const BOTH_SIDES = 2; // three's constant

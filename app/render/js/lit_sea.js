@@ -16,7 +16,6 @@ const PLACES_FRAGMENT = `
     gl_FragColor = vec4(at, 1.0);
     restAndSteps = vec4(vRest, stepsAt(at));
   }`;
-const LIGHT_VERTEX = "void main() { gl_Position = vec4(position.xy, 0.5, 1.0); }";
 const LIGHT_FRAGMENT = `
   #define STANDARD
   uniform mat4 toSea;
@@ -104,7 +103,7 @@ function lightSea(base, sea, renderer, scene, camera, defines, key) {
   litBy(lit.triangle.material, scene);
   replaceShader(lit.triangle.material, keyWithDetails(`${key} light`), (shader) => {
     Object.assign(shader.uniforms, uniforms);
-    shader.vertexShader = LIGHT_VERTEX;
+    shader.vertexShader = TARGET_VERTEX;
     shader.fragmentShader = withSky(defines + LIGHT_FRAGMENT, uniforms);
   });
   const alpha = renderer.getClearAlpha();

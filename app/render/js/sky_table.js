@@ -4,7 +4,8 @@
 
 const SKY_UNIFORMS = ["skyline", "skyFold", "skyTint", "sunDirection"]; // of which it is a function
 const HALF_FLOAT = 1016, RGBA = 1023, LINEAR = 1006, REPEAT = 1000, CLAMP = 1001; // three's constants
-const SKY_TABLE_VERTEX = "void main() { gl_Position = vec4(position.xy, 0.5, 1.0); }";
+// Of a triangle that covers what it is drawn into.
+const TARGET_VERTEX = "void main() { gl_Position = vec4(position.xy, 0.5, 1.0); }";
 const SKY_TABLE_FRAGMENT = `
   ${SKY_TABLE.replace("#define SKY_TABLE", "")}
   #define STANDARD
@@ -71,7 +72,7 @@ function drawSkyTable(base, sea, renderer, scene) {
   material.fog = material.toneMapped = material.depthTest = false;
   replaceShader(material, "springtide-sky-table", (shader) => {
     Object.assign(shader.uniforms, uniforms);
-    shader.vertexShader = SKY_TABLE_VERTEX;
+    shader.vertexShader = TARGET_VERTEX;
     shader.fragmentShader = SKY_TABLE_FRAGMENT;
   });
   const before = renderer.getRenderTarget();

@@ -169,7 +169,7 @@ shaders.push({
       mesh.geometry.computeVertexNormals = () => {}; // the slopes replace them: viser need not compute them each frame
     }
     wantSky();
-    mesh.layers.mask = 0;
+    mesh.layers.mask = 0; // the polar grid is drawn in its place, with its material
     if (!this.unpack({ base, mesh }) || awaitsSky(scene)) return null;
     readMaterial(sea, data);
     drawSkyTable(base, sea, renderer, scene);
@@ -196,14 +196,13 @@ shaders.push({
       shader.vertexShader = defines + WATER_VERTEX;
       shader.fragmentShader = isLit ? defines + LIT_FRAGMENT : withSky(defines + WATER_FRAGMENT, sea.uniforms);
     };
-    mesh.layers.mask = 1;
     if (!replaceShader(mesh.material, isLit ? `${key} lit` : keyWithDetails(key), edit)) {
       disposeSea(sea);
+      mesh.layers.mask = 1;
       delete mesh.geometry.computeVertexNormals;
       showPhotograph(scene, true);
       return null;
     }
-    mesh.layers.mask = 0; // the polar grid is drawn in its place, with its material
     sea.polar.material = mesh.material;
 
     if (drawSky && !sea.dome) sea.dome = makeDome(sea);

@@ -1,4 +1,4 @@
-"""What lines add to the stiffness of rotation of a body, against an inverted double pendulum in closed form."""
+"""Stiffness that lines add to the rotation of a body, against an inverted double pendulum in closed form."""
 
 from pathlib import Path
 

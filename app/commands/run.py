@@ -38,6 +38,8 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
         raise argument_error(
             "integrator", params.integrator, "another, as this net is damped: by links, drag, air or contact"
         )
+    for warning in () if scene.warnings is None else scene.warnings(running):
+        say(f"Warning: {warning}")
     # More frames than steps would only repeat some of them.
     frames = max(1, min(round(seconds * rate), steps_to(running, seconds)))
     first = running.arrays()

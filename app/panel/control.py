@@ -164,6 +164,11 @@ class Control:
         if self.slider is not None:
             self.slider.value = (self.scale.position(value),)
 
+    @property
+    def order(self) -> float:
+        """Place of its last widget in the folder; that of the line under it is 0.5 more."""
+        return (self.slider or self.field).order
+
     def show(self, visible: bool) -> None:
         """Show or hide all of it."""
         if visible == self.visible:
@@ -194,8 +199,7 @@ class Control:
                 if not self.text and not self.refusal:
                     return
                 with self.folder:
-                    order = (self.slider or self.field).order + 0.5
-                    self.line = self.gui.add_html("", order=order, visible=self.visible)
+                    self.line = self.gui.add_html("", order=self.order + 0.5, visible=self.visible)
             said = fill('<div class="springtide-refusal" role="alert">{}</div>', self.refusal) if self.refusal else ""
             line = f'<div class="springtide-line">{self.text}</div>' if self.text else ""
             self.line.content = str(said) + line

@@ -9,7 +9,7 @@ from app.messages import Command, Pause, Play, Reset, StepOnce
 from app.panel.remedy import Remedy
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.render.viser_types import ViserEvent
-from app.scenes.contract import AnyKind, AnySnapshot, AnyView
+from app.scenes.contract import Advice, AnyKind, AnySnapshot, AnyView
 from sim.parameters import in_words
 
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
@@ -25,7 +25,7 @@ class Actions(NamedTuple):
     reset_view: Callable[[viser.ClientHandle], None]
     toggle_plots: Callable[[], None]
     undo: Callable[[], None]
-    follow: Callable[[float], None]  # sets a time step [s], and starts again
+    follow: Callable[[Advice], None]  # sets a parameter, and starts again
 
 
 class Head:
@@ -48,7 +48,7 @@ class Head:
             self.buttons = gui.add_button_group("", button_names(running=True))
             self.buttons.on_click(self.on_button)
             self.status = gui.add_html("")
-            self.remedy = Remedy(gui, kind, actions.follow)
+            self.remedy = Remedy(gui, "Use {} and start again", actions.follow)
             self.figures = gui.add_html("")
             self.code_line = gui.add_html("", visible=False)
 
@@ -94,7 +94,8 @@ class Head:
     def show(self, snapshot: AnySnapshot, busy: float, visitors: int) -> None:
         """Show the state and the figures. busy: [s] that the present tick has taken."""
         self.status.content = str(status_line(snapshot, busy, visitors))
-        self.remedy.show(snapshot)
+        diverged = snapshot.status.halted and not snapshot.status.unmade
+        self.remedy.show(self.kind.remedy(snapshot) if diverged and self.kind.remedy is not None else None)
         self.figures.content = str(fill('<div class="springtide-figures">{}</div>', Html(self.view.figures(snapshot))))
 
     def show_code(self, line: Html) -> None:

@@ -26,12 +26,13 @@ from app.panel.plots import Plots
 from app.panel.readings import Readings
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
+from app.panel.remedy import ControlRemedies
 from app.panel.share import Share
 from app.panel.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, place_camera
 from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
-from app.scenes.contract import AnyKind, AnySnapshot, AnyView, Awaited, PostCommand, SpringParams
+from app.scenes.contract import Advice, AnyKind, AnySnapshot, AnyView, Awaited, PostCommand, SpringParams
 from app.scenes.own_setups import own_files
 from app.scenes.setups import FILES, Setup, file_name, make_setup
 from sim.parameters import Value, changed_names
@@ -103,6 +104,7 @@ class Panel:
         self.shown = Controls(gui, lambda: self.params, self.on_change)
         self.controls, self.folders = self.shown.own, self.shown.folders
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
+        self.remedies = ControlRemedies(gui, self.controls, self.follow)
         self.recorder = Recorder(kind.packing)
         self.share = Share(self, wake, make_replay, changes)
         self.guide: Guide | None = None
@@ -306,9 +308,9 @@ class Panel:
         """Put the camera of a browser where a new one would be."""
         place_camera(client.camera, *self.view.first_view(self.params), self.view.FIELD_OF_VIEW)
 
-    def follow(self, step: float) -> None:
-        """Set a time step [s], and start again."""
-        self.set("time_step", step)
+    def follow(self, advice: Advice) -> None:
+        """Set the parameter of an advice, and start again."""
+        self.set(advice.name, advice.value)
         self.post(Reset())
 
     def toggle_plots(self) -> None:
@@ -340,6 +342,8 @@ class Panel:
             self.marks_at = now
             for name, text in self.view.marks(snapshot).items():
                 self.controls[name].write("" if name in hidden else text)
+            if self.kind.advice is not None:
+                self.remedies.show(self.kind.advice(snapshot))
             if self.map is not None:
                 self.map.draw()
         if self.guide is not None:

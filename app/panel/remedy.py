@@ -1,37 +1,54 @@
-"""The button that follows the advice after a run diverged: a shorter time step, and a new start."""
+"""Buttons that follow an advice: a value of a parameter, and a new start."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import viser
 
-from app.formats.formatting import time_step
+from app.panel.control import Control
 from app.render.viser_types import ViserEvent
-from app.scenes.contract import AnyKind, AnySnapshot
+from app.scenes.contract import Advice
 
 
 class Remedy:
-    """The button, in the container that is open where this is made; hidden while nothing is wrong."""
+    """The button, in the container that is open where this is made; hidden without an advice."""
 
-    def __init__(self, gui: viser.GuiApi, kind: AnyKind, follow: Callable[[float], None]) -> None:
-        """follow: sets a time step [s] and starts again."""
-        self.kind, self.follow = kind, follow
-        self.step = 0.0  # [s] that it offers; 0: none
-        self.button = gui.add_button("", visible=False)
+    def __init__(
+        self, gui: viser.GuiApi, label: str, follow: Callable[[Advice], None], order: float | None = None
+    ) -> None:
+        """label: with the value in place of {}. follow: sets the parameter and starts again."""
+        self.label, self.follow = label, follow
+        self.advice: Advice | None = None
+        self.button = gui.add_button("", visible=False, order=order)
         self.button.on_click(self.on_click)
 
     async def on_click(self, event: ViserEvent) -> None:
         """A browser follows the advice."""
-        if event.client_id is not None and self.step:
-            self.follow(self.step)
+        if event.client_id is not None and self.advice is not None:
+            self.follow(self.advice)
 
-    def show(self, snapshot: AnySnapshot) -> None:
-        """Offer a step after a run diverged; take the offer back when the run goes on or has such a step."""
-        step = 0.0
-        if snapshot.status.halted and not snapshot.status.unmade and self.kind.remedy is not None:
-            step = self.kind.remedy(snapshot)
-        if step == self.step:
+    def show(self, advice: Advice | None) -> None:
+        """Offer an advice, or none."""
+        if advice == self.advice:
             return
-        self.step = step
-        if step:
-            self.button.label = f"Use {time_step(step)} and start again"
-        self.button.visible = bool(step)
+        self.advice = advice
+        if advice is not None:
+            self.button.label = self.label.format(advice.words)
+        self.button.visible = advice is not None
+
+
+class ControlRemedies:
+    """The buttons under the controls of parameters, each made when a value of its parameter is first advised."""
+
+    def __init__(self, gui: viser.GuiApi, controls: Mapping[str, Control], follow: Callable[[Advice], None]) -> None:
+        """controls: by name. follow: sets a parameter and starts again."""
+        self.gui, self.controls, self.follow = gui, controls, follow
+        self.made: dict[str, Remedy] = {}  # by parameter
+
+    def show(self, advice: Advice | None) -> None:
+        """Offer an advice under the control of its parameter, or none."""
+        if advice is not None and advice.name not in self.made:
+            control = self.controls[advice.name]
+            with control.folder:
+                self.made[advice.name] = Remedy(self.gui, "Use {}", self.follow, control.order + 0.7)
+        for name, remedy in self.made.items():
+            remedy.show(advice if advice is not None and advice.name == name else None)

@@ -11,7 +11,7 @@ To add a scene, add one folder here, named as the scene is on the command line:
 The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
@@ -45,6 +45,14 @@ class Measure(NamedTuple):
     unit: str
     meaning: str
     floor: float = 0.0  # of a length, to which it is known; NaN: it is not known
+
+
+class Advice(NamedTuple):
+    """A value of a parameter that mends what is wrong."""
+
+    name: str  # of the parameter
+    value: float
+    words: str  # the value with its unit
 
 
 class Scene(Protocol[P, F_co, R_co]):
@@ -259,8 +267,11 @@ class SceneKind(Generic[P, F, R]):
     about: Mapping[str, str] = field(
         default_factory=dict[str, str]
     )  # preset -> a sentence: what it shows and what to try
-    # Of a snapshot of a run that diverged: the time step [s] that would hold, 0 for none; None: a run does not diverge.
-    remedy: Callable[..., float] | None = None
+    # Of a snapshot of a run that diverged: a value that would hold, None for none; None: a run does not diverge.
+    remedy: Callable[..., Advice | None] | None = None
+    # Of a snapshot: a value that mends the state that the scene starts with, offered under its control.
+    advice: Callable[..., Advice | None] | None = None
+    warnings: Callable[..., Sequence[str]] | None = None  # of a scene that begins: sentences on its start
     awaited: Awaited | None = None  # event that the panel offers to run on to
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
 

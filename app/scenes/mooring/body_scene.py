@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.formats.formatting import metres, percent
 from app.messages import Grab, Place, Release, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import (
     Places,
@@ -19,12 +18,11 @@ from app.scenes.mooring.arrangement import (
     sea_of,
     sections,
 )
-from app.scenes.mooring.line_scene import MAX_STRETCH, LineScene
+from app.scenes.mooring.line_scene import LineScene, rest_or_start
 from app.scenes.mooring.parameters import Params
 from app.scenes.mooring.restoring import StaticInputs, force_of_lines
-from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
+from app.scenes.mooring.start_check import Fault, fault_of
 from app.scenes.springs.tracking import CriticallyDampedTracker
-from sim.springs import INTEGRATORS
 
 # Largest speeds of what is dragged, so that no line snaps by it: in distances of anchors and sizes of the body [1/s].
 ANCHOR_SPEED, FAIRLEAD_SPEED = 0.02, 0.1
@@ -32,7 +30,7 @@ DRAG_RATE = 1.0  # [rad/s] natural frequency of the mouse's pull on the body
 FARTHEST = 5.0  # in lengths of a line and distances of anchors, beyond which a run has diverged
 CHANGING = (
     "state", "system", "places", "tensions", "path", "path_count", "most_offset", "rest_place", "anchors",
-    "fairleads", "rest_scale", "rest_stretch", "failure", "body", "sea", "nodes", "links", "step_modes",
+    "fairleads", "rest_scale", "rest_stretch", "fault", "failure", "body", "sea", "nodes", "links", "step_modes",
 )  # fmt: skip
 
 
@@ -58,6 +56,10 @@ class MooringScene(LineScene):
         """[m] of the body, where it rests without lines."""
         return self.body.place
 
+    def find_fault(self) -> Fault | None:
+        """The fault of the state that the mooring starts with, by `rest_stretch`; None if there is none."""
+        return fault_of(self.params, self.places, self.body.place, self.rest_stretch)
+
     def lengths(self) -> NDArray[np.float64]:
         """(lines,) [m], unstretched."""
         return np.full(self.params.lines, self.params.length)
@@ -68,6 +70,10 @@ class MooringScene(LineScene):
         self.sea = sea_of(params)
         self.body = body_of(params, self.sea)
         self.take_system()
+        if (line_types(params), params.steady_force) != (line_types(old), old.steady_force) and not self.failure:
+            rest, failure = rest_or_start(self.system)
+            if not failure:
+                self.check_start(rest)
         materials = (line_types(params), params.friction, params.wave_period)
         if materials != (line_types(old), old.friction, old.wave_period):
             self.assess_stability()
@@ -160,19 +166,9 @@ class MooringScene(LineScene):
         far = FARTHEST * (p.length + p.reach + p.depth)
         return bool(np.abs(self.state.x).max() < far)  # false of a NaN as well
 
-    def diagnosis(self) -> str:
-        """Cause of the divergence, and settings that would hold."""
-        p = self.params
-        if self.rest_stretch.max() > MAX_STRETCH:
-            return too_short_text(int(self.rest_stretch.argmax()), float(self.rest_stretch.max()), p)
-        method = INTEGRATORS[p.integrator]
-        return divergence_text(
-            self.time, method, self.step, self.stability, leapfrog_alternative(method, self.stability)
-        )
-
-    def points_of_lines(self) -> NDArray[np.float64]:
+    def points_at(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """(lines, segments + 1, 3) [m] of the nodes of each line, from its anchor."""
-        return np.moveaxis(self.state.x[:, self.nodes], 0, -1)
+        return np.moveaxis(x[:, self.nodes], 0, -1)
 
     def lying(self) -> NDArray[np.float64]:
         """(lines,) [m] of unstretched length on the bed."""
@@ -197,11 +193,3 @@ class MooringScene(LineScene):
     def force_of_lines(self) -> NDArray[np.float64]:
         """Level force (2,) [N] of the lines on the body now."""
         return force_of_lines(self)
-
-
-def too_short_text(line: int, stretch: float, p: Params) -> str:
-    """Cause of a divergence that no shorter step mends. line: from 0; stretch: at rest, over its length."""
-    return (
-        f"Line {line + 1} is stretched by {percent(stretch)} at rest: {metres(p.length)} are too short for an anchor "
-        f"{metres(p.reach)} away in {metres(p.depth)} of water. Give it more length, or bring its anchor nearer."
-    )

@@ -7,20 +7,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.formats.formatting import percent
 from app.messages import Grab, Release, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import extent, sea_of
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.from_file import FileMooring, mooring_of, slack_of
-from app.scenes.mooring.line_scene import MAX_STRETCH, LineScene, fade_at
+from app.scenes.mooring.line_scene import LineScene, fade_at
 from app.scenes.mooring.parameters import Params
 from app.scenes.mooring.restoring import LEAST_SHARE, SHARE
-from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
+from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.interruption import raise_if_stopped
 from sim.mooring import System, at_rest
 from sim.ocean.kinematics import Components
-from sim.springs import INTEGRATORS
 from sim.validation import ConvergenceError
 
 VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
@@ -28,7 +26,7 @@ FARTHEST = 10.0  # in `extent`s, beyond which a run has diverged
 CURVE_POINTS = 17  # offsets at which the statics of all lines are solved
 CHANGING = (
     "state", "system", "tensions", "path", "path_count", "most_offset", "vessel", "rest_scale", "rest_stretch",
-    "failure", "sea", "step_modes", "moved_by",
+    "fault", "failure", "sea", "step_modes", "moved_by",
 )  # fmt: skip
 
 
@@ -88,6 +86,10 @@ class FileScene(LineScene):
     def middle(self) -> Vector:
         """[m] of the vessel at the surface, where it begins."""
         return self.file.middle
+
+    def find_fault(self) -> Fault | None:
+        """The fault of the state that the mooring starts with, by `rest_stretch`; None if there is none."""
+        return fault_of_file(self.file, self.rest_stretch)
 
     def lengths(self) -> NDArray[np.float64]:
         """(lines,) [m], unstretched."""
@@ -168,18 +170,9 @@ class FileScene(LineScene):
         """Length [m] of all lines."""
         return float(self.file.shown.lengths.sum())
 
-    def diagnosis(self) -> str:
-        """Cause of the divergence, and settings that would hold."""
-        if self.rest_stretch.max() > MAX_STRETCH:
-            line, stretch = int(self.rest_stretch.argmax()), float(self.rest_stretch.max())
-            return f"Line {line + 1} of the file is stretched by {percent(stretch)} at rest: it is too short."
-        method = INTEGRATORS[self.params.integrator]
-        other = leapfrog_alternative(method, self.stability)
-        return divergence_text(self.time, method, self.step, self.stability, other)
-
-    def points_of_lines(self) -> NDArray[np.float64]:
+    def points_at(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """(lines, n, 3) [m] of points of each line, from its anchor."""
-        return self.file.shown.points(self.state.x)
+        return self.file.shown.points(x)
 
     def lying(self) -> NDArray[np.float64]:
         """(lines,) [m] of unstretched length on the bed."""

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.start_check import Fault
 from sim.springs.stability import Gauge
 
 
@@ -53,4 +54,4 @@ class MooringReadings(NamedTuple):
     most_offset: float  # [m]
     most_at: tuple[int, float]  # line, from 0, and time [s] of the largest tension
     stability: Gauge
-    rest_stretch: float  # of the line that is stretched most at rest, over its length
+    fault: Fault | None  # of the state that the mooring starts with

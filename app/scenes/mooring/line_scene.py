@@ -15,9 +15,10 @@ from app.scenes.mooring.arrangement import surface_heights, surface_side
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
 from app.scenes.mooring.restoring import CurveInputs, RestoringCurve
+from app.scenes.mooring.start_check import Fault
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.plot_rows import PlotRows
-from app.scenes.springs.divergence import LastMoments
+from app.scenes.springs.divergence import LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.speed_advice import faster_steps
 from sim.mooring import System, at_rest
 from sim.mooring.gauge import modes
@@ -34,8 +35,7 @@ SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
 FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
 MAX_PATH = 1200  # places of the body's path that are kept
 PATH_INTERVAL = 0.25  # [s]
-# At rest, over a line's length: beyond it the line is too short for its anchor, which no shorter step mends.
-MAX_STRETCH = 0.2
+NO_REST = "The lines find no state of rest"
 MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
 LINE_SERIES = tuple(f"line {i + 1}" for i in range(MAX_LINES))
 ANCHOR_SERIES = tuple(f"anchor {i + 1}" for i in range(MAX_LINES))
@@ -87,9 +87,8 @@ class LineScene(abc.ABC):
         rest, self.failure = rest_or_start(self.system)
         self.state = LineState(self.system, rest)
         self.rest_place = self.body_place()
+        self.check_start(rest)
         self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
-        spans = np.linalg.norm(np.diff(self.points_of_lines(), axis=1), axis=2).sum(axis=1)
-        self.rest_stretch = spans / self.lengths() - 1.0
         self.path, self.path_count = np.empty((0, 2), np.float32), 0
         self.most_offset = 0.0
         self.assess_stability()
@@ -97,6 +96,18 @@ class LineScene(abc.ABC):
         self.measure()
         self.plot_rows.restart()
         self.last_moments.clear()
+
+    def check_start(self, rest: Rest) -> None:
+        """Find what is wrong with a state to start with."""
+        spans = np.linalg.norm(np.diff(self.points_at(rest.nodes), axis=1), axis=2).sum(axis=1)
+        self.rest_stretch = spans / self.lengths() - 1.0
+        self.fault = self.find_fault()
+        if self.fault is None and self.failure:
+            self.fault = Fault(self.failure, NO_REST, "length", None, True)
+
+    @abc.abstractmethod
+    def find_fault(self) -> Fault | None:
+        """The fault of the state that the mooring starts with, by `rest_stretch`; None if there is none."""
 
     @abc.abstractmethod
     def arrange(self) -> None:
@@ -119,8 +130,8 @@ class LineScene(abc.ABC):
         """(lines,) [m], unstretched."""
 
     @abc.abstractmethod
-    def points_of_lines(self) -> NDArray[np.float64]:
-        """(lines, n + 1, 3) [m] of points of each line, from its anchor."""
+    def points_at(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(lines, n + 1, 3) [m] of points of each line, from its anchor, with nodes at x (3, nodes)."""
 
     @abc.abstractmethod
     def lying(self) -> NDArray[np.float64]:
@@ -142,9 +153,13 @@ class LineScene(abc.ABC):
     def is_bounded(self) -> bool:
         """False once anything is not finite or is farther away than lines reach."""
 
-    @abc.abstractmethod
     def diagnosis(self) -> str:
         """Cause of the divergence, and settings that would hold."""
+        if self.fault is not None and self.fault.is_grave:
+            return self.fault.said
+        method = INTEGRATORS[self.params.integrator]
+        other = leapfrog_alternative(method, self.stability)
+        return divergence_text(self.time, method, self.step, self.stability, other)
 
     @abc.abstractmethod
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
@@ -185,7 +200,7 @@ class LineScene(abc.ABC):
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the state leaves its bounds, and keeps the last good one."""
         if self.failure:
-            raise DivergenceError(self.failure)
+            raise DivergenceError(self.failure if self.fault is None else self.fault.said)
         self.add_due_row()  # of the start
         method, h = INTEGRATORS[self.params.integrator], self.step
         piece = max(1, round(SAMPLE / h))
@@ -210,7 +225,7 @@ class LineScene(abc.ABC):
         tension = np.empty(len(p.ends))
         v = state.velocities(p, 0.0)
         set_tensions(state.x.reshape(-1), v, p, tension)
-        self.tension, self.points = tension[self.links], self.points_of_lines()
+        self.tension, self.points = tension[self.links], self.points_at(state.x)
         self.tensions.measure(state.t, self.tension, self.points)
         place = self.body_place()
         self.offset = float(np.linalg.norm((place - self.rest_place)[:2]))
@@ -232,9 +247,8 @@ class LineScene(abc.ABC):
     def readings(self) -> MooringReadings:
         """Numbers for the panel."""
         now = self.tensions
-        stretch = float(self.rest_stretch.max())
         lines = now.readings(self.lying())
-        return MooringReadings(lines, self.offset, self.most_offset, now.most_at, self.stability, stretch)
+        return MooringReadings(lines, self.offset, self.most_offset, now.most_at, self.stability, self.fault)
 
     def frame(self) -> MooringFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
@@ -303,5 +317,5 @@ def rest_or_start(system: System) -> tuple[Rest, str]:
     try:
         return at_rest(still), ""
     except ConvergenceError as error:
-        reason = f"The lines find no state of rest ({error}). Change their length, their anchors or EA."
+        reason = f"{NO_REST} ({error}). Change their length, their anchors or EA."
         return rest_of(still, straight(still), still.kernel_view(1.0)), reason

@@ -22,5 +22,6 @@ def measures(scene: "LineScene") -> dict[str, Measure]:
         "lying_length": Measure(sum(line.lying for line in lines), "m", "Length of all lines on the bed"),
         "largest_offset": Measure(found.most_offset, "m", "Largest level distance of the body from its place of rest"),
         "heave": Measure(float(scene.body_place()[2] - scene.middle[2]), "m", "Height of the body over its rest"),
+        "rest_stretch": Measure(float(scene.rest_stretch.max()), "1", "Largest stretch of a line at rest"),
         "critical_step": Measure(found.stability.critical_step, "s", "Largest stable time step"),
     }

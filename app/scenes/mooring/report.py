@@ -5,9 +5,10 @@ from pathlib import PureWindowsPath
 
 from app.formats.formatting import metres, number, percent, seconds
 from app.messages import Snapshot
-from app.render.html import ERROR_COLOUR, Html, bold, coloured, faint, fill, info, join, table
+from app.render.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
 from app.scenes.mooring.frame import LineReading, MooringReadings
 from app.scenes.mooring.from_file import mooring_of
+from app.scenes.mooring.start_check import ADVISED, Fault, raised_points
 from app.scenes.springs.html import colour_scale, step_mark
 
 COLOURS = "Brown parts of a line lie on the bed. A red anchor is pulled upwards."
@@ -19,8 +20,10 @@ def kilonewtons(force: float) -> str:
 
 
 def figures_of(snapshot: Snapshot) -> str:
-    """The largest tension so far."""
+    """The fault of the start, or else the largest tension so far."""
     found: MooringReadings = snapshot.readings
+    if found.fault is not None and not snapshot.status.halted:  # which says it all
+        return coloured(found.fault.short, WARNING_COLOUR)
     line, t = found.most_at
     largest = max(one.most_at_fairlead for one in found.lines)
     return fill("Largest tension: {} kN, line {} at {}", bold(kilonewtons(largest)), line + 1, seconds(t))
@@ -73,10 +76,10 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
         "Bed and slack": join((bed_table(snapshot), said)),
     }
     path = snapshot.params.moordyn_file
-    return {"File": file_text(path), **notes} if path else notes
+    return {"File": file_text(path, snapshot.readings.fault), **notes} if path else notes
 
 
-def file_text(path: str) -> Html:
+def file_text(path: str, fault: Fault | None) -> Html:
     """The file of the mooring, and the parts of it without effect here."""
     found = mooring_of(path)
     system = found.system
@@ -84,8 +87,10 @@ def file_text(path: str) -> Html:
         "<div>{}: {} lines, {} points, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(path).name),
         len(system.lines), len(system.points), len(found.vessel), metres(system.depth),
     )  # fmt: skip
+    said = [] if fault is None else [coloured(fault.said, WARNING_COLOUR)]
+    notes = (*said, *found.notes, *raised_points(found))
     sketch = faint("The vessel is a sketch: the file has no shape, mass or waves for it.")
-    return join((count, *(fill("<div>{}</div>", note) for note in found.notes), sketch))
+    return join((count, *(fill("<div>{}</div>", note) for note in notes), sketch))
 
 
 def readout_of(snapshot: Snapshot) -> Html:
@@ -99,4 +104,8 @@ def readout_of(snapshot: Snapshot) -> Html:
 
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
-    return {"time_step": step_mark(snapshot.readings.stability.critical_step)}
+    found: MooringReadings = snapshot.readings
+    lines = {"time_step": step_mark(found.stability.critical_step), **dict.fromkeys(ADVISED, "")}
+    if found.fault is not None and found.fault.parameter:
+        lines[found.fault.parameter] = coloured(found.fault.said, WARNING_COLOUR)
+    return lines

@@ -3,14 +3,16 @@
 from typing import Any
 
 from app.scenes.charts import CurveAxes, PlotAxes
-from app.scenes.contract import Pieces, SceneKind
+from app.scenes.contract import Advice, Pieces, SceneKind
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
 from app.scenes.mooring.frame import MooringReadings
-from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, MAX_STRETCH, SERIES, LineScene
+from app.scenes.mooring.from_file import mooring_of
+from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, SERIES, LineScene
 from app.scenes.mooring.live_values import live_values
 from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import ABOUT, EXPLICIT, PRESETS, Params, hidden
+from app.scenes.mooring.start_check import raised_points
 from app.scenes.springs.divergence import holding_step
 
 PLOTS = {
@@ -49,10 +51,25 @@ def needs(params: Params) -> tuple[str, ...]:
     return ("leapfrog",) if params.integrator == "leapfrog" else ("leapfrog", params.integrator)
 
 
-def remedy(snapshot: Any) -> float:
-    """A time step [s] at which a run that diverged would have held; 0 if the step is not at fault."""
+def remedy(snapshot: Any) -> Advice | None:
+    """A value with which a run that diverged would have held; a shorter step only if the start is not at fault."""
     now: MooringReadings = snapshot.readings
-    return 0.0 if now.rest_stretch > MAX_STRETCH else holding_step(snapshot.params.time_step, now.stability)
+    if now.fault is not None and now.fault.is_grave:
+        return now.fault.advice
+    return holding_step(snapshot.params.time_step, now.stability)
+
+
+def advice(snapshot: Any) -> Advice | None:
+    """A value that mends the state at the start."""
+    now: MooringReadings = snapshot.readings
+    return None if now.fault is None else now.fault.advice
+
+
+def warnings(scene: LineScene) -> list[str]:
+    """Sentences on the state at the start."""
+    path = scene.params.moordyn_file
+    said = [] if scene.fault is None else [scene.fault.said]
+    return [*said, *(raised_points(mooring_of(path)) if path else ())]
 
 
 SCENE = SceneKind(
@@ -75,5 +92,7 @@ SCENE = SceneKind(
     },
     measures=measures,
     remedy=remedy,
+    advice=advice,
+    warnings=warnings,
     live_values=live_values,
 )  # fmt: skip

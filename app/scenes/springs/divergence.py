@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from app.formats.formatting import longest_step, number, percent, time_step
 from app.messages import Moment, vector_of
+from app.scenes.contract import Advice
 from app.scenes.springs.methods import method_name
 from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
@@ -78,12 +79,12 @@ def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
     return f"leapfrog with one up to {longest_step(longest)}"
 
 
-def holding_step(step: float, gauge: Gauge) -> float:
-    """A time step [s], 1/n with a round n, that would have held in a run that diverged; 0 if there is none."""
+def holding_step(step: float, gauge: Gauge) -> Advice | None:
+    """A time step, 1/n with a round n, that would have held in a run that diverged; None if there is none."""
     largest = MARGIN * gauge.critical_step if gauge.share > 1.0 else step / 4
     if not SHORTEST_STEP <= largest < math.inf:
-        return 0.0
+        return None
     rate = FIRST_RATE
     while 1 / rate > largest:
         rate *= 2
-    return 1 / rate if 1 / rate >= SHORTEST_STEP else 0.0
+    return Advice("time_step", 1 / rate, time_step(1 / rate)) if 1 / rate >= SHORTEST_STEP else None

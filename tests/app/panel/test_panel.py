@@ -14,10 +14,11 @@ from app.lab.folder import make_folder
 from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.messages import RunOn, Take
-from app.scenes import NAMES
+from app.messages import Reset, RunOn, Take
+from app.scenes import NAMES, scene_named
 from app.scenes.square_sea.parameters import Params
 from app.server.viewer import Viewer
+from sim.parameters import check_record
 from tests import coroutines
 from tests.waiting import wait_for
 
@@ -98,6 +99,25 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
         coroutines.run(callback(SimpleNamespace(target=panel.head.preset, client_id=1)))
     time.sleep(0.3)
     assert [c.start for c in posted] == [True, True]
+
+
+def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(viewer: Viewer) -> None:
+    viewer.open("mooring", check_record(scene_named("mooring").params, {"length": 40.0, "segments": 12}))
+    panel = viewer.panel
+    wait_for(lambda: "length" in panel.remedies.made)
+    button = panel.remedies.made["length"].button
+    assert (button.label, button.visible) == ("Use 84.5 m", True)
+    assert panel.controls["length"].line is not None
+    assert "cannot reach" in panel.controls["length"].line.content
+    posted: list[object] = []
+    panel.post = posted.append
+    for callback in button._impl.update_cb:
+        coroutines.run(callback(SimpleNamespace(target=button, client_id=1)))
+    assert panel.params.length == 84.5
+    assert posted == [Take(panel.params), Reset()]
+    viewer.commands.put(Take(panel.params))
+    wait_for(lambda: not button.visible)
+    assert "cannot reach" not in panel.controls["length"].line.content
 
 
 def test_a_sea_that_is_stepped_offers_to_run_on_to_a_high_crest(viewer: Viewer) -> None:

@@ -87,7 +87,7 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
         "largest_uplift": max(line.most_uplift for line in found.lines), "slack_share": 0.0,
         "lying_length": found.lines[0].lying + found.lines[1].lying, "largest_offset": found.most_offset,
         "heave": float(scene.state.x[2, scene.system.node_count]),
-        "critical_step": critical_step(scene.system, "leapfrog"),
+        "critical_step": critical_step(scene.system, "leapfrog"), "rest_stretch": float(scene.rest_stretch.max()),
     }  # fmt: skip
     assert {name: one.value for name, one in whole.items()} == pytest.approx(expected, rel=1e-6, abs=1e-9)
 

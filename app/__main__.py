@@ -8,7 +8,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -337,7 +337,7 @@ def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = 
     if arguments.hull is not None:
         params = with_hull(params, arguments.hull, mesh_reading(arguments))
     if arguments.mooring is not None:
-        params = with_mooring(params, arguments.mooring, "time_step" in setup.values)
+        params = with_mooring(params, arguments.mooring, setup.values)
     if arguments.spectrum is not None:
         params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in setup.values)
     return params
@@ -420,9 +420,10 @@ def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -
     return dataclasses.replace(params, length=tile_length(spectrum, params))
 
 
-def with_mooring(params: Any, path: Path, has_step: bool) -> Any:
-    """The parameters with the mooring of a MoorDyn file, and a stable time step unless one was given.
+def with_mooring(params: Any, path: Path, given: Container[str]) -> Any:
+    """The parameters with the mooring of a MoorDyn file, a stable time step, and no breaking load, which no file has.
 
+    given: names of parameters that stay as they are.
     Raises ValueError for another scene or a file that cannot be read, ConvergenceError for one without a state of rest.
     """
     from sim.mooring import critical_step, read_moordyn
@@ -435,7 +436,9 @@ def with_mooring(params: Any, path: Path, has_step: bool) -> Any:
     if system.node_count > MAX_MOORING_NODES:
         raise argument_error("--mooring", f"{path} of {system.node_count} nodes", f"at most {MAX_MOORING_NODES}")
     params = dataclasses.replace(params, moordyn_file=str(path))
-    if has_step:
+    if "breaking_load" not in given:
+        params = dataclasses.replace(params, breaking_load=0.0)
+    if "time_step" in given:
         return params
     step = float(f"{STEP_SAFETY * critical_step(system, params.integrator):.1e}")
     return dataclasses.replace(params, time_step=clamp_value(parameters_of(params)["time_step"], step))

@@ -152,6 +152,10 @@ class Point(NamedTuple):
     direction: Vector
 
 
+class RestartStatistics(NamedTuple):
+    """Begin the statistics of the run again."""
+
+
 class StudentAnswer(NamedTuple):
     """The process that runs a student's functions has come to a result, which the scene may take."""
 
@@ -174,7 +178,9 @@ class Advance(NamedTuple):
     answer: Future[float]
 
 
-SceneCommand = Place | Grab | Release | Point | StudentAnswer  # what a scene handles; the rest is the loop's
+SceneCommand = (
+    Place | Grab | Release | Point | RestartStatistics | StudentAnswer
+)  # what a scene handles; the rest is the loop's
 Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
 
 

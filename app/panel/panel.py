@@ -151,7 +151,7 @@ class Panel:
                 self.shown.add_group(name, is_open=name == OPEN_GROUP)
             if name == OPEN_GROUP:
                 self.run_on = None if kind.awaited is None else self.add_run_on(kind.awaited)
-                self.readings = Readings(gui, self.view, tab)
+                self.readings = Readings(gui, self.view, tab, lambda command: self.post(command))
         if kind.stability_map is not None:
             from app.panel import stability_map  # no sea imports what springs need
 

@@ -122,6 +122,6 @@ def table_head(columns: Iterable[tuple[object, object]]) -> Html:
 
 
 def table(columns: Iterable[tuple[object, object]], rows: Iterable[Sequence[object]]) -> Html:
-    """A table as wide as the panel, of at most five columns. columns: (name, unit) of each; rows: one cell a column."""
+    """A table as wide as the panel. columns: (name, unit) of each, at most seven; rows: one cell a column."""
     body = join(table_row(cells) for cells in rows)
     return fill('<table class="springtide-table">{}<tbody>{}</tbody></table>', table_head(columns), body)

@@ -145,10 +145,12 @@ class View(Protocol[P, F, R]):
     """The drawing of a scene, used on the viewer's thread only.
 
     FIELD_OF_VIEW: of a new camera, vertical [rad]. CAMERA: position and target [m] of a camera that has not been moved.
-    WARM_UP: everything to compile that the drawing may call.
+    WARM_UP: everything to compile that the drawing may call. BUTTONS: heading of a note -> label and command of each
+    button below its text.
     """
 
     WARM_UP: ClassVar[Pieces] = {}
+    BUTTONS: ClassVar[Mapping[str, Mapping[str, SceneCommand]]] = {}
     FIELD_OF_VIEW: float
     CAMERA: tuple[Vector, Vector]
 

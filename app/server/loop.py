@@ -23,10 +23,10 @@ from app.messages import (
     Pause,
     Place,
     Play,
-    Point,
     Release,
     Reset,
     RunOn,
+    SceneCommand,
     StepOnce,
     StudentAnswer,
     Take,
@@ -246,9 +246,7 @@ class SimLoop(Run):
     def handle(self, command: Command) -> None:
         """Carry out one command. A scene that could not begin takes other values, and has nothing to run."""
         match command:
-            case (
-                Play() | StepOnce() | TogglePlay() | RunOn() | Place() | Grab() | Release() | Point() | StudentAnswer()
-            ) if self.unmade:
+            case _ if self.unmade and isinstance(command, SceneCommand | Play | StepOnce | TogglePlay | RunOn):
                 pass
             case Play():
                 self.running, self.halted = True, ""

@@ -1,5 +1,6 @@
 """Numbers typed key by key, and what the panel says of playing, in a real browser."""
 
+from app.messages import Pause
 from app.panel.control import title
 from app.server.viewer import Viewer
 from sim.parameters import parameters_of
@@ -100,6 +101,24 @@ def test_a_preset_that_was_changed_is_chosen_again(shown: tuple[Viewer, Tab]) ->
     assert lab.panel.params.stiffness == 800.0
     tab.page.keyboard.press("u")
     tab.wait(lambda: field(lab, tab, "stiffness").input_value() == "2000", 10)
+
+
+def test_the_preset_that_is_shown_is_chosen_again_and_begins_again(shown: tuple[Viewer, Tab]) -> None:
+    viewer, tab = shown
+    preset = tab.page.get_by_label("Preset")
+    name = preset.input_value()
+    viewer.loop.commands.put(Pause())
+    tab.wait(lambda: not viewer.loop.running)
+    starts = viewer.loop.counts["starts"]
+    preset.click()
+    tab.page.get_by_role("option", name=name, exact=True).click()
+    tab.wait(lambda: viewer.loop.counts["starts"] > starts and viewer.loop.running)
+    assert preset.input_value() == name
+    preset.click()
+    tab.page.get_by_role("option", name="Pendulum", exact=True).click()
+    tab.wait(lambda: viewer.panel.loaded == "Pendulum")
+    tab.wait(lambda: viewer.loop.counts["starts"] == starts + 2)
+    assert not tab.errors
 
 
 def test_keys_go_to_the_lab_after_a_list_was_used(shown: tuple[Viewer, Tab]) -> None:

@@ -33,6 +33,16 @@
     send(field, draft === before.get(field) ? `${draft} ` : draft);
   }
 
+  // viser sends nothing where the preset that is shown is chosen again: the scene begins again by the panel's buttons.
+  document.addEventListener("click", ({ target }) => {
+    const option = target instanceof Element && target.closest('[role="option"][aria-selected="true"]');
+    const list = option && option.closest('[role="listbox"]');
+    const field = list && document.querySelector(`[aria-controls="${list.id}"]`);
+    const ofHead = [...document.querySelectorAll(".springtide-head .mantine-Select-input")]; // scene, if any, and preset
+    if (!field || field !== ofHead[ofHead.length - 1]) return;
+    for (const name of ["Reset", "Play"]) document.querySelector(`[data-springtide-icon="${name}"]`)?.click();
+  }, true);
+
   function restore(field) {
     if (drafts.has(field)) setText.call(field, before.get(field));
     drafts.delete(field);

@@ -29,8 +29,9 @@ ANCHOR_SPEED, FAIRLEAD_SPEED = 0.02, 0.1
 DRAG_RATE = 1.0  # [rad/s] natural frequency of the mouse's pull on the body
 FARTHEST = 5.0  # in lengths of a line and distances of anchors, beyond which a run has diverged
 CHANGING = (
-    "state", "system", "places", "tensions", "path", "path_count", "most_offset", "rest_place", "anchors",
-    "fairleads", "rest_scale", "rest_stretch", "fault", "failure", "body", "sea", "nodes", "links", "step_modes",
+    "state", "system", "places", "tensions", "path", "path_count", "most_offset", "farthest", "rest_place",
+    "anchors", "fairleads", "rest_scale", "rest_stretch", "fault", "failure", "body", "sea", "nodes", "links",
+    "step_modes",
 )  # fmt: skip
 
 
@@ -85,7 +86,12 @@ class MooringScene(LineScene):
         self.system = build(self.params, self.places, self.body, self.sea)
         self.state.system = self.system
 
-    def handle(self, command: SceneCommand) -> None:
+    @property
+    def is_dragged(self) -> bool:
+        """True while a user moves an anchor, a fairlead or the body."""
+        return self.hold is not None or not all(one.at_rest for one in (*self.anchors, *self.fairleads))
+
+    def drag(self, command: SceneCommand) -> None:
         """Move an anchor or a fairlead, pull the body, or let go of it."""
         match command:
             case Place(thing, (x, y, z)):

@@ -25,8 +25,8 @@ VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
 FARTHEST = 10.0  # in `extent`s, beyond which a run has diverged
 CURVE_POINTS = 17  # offsets at which the statics of all lines are solved
 CHANGING = (
-    "state", "system", "tensions", "path", "path_count", "most_offset", "vessel", "rest_scale", "rest_stretch",
-    "fault", "failure", "sea", "step_modes", "moved_by",
+    "state", "system", "tensions", "path", "path_count", "most_offset", "farthest", "vessel", "rest_scale",
+    "rest_stretch", "fault", "failure", "sea", "step_modes", "moved_by",
 )  # fmt: skip
 
 
@@ -114,7 +114,12 @@ class FileScene(LineScene):
         self.system = self.arranged()
         self.state.system = self.system
 
-    def handle(self, command: SceneCommand) -> None:
+    @property
+    def is_dragged(self) -> bool:
+        """True while a user moves the vessel."""
+        return self.hold is not None or not self.vessel.at_rest
+
+    def drag(self, command: SceneCommand) -> None:
         """Drag the vessel, or leave it where it is."""
         match command:
             case Grab(0, target, client) if self.hold is None or self.hold[0] == client:

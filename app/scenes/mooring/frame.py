@@ -32,18 +32,27 @@ class MooringFrame(NamedTuple):
     pull: Vector | None  # [m] where the mouse pulls the body to
 
 
+class EndStatistics(NamedTuple):
+    """Statistics of the tension at one end of a line since they began; NaN before the first sample."""
+
+    least: float  # [N]
+    mean: float  # [N]
+    largest: float  # [N]
+    deviation: float  # [N] standard deviation
+
+
 class LineReading(NamedTuple):
     """One line."""
 
     fairlead: float  # [N] tension
     anchor: float  # [N]
-    most_at_fairlead: float  # [N] the largest since the start
-    most_at_anchor: float  # [N]
+    at_fairlead: EndStatistics
+    at_anchor: EndStatistics
     uplift: float  # [N] upward force on the anchor
-    most_uplift: float  # [N]
+    most_uplift: float  # [N] since the statistics began
     lying: float  # [m] of unstretched length on the bed
     slack_since: float  # [s] of simulated time; NaN: the line is taut at the fairlead
-    slack_share: float  # of the time so far
+    slack_share: float  # of the time of the statistics
 
 
 class MooringReadings(NamedTuple):
@@ -51,7 +60,11 @@ class MooringReadings(NamedTuple):
 
     lines: tuple[LineReading, ...]
     offset: float  # [m] level distance of the body from its place of rest
-    most_offset: float  # [m]
+    most_offset: float  # [m] since the statistics began
     most_at: tuple[int, float]  # line, from 0, and time [s] of the largest tension
     stability: Gauge
     fault: Fault | None  # of the state that the mooring starts with
+    since: float  # [s] when the statistics began
+    duration: float  # [s] of the statistics: without drags and what they leave behind
+    counts: bool  # False while the time is left out
+    dragged: float  # [N] largest tension at a fairlead in the time that was left out; NaN: there was none

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, SceneCommand, Vector, vector_of
+from app.messages import PlotRow, RestartStatistics, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
 from app.scenes.moments import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
@@ -90,7 +90,7 @@ class LineScene(abc.ABC):
         self.check_start(rest)
         self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
         self.path, self.path_count = np.empty((0, 2), np.float32), 0
-        self.most_offset = 0.0
+        self.most_offset = self.farthest = 0.0  # [m] of the statistics, and since the start
         self.assess_stability()
         self.tensions = Tensions(len(self.links))
         self.measure()
@@ -121,9 +121,23 @@ class LineScene(abc.ABC):
     def change_forces(self, params: Params) -> None:
         """Take parameters; the motion goes on."""
 
+    @property
     @abc.abstractmethod
-    def handle(self, command: SceneCommand) -> None:
+    def is_dragged(self) -> bool:
+        """True while a user moves a part of the mooring."""
+
+    @abc.abstractmethod
+    def drag(self, command: SceneCommand) -> None:
         """Carry out a command of the mouse."""
+
+    def handle(self, command: SceneCommand) -> None:
+        """Carry out a command of the mouse, or begin the statistics again."""
+        if isinstance(command, RestartStatistics):
+            self.tensions.restart()
+            self.most_offset = 0.0
+            self.measure()
+        else:
+            self.drag(command)
 
     @abc.abstractmethod
     def lengths(self) -> NDArray[np.float64]:
@@ -226,10 +240,14 @@ class LineScene(abc.ABC):
         v = state.velocities(p, 0.0)
         set_tensions(state.x.reshape(-1), v, p, tension)
         self.tension, self.points = tension[self.links], self.points_at(state.x)
+        if self.is_dragged:
+            self.tensions.leave_out(state.t, self.params.wave_period)
         self.tensions.measure(state.t, self.tension, self.points)
         place = self.body_place()
         self.offset = float(np.linalg.norm((place - self.rest_place)[:2]))
-        self.most_offset = max(self.most_offset, self.offset)
+        self.farthest = max(self.farthest, self.offset)
+        if self.tensions.counts:
+            self.most_offset = max(self.most_offset, self.offset)
         if state.t >= PATH_INTERVAL * self.path_count:
             self.path = np.concatenate((self.path[1 - MAX_PATH :], place[None, :2].astype(np.float32)))
             self.path_count += 1
@@ -240,7 +258,7 @@ class LineScene(abc.ABC):
         fairleads, anchors = (1e-3 * one[:MAX_LINES] for one in (now.fairlead, now.anchor))
         missing = (math.nan,) * (MAX_LINES - len(fairleads))
         self.plot_rows.add(
-            self.time, *fairleads.tolist(), *missing, 1e-3 * float(now.most_fairlead.max()), *anchors.tolist(),
+            self.time, *fairleads.tolist(), *missing, 1e-3 * float(now.at_fairlead.largest.max()), *anchors.tolist(),
             *missing, self.offset,
         )  # fmt: skip
 
@@ -248,7 +266,10 @@ class LineScene(abc.ABC):
         """Numbers for the panel."""
         now = self.tensions
         lines = now.readings(self.lying())
-        return MooringReadings(lines, self.offset, self.most_offset, now.most_at, self.stability, self.fault)
+        return MooringReadings(
+            lines, self.offset, self.most_offset, now.most_at, self.stability, self.fault, now.since,
+            now.at_fairlead.duration, now.counts, now.dragged,
+        )  # fmt: skip
 
     def frame(self) -> MooringFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""

@@ -41,6 +41,10 @@ class Params:
         80.0, 0.01, 1000.0, "kg/m", "Mass per metre of line, in air", log_from=0.01, title="Mass per metre"
     )
     axial_stiffness: float = in_line(5e7, 1e3, 1e10, "N", "Stiffness EA of a line", log_from=1e3, title="Stiffness EA")
+    breaking_load: float = in_line(
+        3450.0, 0.0, 1e5, "kN", "Tension at which a line breaks, of which the panel gives the use; 0: not known",
+        log_from=1.0, affects="look",
+    )  # fmt: skip
     line_damping: float = in_line(
         0.8, 0.0, 2.0, "", "Damping of the stretch of a segment, of the critical one", title="Internal damping"
     )
@@ -79,7 +83,9 @@ class Params:
     speed: float = speed_parameter(0.01, 8.0)
 
     surface: bool = in_look(True, doc="The water's surface")
-    watch: bool = in_look(True, doc="Path of the body, and the circle that it has not left", title="Watch circle")
+    watch: bool = in_look(
+        True, doc="Path of the body, and the circle that it has not left, but when dragged", title="Watch circle"
+    )
     handles: bool = in_look(True, doc="Arrows that move anchors and fairleads")
     grid: bool = in_look(True, doc="Lines on the bed (key G)")
     plot_tension: bool = in_plots(
@@ -95,9 +101,11 @@ class Params:
     moordyn_file: str = ""  # a MoorDyn file; it is named on the command line only, never by a browser
 
 
+# Breaking loads: studless chain of grade R3, 0.0223 d² (44 - 0.08 d) kN with d in mm (DNV-OS-E302) and 19.9 d² t/m;
+# polyester rope, 170466 d² kN with d in m and 0.7978 d² t/m (OrcaFlex, line type wizard).
 ROPE: dict[str, Any] = {
-    "diameter": 0.12, "line_mass": 11.0, "axial_stiffness": 5e6, "line_damping": 0.1, "drag_across": 1.2,
-    "drag_along": 0.05,
+    "diameter": 0.12, "line_mass": 11.0, "axial_stiffness": 5e6, "breaking_load": 2350.0, "line_damping": 0.1,
+    "drag_across": 1.2, "drag_along": 0.05,
 }  # fmt: skip
 
 PRESETS: dict[str, dict[str, Any]] = {
@@ -113,12 +121,13 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
     "Lazy wave with floats": {
         "lines": 1, "length": 150.0, "reach": 90.0, "depth": 60.0, "diameter": 0.15, "line_mass": 35.0,
-        "axial_stiffness": 2e7, "floats": True, "lift": 350.0, "steady_force": 8.0, "drag_across": 1.2,
+        "axial_stiffness": 2e7, "breaking_load": 0.0, "floats": True, "lift": 350.0, "steady_force": 8.0,
+        "drag_across": 1.2,
     },
     "The lab's buoy": {
         "lines": 1, "size": 1.8, "depth": 8.0, "reach": 6.0, "length": 11.5, "diameter": 0.02, "line_mass": 4.0,
-        "axial_stiffness": 1e6, "wave_height": 0.6, "wave_period": 3.0, "steady_force": 0.2, "time_step": 1 / 1000,
-        "segments": 16,
+        "axial_stiffness": 1e6, "breaking_load": 190.0, "wave_height": 0.6, "wave_period": 3.0, "steady_force": 0.2,
+        "time_step": 1 / 1000, "segments": 16,
     },
 }  # fmt: skip
 
@@ -136,7 +145,7 @@ ABOUT = {  # preset -> what it shows and what to try
 OF_NO_FILE = {
     "lines", "length", "reach", "depth", "friction", "steady_force", "handles",
     *(name for name, one in parameters_of(Params).items() if one.group in ("Line", "Body")),
-}  # fmt: skip
+} - {"breaking_load"}  # fmt: skip
 
 
 def hidden(params: Params) -> set[str]:

@@ -1,16 +1,18 @@
 """Texts of the mooring's panel."""
 
 import math
+from collections.abc import Sequence
 from pathlib import PureWindowsPath
 
 from app.formats.formatting import metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
-from app.scenes.mooring.frame import LineReading, MooringReadings
+from app.scenes.mooring.frame import EndStatistics, LineReading, MooringReadings
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.start_check import ADVISED, Fault, raised_points
 from app.scenes.springs.html import colour_scale, step_mark
 
+TENSIONS = "Tensions"  # heading
 COLOURS = "Brown parts of a line lie on the bed. A red anchor is pulled upwards."
 
 
@@ -25,8 +27,10 @@ def figures_of(snapshot: Snapshot) -> str:
     if found.fault is not None and not snapshot.status.halted:  # which says it all
         return coloured(found.fault.short, WARNING_COLOUR)
     line, t = found.most_at
-    largest = max(one.most_at_fairlead for one in found.lines)
-    return fill("Largest tension: {} kN, line {} at {}", bold(kilonewtons(largest)), line + 1, seconds(t))
+    largest = max(one.at_fairlead.largest for one in found.lines)
+    load = snapshot.params.breaking_load
+    use = fill(" ({})", percent(1e-3 * largest / load)) if load > 0.0 else ""
+    return fill("Largest tension: {} kN{}, line {} at {}", bold(kilonewtons(largest)), use, line + 1, seconds(t))
 
 
 def slack_text(found: LineReading, now: float) -> Html:
@@ -36,16 +40,38 @@ def slack_text(found: LineReading, now: float) -> Html:
     return coloured(f"since {seconds(now - found.slack_since)}", ERROR_COLOUR)
 
 
-def tension_table(snapshot: Snapshot) -> Html:
-    """Tensions now and their maxima, and slack, by line."""
-    found: MooringReadings = snapshot.readings
-    columns = (("Line", ""), ("Fairlead", "kN"), ("largest", "kN"), ("Anchor", "kN"), ("largest", "kN"))
+def tension_table(name: str, ends: Sequence[tuple[float, EndStatistics]], breaking_load: float) -> Html:
+    """Tensions at one end of all lines: now, and their statistics. breaking_load: [kN], 0 if it is not known."""
+    columns = [(name, ""), *((word, "kN") for word in ("now", "min", "mean", "max", "SD"))]
     rows = [
-        (i + 1, kilonewtons(one.fairlead), kilonewtons(one.most_at_fairlead), kilonewtons(one.anchor),
-         kilonewtons(one.most_at_anchor))
-        for i, one in enumerate(found.lines)
-    ]  # fmt: skip
+        [i + 1, *map(kilonewtons, (now, of.least, of.mean, of.largest, of.deviation))]
+        for i, (now, of) in enumerate(ends)
+    ]
+    if breaking_load > 0.0:
+        columns.append(("use", "%"))
+        for row, (_, of) in zip(rows, ends, strict=True):
+            row.append(number(0.1 * of.largest / breaking_load, 2))
     return table(columns, rows)
+
+
+def tension_tables(snapshot: Snapshot) -> Html:
+    """The tensions at the fairleads of all lines, and those at their anchors."""
+    found: MooringReadings = snapshot.readings
+    load = snapshot.params.breaking_load
+    fairleads = [(one.fairlead, one.at_fairlead) for one in found.lines]
+    anchors = [(one.anchor, one.at_anchor) for one in found.lines]
+    return join((tension_table("Fairlead", fairleads, load), tension_table("Anchor", anchors, load)))
+
+
+def statistics_text(snapshot: Snapshot) -> Html:
+    """The time of the statistics, and the largest tension in the time that was left out."""
+    found: MooringReadings = snapshot.readings
+    words = fill("Over {} since t = {}", seconds(found.duration), seconds(found.since))
+    if not math.isnan(found.dragged):
+        pause = "" if found.counts else ", which are left out until three wave periods have gone by"
+        words = fill("{}, without drags{}; while dragged: {} kN", words, pause, bold(kilonewtons(found.dragged)))
+    use = "largest tension over the breaking load" if snapshot.params.breaking_load > 0.0 else "set the breaking load"
+    return fill("<div>{}</div>{}", words, faint(fill("SD: standard deviation. Use: {}.", use)))
 
 
 def bed_table(snapshot: Snapshot) -> Html:
@@ -72,7 +98,7 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
     said = faint("Slack: the share of time, or since when, in which the last segment is not stretched.")
     notes: dict[str, str] = {
-        "Tensions": join((offset_text(snapshot), tension_table(snapshot))),
+        TENSIONS: join((offset_text(snapshot), tension_tables(snapshot), statistics_text(snapshot))),
         "Bed and slack": join((bed_table(snapshot), said)),
     }
     path = snapshot.params.moordyn_file

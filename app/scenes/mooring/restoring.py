@@ -71,7 +71,7 @@ class RestoringCurve:
     def chart(self, scene: "LineScene") -> Chart:
         """The chart; the curve is found again where anything that it depends on is another."""
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
-        far = 2.0 ** math.ceil(math.log2(max(scene.most_offset, 1e-3)))
+        far = 2.0 ** math.ceil(math.log2(max(scene.farthest, 1e-3)))
         key = scene.static_inputs(far)
         if key != self.made_of:
             self.curve = key.curve()

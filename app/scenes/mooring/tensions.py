@@ -1,44 +1,95 @@
-"""What is kept of the tensions: the largest, when a line went slack, and for how long it was."""
+"""Statistics of the tensions and the slack of lines, without the times of drags."""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenes.mooring.frame import LineReading
+from app.scenes.mooring.frame import EndStatistics, LineReading
+
+SETTLING_PERIODS = 3.0  # of the waves after a drag, until its motion has died down
+
+Array = NDArray[np.float64]
+
+
+class RunningStatistics:
+    """Least, mean, largest and standard deviation of `count` numbers over time, by West's update (1979, CACM 22:532).
+
+    A number counts for the time since the one before.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.least, self.largest = np.full((2, count), math.nan)
+        self.mean, self.squares = np.zeros((2, count))  # squares: sum of squared deviations, times their times
+        self.duration = 0.0  # [s]
+
+    def add(self, values: Array, duration: float) -> None:
+        """Take numbers (count,) that hold for `duration` [s]."""
+        self.least, self.largest = np.fmin(self.least, values), np.fmax(self.largest, values)
+        self.duration += duration
+        away = values - self.mean
+        self.mean = self.mean + away * (duration / self.duration if self.duration > 0.0 else 1.0)
+        self.squares = self.squares + duration * away * (values - self.mean)
+
+    def each(self) -> list[EndStatistics]:
+        """Those of each number; NaN before the first."""
+        deviation = np.sqrt(self.squares / max(self.duration, 1e-9))
+        known = np.where(np.isnan(self.least), math.nan, 1.0)
+        rows = np.stack((self.least, self.mean * known, self.largest, deviation * known), axis=1)
+        return [EndStatistics(*row) for row in rows.tolist()]
 
 
 class Tensions:
-    """Tensions and uplift of so many lines, since the start."""
+    """Tensions and uplift of so many lines, since the statistics began."""
 
     def __init__(self, lines: int) -> None:
         self.fairlead, self.anchor, self.uplift = np.zeros((3, lines))  # [N] now
-        self.most_fairlead, self.most_anchor, self.most_uplift = np.zeros((3, lines))  # [N]
-        self.most_at = (0, 0.0)  # line, and time [s], of the largest tension
         self.slack_since = np.full(lines, math.nan)  # [s]
-        self.slack_time, self.time = np.zeros(lines), 0.0  # [s]
+        self.time = self.counted_from = 0.0  # [s] now, and when what a drag has left behind has died down
+        self.restart()
 
-    def measure(self, t: float, tension: NDArray[np.float64], points: NDArray[np.float64]) -> None:
+    def restart(self) -> None:
+        """Begin the statistics now."""
+        lines = len(self.fairlead)
+        self.since = self.time  # [s]
+        self.at_fairlead, self.at_anchor = RunningStatistics(lines), RunningStatistics(lines)
+        self.most_uplift, self.slack_time = np.zeros((2, lines))  # [N], [s]
+        self.most_at = (0, self.time)  # line, and time [s], of the largest tension
+        self.dragged = math.nan  # [N] largest tension at a fairlead while it was dragged, and until that died down
+
+    def leave_out(self, t: float, period: float) -> None:
+        """Leave out the time t [s] and all until `SETTLING_PERIODS` of a period [s] have gone by."""
+        self.counted_from = t + SETTLING_PERIODS * period
+
+    @property
+    def counts(self) -> bool:
+        """False while the time is left out."""
+        return self.time >= self.counted_from
+
+    def measure(self, t: float, tension: Array, points: Array) -> None:
         """Take the tensions (lines, segments) [N] at time t [s], of nodes at points (lines, segments + 1, 3) [m]."""
+        duration, self.time = t - self.time, t
         self.fairlead, self.anchor = tension[:, -1].copy(), tension[:, 0].copy()
         first = points[:, 1] - points[:, 0]
         self.uplift = np.maximum(self.anchor * first[:, 2] / np.maximum(np.linalg.norm(first, axis=1), 1e-12), 0.0)
-        line = int(self.fairlead.argmax())
-        if self.fairlead[line] > self.most_fairlead.max():
-            self.most_at = line, t
-        self.most_fairlead = np.maximum(self.most_fairlead, self.fairlead)
-        self.most_anchor = np.maximum(self.most_anchor, self.anchor)
-        self.most_uplift = np.maximum(self.most_uplift, self.uplift)
         is_slack = self.fairlead <= 0.0
-        self.slack_time += np.where(is_slack, t - self.time, 0.0)
         self.slack_since = np.where(is_slack, np.where(np.isnan(self.slack_since), t, self.slack_since), math.nan)
-        self.time = t
+        if not self.counts:
+            self.dragged = float(np.fmax(self.dragged, self.fairlead.max()))
+            return
+        line, most = int(self.fairlead.argmax()), self.at_fairlead.largest
+        if np.isnan(most).all() or self.fairlead[line] > most.max():
+            self.most_at = line, t
+        self.at_fairlead.add(self.fairlead, duration)
+        self.at_anchor.add(self.anchor, duration)
+        self.most_uplift = np.maximum(self.most_uplift, self.uplift)
+        self.slack_time = self.slack_time + np.where(is_slack, duration, 0.0)
 
-    def readings(self, lying: NDArray[np.float64]) -> tuple[LineReading, ...]:
+    def readings(self, lying: Array) -> tuple[LineReading, ...]:
         """Each line. lying: (lines,) [m] of each on the bed."""
-        share = self.slack_time / max(self.time, 1e-9)
-        columns = (
-            self.fairlead, self.anchor, self.most_fairlead, self.most_anchor, self.uplift, self.most_uplift, lying,
-            self.slack_since, share,
-        )  # fmt: skip
-        return tuple(LineReading(*row) for row in np.stack(columns, axis=1).tolist())
+        share = self.slack_time / max(self.at_fairlead.duration, 1e-9)
+        columns = self.uplift, self.most_uplift, lying, self.slack_since, share
+        ends = zip(
+            self.fairlead.tolist(), self.anchor.tolist(), self.at_fairlead.each(), self.at_anchor.each(), strict=True
+        )
+        return tuple(LineReading(*end, *row) for end, row in zip(ends, np.stack(columns, axis=1).tolist(), strict=True))

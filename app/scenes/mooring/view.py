@@ -8,7 +8,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.formats.packing import compile_packing
-from app.messages import Snapshot, Vector
+from app.messages import RestartStatistics, Snapshot, Vector
 from app.render.cameras import set_clipping
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
@@ -23,7 +23,7 @@ from app.scenes.contract import View as SceneView
 from app.scenes.mooring.arrangement import depth_of, diameter_of, extent, has_body, hull_of, width_of
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
-from app.scenes.mooring.report import figures_of, marks_of, notes_of, readout_of
+from app.scenes.mooring.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
 from app.scenes.springs.view import compile_tube
 
 SIDES = 6  # of a tube
@@ -108,6 +108,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
 
     FIELD_OF_VIEW = 0.8  # [rad]
     WARM_UP: ClassVar[Pieces] = {"drawing": compile_tube, "packing": compile_packing}
+    BUTTONS: ClassVar = {TENSIONS: {"Restart the statistics": RestartStatistics()}}
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         self.server, self.post = server, post

@@ -115,6 +115,9 @@ def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(v
         coroutines.run(callback(SimpleNamespace(target=button, client_id=1)))
     assert panel.params.length == 84.5
     assert posted == [Take(panel.params), Reset()]
+    folders = [folder.order for folder, _ in panel.readings.notes.values()]
+    assert list(panel.readings.notes) == ["Tensions", "Bed and slack"]
+    assert panel.readings.readout.order < folders[0] < folders[1] < panel.folders["Line"].order
     viewer.commands.put(Take(panel.params))
     wait_for(lambda: not button.visible)
     assert "cannot reach" not in panel.controls["length"].line.content

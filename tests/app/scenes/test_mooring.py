@@ -58,7 +58,7 @@ def test_every_preset_rests_runs_and_stays_within_its_stable_step(preset):
     assert scene.step < scene.stability.critical_step
     run(scene, 1.0)
     found = scene.readings()
-    assert all(line.most_at_fairlead > 0.0 for line in found.lines)
+    assert all(line.at_fairlead.largest > 0.0 for line in found.lines)
     assert found.most_offset < 1.0
 
 
@@ -114,7 +114,7 @@ def test_slack_is_counted_and_dated():
             assert tensions.slack_since[0] == 1.0
     assert math.isnan(tensions.slack_since[0])
     first, second = tensions.readings(np.zeros(2))
-    assert (first.most_at_fairlead, tensions.most_at) == (8.0, (0, 2.0))
+    assert (first.at_fairlead.largest, tensions.most_at) == (8.0, (0, 2.0))
     assert (first.slack_share, second.slack_share) == (0.5, 0.0)
     assert (second.uplift, second.anchor) == (2.0, 2.0)  # its first segment stands upright
 
@@ -122,7 +122,7 @@ def test_slack_is_counted_and_dated():
 def test_a_snap_is_the_largest_tension_after_slack():
     scene = MooringScene(check_record(Params, PRESETS["Snap in a storm"]))
     static, slack = scene.readings().lines[0].fairlead, False
-    while scene.time < 40.0 and scene.tensions.most_fairlead[0] < 4.0 * static:
+    while scene.time < 40.0 and scene.tensions.at_fairlead.largest[0] < 4.0 * static:
         scene.advance(8)
         slack |= not math.isnan(scene.tensions.slack_since[0])
     assert slack
@@ -136,7 +136,8 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
     scene.handle(Place("anchor 1", (-95.0, 5.0, 30.0)))
     run(scene, 14.0)
     assert scene.points[0, 0] == pytest.approx((-95.0, 5.0, -40.0), abs=1e-6)
-    assert before < scene.readings().lines[0].most_at_fairlead < 10.0 * before  # no jerk
+    assert before < scene.tensions.dragged < 10.0 * before  # no jerk
+    assert scene.readings().lines[0].at_fairlead.largest == pytest.approx(before, rel=1e-3)
     scene.handle(Place("anchor 1", (-1e6, 0.0, 0.0)))  # no farther than the line reaches
     assert np.linalg.norm(scene.anchors[0].target) < 130.0
     scene.handle(Place("anchor 1", (-95.0, 5.0, 0.0)))

@@ -39,7 +39,7 @@ class RaceCharts:
         self.rows = np.zeros((MAX_ROWS, 2 + 2 * len(race.entrants)))
         self.count = 0
         self.row_interval = ROW_INTERVAL  # [s]
-        self.number = -1  # of the last row; the first is that of the first tick
+        self.number = -1  # of the last row; the first is that of the start
         self.drawn: dict[str, Chart] = {}
         net = race.entrants[0].net
         n, weight = net.shape[1] - 1, net.mass * abs(net.gravity[2])

@@ -99,6 +99,7 @@ class RaceScene:
         self.net = build_rope(self.params, self.handles.root.position)  # of rope 1
         self.race = Race(self.net, self.params)
         self.charts = RaceCharts(self.race)
+        self.charts.update()  # of the start
         self.assessed_at = 0.0  # [s]
 
     def keep(self) -> dict[str, object]:

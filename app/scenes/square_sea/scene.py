@@ -290,10 +290,18 @@ class SquareSeaScene:
 
     def advance(self, steps: int) -> None:
         """Move the clock, and a nonlinear sea with it."""
+        if self.steps == 0 and self.plot_rows.is_due(self.time):
+            self.read_gauge()
+            self.plot_rows.add(self.time, self.gauge.height)  # of the start
         if self.marching is not None:
             self.marching.advance((self.steps + steps) * self.step)
         self.steps += steps
         self.counts["steps"] += steps
+
+    def read_gauge(self) -> None:
+        """Have the wave gauge read the sea as it is now."""
+        self.gauge.read(*self.water, self.params.amplitude)
+        self.counts["gauge readings"] += 1
 
     @property
     def gauge_shown(self) -> bool:
@@ -332,8 +340,7 @@ class SquareSeaScene:
             rain = self.rainfall.frame()
         gauge, row_is_due = None, self.plot_rows.is_due(t)
         if self.gauge_shown or row_is_due:
-            self.gauge.read(*self.water, p.amplitude)
-            self.counts["gauge readings"] += 1
+            self.read_gauge()
         if self.gauge_shown:
             gauge = (*self.gauge.at, self.gauge.height)
         if row_is_due:

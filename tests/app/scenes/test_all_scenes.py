@@ -1,12 +1,15 @@
 """Claims that every scene has to keep, and those of every scene of springs."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
 import pytest
 
-from app.messages import Grab, Release
+from app.messages import Grab, Release, Reset
 from app.scenes import NAMES, scene_named
+from app.scenes.charts import Chart
+from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
 
 PRESETS = [(name, preset) for name in NAMES for preset in scene_named(name).presets]
@@ -56,3 +59,21 @@ def test_what_one_browser_holds_no_other_takes_or_releases(name: str, values: di
     assert scene.frame().pull is None
     scene.handle(Grab(other, (1.0, 0.0, 2.0), client=2))
     assert scene.frame().pull.particle == other
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_plots_begin_at_the_start_of_a_run(name: str) -> None:
+    kind = scene_named(name)
+    params = kind.params()
+    charts = dict.fromkeys((*kind.plots, *kind.curves), True)
+    loop = SimLoop(kind.make(dataclasses.replace(params, **charts)), effort=lambda: 0.0)
+    for _ in range(2):
+        loop.commands.put(Reset())
+        loop.plot_rows.clear()
+        for _ in range(10):
+            loop.tick(1 / 60)
+        times = [row[0] for row in loop.plot_rows]
+        assert times[1:2] == ([0.0] if kind.plots else [])  # after the row that clears the plots
+        over_time = [c for c in (loop.latest.curves or {}).values() if isinstance(c, Chart) and c.first == "t [s]"]
+        assert all(chart.columns[0][0] == 0.0 for chart in over_time)
+        assert times or over_time

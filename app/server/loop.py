@@ -79,6 +79,7 @@ class SimLoop(Run):
         self.admit, self.sleep, self.gives_way = admit, sleep, gives_way
         self.is_late = False  # controls were answered in the middle of the last tick
         self.turn_at = 0.0  # [s] of the clock, when controls were last answered
+        self.in_turn = False  # controls are being answered in the middle of a solve
         self.lateness = 0.0  # [s] by which sleeps lately ended too late, as others had the processor
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
         self.busy_since: float | None = None  # [s] of the clock, while a tick runs
@@ -164,7 +165,7 @@ class SimLoop(Run):
 
     def turn_is_due(self) -> bool:
         """True if input has been pending for longer than PATIENCE."""
-        return self.busy_since is not None and self.clock() - self.turn_at >= PATIENCE
+        return self.busy_since is not None and not self.in_turn and self.clock() - self.turn_at >= PATIENCE
 
     def ask_for_turn(self) -> None:
         """Have controls answered in the middle of a solve that takes long; called from another thread."""
@@ -177,9 +178,12 @@ class SimLoop(Run):
         What asks for another solve ends this one; the next tick handles it, from the last good state. What does not is
         answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on. A reset, a
         change of forces, and what is kept whole are ended only where the scene begins anew; else parameters are
-        answered with the last frame, and the next tick takes them.
+        answered with the last frame, and the next tick takes them. A turn has no turn within it: what it shows may
+        need a solve of its own.
         """
-        self.turn_at = self.clock()
+        if self.in_turn:
+            return
+        self.in_turn, self.turn_at = True, self.clock()
         # A turn that was due at the start of a short tick is no reason for one in the next.
         self.is_late |= self.busy_since is not None and self.turn_at - self.busy_since >= PATIENCE
         try:
@@ -207,6 +211,8 @@ class SimLoop(Run):
                 self.publish_in_solve(params, with_frame=within_steps)
         except Exception:  # the solve knows nothing of it
             traceback.print_exc()
+        finally:
+            self.in_turn = False
 
     def drags_waiting(self) -> list[Grab | Place | Release]:
         """The drags among the waiting commands; the others go on waiting for the next tick."""

@@ -289,6 +289,31 @@ def test_a_turn_that_is_due_is_given_though_nobody_asks():
     contextvars.copy_context().run(try_out)
 
 
+def test_what_a_turn_shows_may_need_a_solve_but_gives_no_further_turn(busy, monkeypatch, capsys):
+    """As the restoring curve of a mooring, whose chart is opened while steps run."""
+    calls = []
+
+    def curves():
+        calls.append(1)
+        raise_if_stopped()
+        busy.give_turn()
+        return {}
+
+    monkeypatch.setattr(busy.scene, "curves", curves)
+    monkeypatch.setattr(busy, "clock", lambda: 1.0 + 2.0 * PATIENCE * len(calls))  # each takes long
+
+    def try_out():
+        use_request(busy.request, busy.give_turn, busy.turn_is_due)
+        params = ask(busy, grid=False)
+        raise_if_stopped()
+        return params
+
+    params = contextvars.copy_context().run(try_out)
+    assert (len(calls), busy.latest.params) == (1, params)
+    assert busy.turn_is_due()
+    assert capsys.readouterr().err == ""
+
+
 @pytest.mark.parametrize("changes", [{"integrator": "implicit_euler", "time_step": 0.05}, {"thickness": 0.1}])
 def test_a_cloth_gives_turns_within_a_step_and_shows_the_last_whole_one(changes):
     scene = ClothScene(ClothParams(rows=16, cols=16, **changes))

@@ -42,6 +42,11 @@ class PlotRows:
         self.waiting.append((t, *values))
         self.number = row_number(t, self.interval)
 
+    def add_due(self, t: float, *values: float) -> None:
+        """Add the row of time t [s] if one is due."""
+        if self.is_due(t):
+            self.add(t, *values)
+
     def take(self) -> tuple[PlotRow, ...]:
         """The rows since the last call."""
         rows = tuple(self.waiting)

@@ -146,11 +146,11 @@ class SquareSeaScene:
 
     def reset(self) -> None:
         """The sea at time 0, with the wave gauge where a new scene has it."""
-        self.steps = 0
+        self.steps, self.gauge_placed = 0, False  # placed: by a click
         self.gauge.put(gauge_home(self.params.length, is_near=not marches(self.params)))
-        self.gauge_placed = False  # by a click
         self.begin_plots()
         self.make_sea()
+        self.read_gauge()  # for the row of the start
 
     def keep(self) -> dict[str, object]:
         """Sea, foam and rain, as they are now."""
@@ -290,18 +290,16 @@ class SquareSeaScene:
 
     def advance(self, steps: int) -> None:
         """Move the clock, and a nonlinear sea with it."""
-        if self.steps == 0 and self.plot_rows.is_due(self.time):
-            self.read_gauge()
-            self.plot_rows.add(self.time, self.gauge.height)  # of the start
         if self.marching is not None:
             self.marching.advance((self.steps + steps) * self.step)
         self.steps += steps
         self.counts["steps"] += steps
 
     def read_gauge(self) -> None:
-        """Have the wave gauge read the sea as it is now."""
+        """Have the wave gauge read the sea as it is now, and add a plot row if one is due."""
         self.gauge.read(*self.water, self.params.amplitude)
         self.counts["gauge readings"] += 1
+        self.plot_rows.add_due(self.time, self.gauge.height)
 
     @property
     def gauge_shown(self) -> bool:
@@ -328,8 +326,7 @@ class SquareSeaScene:
     def draw(self) -> SeaFrame:
         """Evaluate the surface once, and bring foam, rain, wave gauge and statistics up to date with it."""
         p, t = self.params, self.time
-        dt = max(t - self.drawn_at, 0.0)
-        self.drawn_at = t
+        dt, self.drawn_at = max(t - self.drawn_at, 0.0), t
         transforms_before = self.water[0].transforms.count
         fields = self.fields()
         frame = self.make_frame(fields, dt)
@@ -338,13 +335,9 @@ class SquareSeaScene:
             self.counts["rings"] += self.rainfall.advance(self.sea, t, dt, *fields[:2], p.amplitude)
             self.counts["rainfall steps"] += 1
             rain = self.rainfall.frame()
-        gauge, row_is_due = None, self.plot_rows.is_due(t)
-        if self.gauge_shown or row_is_due:
+        if self.gauge_shown or self.plot_rows.is_due(t):
             self.read_gauge()
-        if self.gauge_shown:
-            gauge = (*self.gauge.at, self.gauge.height)
-        if row_is_due:
-            self.plot_rows.add(t, self.gauge.height)
+        gauge = (*self.gauge.at, self.gauge.height) if self.gauge_shown else None
         changing = p.viscosity > 0.0 or t - self.changed_at < SETTLING_TRANSITIONS * self.transition
         new = self.statistics.update(self.sea, p, t, fields.height, dt, changing=changing, marching=self.marching)
         self.counts["statistics"] += new

@@ -23,12 +23,11 @@ from app.scenes.contract import AnyKind, AnySnapshot
 SEND_INTERVAL = 0.12  # [s] between two sends
 MAX_ROWS = 5400  # kept: three minutes of a scene that adds 30 a second
 SHOWN_ROWS = 900  # in a chart: half a minute of them
-CHART_HEIGHT, TALL_CHART_HEIGHT = 220, 260  # [pixels] of a chart, and of one with a logarithmic scale
-PADDING = (12, 16, 0, 0)  # [pixels] above, right, below, left: room for half of the highest tick's words
+CHART_HEIGHT, TALL_CHART_HEIGHT = 180, 220  # [pixels] of a chart, and of one with a logarithmic scale, at first
+PADDING = (8, 16, 0, 0)  # [pixels] above, right, below, left: room for half of the highest tick's words
 DIGIT_WIDTH, TICK_ROOM = 7.5, 16.0  # [pixels] of a digit of a tick, and beside the words
 LOGARITHMIC_TICK_WIDTH = 66.0  # [pixels] for the words at a logarithmic scale
-WORDS = {"t": "time", "f": "frequency"}  # of the symbols at the first axes
-LABEL_HEIGHT = 20  # [pixels] of the name below the first axis
+FIRST_AXIS_HEIGHT = 28  # [pixels] of its ticks and their words
 TICKS = 4  # about so many intervals between two ends of a scale
 MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
 MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
@@ -191,9 +190,9 @@ class Plots:
         times = np.union1d(now[:, 0], before[:, 0])
         for name in behind:
             self.sent[name] = ends
-            series = self.kind.plots[name].series
-            rows = [1 + self.kind.series.index(one) for one in series]
-            lines, columns = lines_of(series), [at_times(times, now, row) for row in rows]
+            axes = self.kind.plots[name]
+            rows = [1 + self.kind.series.index(one) for one in axes.series]
+            lines, columns = axes.lines, [at_times(times, now, row) for row in rows]
             if kept:
                 lines = (*lines, *(kept_line(line) for line in lines))
                 columns += [at_times(times, before, row) for row in rows]
@@ -219,7 +218,7 @@ class Plots:
                 handle.scales = {**(handle.scales or {}), "x": time_scale}
             else:
                 handle.scales = {"x": time_scale, "y": uplot.Scale(auto=False, range=(scale.low, scale.high))}
-                handle.axes = axes_of(first, scale.ticks, scale.words)
+                handle.axes = axes_of(scale.ticks, scale.words)
         handle.data = tuple(np.asarray(column, float) for column in columns)
         self.drawn += 1
 
@@ -248,15 +247,15 @@ class Plots:
             plot = self.kind.plots[name]
             title, first, names, ticks = plot.heading, "t [s]", plot.series, ()
         scales = {"x": uplot.Scale(time=False, auto=True)}
-        looks = axes_of(first, (0.0, 1.0), ("0", "1"))
+        looks = axes_of((0.0, 1.0), ("0", "1"))
         if ticks:
             places, words = tuple(place for place, _ in ticks), tuple(word for _, word in ticks)
             scales["y"] = uplot.Scale(distr=3, log=10, range=(places[0], places[-1]), auto=False)
-            looks = axes_of(first, places, words, LOGARITHMIC_TICK_WIDTH)
+            looks = axes_of(places, words, LOGARITHMIC_TICK_WIDTH)
         with self.dock.tab:
             return self.server.gui.add_uplot(
-                (EMPTY, *(np.full(2, math.nan) for _ in names)),
-                series_of(first, lines_of(names)),
+                (EMPTY, np.full(2, math.nan)),
+                series_of(first, lines_of(names[:1])),  # the others are known once there are rows
                 title=title,
                 scales=scales,
                 axes=looks,
@@ -303,21 +302,13 @@ def kept_line(line: Line) -> Line:
     return Line(f"{line.label}, kept", line.colour + KEPT_OPACITY, 1.5, KEPT_DASH)
 
 
-def axes_of(
-    first: str, ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None
-) -> tuple[uplot.Axis, ...]:
-    """The two axes of a chart, the first with its name and unit, the second with words at its ticks.
+def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None) -> tuple[uplot.Axis, ...]:
+    """The two axes of a chart, the second with words at its ticks; `js/charts.js` writes the name of the first.
 
     width: [pixels] for the words.
     """
     size = width or TICK_ROOM + DIGIT_WIDTH * max(map(len, words))
-    return uplot.Axis(label=named(first), labelSize=LABEL_HEIGHT), uplot.Axis(splits=ticks, values=words, size=size)
-
-
-def named(first: str) -> str:
-    """Label of a first axis with the word of its symbol."""
-    word = WORDS.get(first.partition(" ")[0], "")
-    return f"{word} {first}".lstrip()
+    return uplot.Axis(size=FIRST_AXIS_HEIGHT, gap=2), uplot.Axis(splits=ticks, values=words, size=size)
 
 
 def series_of(first: str, lines: Sequence[Line]) -> tuple[uplot.Series, ...]:

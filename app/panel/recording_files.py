@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from app.messages import PlotRow
 from app.panel.recorder import Kept
 from app.render.line_chart import WIDTH, Drawing, line_chart
-from app.scenes.charts import Chart, Column, Columns, chart_of, lines_of, numbers_of, with_numbers
+from app.scenes.charts import Chart, Column, Columns, chart_of, numbers_of, with_numbers
 from app.scenes.contract import AnyKind
 from app.scenes.setups import shared_values
 
@@ -122,9 +122,7 @@ def plot_charts(kind: AnyKind, plotted: Plotted) -> list[Drawing]:
     if len(plotted.rows) > 1:
         table = np.array(plotted.rows, np.float64).T
         for plot in kind.plots.values():
-            lines, columns = with_numbers(
-                lines_of(plot.series), [table[1 + kind.series.index(name)] for name in plot.series]
-            )
+            lines, columns = with_numbers(plot.lines, [table[1 + kind.series.index(name)] for name in plot.series])
             charts.append(line_chart(plot.heading, TIME, lines, (table[0], *columns)))
     for name, curve in plotted.curves.items():
         axes = kind.curves[name]

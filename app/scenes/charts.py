@@ -1,5 +1,6 @@
 """Contents of a chart: columns of the plot rows over time, or columns that a scene makes whole."""
 
+import itertools
 from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
@@ -10,6 +11,8 @@ from app.messages import Line
 
 # Colours that can be told apart with any colour vision (Okabe and Ito, 2008); black and yellow last.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
+# To tell lines apart in grey, and to see one below another.
+DASHES = ((), (10.0, 4.0), (3.0, 3.0), (12.0, 3.0, 3.0, 3.0), (6.0, 6.0), (1.0, 4.0))
 COLOURS = ("#7048e8", "#1c7ed6", "#f76707", "#12b886", "#e64980", "#868e96", "#e03131")
 Column: TypeAlias = NDArray[np.floating]
 Columns: TypeAlias = tuple[Column, ...]  # the first is what the others stand over
@@ -22,6 +25,13 @@ class PlotAxes(NamedTuple):
     unit: str
     series: tuple[str, ...]  # names in the scene's `series`
     least: float = 0.0  # range of the scale, at least, so that rounding does not fill it
+    dashed: bool = False  # lines that may cover one another
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """How its series are drawn."""
+        lines = lines_of(self.series)
+        return dashed(lines) if self.dashed else lines
 
     @property
     def heading(self) -> str:
@@ -69,6 +79,11 @@ def lines_of(names: Sequence[str]) -> tuple[Line, ...]:
     return tuple(
         Line(name, colour, 3.0 if name == "total" else 2.0) for name, colour in zip(names, COLOURS, strict=False)
     )
+
+
+def dashed(lines: Sequence[Line]) -> tuple[Line, ...]:
+    """The lines with unlike dashes."""
+    return tuple(line._replace(dash=dash) for line, dash in zip(lines, itertools.cycle(DASHES)))
 
 
 def with_numbers(lines: Sequence[Line], columns: Sequence[Column]) -> tuple[tuple[Line, ...], tuple[Column, ...]]:

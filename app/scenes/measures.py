@@ -13,13 +13,13 @@ def plotted(scene: SceneKind[Any, Any, Any], row: PlotRow) -> dict[str, Measure]
     values = dict(zip(scene.series, row[1:], strict=True)) if row else {}
     taken = parameters_of(scene.params)
     found = {}
-    for title, unit, series, _ in scene.plots.values():
-        for column in series:
+    for axes in scene.plots.values():
+        for column in axes.series:
             name = slug(column)
             # The energy of gravity is not the parameter gravity.
-            name = f"{name}_{slug(title)}" if name in taken else name
-            meaning = column if column == title.lower() else f"{title}: {column}"
-            found[name] = Measure(values.get(column, math.nan), unit, meaning)
+            name = f"{name}_{slug(axes.title)}" if name in taken else name
+            meaning = column if column == axes.title.lower() else f"{axes.title}: {column}"
+            found[name] = Measure(values.get(column, math.nan), axes.unit, meaning)
     return found
 
 

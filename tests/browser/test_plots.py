@@ -1,6 +1,7 @@
 """The plots in a real browser."""
 
 import numpy as np
+import pytest
 
 from app.messages import Pause
 from app.panel.plots import Plots
@@ -46,4 +47,44 @@ def test_a_line_is_not_drawn_over_a_gap(shown: tuple[Viewer, Tab]) -> None:
     tab.wait(lambda: drawn(1.0, 3.5) > 0.95)
     tab.wait(lambda: drawn(4.2, 5.8) == 0.0, 20)
     assert drawn(6.5, 9.0) > 0.95
+    assert not tab.errors
+
+
+# Of the pane of the charts: its lower edge, the lower edge of the last chart that is whole, whether title and key share
+# a line, and the name at the end of each first axis.
+FILLED = """() => {
+    const pane = document.querySelector(".mantine-ScrollArea-viewport:has(.uplot):not(:has(.springtide-panel))");
+    if (!pane) return null;
+    const foot = pane.getBoundingClientRect().bottom, box = (node) => node.getBoundingClientRect();
+    const charts = [...pane.querySelectorAll(".uplot")].map((chart) => ({ bottom: box(chart).bottom,
+        axis: chart.querySelector(".u-over").dataset.springtideAxis,
+        beside: Math.abs(box(chart.querySelector(".u-title")).top - box(chart.querySelector(".u-legend")).top),
+        keys: chart.querySelectorAll(".u-legend .u-series").length }));
+    const whole = charts.filter(({ bottom }) => bottom <= foot);
+    return { left: foot - Math.max(0, ...whole.map(({ bottom }) => bottom)), charts, whole: whole.length }; }"""
+
+
+@pytest.mark.parametrize(("width", "height", "whole"), [(1000, 640, 1), (1000, 420, 1), (1400, 800, 3)])
+def test_charts_fill_their_drawer_at_any_height_with_the_key_beside_the_title(
+    shown: tuple[Viewer, Tab], width: int, height: int, whole: int
+) -> None:
+    lab, tab = shown
+    size = tab.page.viewport_size
+    tab.page.set_viewport_size({"width": width, "height": height})
+    for name in ("plot_energy", "plot_losses", "plot_tip"):
+        lab.panel.set(name, True)
+
+    def is_filled() -> bool:
+        found = tab.page.evaluate(FILLED)
+        return bool(found) and len(found["charts"]) == 3 and found["whole"] == whole and found["left"] < 24
+
+    try:
+        tab.wait(is_filled, 30)
+        charts = tab.page.evaluate(FILLED)["charts"]
+        assert [chart["axis"] for chart in charts] == ["t [s]"] * 3
+        if width == 1000:
+            tab.wait(lambda: [chart["keys"] for chart in tab.page.evaluate(FILLED)["charts"]] == [5, 2, 1], 20)
+            assert tab.page.evaluate(FILLED)["charts"][0]["beside"] < 6
+    finally:
+        tab.page.set_viewport_size(size)
     assert not tab.errors

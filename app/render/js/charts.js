@@ -3,7 +3,7 @@
 // Crosses at the upper edge, with their words, at the values of the series of the class "springtide-cross".
 // The time axis: viser keeps the part of it that is shown, and on a slow page loses it when a chart is made anew. Here all
 // of it is shown again, unless it was zoomed by hand.
-// The height of the charts: those of a pane fill it.
+// The name of the first axis, at its end (page.css). The height of the charts: a whole number of them fills their pane.
 // A line in the charts over time, where the recording is shown: the panel says the time in `data-springtide-moment`.
 //
 // Of viser this file uses window.__viserTestpoints.uplots, the charts of the page.
@@ -11,7 +11,12 @@
 (() => {
   "use strict";
   const SEARCH_INTERVAL = 200; // [ms] between two looks for new charts
-  const BELOW = 16; // [pixels] of a pane below its charts
+  const BELOW = 4; // [pixels] of a pane below its charts
+  const MIN_HEIGHT = 150; // [pixels] of a chart with its title, or as high as its pane
+  const MIN_CANVAS = 70; // [pixels] of a chart without its title
+  const PANES = ".mantine-ScrollArea-viewport:has(.uplot):not(:has(.springtide-panel))";
+  const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = '.mantine-Tabs-root:has(> [aria-label$=" panel Plots"])';
+  const PHONE_SHARE = 0.32; // of the window's height, for the plots on a phone (page.css)
   const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
   const CROSS = "springtide-cross", PLACED = "springtide-placed-cross";
   const CROSS_HEIGHT = 14, CROSS_WIDTH = 8; // [pixels] of a cross; its words stand to its right
@@ -98,18 +103,32 @@
     if (line.style.left !== left) line.style.left = left;
   }
 
-  // The charts of a pane share the height that it has left.
-  const least = new WeakMap(); // chart -> its height [pixels] as viser made it
+  // As many charts as fit share the height of a pane; one more is seen by scrolling.
   function fillPanes(charts) {
-    for (const pane of document.querySelectorAll(".mantine-ScrollArea-viewport:has(.uplot):not(:has(.springtide-panel))")) {
-      const own = charts.filter(({ root }) => pane.contains(root));
-      const spare = (pane.clientHeight - BELOW - pane.firstElementChild.offsetHeight) / own.length;
+    for (const pane of document.querySelectorAll(PHONE.matches ? PHONE_PANES : PANES)) {
+      const own = charts.filter(({ root }) => pane.contains(root) && root.offsetHeight);
+      own.sort((a, b) => a.root.getBoundingClientRect().top - b.root.getBoundingClientRect().top);
+      if (!own.length) continue;
+      const [first] = own, whole = PHONE.matches ? window.innerHeight * PHONE_SHARE : pane.clientHeight;
+      const top = first.root.getBoundingClientRect().top - pane.getBoundingClientRect().top + pane.scrollTop;
+      const room = whole - top - BELOW, between = gapOf(own);
+      const seen = Math.max(1, Math.min(own.length, Math.floor(room / MIN_HEIGHT)));
       for (const chart of own) {
-        if (!least.has(chart)) least.set(chart, chart.height);
-        const height = Math.floor(Math.min(Math.max(chart.height + spare, least.get(chart)), 2 * least.get(chart)));
-        if (Math.abs(height - chart.height) > 4) chart.setSize({ width: chart.width, height });
+        const around = chart.root.offsetHeight - chart.height; // title and key
+        const height = Math.max(MIN_CANVAS, Math.floor((room + between) / seen - between - around));
+        if (Math.abs(height - chart.height) > 2) chart.setSize({ width: chart.width, height });
       }
     }
+  }
+
+  // [pixels] between two charts of a pane.
+  function gapOf([first, second]) {
+    if (!second) return 0;
+    return Math.max(0, second.root.getBoundingClientRect().top - first.root.getBoundingClientRect().bottom);
+  }
+
+  function nameAxis({ over, series }) {
+    if (over.dataset.springtideAxis !== series[0].label) over.dataset.springtideAxis = series[0].label;
   }
 
   let lastMoment = "", lookedAt = 0;
@@ -133,6 +152,7 @@
     const charts = Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ chart }) => chart);
     fillPanes(charts);
     for (const chart of charts) {
+      nameAxis(chart);
       showWholeAxis(chart);
       placeMoment(chart, moment === "" ? NaN : Number(moment));
       leaveGaps(chart);

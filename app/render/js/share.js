@@ -146,6 +146,11 @@
       pen.font = `bold ${13 * ratio}px sans-serif`;
       pen.fillText(title?.textContent || "", 8 * ratio, top + line / 2);
       pen.drawImage(chart.ctx.canvas, 0, top + line);
+      const { left, top: under, width: long, height: tall } = chart.bbox; // the name of the axis at its end
+      pen.font = `${11 * ratio}px sans-serif`;
+      pen.textAlign = "right";
+      pen.fillText(chart.series[0].label, left + long - 2 * ratio, top + line + under + tall - 8 * ratio);
+      pen.textAlign = "left";
       top += line + chart.ctx.canvas.height;
       pen.font = `${11 * ratio}px sans-serif`;
       for (const [row, left, name, colour] of keys[i]) {

@@ -90,8 +90,13 @@ class Params:
     handles: bool = in_look(True, doc="Arrows that move the pins and the sphere")
     plot_energy: bool = in_plots(
         False,
-        doc=f"Energies over time; above {MAX_ACCOUNTED_PARTICLES} particles they are recorded once the plot is open",
+        doc="Energies over time",
         title="Energy",
+    )
+    plot_losses: bool = in_plots(
+        False,
+        doc=f"Energy that damping has taken; above {MAX_ACCOUNTED_PARTICLES} particles since the plot is open",
+        title="Dissipated energy",
     )  # fmt: skip
     plot_strain: bool = in_plots(False, doc="Largest strain over time", title="Largest strain")
 

@@ -44,10 +44,11 @@ MAX_DISTANCE = 60.0  # [m] from the origin; farther out the run has diverged
 PULL_LENGTH = 0.1  # [m] at which a pull has its largest force, if the step allows
 MAX_PULL_STIFFNESS_STEP = 0.1  # stiffness of a pull over mass / step^2, so that the pull is stable at any step
 BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
-ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated")
-SERIES = (*ENERGY_SERIES, "largest strain")
+ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact")
+SERIES = (*ENERGY_SERIES, "dissipated", "largest strain")
 PLOTS = {
     "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES, least=0.01),
+    "plot_losses": PlotAxes("Dissipated energy", "J", ("dissipated",), least=0.01),
     "plot_strain": PlotAxes("Largest strain", "%", ("largest strain",), least=0.5),
 }
 
@@ -118,8 +119,8 @@ class ClothScene(NetScene[Params]):
 
     @property
     def with_account(self) -> bool:
-        """True if the energy account is kept: always, except for large cloths with the plot of energies closed."""
-        return self.params.plot_energy or self.particles <= MAX_ACCOUNTED_PARTICLES
+        """True if the energy account is kept: always, except for large cloths with the plot of losses closed."""
+        return self.params.plot_losses or self.particles <= MAX_ACCOUNTED_PARTICLES
 
     def reset(self) -> None:
         """The cloth, its pins and the sphere where the parameters start them."""

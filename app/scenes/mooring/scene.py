@@ -16,8 +16,8 @@ from app.scenes.mooring.start_check import raised_points
 from app.scenes.springs.divergence import holding_step
 
 PLOTS = {
-    "plot_tension": PlotAxes("Tension", "kN", (*LINE_SERIES, "largest so far"), least=1.0),
-    "plot_anchor": PlotAxes("Tension at anchors", "kN", ANCHOR_SERIES, least=1.0),
+    "plot_tension": PlotAxes("Tension", "kN", (*LINE_SERIES, "largest so far"), least=1.0, dashed=True),
+    "plot_anchor": PlotAxes("Tension at anchors", "kN", ANCHOR_SERIES, least=1.0, dashed=True),
     "plot_offset": PlotAxes("Offset", "m", ("offset",), least=0.5),
 }
 CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}

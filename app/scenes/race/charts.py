@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Line
-from app.scenes.charts import PALETTE, Chart, CurveAxes
+from app.scenes.charts import DASHES, PALETTE, Chart, CurveAxes
 from app.scenes.plot_rows import ROW_INTERVAL, row_number
 from app.scenes.race.entrants import Race
 from app.scenes.race.names import rope_name
@@ -20,7 +20,6 @@ CURVES = {
     "plot_energies": CurveAxes("Energy error", "J", "t [s]", ("rope 1",)),
 }
 FLOOR_LINE = Line("below what the reference can tell", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
-DASHES = ((), (10.0, 4.0), (3.0, 3.0), (12.0, 3.0, 3.0, 3.0), (6.0, 6.0), (1.0, 4.0))  # to tell lines apart in grey
 MAX_ENERGY_RATIO = 0.7  # drawn energy error over the potential energy of the rope's whole fall, at most
 FLOOR_WITHOUT_REFERENCE = 1e3  # [m], above the scale
 
@@ -78,7 +77,9 @@ class RaceCharts:
                 for i, entrant in enumerate(race.entrants)
             )
             floor = np.where(np.isnan(table[1]), FLOOR_WITHOUT_REFERENCE, table[1])
-            errors = table[0], floor, *np.maximum(table[2::2], ERROR_TICKS[0][0])  # NaN stays
+            drawn = np.maximum(table[2::2], ERROR_TICKS[0][0])  # NaN stays
+            drawn[:, table[0] == 0.0] = math.nan  # the start has no error, and so no place on this scale
+            errors = table[0], floor, *drawn
             energies = table[0], *np.clip(table[3::2], -self.max_energy, self.max_energy)
             end, (marks, places) = round_up(race.t), self.ends(table)
             none = (None,) * len(marks)  # no numbers of marks

@@ -17,7 +17,12 @@ class Params(RopeParams):
     colour: str = in_look(
         "tension", choices={"tension": "Tension", "plain": "One colour"}, doc="What the colour of the rope shows"
     )
-    plot_energy: bool = in_plots(False, doc="Energies over time, and what damping has dissipated", title="Energy")
+    plot_energy: bool = in_plots(False, doc="Energies over time", title="Energy")
+    plot_losses: bool = in_plots(
+        False,
+        doc="Energy that damping has taken since the start, and the error of the account",
+        title="Dissipated energy",
+    )
     plot_tip: bool = in_plots(False, doc="Height of the last point over time", title="Height of the tip")
 
 

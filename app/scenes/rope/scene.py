@@ -35,10 +35,12 @@ if TYPE_CHECKING:
 MIN_MOVE_TO_ASSESS = 1e-3  # of a link: a rope that has moved by less since the last assessment is as stable as it was
 FULL_RATE_SPEED = 0.6  # [m/s] on screen: 10 mm, about two pixels, between frames at the highest rate
 QUARTER_RATE_SPEED = 0.075  # [m/s] on screen: 5 mm between frames at a quarter of it
-ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact", "dissipated", "error")
-SERIES = (*ENERGY_SERIES, "tip height")
+ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact")
+LOSS_SERIES = ("dissipated", "error")
+SERIES = (*ENERGY_SERIES, *LOSS_SERIES, "tip height")
 PLOTS = {
     "plot_energy": PlotAxes("Energy", "J", ENERGY_SERIES, least=0.1),
+    "plot_losses": PlotAxes("Dissipated energy", "J", LOSS_SERIES, least=0.1),
     "plot_tip": PlotAxes("Height of the tip", "m", ("tip height",), least=0.02),
 }
 
@@ -107,7 +109,7 @@ class RopeScene(NetScene[Params]):
         speed_on_screen = fastest * self.params.speed
         if speed_on_screen > FULL_RATE_SPEED or not self.handles.at_rest:
             return FRAME_INTERVAL
-        is_plotted = self.params.plot_energy or self.params.plot_tip  # which takes a row each `ROW_INTERVAL`
+        is_plotted = any(getattr(self.params, name) for name in PLOTS)  # which take a row each `ROW_INTERVAL`
         return 2.0 * FRAME_INTERVAL if speed_on_screen > QUARTER_RATE_SPEED or is_plotted else 4.0 * FRAME_INTERVAL
 
     @property

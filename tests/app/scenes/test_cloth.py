@@ -252,7 +252,7 @@ def test_a_large_cloth_keeps_its_account_from_when_the_plot_is_opened():
     assert scene.state.dissipated == 0.0
     scene.advance(200)
     assert np.isnan(scene.take_plot_rows()[-1][6])  # what was dissipated is not known
-    change(scene, plot_energy=True)
+    change(scene, plot_losses=True)
     scene.advance(20)
     assert scene.state.dissipated > 0.0
 

@@ -18,7 +18,7 @@ from app.render.viser_inside import set_arrays
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.parameters import Params
 from app.scenes.contract import Pieces, PostCommand
-from app.scenes.springs.html import colour_scale, stability_bar, step_mark
+from app.scenes.springs.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.view import SecondNet, Sphere, SpringView
 
 CLOTH_COLOUR = (176, 58, 72)
@@ -156,7 +156,9 @@ class View(SpringView[Params, ClothFrame, ClothReadings]):
             parts.append(fill("<div>too crowded: self-collision left out {} particles</div>", readings.left_out))
         if readings.threads > 1:
             parts.append(fill("<div>forces computed on {} threads</div>", readings.threads))
-        if p.colour == "strain":
+        if p.colour == "strain" and self.mesh is not None and self.mesh.has_shader is False:
+            parts.append(simple_drawing("strain"))
+        elif p.colour == "strain":
             parts.append(colour_scale(
                 "0", fill("strain {}", info(STRAIN, "7. Numbers on the screen")),
                 f"{number(p.full_strain)} %",

@@ -24,6 +24,7 @@ from app.scenes.mooring.arrangement import depth_of, diameter_of, extent, has_bo
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, Params
 from app.scenes.mooring.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
+from app.scenes.springs.html import simple_drawing
 from app.scenes.springs.view import compile_tube
 
 SIDES = 6  # of a tube
@@ -114,6 +115,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         self.server, self.post = server, post
         self.built: Shape = ()
         self.nodes: list[Any] = []
+        self.tubes: list[ColouredMesh] = []
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.4)
         scene.configure_default_lights(enabled=True, cast_shadow=False)
@@ -348,7 +350,8 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
 
     def readout(self, snapshot: MooringSnapshot) -> str:
         """The key of the colours."""
-        return readout_of(snapshot)
+        has_colours = not self.tubes or self.tubes[0].has_shader is not False
+        return readout_of(snapshot) if has_colours else simple_drawing("tension")
 
     def marks(self, snapshot: MooringSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""

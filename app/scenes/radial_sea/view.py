@@ -15,7 +15,7 @@ from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector
 from app.render.cameras import place_cameras
 from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
-from app.render.html import bold, fill
+from app.render.html import bold, faint, fill
 from app.render.material import Material
 from app.render.meshes import ball, rod, tube_faces
 from app.render.skies import set_sky
@@ -115,10 +115,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
             self.light = set_sky(self.server, p.sky, SUN_BEARING)
             self.place_lamps()
         self.show_sea(frame)
-        if self.walls is None and frame.cutaway is not None:
-            self.walls = Walls(self.server, "/cutaway", frame.cutaway)
-        if self.walls is not None:
-            self.walls.show(frame, None if frame.cutaway is None else keel_of(frame))
+        self.show_cutaway(frame)
         self.show_bodies(frame)
         self.show_moorings(frame)
         self.stains.show(frame)
@@ -127,6 +124,25 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
             self.rig.visible = p.rig
         self.show_fire(frame)
         self.move_camera(frame)
+
+    @property
+    def has_cutaway(self) -> bool:
+        """False if a browser draws the water without a shader: all of it, so that it hides a cutaway."""
+        return self.water is None or self.water.has_shader is not False
+
+    def show_cutaway(self, frame: RadialFrame) -> None:
+        """Draw the walls of the cutaway with their labels, or hide them."""
+        if not self.has_cutaway:
+            frame = frame._replace(cutaway=None)
+        if self.walls is None and frame.cutaway is not None:
+            self.walls = Walls(self.server, "/cutaway", frame.cutaway)
+        if self.walls is not None:
+            self.walls.show(frame, None if frame.cutaway is None else keel_of(frame))
+
+    def readout(self, snapshot: Snapshot) -> str:
+        """What the drawing lacks."""
+        lacks = snapshot.frame.cutaway is not None and not self.has_cutaway
+        return faint("Simple drawing: no cutaway.") if lacks else ""
 
     def place_lamps(self) -> None:
         """Light bodies and rig by the sun of this sky; viser's own lamps stand elsewhere."""

@@ -20,7 +20,7 @@ from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import Params
-from app.scenes.springs.html import colour_scale, stability_bar, step_mark
+from app.scenes.springs.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, link_and_point
 from app.scenes.springs.view import ROOT_ARROW_LENGTH, SecondNet, Sphere, SpringView, compile_tube
 
@@ -178,7 +178,9 @@ class View(SpringView[Params, RopeFrame, RopeReadings]):
     def readout(self, snapshot: RopeSnapshot) -> str:
         """The cost of an implicit method and the colour scale, as HTML."""
         frame, scale = snapshot.frame, ""
-        if frame.params.colour == "tension":
+        if frame.params.colour == "tension" and self.tube is not None and self.tube.has_shader is False:
+            scale = simple_drawing("tension")
+        elif frame.params.colour == "tension":
             scale = colour_scale(
                 "slack", "tension", f"{number(frame.full_scale)} N",
                 clipped=float(frame.tension.max()) > frame.full_scale,

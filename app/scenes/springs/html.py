@@ -4,7 +4,7 @@ import math
 
 from app.formats.formatting import longest_step, number, percent
 from app.render.colormap import css_scale
-from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill, info
+from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, faint, fill, info
 from app.scenes.springs.divergence import limit_text
 from sim.springs.stability import Gauge
 
@@ -48,6 +48,11 @@ def step_mark(critical_step: float) -> str:
     if critical_step == math.inf:
         return "every step is stable"
     return f"limit {longest_step(critical_step)}" if critical_step > 0 else "no step is stable with this method"
+
+
+def simple_drawing(quantity: str) -> Html:
+    """The line that stands for the scale of a quantity in browsers that draw no colours of it."""
+    return faint(f"Simple drawing: no colours of the {quantity}.")
 
 
 def colour_scale(low: str, name: object, high: str, *, clipped: bool) -> Html:

@@ -123,6 +123,31 @@ def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(v
     assert "cannot reach" not in panel.controls["length"].line.content
 
 
+SIMPLE = {  # scene -> parameters, what the panel says in a simple drawing, and a word of the key that it has else
+    "rope": ({}, "no colours of the tension", "slack"),
+    "mooring": ({"segments": 12}, "no colours of the tension", "slack"),
+    "cloth": ({"rows": 8, "cols": 8, "colour": "strain"}, "no colours of the strain", "springtide-scale"),
+    "radial_sea": ({"cutaway": True, "particles": 100, "wave_count": 16}, "no cutaway", ""),
+}
+
+
+@pytest.mark.parametrize("plain", [True, False])
+def test_a_simple_drawing_has_no_key_to_colours_that_are_not_drawn_and_no_cutaway(plain: bool) -> None:
+    lab = Viewer("127.0.0.1", 0, plain=plain)
+    lab.visitors = lambda: 1  # type: ignore[method-assign]
+    try:
+        for name, (values, said, key) in SIMPLE.items():
+            lab.open(name, check_record(scene_named(name).params, values))
+            wait_for(lambda: lab.served.shown > 2 and lab.panel.readings.readout.content != "")
+            text = lab.panel.readings.readout.content
+            assert (said in text) == plain, name
+            assert not key or (key in text) != plain, name
+            if name == "radial_sea":
+                assert (lab.view.walls is None) == plain
+    finally:
+        lab.shut()
+
+
 def test_a_sea_that_is_stepped_offers_to_run_on_to_a_high_crest(viewer: Viewer) -> None:
     viewer.open("square_sea", Params(size="64", mesh="32"))
     panel = viewer.panel

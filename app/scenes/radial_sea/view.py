@@ -15,7 +15,7 @@ from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector
 from app.render.cameras import place_cameras
 from app.render.dragging import PullLine, drag
 from app.render.follow_camera import FollowCamera
-from app.render.html import bold, faint, fill
+from app.render.html import bold, fill
 from app.render.material import Material
 from app.render.meshes import ball, rod, tube_faces
 from app.render.skies import set_sky
@@ -138,11 +138,6 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
             self.walls = Walls(self.server, "/cutaway", frame.cutaway)
         if self.walls is not None:
             self.walls.show(frame, None if frame.cutaway is None else keel_of(frame))
-
-    def readout(self, snapshot: Snapshot) -> str:
-        """What the drawing lacks."""
-        lacks = snapshot.frame.cutaway is not None and not self.has_cutaway
-        return faint("Simple drawing: no cutaway.") if lacks else ""
 
     def place_lamps(self) -> None:
         """Light bodies and rig by the sun of this sky; viser's own lamps stand elsewhere."""
@@ -317,7 +312,8 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
 
     def marks(self, snapshot: Snapshot) -> dict[str, str]:
         """Parameter -> the line under its control."""
-        return marks_of(snapshot)
+        lacks = snapshot.frame.cutaway is not None and not self.has_cutaway
+        return {**marks_of(snapshot), "cutaway": "Simple drawing: no cutaway" if lacks else ""}
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""

@@ -58,7 +58,7 @@ class RaceMethods:
     show_reference: bool = in_look(
         True, doc="Draw the reference run in grey: Dormand-Prince 5 with a tolerance of 1e-10"
     )
-    spacing: float = in_look(0.5, 0.0, 2.0, "m", "Distance between the drawn ropes")
+    spacing: float = in_look(0.75, 0.0, 2.0, "m", "Distance between the drawn ropes")
 
 
 @dataclasses.dataclass(frozen=True)

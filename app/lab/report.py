@@ -172,12 +172,18 @@ def program_text(entry: TaskResult) -> Html:
         text = ""
     if program.state == "right":
         behaviour = inspect.getdoc(getattr(entry.task.check, "behaviour", None)) or ""
-        text = f"As the reference at {SAMPLES} random inputs. {behaviour and 'Behaviour: '}{behaviour}"
+        told = behaviour if is_answered(entry) else ""
+        text = f"As the reference at {SAMPLES} random inputs. {told and 'Behaviour: '}{told}"
     return fill(
         '<p>Function <code>{}</code>: <b class="{}">{}</b>. {}</p>{}',
         entry.task.name, state_class(program.state), program.state, text,
         equation_lines(program.equations) if program.equations else Html(),
     )  # fmt: skip
+
+
+def is_answered(entry: TaskResult) -> bool:
+    """True if the questions of a task have answers: what its check covers may give one away."""
+    return all(answer.state != "not begun" for answer in entry.answers)
 
 
 def answers_of(answers: Answers, entry: TaskResult) -> Html:

@@ -67,15 +67,11 @@ def count_wrong(rows: Sequence[Compared]) -> int:
 
 def explain_stages(found: Tableau, reference: Tableau) -> Explanation:
     """The explanation of a step with more or fewer states than the method has."""
-    text = f"It uses the acceleration at {states(found.stages)}; the method needs it at {states(reference.stages)}."
+    few, many = ("few", "more") if found.stages < reference.stages else ("many", "fewer")
+    number = "1 state" if found.stages == 1 else f"{found.stages} states"
+    text = f"It uses the acceleration at {number}; the method uses it at {many}."
     order = order_sentence(found, reference)
-    return Explanation(
-        f"{states(found.stages)}, not {reference.stages}", f"{text} {order}".strip(), tuple(equations_of(found))
-    )
-
-
-def states(number: int) -> str:
-    return f"{number} state{'' if number == 1 else 's'}"
+    return Explanation(f"too {few} stages", f"{text} {order}".strip(), tuple(equations_of(found)))
 
 
 def order_sentence(found: Tableau, reference: Tableau) -> str:

@@ -152,7 +152,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             a1 = acceleration(x, v)
             xm, vm = x + h / 2 * v, v + h / 2 * a1
             return x + h * vm, v + h * acceleration(xm, vm)"""),
-        ("2 states, not 4", """
+        ("too few stages", """
             a1 = acceleration(x, v)
             v2 = v + h * a1
             a2 = acceleration(x + h * v, v2)

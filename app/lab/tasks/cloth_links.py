@@ -64,9 +64,7 @@ MISTAKES = (
     ),
     Mistake("one diagonal only", "Each cell has two diagonals, and one is missing.", variant((*ALL[:3], *ALL[4:]))),
     Mistake("one diagonal only", "Each cell has two diagonals, and one is missing.", variant((*ALL[:2], *ALL[3:]))),
-    Mistake(
-        "no bend links", "The links over two cells are missing.", variant(ALL[:4])
-    ),
+    Mistake("no bend links", "The links over two cells are missing.", variant(ALL[:4])),
     Mistake(
         "structural links only",
         "Only direct neighbours are joined. Shear and bend links are missing.",

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from app.lab.checking import Wrong, number_text
+from app.lab.diagnosis.edits import explain_edit
 from app.lab.diagnosis.explanation import Equation, Explanation
 from app.lab.diagnosis.steps import explain_step
 from app.lab.diagnosis.terms import WHOLE, Term, explain_terms
@@ -287,6 +288,7 @@ def compare(student: Student) -> None:
     for a, b in zip(found, expected, strict=True):
         if [(p.ndim, p.shape[1:]) for p in parts(a)] != [(p.ndim, p.shape[1:]) for p in parts(b)]:
             raise Wrong(f"it returns {form_of(a)}; expected is {form_of(b)}", "wrong shape")
+    why = why or explain_edit(task.function, lambda function: agrees(function, samples, found, normalise))
     if why is not None:
         raise Wrong(why.text, why.mistake, why.equations)
     if all(same_shape(a, b) for a, b in zip(found, expected, strict=True)):
@@ -308,6 +310,14 @@ def compare(student: Student) -> None:
     )
 
 
+def agrees(function: Callable[..., Any], samples: Sequence[Any], found: Sequence[Any], normalise: Any) -> bool:
+    """True if a function has these results at all samples, without an error."""
+    try:
+        return all(same(a, normalise(call(function, s))) for a, s in zip(found, samples, strict=True))
+    except Exception:  # of a function that an edit has broken
+        return False
+
+
 def check_exactly(student: Student) -> None:
     """Raises Wrong for a step whose coefficients differ by less than the results may."""
     if hasattr(student.task.check, "METHOD") and (why := explain(student)) is not None:
@@ -325,6 +335,8 @@ def explain(student: Student) -> Explanation | None:
         drawn = (tuple(check.inputs(rng)) for _ in range(MAX_DRAWS))  # type: ignore[union-attr]
         chosen = (sample for sample in drawn if adds_up(student, *sample))
         samples = list(itertools.islice(chosen, TERM_SAMPLES))
+        if len(samples) < TERM_SAMPLES:
+            return None
         terms = getattr(check, "TERMS", (Term(WHOLE, "", student.task.function),))
         return explain_terms(student, terms, getattr(check, "GROUPS", ()), student.task.arguments, samples)
     except (RunError, Wrong):

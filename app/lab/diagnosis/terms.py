@@ -234,7 +234,8 @@ def changes_of(unit: Unit, table: Table, inputs: Inputs) -> list[Change]:
     found = [Change("", same, 0.0)]
     found += [Change(f"is {form.formula}", inputs.vector(form.function), 1.0, form) for form in unit.forms]
     for other, total in zip(table.changes, totals, strict=True):
-        found.append(Change(other.text, total, other.cost))
+        if unit.name != WHOLE or other.text.startswith(UNUSED):  # the rest are edits of the reference solution
+            found.append(Change(other.text, total, other.cost))
         if (i := other.doubles) is not None:
             has = exponent_in(same, total)
             for exponent in EXPONENTS:

@@ -8,26 +8,10 @@ A wave a cos(theta), theta = k.x - omega t + phase, in water of depth h moves th
 
 import math
 
-import numpy as np
-
 from sim.jit import kernel
+from sim.turns import cos_sin_turns
 
 DEEPEST = 40.0  # kz beyond which the motion is under 1e-17 of that at the surface
-
-
-@kernel
-def sincos_turns(turns):
-    """(cos, sin) of 2 pi turns. turns is brought to [-1/2, 1/2] in double, so that it is exact after days."""
-    x = np.pi * (turns - np.rint(turns))
-    y = x * x
-    # Taylor series of sin x, cos x on |x| <= pi/2, remainders x^21/21! and x^22/22! under 3e-16 and 2e-17; then 2x.
-    s = 1 / 355687428096000 - y / 121645100408832000
-    s = -1 / 39916800 + y * (1 / 6227020800 + y * (-1 / 1307674368000 + y * s))
-    s = x * (1.0 + y * (-1 / 6 + y * (1 / 120 + y * (-1 / 5040 + y * (1 / 362880 + y * s)))))
-    c = -1 / 6402373705728000 + y / 2432902008176640000
-    c = 1 / 479001600 + y * (-1 / 87178291200 + y * (1 / 20922789888000 + y * c))
-    c = 1.0 + y * (-1 / 2 + y * (1 / 24 + y * (-1 / 720 + y * (1 / 40320 + y * (-1 / 3628800 + y * c)))))
-    return 1.0 - 2.0 * s * s, 2.0 * s * c
 
 
 @kernel(inline=True)
@@ -60,7 +44,7 @@ def flow_at(x, y, z, t, waves, depth):
     u = v = w = du = dv = dw = pushed = elevation = 0.0
     for i in range(waves.shape[1]):
         kx, ky, nx, ny, speed = waves[0, i], waves[1, i], waves[4, i], waves[5, i], waves[6, i]
-        c, s = sincos_turns(kx * x + ky * y + waves[2, i] - waves[3, i] * t)
+        c, s = cos_sin_turns(kx * x + ky * y + waves[2, i] - waves[3, i] * t)
         k, omega = turn * (kx * nx + ky * ny), turn * waves[3, i]
         e = exponential(max(k * z, -DEEPEST))
         back = waves[7, i] / e

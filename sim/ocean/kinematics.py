@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 from sim.jit import kernel
 from sim.ocean.gerstner import Waves
 from sim.ocean.spectra import Conditions
+from sim.turns import cos_sin_turns
 from sim.validation import (
     argument_error,
     check_choice,
@@ -36,7 +37,7 @@ from sim.validation import (
     check_within,
     is_whole_number,
 )
-from sim.wave_motion import flow_at, sincos_turns
+from sim.wave_motion import flow_at
 
 STRETCHINGS = ("constant", "wheeler")
 MAX_TURN, CREST_HALVINGS = 1e4, 60  # of the search for the phases of a crest
@@ -167,7 +168,7 @@ def set_flow(points, t, waves, depth, density, wheeler, velocity, acceleration, 
         if wheeler:
             eta = 0.0
             for i in range(waves.shape[1]):
-                c, _ = sincos_turns(waves[0, i] * x + waves[1, i] * y + waves[2, i] - waves[3, i] * t)
+                c, _ = cos_sin_turns(waves[0, i] * x + waves[1, i] * y + waves[2, i] - waves[3, i] * t)
                 eta += waves[8, i] * c
             z = (z - eta) / (1.0 + eta / depth)
         u, v, w, du, dv, dw, pushed, _ = flow_at(x, y, z, t, waves, depth)

@@ -14,33 +14,25 @@ import math
 import numpy as np
 
 from sim.jit import kernel
+from sim.turns import single_cos_sin_turns
 
 # sin(2 pi q) on |q| <= 1/4, odd, of least greatest error (3.3e-9; 5e-8 with single coefficients), by Lawson's iteration
 SINE = (6.283185160088972, -41.34165503128634, 81.60100406453265, -76.5497820808528, 39.53670436428712)
-S1, S3, S5, S7, S9 = (np.float32(c) for c in SINE)
 D1, D3, D5, D7, D9 = SINE
-QUARTER = np.float32(0.25)
 TOLERANCE = 1e-7  # [m] at which a label counts as found
 MOST_STEPS = 12
 
 
 @kernel(inline=True)
-def sine(q):
-    """sin(2 pi q), |q| <= 1/4, single."""
-    s = q * q
-    return q * (S1 + s * (S3 + s * (S5 + s * (S7 + s * S9))))
-
-
-@kernel(inline=True)
 def fine_sine(q):
-    """The same in double."""
+    """sin(2 pi q), |q| <= 1/4, in double."""
     s = q * q
     return q * (D1 + s * (D3 + s * (D5 + s * (D7 + s * D9))))
 
 
 @kernel(inline=True)
 def fine_wave(t, a):
-    """a cos(2 pi t) and a sin(2 pi t) in double: t [turns] folded to a quarter turn, as `add_pair` explains."""
+    """a cos(2 pi t) and a sin(2 pi t) in double: t [turns] folded to a quarter turn, see sim/turns.py."""
     t -= np.rint(t)
     u = abs(t) - 0.25
     return -fine_sine(u) * a, math.copysign(fine_sine(0.25 - abs(u)), t) * a
@@ -61,17 +53,8 @@ def add_pair(x, y, first, last, w, wave, scale0, scale1, z, X, Y, hx, hy, xx, yy
     a1, b1, c1, d1 = wave[q + 3] * scale1, wave[q + 4] * scale1, wave[q + 5] * scale1, wave[q + 6] * scale1
     e1, f1, g1, h1 = wave[q + 7] * scale1, wave[q + 8] * scale1, wave[q + 9] * scale1, wave[q + 10] * scale1
     for i in range(first, last):
-        # Folded to a quarter turn, u = |t| - 1/4: cos 2 pi t = -sin 2 pi u, sin 2 pi t = sign(t) sin 2 pi (1/4 - |u|)
-        t = k0 * x[i] + l0 * y[i] + p0
-        t -= np.rint(t)
-        u = abs(t) - QUARTER
-        cos0 = -sine(u)
-        sin0 = math.copysign(sine(QUARTER - abs(u)), t)
-        t = k1 * x[i] + l1 * y[i] + p1
-        t -= np.rint(t)
-        u = abs(t) - QUARTER
-        cos1 = -sine(u)
-        sin1 = math.copysign(sine(QUARTER - abs(u)), t)
+        cos0, sin0 = single_cos_sin_turns(k0 * x[i] + l0 * y[i] + p0)
+        cos1, sin1 = single_cos_sin_turns(k1 * x[i] + l1 * y[i] + p1)
         z[i] += a0 * cos0 + a1 * cos1
         X[i] += b0 * sin0 + b1 * sin1
         Y[i] += c0 * sin0 + c1 * sin1
@@ -125,11 +108,10 @@ def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, r
                     continue
                 kept = math.exp(-loss[w] * path)
                 lost = scale * (one - kept)
-                t = wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)]
-                t -= np.rint(t)
-                turn = abs(t) - QUARTER
-                cos = -sine(turn) * lost
-                sin = math.copysign(sine(QUARTER - abs(turn)), t) * lost
+                cos, sin = single_cos_sin_turns(
+                    wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)]
+                )
+                cos, sin = cos * lost, sin * lost
                 z[i] -= wave[q + np.uint64(3)] * cos + mean * (one - kept * kept)
                 X[i] -= wave[q + np.uint64(4)] * sin
                 Y[i] -= wave[q + np.uint64(5)] * sin

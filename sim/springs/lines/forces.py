@@ -34,7 +34,8 @@ from sim.springs.lines.arrays import (
 )
 from sim.springs.lines.bending import add_bending
 from sim.springs.lines.curves import curve_at
-from sim.wave_motion import flow_at, sincos_turns
+from sim.turns import cos_sin_turns
+from sim.wave_motion import flow_at
 
 TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction, and no force
 
@@ -310,7 +311,7 @@ def wave_force(x, t, p, b):
     f = p.steady[b]
     s0, s1, s2, s3, s4, s5 = f[0], f[1], f[2], f[3], f[4], f[5]
     for i in range(w.shape[1]):
-        c, s = sincos_turns(p.waves[0, i] * px + p.waves[1, i] * py + p.waves[2, i] - p.waves[3, i] * t)
+        c, s = cos_sin_turns(p.waves[0, i] * px + p.waves[1, i] * py + p.waves[2, i] - p.waves[3, i] * t)
         c, s = p.waves[8, i] * c, p.waves[8, i] * s
         s0 += w[0, i] * c - w[6, i] * s
         s1 += w[1, i] * c - w[7, i] * s

@@ -19,7 +19,7 @@ from sim.floating.hydrodynamics import DIRECTIONS, afloat
 from sim.floating.rigid import heading_of
 from sim.interruption import raise_if_stopped
 from sim.jit import kernel
-from sim.ocean.gerstner import Waves, widened
+from sim.ocean.gerstner import widened
 from sim.ocean.wave_sum import fine_wave
 from sim.validation import argument_error
 
@@ -77,7 +77,7 @@ class WaveExcitation:
             found = [kind.beyond_long_waves(k) for kind in self.kinds]
             self.tables = np.array([rest for rest, _ in found]).reshape(len(found), len(k), len(DIRECTIONS), 6)
             self.is_long = np.array([is_long for _, is_long in found]).reshape(len(found), len(k))
-            averaged = [widened(Waves(kx, ky, kx, kx), width) for width in self.widths]
+            averaged = [widened(k, width) for width in self.widths]
             self.averaged = np.array(averaged).reshape(len(self.kinds), len(k))
             self.heading[:] = np.inf
             self.weights = np.zeros((len(self.kind), 12, len(k)))

@@ -22,12 +22,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import Waves, widened
-from sim.ocean.kinematics import Components, Kinematics
+from sim.ocean.gerstner import widened
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import SlickCover
 from sim.ocean.wave_sum import add_waves, calm_waves, find_labels, set_mesh, set_motion
 from sim.validation import argument_error, as_array, check_finite, check_kind, check_not_negative, check_positions
+from sim.water import SAME_WATER, Water
+from sim.waves import Kinematics, Waves
 
 CLEAN = FluidColumn()
 
@@ -61,7 +62,8 @@ class RadialSea:
         self, waves: Waves, column: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
     ) -> None:
         """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
-        horizontal motion. Raises ValueError for a negative one, and for other waves or another column.
+        horizontal motion. The column carries the waves: they have the frequencies of the deep fluids in it.
+        Raises ValueError for a negative number, other waves or another column, and waves under another gravity.
 
         `past` [s] is the time spent on each medium. Waves never regain energy that they lost there.
         """
@@ -73,8 +75,7 @@ class RadialSea:
         self.slick: SlickCover | None = None  # what calms the waves under it
         self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
         self.past: dict[FluidColumn, float] = {}
-        check_kind("waves", waves, Waves, "Waves, as `draw_waves` draws them")
-        check_kind("column", column, FluidColumn, "a FluidColumn")
+        check_carried(waves, column)
         self._set(waves, column, waves.phase, np.zeros(len(waves.kx)))
         self.expose(exposure)
 
@@ -89,9 +90,10 @@ class RadialSea:
         """Change the medium or the waves at time t [s]. Phases stay continuous; new waves take over within `fade` [s].
 
         Lost energy stays lost, also by other waves of the same length. exposure [s]: forget the losses, and apply those
-        of so long a time on the new medium. Raises ValueError for a negative one.
+        of so long a time on the new medium. Raises ValueError as the constructor.
         """
         t, fade = check_finite("t", t, "s"), check_not_negative("fade", fade, "s")
+        check_carried(waves or self.waves, column or self.column)
         past = self.past
         if exposure is not None:
             exposure, past = check_not_negative("exposure", exposure, "s"), {}
@@ -267,11 +269,11 @@ class RadialSea:
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
         """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t [s].
 
-        See `Components.kinematics`, also for the errors raised. Raises ValueError over a layer of oil, too.
+        See `Waves.kinematics`, also for the errors raised. Raises ValueError over a layer of oil, too.
         """
-        return self.components(t).kinematics(points, t, stretching)
+        return self.waves_at(t).kinematics(points, t, stretching)
 
-    def components(self, t: float) -> Components:
+    def waves_at(self, t: float) -> Waves:
         """The waves, as high as at time t [s], without the slick.
 
         Raises ValueError over a layer of oil, under which the pressure would need both fluids.
@@ -280,7 +282,8 @@ class RadialSea:
             raise argument_error("column", self.column.kind, "clean water or a mixture, which is one fluid")
         kx, ky, amplitude, omega, phase, _ = self.current(check_finite("t", t, "s"))
         phase = phase + omega * (t / (2.0 * math.pi))
-        return Components(kx, ky, amplitude, omega, phase - np.rint(phase), math.inf, self.column.surface.density)
+        water = Water(math.inf, self.column.gravity, self.column.surface.density)
+        return Waves(kx, ky, amplitude, phase - np.rint(phase), omega, water)
 
     def _footprint(self, size: np.ndarray, kx: np.ndarray, ky: np.ndarray) -> np.ndarray:
         """Factors (points, waves) of hulls of these sizes; cached, because each step needs those of the same hulls."""
@@ -288,10 +291,19 @@ class RadialSea:
         if key not in self._weights:
             if len(self._weights) > 8:
                 self._weights.clear()
-            probe = Waves(kx, ky, kx, kx)
+            k = np.hypot(kx, ky)
             unique, which = np.unique(size, return_inverse=True)
-            self._weights[key] = np.array([widened(probe, float(s)) for s in unique]).reshape(-1, len(kx))[which]
+            self._weights[key] = np.array([widened(k, float(s)) for s in unique]).reshape(-1, len(kx))[which]
         return self._weights[key]
+
+
+def check_carried(waves: Waves, column: FluidColumn) -> None:
+    """Raises ValueError for waves that are none, or under another gravity than the column."""
+    check_kind("waves", waves, Waves, "Waves, as `draw_waves` draws them")
+    check_kind("column", column, FluidColumn, "a FluidColumn")
+    if not math.isclose(waves.water.gravity, column.gravity, rel_tol=SAME_WATER):
+        allowed = f"those under the column's gravity of {column.gravity:g} m/s2"
+        raise argument_error("waves", f"waves on {waves.water}", allowed)
 
 
 def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:

@@ -25,8 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.amplitudes import KINDS, integers, resolved, unit_amplitudes, with_line
-from sim.ocean.kinematics import Components, Kinematics, components_of_tile
+from sim.ocean.amplitudes import KINDS, integers, resolved, unit_amplitudes, waves_of_tile, with_line
 from sim.ocean.medium import Medium
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
@@ -45,6 +44,7 @@ from sim.validation import (
     check_positions,
     is_whole_number,
 )
+from sim.waves import Kinematics, Waves
 
 SIZES = (8, 4096)
 LENGTHS = (1e-3, 1e8)  # [m]
@@ -97,7 +97,7 @@ class Sea:
         self._last = 0.0  # [s] of the last surface computed, or of the last change if that is later
         self.version = 0  # counts changes of the conditions
         self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
-        self._components: tuple[tuple | None, Components | None] = None, None  # key of the amplitudes, and the waves
+        self._known_waves: tuple[tuple | None, Waves | None] = None, None  # key of the amplitudes, and the waves
         self._ripples: Ripples | None = None
 
         self.k = integers(self.size) * (2.0 * math.pi / self.length)  # [rad/m], FFT order
@@ -171,23 +171,22 @@ class Sea:
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
         """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t, by the sum over all waves.
 
-        See `Components.kinematics`, also for the errors raised; `components` gives fewer waves, for many points or
-        steps.
+        See `Waves.kinematics`, also for the errors raised. `waves_at(t).largest(n)` is faster for many points.
         """
-        return self.components(t).kinematics(points, t, stretching)
+        return self.waves_at(t).kinematics(points, t, stretching)
 
-    def components(self, t: float | None = None) -> Components:
+    def waves_at(self, t: float | None = None) -> Waves:
         """The waves of the tile, as high as at time t [s], by default the sea's own; `largest` of them picks a few.
 
         They hold at all times unless waves decay, relax or are changed. Raises ValueError as `surface`.
         """
         t = self._last if t is None else self._waves.checked_time(t)
         key = self.version, None if self.is_steady(t) else t
-        known, waves = self._components
+        known, waves = self._known_waves
         if waves is None or known != key:
             h0, omega = self.amplitudes_at(t), self.frequencies
-            waves = components_of_tile(self.k, h0, omega, self._waves.base, self.conditions)
-            self._components = key, waves
+            waves = waves_of_tile(self.k, h0, omega, self._waves.base, self.conditions.water)
+            self._known_waves = key, waves
         return waves
 
     def change(self, t: float, relax: float = 0.0, spectrum: str | Spectrum[Any] | None = None, **changes: Any) -> None:

@@ -108,9 +108,7 @@ def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, r
                     continue
                 kept = math.exp(-loss[w] * path)
                 lost = scale * (one - kept)
-                cos, sin = single_cos_sin_turns(
-                    wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)]
-                )
+                cos, sin = single_cos_sin_turns(wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)])
                 cos, sin = cos * lost, sin * lost
                 z[i] -= wave[q + np.uint64(3)] * cos + mean * (one - kept * kept)
                 X[i] -= wave[q + np.uint64(4)] * sin

@@ -16,10 +16,10 @@ from app.scenes.radial_sea.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
 from app.scenes.radial_sea.wave_choice import WaveChoice
 from sim.ocean import Sea
 from sim.ocean.foam import whitecaps
-from sim.ocean.gerstner import Waves
 from sim.ocean.radial import CLEAN, RadialSea, RadialSurface, lost
 from sim.ocean.statistics import energy_by_wavenumber, expected
 from sim.ocean.tile_sea import TileSea
+from sim.waves import Waves
 
 if TYPE_CHECKING:
     from app.scenes.radial_sea.scene import RadialSeaScene

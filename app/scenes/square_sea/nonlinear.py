@@ -34,7 +34,7 @@ def nonlinear_sea(p: Params, linear: Sea, t: float, place: tuple[float, float]) 
     c, n = linear.conditions, solved_points(p)
     hs, period = linear.significant_height_at(t), expected(linear, t).peak_period
     period = period if period > 0.0 else 1.0
-    waves, fade = linear.components(t), FADE_PERIODS * period
+    waves, fade = linear.waves_at(t), FADE_PERIODS * period
     if p.start == "rogue" and hs > 0.0:
         crest = min(ROGUE_CREST * hs, 0.9 * float(waves.amplitude.sum()))
         waves, fade = waves.with_crest(crest, place, t + ROGUE_PERIODS * period), ROGUE_FADE_PERIODS * period

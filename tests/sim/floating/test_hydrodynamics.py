@@ -24,8 +24,8 @@ from sim.floating.excitation import WaveExcitation
 from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange, plane_force
 from sim.floating.linear_table import table_of
 from sim.floating.prediction import predict
-from sim.ocean.gerstner import Waves
 from sim.ocean.radial import RadialSea
+from sim.waves import Waves
 
 WATER = ((1025.0, math.inf),)
 FREE = MotionCoefficients(quadratic_drag=0.0)

@@ -217,12 +217,12 @@ def exponential(x):
 def sums_at(x, y, z, t, waves, amplitudes, row, responses, which, depth):
     """`Sums` at a place at time t. It is expanded into its caller, where the compiler drops what is not read.
 
-    Above z = 0 and below the bottom are the motion and the pressure there. waves (9, n): see `Waves.table`.
+    z: None for the resting surface. Above that and below the bottom are the motion and the pressure there.
+    waves (9, n): see `Waves.table`.
     amplitudes[row] (n,) [m]: those of the waves at this place, row AMPLITUDE of the table or with factors of the place.
     responses[which] (12, n): real, then imaginary parts of X. None: without responses.
     """
     turn = 2.0 * math.pi
-    z = min(max(z, -depth), 0.0)
     eta = dx = dy = hx = hy = xx = yy = xy = u = v = w = du = dv = dw = pushed = 0.0
     r0 = r1 = r2 = r3 = r4 = r5 = 0.0
     for i in range(waves.shape[1]):
@@ -239,7 +239,7 @@ def sums_at(x, y, z, t, waves, amplitudes, row, responses, which, depth):
         yy -= ny * ky * c
         xy -= nx * ky * c
         k = kx * nx + ky * ny
-        e = exponential(max(k * z, -DEEPEST))
+        e = 1.0 if z is None else exponential(max(k * min(max(z, -depth), 0.0), -DEEPEST))
         back = waves[ECHO, i] / e
         level, upward = waves[SPEED, i] * (e + back), waves[SPEED, i] * (e - back)
         u += nx * level * c
@@ -265,14 +265,14 @@ def sums_at(x, y, z, t, waves, amplitudes, row, responses, which, depth):
 def set_elevation(points, t, waves, out):
     """Set the elevation (n,) at points (n, 2)."""
     for p in range(points.shape[0]):
-        out[p] = sums_at(points[p, 0], points[p, 1], 0.0, t, waves, waves, AMPLITUDE, None, 0, 0.0).elevation
+        out[p] = sums_at(points[p, 0], points[p, 1], None, t, waves, waves, AMPLITUDE, None, 0, 0.0).elevation
 
 
 @kernel(noalias=True)
 def set_response(points, t, waves, responses, out):
     """Set the responses (n, 6) at points (n, 2) to the same factors (1, 12, waves)."""
     for p in range(points.shape[0]):
-        sums = sums_at(points[p, 0], points[p, 1], 0.0, t, waves, waves, AMPLITUDE, responses, 0, 0.0)
+        sums = sums_at(points[p, 0], points[p, 1], None, t, waves, waves, AMPLITUDE, responses, 0, 0.0)
         out[p, 0], out[p, 1], out[p, 2], out[p, 3], out[p, 4], out[p, 5] = sums.response
 
 

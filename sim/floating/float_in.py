@@ -93,8 +93,7 @@ def float_in(
             at = tile.at(fleet.position[:, :2], middle, widths)
             forces, acceleration = None, at.acceleration
             if isinstance(sea, RadialSea) and excitation is not None:
-                kx, ky, amplitude, omega, phase, _ = sea.current(middle)
-                forces = excitation.forces(fleet, at.label, kx, ky, amplitude, omega, phase, h, gravity)
+                forces = excitation.forces(fleet, at.label, sea.waves_at(middle), middle, h)
             else:  # along the way of the bodies, so that it has no mean (excitation.py)
                 rises = (at.velocity[:, 2].copy(), *rises[: len(LAST_RATES)])
                 if len(rises) > len(LAST_RATES):

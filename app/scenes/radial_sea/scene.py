@@ -294,9 +294,9 @@ class RadialSeaScene:
                 slick = self.slick_at(bodies.fleet.position[:, :2])
                 bodies.measure(self.time, at, h, h / 2)
                 bodies.moor(h, moored=self.params.mooring)
-                waves = sea.current(middle) if isinstance(sea, RadialSea) else None
+                forces = bodies.forces_of(sea, at, middle, h) if isinstance(sea, RadialSea) else None
                 try:
-                    bodies.step(at, h, slick, coefficients, waves)
+                    bodies.step(at, h, slick, coefficients, forces)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
                 if self.plot_rows.is_due(self.time):

@@ -311,7 +311,7 @@ def wave_force(x, t, p, b):
     f = p.steady[b]
     if p.excitation.shape[2] == 0:
         return f[0], f[1], f[2], f[3], f[4], f[5]
-    e = sums_at(px, py, 0.0, t, p.waves, p.waves, AMPLITUDE, p.excitation, b, p.depth).response
+    e = sums_at(px, py, None, t, p.waves, p.waves, AMPLITUDE, p.excitation, b, p.depth).response
     return f[0] + e[0], f[1] + e[1], f[2] + e[2], f[3] + e[3], f[4] + e[4], f[5] + e[5]
 
 

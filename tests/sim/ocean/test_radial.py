@@ -230,12 +230,12 @@ def test_other_waves_take_over_smoothly_and_wholly() -> None:
     old, new = sea_of().amplitude, storm.amplitude
     for t, share in ((50.5, 0.25), (51.0, 0.5), (51.5, 0.75)):  # of the energy
         amplitude = np.concatenate([old * math.sqrt(1.0 - share), new * math.sqrt(share)])
-        np.testing.assert_allclose(sea.current(t)[2], amplitude, rtol=1e-12)
+        np.testing.assert_allclose(sea.waves_at(t).amplitude, amplitude, rtol=1e-12)
     grid = RadialGrid(32, 32)
     sea.on(grid, 51.0)
     sea.change(51.5, column=FluidColumn(thickness=0.3))
-    assert len(sea.current(51.6)[0]) == 64 + 80
-    assert len(sea.current(52.1)[0]) == 80
+    assert len(sea.waves_at(51.6).kx) == 64 + 80
+    assert len(sea.waves_at(52.1).kx) == 80
     assert sea.significant_height == pytest.approx(storm.significant_height)
 
 

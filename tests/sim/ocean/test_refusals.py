@@ -82,7 +82,11 @@ REFUSED: list[Row] = [
     ("points", lambda: radial().kinematics([[0.0, 0.0]], 0.0), "(n, 3)"),
     ("t", lambda: radial().kinematics([[0.0, 0.0, 0.0]], INF), ""),
     ("waves", lambda: RadialSea(radial().waves, FluidColumn(gravity=1.62)), "under the column's gravity of 1.62"),
-    ("column", lambda: RadialSea(radial().waves, FluidColumn(thickness=0.1)).waves_at(0.0), "layer"),
+    (
+        "column",
+        lambda: RadialSea(radial().waves, FluidColumn(thickness=0.1)).kinematics([[0.0, 0.0, 0.0]], 0.0),
+        "layer",
+    ),
     ("t", lambda: small().significant_height_at(NAN), ""),
     ("t", lambda: small().surface(NAN), ""),
     ("t", lambda: small(viscosity=1e-3).surface(-1.0), ""),

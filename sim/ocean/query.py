@@ -40,17 +40,19 @@ class WaveFields(NamedTuple):
     choppiness: float
 
 
-def query(surface: "Surface", points: np.ndarray, exact: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(height, residual), each (n,) [m], of the surface above points (n, 2) float64 [m]. Can be cancelled."""
+def query(surface: "Surface", points: np.ndarray, exact: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Height (n,) [m] of the surface above points (n, 2) float64 [m], residual (n,) [m] and label (n, 2) [m].
+
+    It can be cancelled.
+    """
     sea = surface.sea
-    height, residual = np.empty(len(points)), np.empty(len(points))
+    labels, height, residual = points.copy(), np.empty(len(points)), np.empty(len(points))
     cell = sea.length / sea.size
     if surface.choppiness == 0.0 and not exact:
         for piece in pieces(len(points), PIECE):
             sample(points[piece], surface.height, cell, height[piece])
         residual[:] = 0.0
-        return height, residual
-    labels = np.empty((len(points), 2))
+        return height, residual, labels
     if exact:
         table = np.empty((AMPLITUDE + 1, sea.size**2 // 2))
         set_standing_waves(sea.heights_spectrum(surface.t), 2.0 * math.pi / sea.length, table)
@@ -61,7 +63,7 @@ def query(surface: "Surface", points: np.ndarray, exact: bool) -> tuple[np.ndarr
         find_labels(points[piece], fields, TOLERANCE * cell, stop_request(), labels[piece], height[piece],
                     residual[piece])  # fmt: skip
     raise_if_stopped()
-    return height + surface.mean_height if exact else height, residual
+    return height + surface.mean_height if exact else height, residual, labels
 
 
 def grid_fields(surface: "Surface") -> GridFields:

@@ -274,6 +274,12 @@ class RadialSea:
         return SurfaceAt(z + mean, slope, found[:, 6:9].copy(), found[:, 9].copy(), found[:, 10] + interface_mean,
                          found[:, 11:13].copy(), found[:, 13].copy(), label, residual)  # fmt: skip
 
+    def height_at(self, points: ArrayLike, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Height (n,) [m] of the displaced surface above points (n, 2) [m] at time t [s], and the residual (n,) [m], as
+        `Sea.height_at`; `at` also gives the motion. Raises ValueError as `at`."""
+        found = self.at(points, t)
+        return found.height, found.residual
+
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
         """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t [s].
 

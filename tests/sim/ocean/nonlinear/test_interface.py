@@ -12,7 +12,6 @@ from sim.floating.float_in import float_in
 from sim.ocean import Sea
 from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves
 from sim.ocean.radial import SurfaceAt
-from sim.ocean.tile_sea import TileSea
 
 LINEAR: dict[str, Any] = {
     "size": 32, "length": 160.0, "spectrum": "sea_state", "hs": 1.0, "tp": 6.0, "choppiness": 0.0,
@@ -71,7 +70,7 @@ def test_its_components_are_the_linear_waves_of_the_moment() -> None:
 
 def test_the_sea_above_points_is_that_for_bodies() -> None:
     sea, other = linear_pair(hs=0.2)
-    found, wanted = other.at(POINTS, 5.0), TileSea(sea).at(POINTS, 5.0)
+    found, wanted = other.at(POINTS, 5.0), sea.at(POINTS, 5.0)
     assert isinstance(found, SurfaceAt)
     # The tile's fields between grid points are bicubic, its rates differences of them, and its particles displaced.
     assert found.height == pytest.approx(wanted.height, abs=1e-9)

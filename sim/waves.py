@@ -64,7 +64,7 @@ class Kinematics(NamedTuple):
 class Waves:
     """n waves a cos(k.x - omega t + 2 pi phase) on one water. Arrays (n,) float64.
 
-    Raises ValueError for arrays that are not finite or not of one shape (n,), and TypeError for another water.
+    Raises ValueError for arrays that are not finite or not of one shape (n,), and for what is no `Water`.
     """
 
     kx: np.ndarray  # [rad/m]
@@ -78,11 +78,12 @@ class Waves:
 
     def __post_init__(self) -> None:
         check_kind("water", self.water, Water, "a Water")
-        if self.omega is None:
-            object.__setattr__(self, "omega", self.water.omega(np.hypot(self.kx, self.ky)))
         for name in ("kx", "ky", "amplitude", "phase", "omega"):
+            given = getattr(self, name)
+            if name == "omega" and given is None:
+                given = self.water.omega(self.k)
             allowed = "finite numbers of shape (n,), as many as of kx"
-            values = as_array(name, getattr(self, name), allowed)
+            values = as_array(name, given, allowed)
             object.__setattr__(self, name, values)
             if values.ndim != 1 or values.shape != self.kx.shape or not np.isfinite(values).all():
                 raise argument_error(name, values if values.ndim == 1 else values.shape, allowed)

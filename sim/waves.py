@@ -88,7 +88,7 @@ class Waves:
             if values.ndim != 1 or values.shape != self.kx.shape or not np.isfinite(values).all():
                 raise argument_error(name, values if values.ndim == 1 else values.shape, allowed)
 
-    @property
+    @functools.cached_property
     def k(self) -> np.ndarray:
         """Wavenumber (n,) [rad/m]."""
         return np.hypot(self.kx, self.ky)
@@ -230,7 +230,6 @@ def sums_at(x, y, z, t, waves, amplitudes, row, responses, which, depth):
         kx, ky, nx, ny = waves[KX, i], waves[KY, i], waves[EAST, i], waves[NORTH, i]
         c, s = cos_sin_turns(kx * x + ky * y + waves[PHASE, i] - waves[RATE, i] * t)
         c, s = c * amplitudes[row, i], s * amplitudes[row, i]
-        kx, ky, omega = turn * kx, turn * ky, turn * waves[RATE, i]
         eta += c
         dx -= nx * s
         dy -= ny * s
@@ -239,17 +238,17 @@ def sums_at(x, y, z, t, waves, amplitudes, row, responses, which, depth):
         xx -= nx * kx * c
         yy -= ny * ky * c
         xy -= nx * ky * c
-        k = kx * nx + ky * ny
-        e = 1.0 if z is None else exponential(max(k * min(max(z, -depth), 0.0), -DEEPEST))
+        k = kx * nx + ky * ny  # [turns/m], as rates are in turns/s: factors of 2 pi follow after the loop
+        e = 1.0 if z is None else exponential(max(turn * k * min(max(z, -depth), 0.0), -DEEPEST))
         back = waves[ECHO, i] / e
         level, upward = waves[SPEED, i] * (e + back), waves[SPEED, i] * (e - back)
         u += nx * level * c
         v += ny * level * c
         w += upward * s
-        du += nx * omega * level * s
-        dv += ny * omega * level * s
-        dw -= omega * upward * c
-        pushed += omega / k * level * c
+        du += nx * waves[RATE, i] * level * s
+        dv += ny * waves[RATE, i] * level * s
+        dw -= waves[RATE, i] * upward * c
+        pushed += waves[RATE, i] / k * level * c
         if responses is not None:
             r0 += responses[which, 0, i] * c - responses[which, 6, i] * s
             r1 += responses[which, 1, i] * c - responses[which, 7, i] * s
@@ -258,7 +257,8 @@ def sums_at(x, y, z, t, waves, amplitudes, row, responses, which, depth):
             r4 += responses[which, 4, i] * c - responses[which, 10, i] * s
             r5 += responses[which, 5, i] * c - responses[which, 11, i] * s
     return Sums(
-        eta, (dx, dy), (hx, hy), (xx, yy, xy), (u, v, w), (du, dv, dw), pushed, (r0, r1, r2, r3, r4, r5)
+        eta, (dx, dy), (turn * hx, turn * hy), (turn * xx, turn * yy, turn * xy), (u, v, w),
+        (turn * du, turn * dv, turn * dw), pushed, (r0, r1, r2, r3, r4, r5),
     )  # fmt: skip
 
 

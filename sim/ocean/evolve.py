@@ -22,7 +22,7 @@ def set_rotation(rate, fade, t, i, cosine, sine):
 
 @kernel(noalias=True)
 def set_single_rotation(rate, fade, t, i, cosine, sine):
-    """The same within 1e-7, where nothing accumulates."""
+    """The same within 2e-7, where nothing accumulates."""
     for j in range(rate.shape[1]):
         c, s = single_cos_sin_turns(rate[i, j] * t)
         cosine[2 * j] = cosine[2 * j + 1] = c * fade[i, j]

@@ -127,7 +127,8 @@ class RadialSea:
         self._own = Waves(waves.kx, waves.ky, amplitude, phase - np.rint(phase), rate, water)
         self._grid = self._loss = None
         self._weights: dict[bytes, np.ndarray] = {}
-        self._responses: tuple[Waves | None, np.ndarray] = None, rate  # of the interface, and of which waves
+        # Of which waves, and `interface_of` them.
+        self._interface: tuple[Waves | None, np.ndarray, np.ndarray] = None, rate, rate
 
     def expose(self, duration: float) -> None:
         """Let the waves decay at once as they would in `duration` [s] on this medium; phases stay as they are.
@@ -262,15 +263,14 @@ class RadialSea:
         label, residual, found = np.empty((n, 2)), np.empty(n), np.empty((n, 14))
         find_labels(where, surface, TOLERANCE, stop_request(), label, np.empty(n), residual)
         raise_if_stopped()
-        ratio = self._ratios()
-        if self._responses[0] is not waves:
-            self._responses = waves, interface_responses(waves, ratio)
-        set_surface(label, surface, self._responses[1], found)
+        if self._interface[0] is not waves:
+            self._interface = waves, *interface_of(waves, self._ratios())
+        _, responses, gathered = self._interface
+        set_surface(label, surface, responses, found)
         z, (hx, hy), (a, b, c) = found[:, 0], found[:, 1:3].T, found[:, 3:6].T
         inverse = 1.0 / np.maximum(a * b - c * c, 0.1)
-        steepness = 0.5 * self.choppiness * waves.k * np.square(waves.amplitude)
         slope = np.column_stack([(hx * b - hy * c) * inverse, (hy * a - hx * c) * inverse])
-        mean, interface_mean = (np.square(weight) @ np.column_stack([steepness, ratio * steepness])).T
+        mean, interface_mean = self.choppiness * (gathered @ np.square(weight).T)
         return SurfaceAt(z + mean, slope, found[:, 6:9].copy(), found[:, 9].copy(), found[:, 10] + interface_mean,
                          found[:, 11:13].copy(), found[:, 13].copy(), label, residual)  # fmt: skip
 
@@ -322,15 +322,17 @@ def phases_at(waves: Waves, t: float) -> np.ndarray:
     return turns - np.rint(turns)
 
 
-def interface_responses(waves: Waves, ratio: np.ndarray) -> np.ndarray:
-    """Height, slope along x and y, and rise of the interface in waves of 1 m, as responses (1, 12, waves) of `sums_at`.
+def interface_of(waves: Waves, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Height, slope along x and y, and rise of the interface in waves of 1 m, as responses (1, 12, waves) of `sums_at`,
+    and the heights (2, waves) [m] of surface and interface that gathered points miss, at a choppiness of 1.
 
     ratio (waves,): interface over surface.
     """
+    missed = 0.5 * waves.k * np.square(waves.amplitude)
     found = np.zeros((1, 2 * RESPONSES, len(ratio)))
     found[0, 0], found[0, RESPONSES + 1], found[0, RESPONSES + 2] = ratio, ratio * waves.kx, ratio * waves.ky
     found[0, RESPONSES + 3] = -ratio * waves.omega
-    return found
+    return found, np.stack([missed, ratio * missed])
 
 
 @kernel(noalias=True)

@@ -161,18 +161,18 @@ def layer_roots(k, d, rho, mu, gravity: float, tension, steps: int = 60) -> np.n
 
 
 def flow_of_waves(waves, points: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Velocity, acceleration and pressure at points (n, 3) of `Components`, one wave after another, from the potential
+    """Velocity, acceleration and pressure at points (n, 3) of `Waves`, one wave after another, from the potential
     phi = a omega/k cosh k(z + h)/sinh kh sin(k.x - omega t + phase), h at most 300/k."""
     velocity, acceleration, pressure = np.zeros((len(points), 3)), np.zeros((len(points), 3)), np.zeros(len(points))
     x, y, z = points.T
     for kx, ky, a, omega, turns in zip(waves.kx, waves.ky, waves.amplitude, waves.omega, waves.phase, strict=True):
         k = np.hypot(kx, ky)
-        h = min(waves.depth, 300.0 / k)
+        h = min(waves.water.depth, 300.0 / k)
         theta = kx * x + ky * y - omega * t + 2.0 * np.pi * turns
         C, S = np.cosh(k * (z + h)) / np.sinh(k * h), np.sinh(k * (z + h)) / np.sinh(k * h)
         gradient = np.stack([kx * C * np.cos(theta), ky * C * np.cos(theta), k * S * np.sin(theta)], axis=1)
         rates = np.stack([kx * C * np.sin(theta), ky * C * np.sin(theta), -k * S * np.cos(theta)], axis=1)
         velocity += a * omega / k * gradient
         acceleration += a * omega**2 / k * rates
-        pressure += waves.density * a * omega**2 / k * C * np.cos(theta)
+        pressure += waves.water.density * a * omega**2 / k * C * np.cos(theta)
     return velocity, acceleration, pressure

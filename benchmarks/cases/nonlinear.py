@@ -84,7 +84,7 @@ def findings(_: list[dict[str, Any]]) -> list[dict[str, Any]]:
     sea.advance(1.0 + SEA_DURATION)
     share = (time.thread_time() - began) / SEA_DURATION
     each = SEA_DURATION / (sea.steps - steps)
-    fixed = NonlinearSea(size=SEA_SIZE, length=500.0, order=SEA_ORDER, start=sea.components(), step=each, fade=0.0)
+    fixed = NonlinearSea(size=SEA_SIZE, length=500.0, order=SEA_ORDER, start=sea.waves_at(), step=each, fade=0.0)
     fixed.advance(each)
     before = fixed.transforms.count
     fixed.advance(2.0 * each)

@@ -17,8 +17,8 @@ import numpy as np
 from sim.floating.closed_mesh import check_hull
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, submerged
-from sim.ocean.dispersion import SEA_DENSITY
 from sim.validation import argument_error, as_float, check_positive
+from sim.water import SEA_DENSITY
 
 Layers = Sequence[tuple[float, float]]
 SEA_WATER: Layers = ((SEA_DENSITY, math.inf),)  # the default fluid of the package

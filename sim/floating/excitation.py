@@ -19,9 +19,9 @@ from sim.floating.hydrodynamics import DIRECTIONS, afloat
 from sim.floating.rigid import heading_of
 from sim.interruption import raise_if_stopped
 from sim.jit import kernel
-from sim.ocean.gerstner import Waves, widened
-from sim.ocean.wave_sum import fine_wave
+from sim.ocean.gerstner import widened
 from sim.validation import argument_error
+from sim.waves import AMPLITUDE, RESPONSES, Waves, sums_at
 
 HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are taken again
 LAST_RATES = (15 / 8, -10 / 8, 3 / 8)  # weights of the last three rates of change, for that half a step after them
@@ -45,57 +45,55 @@ class WaveExcitation:
         longs = [np.vstack([kind.long.rise, kind.long.lift, kind.long.run]) for kind in self.kinds]
         self.longs = np.array(longs).reshape(len(self.kinds), 4, 6)
         self.kx = self.ky = np.zeros(0)
-        self.heading = np.full(len(keys), np.inf)  # (n,) [rad] for which the weights were taken
-        self.weights = np.zeros((len(keys), 12, 0))
+        self.heading = np.full(len(keys), np.inf)  # (n,) [rad] for which the responses were taken
+        self.omega = np.zeros(0)
+        self.responses = np.zeros((len(keys), 2 * RESPONSES, 0))
         self.impulses: tuple[np.ndarray, ...] = ()  # (n,) [m3 times m/s] upward at the last calls, the newest first
 
     def __deepcopy__(self, memo: object) -> "WaveExcitation":
-        """An independent copy: only headings and weights are ever changed in place."""
+        """An independent copy: only headings and responses are ever changed in place."""
         other = copy.copy(self)
-        other.heading, other.weights = self.heading.copy(), self.weights.copy()
+        other.heading, other.responses = self.heading.copy(), self.responses.copy()
         return other
 
-    def forces(
-        self, fleet: Fleet, labels: np.ndarray, kx: np.ndarray, ky: np.ndarray, amplitude: np.ndarray,
-        omega: np.ndarray, phase: np.ndarray, h: float, gravity: float = 9.81,
-    ) -> np.ndarray:  # fmt: skip
+    def forces(self, fleet: Fleet, labels: np.ndarray, waves: Waves, t: float, h: float) -> np.ndarray:
         """Force and moment (n, 6) on each body at unit density, in the axes of the world, for the next step of h [s].
 
-        labels (n, 2) [m]: where the bodies are on the resting surface in the middle of the step; kx, ky (waves,)
-        [rad/m], amplitude (waves,) [m], omega (waves,) [rad/s], phase (waves,) [turns] at the origin.
+        labels (n, 2) [m]: where the bodies are on the resting surface at time t [s], the middle of the step.
 
-        The upward force is the change of the impulse sum a Re(i D/w exp(i phase)) along the body's way, and so has no
+        The upward force is the change of the impulse sum a Re(i D/w exp(i theta)) along the body's way, and so has no
         mean. In linear theory the force at a fixed place has no mean. At a place that moves with the waves its mean is
         of second order, and a small body that follows the water does not feel it.
 
         Raises ValueError for a hull with a dataset of one heading, in waves of another.
         """
-        if not (np.array_equal(kx, self.kx) and np.array_equal(ky, self.ky)):
-            self.kx, self.ky, self.impulses = kx.copy(), ky.copy(), ()
-            self.check_headings(fleet, kx, ky, amplitude)
-            k = np.hypot(kx, ky)
+        k, gravity = waves.k, waves.water.gravity
+        if not (np.array_equal(waves.kx, self.kx) and np.array_equal(waves.ky, self.ky)):
+            self.kx, self.ky, self.impulses = waves.kx.copy(), waves.ky.copy(), ()
+            self.check_headings(fleet, waves.kx, waves.ky, waves.amplitude)
             found = [kind.beyond_long_waves(k) for kind in self.kinds]
             self.tables = np.array([rest for rest, _ in found]).reshape(len(found), len(k), len(DIRECTIONS), 6)
             self.is_long = np.array([is_long for _, is_long in found]).reshape(len(found), len(k))
-            averaged = [widened(Waves(kx, ky, kx, kx), width) for width in self.widths]
-            self.averaged = np.array(averaged).reshape(len(self.kinds), len(k))
-            self.heading[:] = np.inf
-            self.weights = np.zeros((len(self.kind), 12, len(k)))
+            self.averaged = np.array([widened(k, width) for width in self.widths]).reshape(len(self.kinds), len(k))
+            self.omega = np.zeros(0)
+            self.responses = np.zeros((len(self.kind), 2 * RESPONSES, len(k)))
             raise_if_stopped()
-        set_weights(
-            fleet.rotation, self.kind, self.is_round, self.heading, kx, ky, self.tables, self.is_long, self.longs,
-            self.averaged, self.planes, self.weights,
+        if not np.array_equal(waves.omega, self.omega):  # of other fluids
+            self.omega = waves.omega.copy()
+            self.heading[:] = np.inf
+        runs = waves.omega > CREEPING * np.sqrt(gravity * k)
+        inverse = np.divide(1.0, waves.omega, out=np.zeros_like(k), where=runs)
+        set_responses(
+            fleet.rotation, self.kind, self.is_round, self.heading, waves.kx, waves.ky, inverse, gravity, self.tables,
+            self.is_long, self.longs, self.averaged, self.planes, self.responses,
         )  # fmt: skip
         raise_if_stopped()
-        out = np.zeros((len(self.kind), 6))
-        runs = omega > CREEPING * np.sqrt(gravity * np.hypot(kx, ky))
-        inverse = np.divide(1.0, omega, out=np.zeros_like(omega), where=runs)
-        add_forces(labels, kx, ky, amplitude, inverse, phase, self.weights, gravity, out)
+        out = np.empty((len(self.kind), RESPONSES))
+        set_forces(labels, t, waves.table, self.responses, out)
         if not self.impulses:  # as if the bodies had been here
-            earlier = [np.zeros_like(out) for _ in LAST_RATES]
+            earlier = [np.empty_like(out) for _ in LAST_RATES]
             for step, one in enumerate(earlier, start=1):
-                then = phase + omega * (step * h / (2.0 * math.pi))
-                add_forces(labels, kx, ky, amplitude, inverse, then, self.weights, gravity, one)
+                set_forces(labels, t - step * h, waves.table, self.responses, one)
             self.impulses = tuple(one[:, 2] for one in earlier)
         self.impulses = (out[:, 2].copy(), *self.impulses[: len(LAST_RATES)])
         out[:, 2] = rate_of_change(self.impulses, h)
@@ -125,11 +123,13 @@ def rate_of_change(values: Sequence[np.ndarray], h: float) -> np.ndarray:
 
 
 @kernel
-def set_weights(rotation, kind, is_round, heading, kx, ky, tables, is_long, longs, averaged, planes, weights):
-    """Set weights (n, 12, waves), real and imaginary part of D in turn, of the bodies that have turned since.
+def set_responses(
+    rotation, kind, is_round, heading, kx, ky, inverse, gravity, tables, is_long, longs, averaged, planes, responses
+):
+    """Set responses (n, 12, waves) of `sums_at` of the bodies that have turned: gravity D, and i gravity D/w upward.
 
-    tables (kinds, waves, 36, 6) without the long-wave force where is_long (kinds, waves), longs (kinds, 4, 6): that
-    force, averaged (kinds, waves), planes (kinds, 3, 6).
+    inverse (waves,) [s]: 1/w, 0 for waves that creep. tables (kinds, waves, 36, 6) without the long-wave force where
+    is_long (kinds, waves), longs (kinds, 4, 6): that force, averaged (kinds, waves), planes (kinds, 3, 6).
     """
     count = tables.shape[2]
     spacing = 2.0 * math.pi / count
@@ -164,30 +164,14 @@ def set_weights(rotation, kind, is_round, heading, kx, ky, tables, is_long, long
             for d in range(2):
                 first_part, second_part = D[3 * d], D[3 * d + 1]
                 D[3 * d], D[3 * d + 1] = c * first_part - s * second_part, s * first_part + c * second_part
+            D[2] *= 1j * inverse[i]
             for d in range(6):
-                weights[b, 2 * d, i], weights[b, 2 * d + 1, i] = D[d].real, D[d].imag
+                responses[b, d, i], responses[b, 6 + d, i] = gravity * D[d].real, gravity * D[d].imag
 
 
 @kernel(noalias=True)
-def add_forces(labels, kx, ky, amplitude, inverse, phase, weights, gravity, out):
-    """Add gravity times the sum of a Re(D exp(i phase)) over the waves to out (n, 6), of a Re(i D/w exp()) upward.
-
-    inverse (waves,) [s]: 1/w, 0 for waves that creep.
-    """
+def set_forces(labels, t, waves, responses, out):
+    """Set the response (n, 6) of each body at its label (n, 2) to the waves at time t."""
     for b in range(labels.shape[0]):
-        x, y, weight = labels[b, 0] / (2.0 * math.pi), labels[b, 1] / (2.0 * math.pi), weights[b]
-        f0 = f1 = f2 = f3 = f4 = f5 = 0.0
-        for i in range(kx.size):
-            c, s = fine_wave(kx[i] * x + ky[i] * y + phase[i], gravity * amplitude[i])
-            f0 += c * weight[0, i] - s * weight[1, i]
-            f1 += c * weight[2, i] - s * weight[3, i]
-            f2 -= (s * weight[4, i] + c * weight[5, i]) * inverse[i]
-            f3 += c * weight[6, i] - s * weight[7, i]
-            f4 += c * weight[8, i] - s * weight[9, i]
-            f5 += c * weight[10, i] - s * weight[11, i]
-        out[b, 0] += f0
-        out[b, 1] += f1
-        out[b, 2] += f2
-        out[b, 3] += f3
-        out[b, 4] += f4
-        out[b, 5] += f5
+        sums = sums_at(labels[b, 0], labels[b, 1], None, t, waves, waves, AMPLITUDE, responses, b, np.inf)
+        out[b, 0], out[b, 1], out[b, 2], out[b, 3], out[b, 4], out[b, 5] = sums.response

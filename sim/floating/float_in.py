@@ -27,7 +27,6 @@ from sim.interruption import raise_if_stopped
 from sim.ocean import Sea
 from sim.ocean.nonlinear import NonlinearSea
 from sim.ocean.radial import RadialSea, SurfaceAt
-from sim.ocean.tile_sea import TileSea
 from sim.validation import argument_error, check_kind, check_positive, is_whole_number
 
 LONGEST_STEP = 1 / 60  # [s]
@@ -74,14 +73,13 @@ def float_in(
     for words in unstable(bodies, layers):
         warnings.warn(words, UserWarning, stacklevel=2)
     widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
-    tile = TileSea(sea) if isinstance(sea, Sea) else sea
     excitation = WaveExcitation(bodies, widths, layers) if isinstance(sea, RadialSea) else None
     each = math.ceil(duration / (frames - 1) / LONGEST_STEP * (1.0 - 1e-9))
     h, n = duration / (frames - 1) / each, len(fleet.mass)
     shown = (fleet.position, fleet.rotation, fleet.velocity, fleet.spin, fleet.lift)
     kept = [np.empty((frames, *array.shape)) for array in shown]
     surface, rises = np.empty((frames, n)), ()
-    surface[0] = tile.at(fleet.position[:, :2], 0.0, widths).height if n else 0.0
+    surface[0] = sea.at(fleet.position[:, :2], 0.0, widths).height if n else 0.0
     for frame in range(frames):
         for out, array in zip(kept, shown, strict=True):
             out[frame] = array
@@ -90,11 +88,10 @@ def float_in(
         for i in range(each):
             raise_if_stopped()
             middle = (frame * each + i + 0.5) * h
-            at = tile.at(fleet.position[:, :2], middle, widths)
+            at = sea.at(fleet.position[:, :2], middle, widths)
             forces, acceleration = None, at.acceleration
             if isinstance(sea, RadialSea) and excitation is not None:
-                kx, ky, amplitude, omega, phase, _ = sea.current(middle)
-                forces = excitation.forces(fleet, at.label, kx, ky, amplitude, omega, phase, h, gravity)
+                forces = excitation.forces(fleet, at.label, sea.waves_at(middle), middle, h)
             else:  # along the way of the bodies, so that it has no mean (excitation.py)
                 rises = (at.velocity[:, 2].copy(), *rises[: len(LAST_RATES)])
                 if len(rises) > len(LAST_RATES):

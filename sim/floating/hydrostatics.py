@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike
 from sim.floating.closed_mesh import ClosedMesh, area_vectors, check_hull
 from sim.floating.rotation import rotation_matrix
 from sim.jit import kernel
-from sim.ocean.dispersion import SEA_DENSITY
 from sim.validation import argument_error, as_array, check_not_negative
+from sim.water import SEA_DENSITY
 
 
 @kernel(noalias=True)

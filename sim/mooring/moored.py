@@ -9,26 +9,29 @@ from sim import floating
 from sim.floating.hydrodynamics import check_water_depth, not_negative
 from sim.floating.response import linear_forces
 from sim.mooring.system import Body
+from sim.validation import argument_error
+from sim.water import SAME_WATER
 
 if TYPE_CHECKING:
-    from sim.ocean.kinematics import Components
+    from sim.waves import Waves
 
 HELD = 1e-6  # of the stiffness of heave, for surge and sway, and of roll, for yaw: statics need a place without lines
 
 
-def moored(
-    id: int, body: floating.Body, frequency: float, waves: "Components | None" = None, gravity: float = 9.81
-) -> Body:
+def moored(id: int, body: floating.Body, frequency: float, waves: "Waves | None" = None, gravity: float = 9.81) -> Body:
     """The body at its place of rest without lines, upright in sea water, its axes along x and y.
 
     frequency: [rad/s] of the added mass and the radiation damping, which are taken as constant; that of the highest
     waves is a good one. waves: those of the system, which push it by `sim.floating.response.linear_forces` [N, N m].
     Coefficients are those of deep water, or of the depth of the hull's dataset, which is then that of the waves.
 
-    Raises ValueError as `response_amplitude` does, and for waves on water of another depth than the dataset's.
+    Raises ValueError as `response_amplitude` does, and for waves on water of another depth than the dataset's or under
+    another gravity.
     """
     if waves is not None:
-        check_water_depth("waves", body.hull, waves.depth)
+        check_water_depth("waves", body.hull, waves.water.depth)
+        if not math.isclose(gravity, waves.water.gravity, rel_tol=SAME_WATER):
+            raise argument_error("gravity", gravity, f"that of the waves' {waves.water}")
     table = body.hull.shape.table
     heading = 0.0 if table is None or math.isnan(table.heading) else table.heading  # whichever: only X depends on it
     own = linear_forces(body, [frequency], heading, gravity=gravity)
@@ -40,7 +43,7 @@ def moored(
     return Body(id, own.centre, own.mass + A, 0.5 * (C + C.T), B, X)
 
 
-def excitation(body: floating.Body, waves: "Components", gravity: float) -> np.ndarray:
+def excitation(body: floating.Body, waves: "Waves", gravity: float) -> np.ndarray:
     """Force and moment (waves, 6) by each wave of amplitude 1 m, a Re(X exp(i theta)) at the body."""
     found = np.zeros((len(waves.omega), 6), complex)
     headings = np.arctan2(waves.ky, waves.kx)

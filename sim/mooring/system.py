@@ -19,7 +19,6 @@ from sim.mooring.bending import bends_of
 from sim.mooring.elastic import Curves
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
-from sim.ocean.kinematics import Components
 from sim.springs.laws import LAWS
 from sim.springs.lines.arrays import (
     BODY_MASS,
@@ -33,6 +32,8 @@ from sim.springs.lines.arrays import (
     LineArrays,
 )
 from sim.validation import argument_error, check_choice, check_kind, check_number, check_vector, is_whole_number
+from sim.water import Water
+from sim.waves import Waves
 
 Vector = tuple[float, float, float]
 
@@ -125,7 +126,7 @@ class System:
     friction: float = 0.0  # Coulomb coefficient
     slack_damping: bool = False  # internal damping acts in slack links too, as in MoorDyn
     current: Vector = (0.0, 0.0, 0.0)  # [m/s]; it pushes lines and points, but no body
-    waves: Components | None = None  # in the same water, None: still water
+    waves: Waves | None = None  # on the same water; None: still water
 
     def __post_init__(self) -> None:
         """Raises ValueError with the name of the value that cannot be: kernels check no index."""
@@ -163,25 +164,25 @@ class System:
                 raise argument_error(f"point {point.id}", "free, without a line", "a mass, or a line that ends there")
 
     def check_waves(self) -> None:
-        """Raises ValueError for waves in another water: kernels have one depth and one density."""
+        """Raises ValueError for waves on another water, or with other frequencies than gravity waves have on it."""
         waves = self.waves
         if waves is None:
             return
-        check_kind(
-            "waves", waves, Components, "Components, as `sim.ocean.kinematics.components_of` makes them, or None"
-        )
-        for name in ("depth", "density"):
-            value = getattr(waves, name)
-            if not math.isclose(value, getattr(self, name), rel_tol=1e-6):
-                raise argument_error(f"waves: {name}", value, f"that of the system, {getattr(self, name):g}")
-        k = np.hypot(waves.kx, waves.ky)
-        expected = np.sqrt(self.gravity * k * np.tanh(k * self.depth))
+        check_kind("waves", waves, Waves, "Waves, as `draw_waves` or `waves_at` of a sea, or None")
+        if not waves.water.is_same(self.water):
+            raise argument_error("waves", f"waves on {waves.water}", f"those on the system's {self.water}")
+        expected = self.water.omega(waves.k)
         wrong = np.abs(waves.omega - expected) > MAX_DISPERSION_ERROR * expected
         if wrong.any():
             allowed = (
                 f"{float(expected[wrong][0]):g} rad/s, as waves of that length have in gravity {self.gravity:g} m/s^2"
             )
             raise argument_error("waves: omega", float(waves.omega[wrong][0]), allowed)
+
+    @property
+    def water(self) -> Water:
+        """The water around the lines."""
+        return Water(self.depth, self.gravity, self.density)
 
     def check_point(self, point: Point) -> None:
         name = f"point {point.id}"
@@ -293,7 +294,7 @@ class System:
         for q, i in enumerate(moved):
             paths[q, 0] = self.points[i].position
         carried, arms, rows = self.body_rows(mass)
-        waves = np.zeros((9, 0)) if self.waves is None else np.ascontiguousarray(self.waves.table(), dtype=np.float64)
+        waves = np.zeros((9, 0)) if self.waves is None else self.waves.table
         return LineArrays(
             rows=1,
             cols=n,

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from sim.interruption import pieces
+from sim.water import Water
+from sim.waves import Waves
 
 KINDS = ("random", "fixed")
 PIECE = 32768  # wavenumbers at a time: the solve yields in between
@@ -86,6 +88,18 @@ def with_line(S: np.ndarray, unit: np.ndarray, line: tuple[float, float, float],
     unit = unit.copy()
     unit[i, j] *= math.sqrt(0.5) / abs(unit[i, j])
     return unit
+
+
+def waves_of_tile(k: np.ndarray, h0: np.ndarray, omega: np.ndarray, base: float, water: Water) -> Waves:
+    """The waves of a tile that have an amplitude.
+
+    k: (n,) [rad/m] in FFT order. h0, omega: (n, n) [m], [rad/s], with the phases of time `base` [s].
+    """
+    there = h0 != 0.0
+    h0, omega = h0[there], omega[there]
+    kx, ky = (np.broadcast_to(along, there.shape)[there] for along in (k[:, None], k[None, :]))
+    phase = (np.angle(h0) + omega * base) / (2.0 * math.pi)
+    return Waves(kx, ky, 2.0 * np.abs(h0), phase - np.rint(phase), omega, water)
 
 
 def _mixed(z: Any) -> Any:

@@ -14,9 +14,9 @@ import numpy as np
 from sim.interruption import raise_if_stopped
 from sim.ocean.viscous_layers import Layers, surface_roots
 from sim.validation import argument_error, check_kind, check_not_negative, check_positive, check_wavenumbers
+from sim.water import SEA_DENSITY
 
 INF = math.inf
-SEA_DENSITY = 1025.0  # [kg/m3] of the water where none is named
 CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
 CRITICAL_FILM = 1.2703246811008881  # the same under a film
 LONG = 1e-6  # kd that stands for 0 in the ratios of modes

@@ -5,14 +5,8 @@ loops vectorise. Frequencies depend on |kx|, |ky| only: `rate` [turns/s], `fade`
 (N/2, N/2) and rows i and N - i share one sine and cosine. The Nyquist row and column are never written: they stay 0.
 """
 
-import math
-
-import numpy as np
-
 from sim.jit import kernel
-from sim.ocean.wave_sum import QUARTER
-from sim.ocean.wave_sum import sine as quarter_sine
-from sim.wave_motion import sincos_turns
+from sim.turns import cos_sin_turns, single_cos_sin_turns
 
 SINGLE = 4  # [bytes] of a number of single precision
 
@@ -21,22 +15,18 @@ SINGLE = 4  # [bytes] of a number of single precision
 def set_rotation(rate, fade, t, i, cosine, sine):
     """Row i of fade cos(omega t), fade sin(omega t), each value twice: for the real and for the imaginary part."""
     for j in range(rate.shape[1]):
-        c, s = sincos_turns(rate[i, j] * t)
+        c, s = cos_sin_turns(rate[i, j] * t)
         cosine[2 * j] = cosine[2 * j + 1] = c * fade[i, j]
         sine[2 * j] = sine[2 * j + 1] = s * fade[i, j]
 
 
 @kernel(noalias=True)
 def set_single_rotation(rate, fade, t, i, cosine, sine):
-    """The same within 1e-7, where nothing accumulates: in single precision once the angle is a quarter turn at most."""
+    """The same within 2e-7, where nothing accumulates."""
     for j in range(rate.shape[1]):
-        turns = rate[i, j] * t
-        turns -= np.rint(turns)
-        u = np.float32(abs(turns) - 0.25)
-        c = -quarter_sine(u) * fade[i, j]
-        s = math.copysign(quarter_sine(QUARTER - abs(u)), np.float32(turns)) * fade[i, j]
-        cosine[2 * j] = cosine[2 * j + 1] = c
-        sine[2 * j] = sine[2 * j + 1] = s
+        c, s = single_cos_sin_turns(rate[i, j] * t)
+        cosine[2 * j] = cosine[2 * j + 1] = c * fade[i, j]
+        sine[2 * j] = sine[2 * j + 1] = s * fade[i, j]
 
 
 @kernel(noalias=True)

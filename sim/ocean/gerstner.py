@@ -5,13 +5,14 @@ waves; shorter ones belong to the material (roughness, ripples). For the whole s
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.ocean.spectra.record import wavenumber_of
 from sim.validation import argument_error, check_kind, check_within, is_whole_number
+from sim.waves import Waves
 
 MAX_WAVES = 4096
 DECADES = (-1.7, 4.0)  # of wavenumber about the peak that are looked at: beyond lie 1e-8 of the energy
@@ -19,23 +20,11 @@ CELLS, BEARINGS = 1500, 120  # of the polar grid over which energy is shared out
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
-class Waves(NamedTuple):
-    """n waves a cos(k.X - omega t + 2 pi phase), the longest first. All (n,)."""
-
-    kx: np.ndarray  # [rad/m]
-    ky: np.ndarray  # [rad/m]
-    amplitude: np.ndarray  # [m]
-    phase: np.ndarray  # [turns] at t = 0
-
-    @property
-    def k(self) -> np.ndarray:
-        """Wavenumber (n,) [rad/m]."""
-        return np.hypot(self.kx, self.ky)
-
-    @property
-    def significant_height(self) -> float:
-        """Hs = 4 sqrt(sum a^2/2) [m]."""
-        return 4.0 * math.sqrt(0.5 * float(np.square(self.amplitude).sum()))
+def waves_under(
+    conditions: Conditions, kx: np.ndarray, ky: np.ndarray, amplitude: np.ndarray, phase: np.ndarray
+) -> Waves:
+    """`Waves` with the frequencies that they have under these conditions."""
+    return Waves(kx, ky, amplitude, phase, conditions.omega(np.hypot(kx, ky)), conditions.water)
 
 
 def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64, seed: int = 0) -> Waves:
@@ -44,7 +33,8 @@ def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64,
     The energy, as a function of wavenumber, is cut into `count` equal parts; each gives the wavenumber of its middle
     and a bearing drawn from the spreading there (by a golden-ratio sequence, so that few waves already spread evenly).
     Without wind all amplitudes are 0. A regular wave is one wave, and those of the second system, if there is one, are
-    the other `count`. Raises ValueError for a count that is not 1 to 4096 or a seed that is not whole.
+    the other `count`. All are on the water of the conditions. Raises ValueError for a count that is not 1 to 4096 or a
+    seed that is not whole.
 
     >>> from sim.ocean import SPECTRA
     >>> waves = draw_waves(SPECTRA["jonswap"], SPECTRA["jonswap"].conditions(wind_speed=12.0), count=32)
@@ -60,7 +50,7 @@ def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64,
     random = np.random.default_rng(seed)
     if spectrum.line is not None and conditions.second_height == 0.0:
         kx, ky, m0 = spectrum.line(conditions)
-        return Waves(np.array([kx]), np.array([ky]), np.array([math.sqrt(2.0 * m0)]), np.zeros(1))
+        return waves_under(conditions, *(np.array([one]) for one in (kx, ky, math.sqrt(2.0 * m0), 0.0)))
     k = np.geomspace(*energy_range(spectrum, conditions), CELLS)
     theta = np.arange(BEARINGS) * (2.0 * math.pi / BEARINGS)
     S = spectrum(k[:, None] * np.cos(theta), k[:, None] * np.sin(theta), conditions)
@@ -70,7 +60,8 @@ def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64,
     m0 = float(below[-1])
     phase = random.uniform(size=count)
     if m0 <= 0.0:
-        return Waves(np.full(count, peak_wavenumber(spectrum, conditions)), np.zeros(count), np.zeros(count), phase)
+        k = np.full(count, peak_wavenumber(spectrum, conditions))
+        return waves_under(conditions, k, np.zeros(count), np.zeros(count), phase)
     middles = (np.arange(count) + 0.5) / count * m0
     log_k = np.interp(middles, below, np.log(k))
     rows = np.clip(np.searchsorted(k, np.exp(log_k)), 0, CELLS - 1)
@@ -86,8 +77,9 @@ def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64,
         both = np.append(wavenumber * np.cos(bearing), kx), np.append(wavenumber * np.sin(bearing), ky)
         order = np.argsort(np.hypot(*both), kind="stable")
         single = math.sqrt(2.0 * m0)
-        return Waves(both[0][order], both[1][order], np.append(amplitude, single)[order], np.append(phase, 0.0)[order])
-    return Waves(wavenumber * np.cos(bearing), wavenumber * np.sin(bearing), amplitude, phase)
+        of_all = (*both, np.append(amplitude, single), np.append(phase, 0.0))
+        return waves_under(conditions, *(values[order] for values in of_all))
+    return waves_under(conditions, wavenumber * np.cos(bearing), wavenumber * np.sin(bearing), amplitude, phase)
 
 
 def energy_range(spectrum: Spectrum[Any], conditions: Conditions) -> tuple[float, float]:
@@ -106,11 +98,11 @@ def peak_wavenumber(spectrum: Spectrum[Any], conditions: Conditions) -> float:
     return wavenumber_of(conditions, spectrum.peak(conditions))
 
 
-def widened(waves: Waves, length: float) -> np.ndarray:
-    """Factor (n,) by which waves are lower when averaged over a disc of diameter `length` [m].
+def widened(k: np.ndarray, length: float) -> np.ndarray:
+    """Factor (n,) by which waves of wavenumber k (n,) [rad/m] are lower, averaged over a disc of diameter length [m].
 
     The mean of a wave over a disc of radius r is 2 J1(kr)/(kr) = 1 - (kr)^2/8 + ...; exp(-(kr)^2/8) begins alike and
     does not oscillate.
     """
     r = 0.5 * check_within("length", length, 0.0, 1e4, "m")
-    return np.exp(-((waves.k * r) ** 2) / 8.0)
+    return np.exp(-((k * r) ** 2) / 8.0)

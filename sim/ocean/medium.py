@@ -1,12 +1,14 @@
 """Medium of the waves, apart from their spectrum's conditions: decay, and the lab's changes of the dispersion."""
 
 import dataclasses
+import functools
 import math
 from collections.abc import Callable
 
 import numpy as np
 
 from sim.ocean.dispersion import damped_root
+from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.spectra import Conditions
 from sim.validation import argument_error, check_kind, check_number
 
@@ -57,3 +59,9 @@ class Medium:
         if not (np.isfinite(values) & (values >= 0.0)).all():
             raise argument_error(name, float(values[~(values >= 0.0) | ~np.isfinite(values)][0]), "0 or above, finite")
         return values
+
+
+@functools.lru_cache(maxsize=64)
+def medium_of(column: FluidColumn) -> Medium:
+    """The medium in which waves decay as on a column. The same for the same column, so that its roots are kept."""
+    return Medium(decay=lambda k: column.roots(k)[1])

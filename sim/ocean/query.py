@@ -1,48 +1,95 @@
 """Height of the displaced surface above a point X: find the label x with x + D(x) = X, and return its height.
 
-Fixed-point steps x <- X - D(x) bring the label near (they contract only where |grad D| < 1), then Newton steps with
-halving finish. Between grid points fields are bicubic (Catmull-Rom), which smooths the waves of a few cells (measured:
-off by at most 2 % of Hs at 2 m cells under a 10 m/s wind); `exact` sums all waves.
+Newton steps from x = X, halved where they lead away. Between the points of a tile's grid fields are bicubic
+(Catmull-Rom), which smooths the waves of a few cells (measured: off by at most 2 % of Hs at 2 m cells under a 10 m/s
+wind); `exact` sums all waves.
 """
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from sim.interruption import pieces, raise_if_stopped, stop_request
-from sim.jit import is_stopped, kernel
+from sim.jit import chosen, is_stopped, kernel
+from sim.waves import AMPLITUDE, EAST, ECHO, KX, KY, NORTH, PHASE, RATE, SPEED, sums_at
 
 if TYPE_CHECKING:
     from sim.ocean.surface import Surface
 
 TOLERANCE = 1e-9  # share of a cell at which a label counts as found
-FIXED_POINT_STEPS, NEWTON_STEPS, HALVINGS = 3, 40, 8
+NEWTON_STEPS, HALVINGS = 40, 8
 PIECE = 4096  # points at a time: the solve yields in between
 
 
-def query(surface: "Surface", points: np.ndarray, exact: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(height, residual), each (n,) [m], of the surface above points (n, 2) float64 [m]. Can be cancelled."""
+class GridFields(NamedTuple):
+    """A surface by periodic fields on a grid."""
+
+    height: np.ndarray  # (n, n) [m]
+    dx: np.ndarray  # (n, n) [m] displacement
+    dy: np.ndarray  # (n, n) [m]
+    cell: float  # [m]
+
+
+class WaveFields(NamedTuple):
+    """A surface by the sum of waves."""
+
+    waves: np.ndarray  # (9, waves): `Waves.table`
+    amplitudes: np.ndarray  # (points, waves), or (1, waves) for all points [m]
+    t: float  # [s]
+    choppiness: float
+
+
+def query(surface: "Surface", points: np.ndarray, exact: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Height (n,) [m] of the surface above points (n, 2) float64 [m], residual (n,) [m] and label (n, 2) [m].
+
+    It can be cancelled.
+    """
     sea = surface.sea
-    height, residual = np.empty(len(points)), np.empty(len(points))
+    labels, height, residual = points.copy(), np.empty(len(points)), np.empty(len(points))
     cell = sea.length / sea.size
     if surface.choppiness == 0.0 and not exact:
         for piece in pieces(len(points), PIECE):
             sample(points[piece], surface.height, cell, height[piece])
         residual[:] = 0.0
-        return height, residual
-    unread = np.zeros((4, 4), sea.rows["1"].dtype)
+        return height, residual, labels
     if exact:
-        h = dx = dy = unread
-        spectrum = sea.heights_spectrum(surface.t)
+        table = np.empty((AMPLITUDE + 1, sea.size**2 // 2))
+        set_standing_waves(sea.heights_spectrum(surface.t), 2.0 * math.pi / sea.length, table)
+        fields = WaveFields(table, table[AMPLITUDE:], 0.0, surface.choppiness)
     else:
-        h, dx, dy = surface.height, surface.displacement[..., 0], surface.displacement[..., 1]
-        spectrum = unread
-    dk = 2.0 * np.pi / sea.length
+        fields = grid_fields(surface)
     for piece in pieces(len(points), PIECE):
-        find(points[piece], exact, h, dx, dy, spectrum, dk, surface.choppiness, cell, stop_request(), height[piece],
-             residual[piece])  # fmt: skip
+        find_labels(points[piece], fields, TOLERANCE * cell, stop_request(), labels[piece], height[piece],
+                    residual[piece])  # fmt: skip
     raise_if_stopped()
-    return height + surface.mean_height if exact else height, residual
+    return height + surface.mean_height if exact else height, residual, labels
+
+
+def grid_fields(surface: "Surface") -> GridFields:
+    """The fields of a surface of a tile."""
+    sea, D = surface.sea, surface.displacement
+    return GridFields(surface.height, D[..., 0], D[..., 1], sea.length / sea.size)
+
+
+@kernel
+def set_standing_waves(h, dk, out):
+    """Set rows (9, n half) as of `Waves.table` of the waves of a tile at one moment, which stand still.
+
+    h: heights of the half plane ky >= 0 as their real view (n, 2 half + 2); ky > 0 counts twice. dk [rad/m].
+    """
+    n, half = h.shape[0], h.shape[1] // 2 - 1
+    for i in range(n):
+        m = i if i < half else i - n
+        for j in range(half):
+            w = i * half + j
+            re, im = h[i, 2 * j], h[i, 2 * j + 1]
+            k = math.sqrt(m * m + j * j)
+            out[KX, w], out[KY, w] = m * dk / (2.0 * math.pi), j * dk / (2.0 * math.pi)
+            out[PHASE, w] = math.atan2(im, re) / (2.0 * math.pi)
+            out[AMPLITUDE, w] = (2.0 if j > 0 else 1.0) * math.sqrt(re * re + im * im)
+            out[RATE, w] = out[SPEED, w] = out[ECHO, w] = 0.0
+            out[EAST, w], out[NORTH, w] = (m / k, j / k) if k > 0.0 else (0.0, 0.0)
 
 
 @kernel
@@ -94,52 +141,57 @@ def sample(points, field, cell, out):
 
 
 @kernel
-def evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y):
+def evaluate_grid(f, p, x, y):
     """(height, Dx, Dy, Dxx, Dxy, Dyx, Dyy) at label x, y [m]."""
-    if exact:
-        z, a, b, xx, yy, xy = sum_waves(spectrum, dk, choppiness, x, y)
-        return z, a, b, xx, xy, xy, yy
-    z = bicubic(h, x / cell, y / cell)[0]
-    a, xx, xy = bicubic(dx, x / cell, y / cell)
-    b, yx, yy = bicubic(dy, x / cell, y / cell)
-    return z, a, b, xx / cell, xy / cell, yx / cell, yy / cell
+    z = bicubic(f.height, x / f.cell, y / f.cell)[0]
+    a, xx, xy = bicubic(f.dx, x / f.cell, y / f.cell)
+    b, yx, yy = bicubic(f.dy, x / f.cell, y / f.cell)
+    return z, a, b, xx / f.cell, xy / f.cell, yx / f.cell, yy / f.cell
 
 
 @kernel
-def find(points, exact, h, dx, dy, spectrum, dk, choppiness, cell, stop, height, residual):
-    """Heights and residuals of all points; reads `spectrum` if exact, else the grids h, dx, dy.
+def evaluate_waves(f, p, x, y):
+    """The same of the sum of waves for point p."""
+    row = p if f.amplitudes.shape[0] > 1 else 0
+    sums = sums_at(x, y, None, f.t, f.waves, f.amplitudes, row, None, 0, np.inf)
+    (a, b), (xx, yy, xy), g = sums.displacement, sums.strain, f.choppiness
+    return sums.elevation, g * a, g * b, g * xx, g * xy, g * xy, g * yy
 
-    An exact query can be cancelled by `stop` (4,) (sim/interruption.py), because a sum over all waves may take long.
+
+evaluate = chosen({GridFields: evaluate_grid, WaveFields: evaluate_waves})
+
+
+@kernel
+def find_labels(points, fields, tolerance, stop, labels, height, residual):
+    """Set the labels (n, 2) [m] of the resting surface that are displaced to points (n, 2), the heights and the
+    residuals (n,) [m] there.
+
+    tolerance [m]: at which a label counts as found. It can be cancelled by `stop` (4,) (sim/interruption.py), because
+    a sum over all waves of a tile may take long.
     """
     for p in range(points.shape[0]):
+        if is_stopped(stop):
+            return
         X, Y = points[p, 0], points[p, 1]
         x, y = X, Y
-        z, a, b, xx, xy, yx, yy = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y)
-        for _ in range(FIXED_POINT_STEPS):
-            if exact and is_stopped(stop):
-                return
-            x, y = X - a, Y - b
-            z, a, b, xx, xy, yx, yy = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x, y)
-        fx, fy = x + a - X, y + b - Y
+        z, fx, fy, xx, xy, yx, yy = evaluate(fields, p, x, y)
         miss = np.hypot(fx, fy)
         for _ in range(NEWTON_STEPS):
-            if miss <= TOLERANCE * cell:
+            if miss <= tolerance:
                 break
             sx, sy = newton_step(fx, fy, xx, xy, yx, yy)
             better = False
             for _ in range(HALVINGS):
-                if exact and is_stopped(stop):
-                    return
-                trial = evaluate(exact, h, dx, dy, spectrum, dk, choppiness, cell, x + sx, y + sy)
+                trial = evaluate(fields, p, x + sx, y + sy)
                 gx, gy = x + sx + trial[1] - X, y + sy + trial[2] - Y
                 if np.hypot(gx, gy) < miss:
                     x, y, fx, fy, miss, better = x + sx, y + sy, gx, gy, np.hypot(gx, gy), True
-                    z, a, b, xx, xy, yx, yy = trial
+                    z, _, _, xx, xy, yx, yy = trial
                     break
                 sx, sy = 0.5 * sx, 0.5 * sy
             if not better:
                 break
-        height[p], residual[p] = z, miss
+        labels[p, 0], labels[p, 1], height[p], residual[p] = x, y, z, miss
 
 
 @kernel
@@ -149,33 +201,3 @@ def newton_step(fx, fy, axx, axy, byx, byy):
     if abs(det) < 1e-6:
         return -fx, -fy
     return -((1.0 + byy) * fx - axy * fy) / det, -((1.0 + axx) * fy - byx * fx) / det
-
-
-@kernel
-def sum_waves(h, dk, choppiness, x, y):
-    """(height, Dx, Dy, Dxx, Dyy, Dxy) at x, y [m] by the sum over the half plane; ky > 0 counts twice."""
-    n, half = h.shape[0], h.shape[1] // 2 - 1
-    height = h[0, 0]
-    Dx, Dy, Dxx, Dyy, Dxy = 0.0, 0.0, 0.0, 0.0, 0.0
-    stepc, steps = np.cos(dk * y), np.sin(dk * y)
-    for i in range(n):
-        m = i if i < half else i - n
-        kx = m * dk
-        c, s = np.cos(kx * x), np.sin(kx * x)
-        for j in range(half):
-            if m != -half and (i > 0 or j > 0):
-                ky = j * dk
-                k = np.hypot(kx, ky)
-                twice = 2.0 if j > 0 else 1.0
-                re = twice * (h[i, 2 * j] * c - h[i, 2 * j + 1] * s)
-                im = twice * (h[i, 2 * j] * s + h[i, 2 * j + 1] * c)
-                height += re
-                # Re(i h e) = -Im(h e); d/dx of it is -kx Re(h e)
-                Dx -= kx / k * im
-                Dy -= ky / k * im
-                Dxx -= kx * kx / k * re
-                Dyy -= ky * ky / k * re
-                Dxy -= kx * ky / k * re
-            c, s = c * stepc - s * steps, s * stepc + c * steps
-    g = choppiness
-    return height, g * Dx, g * Dy, g * Dxx, g * Dyy, g * Dxy

@@ -14,6 +14,7 @@ All points are that much higher, the interface by its share of it: the mean leve
 """
 
 import copy
+import dataclasses
 import math
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -21,15 +22,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.interruption import raise_if_stopped, stop_request
+from sim.jit import kernel
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import Waves, widened
-from sim.ocean.kinematics import Components, Kinematics
+from sim.ocean.gerstner import widened
+from sim.ocean.query import WaveFields, find_labels
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import SlickCover
-from sim.ocean.wave_sum import add_waves, calm_waves, find_labels, set_mesh, set_motion
+from sim.ocean.wave_sum import add_waves, calm_waves, set_mesh
 from sim.validation import argument_error, as_array, check_finite, check_kind, check_not_negative, check_positions
+from sim.water import SAME_WATER, Water
+from sim.waves import RESPONSES, Kinematics, Waves, sums_at
 
 CLEAN = FluidColumn()
+TOLERANCE = 1e-7  # [m] at which a label counts as found
 
 
 class RadialSurface(NamedTuple):
@@ -61,20 +67,20 @@ class RadialSea:
         self, waves: Waves, column: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
     ) -> None:
         """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
-        horizontal motion. Raises ValueError for a negative one, and for other waves or another column.
+        horizontal motion. The column carries the waves: they have the frequencies of the deep fluids in it.
+        Raises ValueError for a negative number, other waves or another column, and waves under another gravity.
 
         `past` [s] is the time spent on each medium. Waves never regain energy that they lost there.
         """
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs
         self.choppiness = check_not_negative("choppiness", choppiness, "")
-        self._base, self._fade = 0.0, 0.0
-        self._old: tuple[np.ndarray, ...] | None = None
+        self._fade = 0.0
+        self._old: tuple[Waves, np.ndarray] | None = None  # waves that fade out, and their interface ratios
         self._grid: RadialGrid | None = None
         self.slick: SlickCover | None = None  # what calms the waves under it
         self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
         self.past: dict[FluidColumn, float] = {}
-        check_kind("waves", waves, Waves, "Waves, as `draw_waves` draws them")
-        check_kind("column", column, FluidColumn, "a FluidColumn")
+        check_carried(waves, column)
         self._set(waves, column, waves.phase, np.zeros(len(waves.kx)))
         self.expose(exposure)
 
@@ -89,43 +95,40 @@ class RadialSea:
         """Change the medium or the waves at time t [s]. Phases stay continuous; new waves take over within `fade` [s].
 
         Lost energy stays lost, also by other waves of the same length. exposure [s]: forget the losses, and apply those
-        of so long a time on the new medium. Raises ValueError for a negative one.
+        of so long a time on the new medium. Raises ValueError as the constructor.
         """
         t, fade = check_finite("t", t, "s"), check_not_negative("fade", fade, "s")
+        check_carried(waves or self.waves, column or self.column)
         past = self.past
         if exposure is not None:
             exposure, past = check_not_negative("exposure", exposure, "s"), {}
-        turned = self.phases(t)
+        own, loss = self._own, self._lost
         if waves is None:
-            n = len(self.waves.kx)
             self._old = None if self._share(t) >= 1.0 else self._old
-            self._turn_old(t)
-            loss = self._lost if exposure is None else np.zeros(n)
-            self._set(self.waves, column or self.column, turned[-n:], loss, t)
+            loss = loss if exposure is None else np.zeros(len(own.kx))
+            self._set(self.waves, column or self.column, phases_at(own, t), loss, t)
         else:
-            n = len(self.waves.kx)
-            self._old = (self.waves.kx, self.waves.ky, self.amplitude, self.rate, turned[-n:], self.ratio)
+            self._old = own, self.ratio
             self._set(waves, column or self.column, waves.phase, lost(past, waves.k), t)
             self._began, self._fade = t, fade
         self.past = past
         self.expose(exposure or 0.0)
 
-    def _turn_old(self, t: float) -> None:
-        """Bring the phases of the waves that fade out to time t."""
-        if self._old is not None:
-            kx, ky, amplitude, rate, phase, ratio = self._old
-            self._old = (kx, ky, amplitude, rate, phase_at(phase, rate, t - self._base), ratio)
-
     def _set(self, waves: Waves, column: FluidColumn, phase: np.ndarray, loss: np.ndarray, t: float = 0.0) -> None:
-        """loss (n,): -ln of the share of their amplitude that the waves have left."""
-        self.waves, self.column, self._base, self._lost = waves, column, t, loss
+        """phase (n,) [turns] at time t [s]; loss (n,): -ln of the share of their amplitude that the waves have left."""
+        self.waves, self.column, self._lost = waves, column, loss
         k = waves.k
-        self.rate, self.decay = column.roots(k)
+        rate, self.decay = column.roots(k)
         self.ratio = column.interface_ratio(k)
-        self.amplitude = waves.amplitude * np.exp(-loss)
-        self._phase = phase
+        amplitude = waves.amplitude * np.exp(-loss)
+        # Phases at t = 0, within half a turn, in double: a month of seconds leaves an error of 1e-9 turns.
+        phase = phase + rate / (2.0 * math.pi) * t
+        water = Water(math.inf, column.gravity, column.surface.density)
+        self._own = Waves(waves.kx, waves.ky, amplitude, phase - np.rint(phase), rate, water)
         self._grid = self._loss = None
         self._weights: dict[bytes, np.ndarray] = {}
+        # Of which waves, and `interface_of` them.
+        self._interface: tuple[Waves | None, np.ndarray, np.ndarray] = None, rate, rate
 
     def expose(self, duration: float) -> None:
         """Let the waves decay at once as they would in `duration` [s] on this medium; phases stay as they are.
@@ -135,7 +138,18 @@ class RadialSea:
         if check_not_negative("duration", duration, "s") > 0.0:
             self.past = self.past | {self.column: self.past.get(self.column, 0.0) + duration}
             self._lost = self._lost + self.decay * duration
-            self.amplitude = self.waves.amplitude * np.exp(-self._lost)
+            amplitude = self.waves.amplitude * np.exp(-self._lost)
+            self._own = dataclasses.replace(self._own, amplitude=amplitude)
+
+    @property
+    def amplitude(self) -> np.ndarray:
+        """Amplitudes (n,) [m] of the waves as they are, decayed."""
+        return self._own.amplitude
+
+    @property
+    def rate(self) -> np.ndarray:
+        """Angular frequencies (n,) [rad/s] of the waves on the column."""
+        return self._own.omega
 
     @property
     def significant_height(self) -> float:
@@ -150,28 +164,24 @@ class RadialSea:
     def _share(self, t: float) -> float:
         return 1.0 if self._old is None or self._fade == 0.0 else min(max((t - self._began) / self._fade, 0.0), 1.0)
 
-    def phases(self, t: float) -> np.ndarray:
-        """Phase (n,) [turns], within half a turn, of all waves at time t [s] at the origin; old ones first."""
-        parts = [] if self._old is None else [phase_at(self._old[4], self._old[3], t - self._base)]
-        return np.concatenate([*parts, phase_at(self._phase, self.rate, t - self._base)])
-
-    def current(self, t: float) -> tuple[np.ndarray, ...]:
-        """(kx, ky, amplitude, omega, phase at t, interface ratio) of all waves at time t."""
+    def waves_at(self, t: float) -> Waves:
+        """All waves as high as at time t [s], without the slick; those that fade out first."""
+        t = check_finite("t", t, "s")
         share = self._share(t)
         if self._old is not None and share >= 1.0:
             self._old, self._grid, self._weights = None, None, {}
         if self._old is None:
-            return self.waves.kx, self.waves.ky, self.amplitude, self.rate, self.phases(t), self.ratio
-        kx, ky, amplitude, rate, _, ratio = self._old
+            return self._own
+        old, _ = self._old
         # Energies add, as the two seas are independent.
-        return (
-            np.concatenate([kx, self.waves.kx]),
-            np.concatenate([ky, self.waves.ky]),
-            np.concatenate([amplitude * math.sqrt(1.0 - share), self.amplitude * math.sqrt(share)]),
-            np.concatenate([rate, self.rate]),
-            self.phases(t),
-            np.concatenate([ratio, self.ratio]),
-        )
+        heights = old.amplitude * math.sqrt(1.0 - share), self._own.amplitude * math.sqrt(share)
+        names = ("kx", "ky", "phase", "omega")
+        both = {name: np.append(getattr(old, name), getattr(self._own, name)) for name in names}
+        return dataclasses.replace(self._own, amplitude=np.append(*heights), **both)
+
+    def _ratios(self) -> np.ndarray:
+        """Height of the interface over the surface's of each of the waves of `waves_at`."""
+        return self.ratio if self._old is None else np.append(self._old[1], self.ratio)
 
     def losses(self, k: np.ndarray) -> np.ndarray:
         """Loss [1/m] of waves of wavenumber k [rad/m] under the slick; kept while slick and waves stay the same."""
@@ -183,11 +193,12 @@ class RadialSea:
 
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
-        kx, ky, amplitude, _, phase, _ = self.current(check_finite("t", t, "s"))
+        waves = self.waves_at(t)
+        kx, ky, amplitude, phase = waves.kx, waves.ky, waves.amplitude, phases_at(waves, t)
         if self._grid is not grid:
-            self._plan(grid, np.hypot(kx, ky))
+            self._plan(grid, waves.k)
         order, weight, active = self._order, self._weight, self._active
-        loss = np.zeros(len(kx)) if self.slick is None else self.losses(np.hypot(kx, ky))
+        loss = np.zeros(len(kx)) if self.slick is None else self.losses(waves.k)
         kx, ky, a = kx[order], ky[order], amplitude[order]
         k = np.maximum(np.hypot(kx, ky), 1e-30)
         ex, ey = self.choppiness * kx / k, self.choppiness * ky / k
@@ -244,54 +255,60 @@ class RadialSea:
         widths = as_array("size", size, f"one number [m], or {n} of them")
         if widths.shape not in ((), (n,)) or not (widths >= 0.0).all():
             raise argument_error("size", size, f"one number [m], or {n} of them")
-        kx, ky, amplitude, rate, phase, ratio = self.current(check_finite("t", t, "s"))
-        weight = self._footprint(np.broadcast_to(widths, (n,)), kx, ky)
+        waves = self.waves_at(t)
+        weight = self._footprint(np.broadcast_to(widths, (n,)), waves)
         if self.slick is not None:
-            k = np.hypot(kx, ky)
-            weight = weight * np.exp(-self.losses(k) * self.slick.paths(where, kx, ky))
-        chop = self.choppiness
-        label, found, residual = np.zeros((n, 2)), np.zeros((n, 8)), np.zeros(n)
-        find_labels(where, kx, ky, phase, amplitude, chop, weight, label, found, residual)
-        velocity, acceleration, interface = np.zeros((n, 3)), np.zeros(n), np.zeros((n, 4))
-        set_motion(label, kx, ky, rate, phase, amplitude, chop, weight, ratio, velocity, acceleration, interface)
-        a, b, c = 1.0 + found[:, 5], 1.0 + found[:, 6], found[:, 7]
+            weight = weight * np.exp(-self.losses(waves.k) * self.slick.paths(where, waves.kx, waves.ky))
+        surface = WaveFields(waves.table, weight * waves.amplitude, float(t), self.choppiness)
+        label, residual, found = np.empty((n, 2)), np.empty(n), np.empty((n, 14))
+        find_labels(where, surface, TOLERANCE, stop_request(), label, np.empty(n), residual)
+        raise_if_stopped()
+        if self._interface[0] is not waves:
+            self._interface = waves, *interface_of(waves, self._ratios())
+        _, responses, gathered = self._interface
+        set_surface(label, surface, responses, found)
+        z, (hx, hy), (a, b, c) = found[:, 0], found[:, 1:3].T, found[:, 3:6].T
         inverse = 1.0 / np.maximum(a * b - c * c, 0.1)
-        steepness = 0.5 * chop * np.hypot(kx, ky) * np.square(amplitude)
-        height = found[:, 0] + np.square(weight) @ steepness
-        interface[:, 0] += np.square(weight) @ (ratio * steepness)
-        hx, hy = found[:, 3], found[:, 4]
         slope = np.column_stack([(hx * b - hy * c) * inverse, (hy * a - hx * c) * inverse])
-        return SurfaceAt(height, slope, velocity, acceleration, interface[:, 0].copy(),
-                         interface[:, 1:3].copy(), interface[:, 3].copy(), label, residual)  # fmt: skip
+        mean, interface_mean = self.choppiness * (gathered @ np.square(weight).T)
+        return SurfaceAt(z + mean, slope, found[:, 6:9].copy(), found[:, 9].copy(), found[:, 10] + interface_mean,
+                         found[:, 11:13].copy(), found[:, 13].copy(), label, residual)  # fmt: skip
+
+    def height_at(self, points: ArrayLike, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """Height (n,) [m] of the displaced surface above points (n, 2) [m] at time t [s], and the residual (n,) [m], as
+        `Sea.height_at`; `at` also gives the motion. Raises ValueError as `at`."""
+        found = self.at(points, t)
+        return found.height, found.residual
 
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
         """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t [s].
 
-        See `Components.kinematics`, also for the errors raised. Raises ValueError over a layer of oil, too.
-        """
-        return self.components(t).kinematics(points, t, stretching)
-
-    def components(self, t: float) -> Components:
-        """The waves, as high as at time t [s], without the slick.
-
-        Raises ValueError over a layer of oil, under which the pressure would need both fluids.
+        See `Waves.kinematics`, also for the errors raised. Raises ValueError over a layer of oil, too, under which the
+        pressure would need both fluids.
         """
         if self.column.kind == "layer":
             raise argument_error("column", self.column.kind, "clean water or a mixture, which is one fluid")
-        kx, ky, amplitude, omega, phase, _ = self.current(check_finite("t", t, "s"))
-        phase = phase + omega * (t / (2.0 * math.pi))
-        return Components(kx, ky, amplitude, omega, phase - np.rint(phase), math.inf, self.column.surface.density)
+        return self.waves_at(t).kinematics(points, t, stretching)
 
-    def _footprint(self, size: np.ndarray, kx: np.ndarray, ky: np.ndarray) -> np.ndarray:
+    def _footprint(self, size: np.ndarray, waves: Waves) -> np.ndarray:
         """Factors (points, waves) of hulls of these sizes; cached, because each step needs those of the same hulls."""
-        key = size.tobytes() + len(kx).to_bytes(4, "little")
+        k = waves.k
+        key = size.tobytes() + len(k).to_bytes(4, "little")
         if key not in self._weights:
             if len(self._weights) > 8:
                 self._weights.clear()
-            probe = Waves(kx, ky, kx, kx)
             unique, which = np.unique(size, return_inverse=True)
-            self._weights[key] = np.array([widened(probe, float(s)) for s in unique]).reshape(-1, len(kx))[which]
+            self._weights[key] = np.array([widened(k, float(s)) for s in unique]).reshape(-1, len(k))[which]
         return self._weights[key]
+
+
+def check_carried(waves: Waves, column: FluidColumn) -> None:
+    """Raises ValueError for waves that are none, or under another gravity than the column."""
+    check_kind("waves", waves, Waves, "Waves, as `draw_waves` draws them")
+    check_kind("column", column, FluidColumn, "a FluidColumn")
+    if not math.isclose(waves.water.gravity, column.gravity, rel_tol=SAME_WATER):
+        allowed = f"those under the column's gravity of {column.gravity:g} m/s2"
+        raise argument_error("waves", f"waves on {waves.water}", allowed)
 
 
 def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:
@@ -299,7 +316,39 @@ def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:
     return sum((column.roots(k)[1] * duration for column, duration in past.items()), np.zeros(k.shape))
 
 
-def phase_at(phase: np.ndarray, omega: np.ndarray, t: float) -> np.ndarray:
-    """phase - omega t/(2 pi) within half a turn, in double: a month of seconds leaves an error of 1e-9 turns."""
-    turns = phase - omega / (2.0 * math.pi) * t
+def phases_at(waves: Waves, t: float) -> np.ndarray:
+    """Phase (n,) [turns], within half a turn, at time t [s] at the origin."""
+    turns = waves.phase - waves.omega / (2.0 * math.pi) * t
     return turns - np.rint(turns)
+
+
+def interface_of(waves: Waves, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Height, slope along x and y, and rise of the interface in waves of 1 m, as responses (1, 12, waves) of `sums_at`,
+    and the heights (2, waves) [m] of surface and interface that gathered points miss, at a choppiness of 1.
+
+    ratio (waves,): interface over surface.
+    """
+    missed = 0.5 * waves.k * np.square(waves.amplitude)
+    found = np.zeros((1, 2 * RESPONSES, len(ratio)))
+    found[0, 0], found[0, RESPONSES + 1], found[0, RESPONSES + 2] = ratio, ratio * waves.kx, ratio * waves.ky
+    found[0, RESPONSES + 3] = -ratio * waves.omega
+    return found, np.stack([missed, ratio * missed])
+
+
+@kernel(noalias=True)
+def set_surface(labels, surface, responses, out):
+    """Set the sums at labels (n, 2) of the resting surface, without mean: out (n, 14).
+
+    Columns: elevation, slope (2), 1 + strains (3), velocity (3), upward acceleration, responses (4).
+    """
+    s = surface
+    for p in range(labels.shape[0]):
+        sums = sums_at(labels[p, 0], labels[p, 1], None, s.t, s.waves, s.amplitudes, p, responses, 0, np.inf)
+        out[p, 0] = sums.elevation
+        out[p, 1], out[p, 2] = sums.slope
+        xx, yy, xy = sums.strain
+        out[p, 3], out[p, 4], out[p, 5] = 1.0 + s.choppiness * xx, 1.0 + s.choppiness * yy, s.choppiness * xy
+        u, v, w = sums.velocity
+        out[p, 6], out[p, 7], out[p, 8] = s.choppiness * u, s.choppiness * v, w
+        out[p, 9] = sums.acceleration[2]
+        out[p, 10], out[p, 11], out[p, 12], out[p, 13], _, _ = sums.response

@@ -18,9 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import MAX_WAVES, Waves
+from sim.ocean.gerstner import MAX_WAVES
 from sim.ocean.spectra import Conditions
 from sim.validation import argument_error, as_array, check_angle, check_kind, check_vector, check_within
+from sim.water import Water
+from sim.waves import Waves
 
 CLEAN = FluidColumn()
 MIN_SAMPLES = 8
@@ -41,7 +43,7 @@ def recorded_waves(
     """The waves that run along a direction [rad] and pass a place (x, y) [m] as heights (n,) [m] at times (n,) [s].
 
     The mean height is that of still water. water: the column of the `RadialSea` that they are for, or the conditions
-    with which `components_of` puts them on water of any depth. error: root mean square of the height that may be left
+    of water of any depth. error: root mean square of the height that may be left
     out, over Hs; the smallest waves are left out first. Only a sea with choppiness 0 passes the place exactly so.
 
     Raises ValueError for times that are not equally spaced, values that are not finite, a level record, and one that
@@ -80,7 +82,8 @@ def recorded_waves(
     k = wavenumber(omega, water)
     kx, ky = k * math.cos(direction), k * math.sin(direction)
     phase = (omega * times[0] - np.angle(X[kept]) - kx * x - ky * y) / (2.0 * math.pi)
-    return Waves(kx, ky, amplitude[kept], phase - np.rint(phase))
+    own = water.water if isinstance(water, Conditions) else Water(math.inf, water.gravity, water.surface.density)
+    return Waves(kx, ky, amplitude[kept], phase - np.rint(phase), omega, own)
 
 
 def wavenumber(omega: np.ndarray, water: FluidColumn | Conditions) -> np.ndarray:

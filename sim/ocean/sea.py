@@ -25,14 +25,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.amplitudes import KINDS, integers, resolved, unit_amplitudes, with_line
-from sim.ocean.kinematics import Components, Kinematics, components_of_tile
-from sim.ocean.medium import Medium
+from sim.ocean.amplitudes import KINDS, integers, resolved, unit_amplitudes, waves_of_tile, with_line
+from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.medium import Medium, medium_of
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
 from sim.ocean.surface import Surface
 from sim.ocean.tile_heights import TileHeights, key_of
+from sim.ocean.tile_surface import TileSurface
 from sim.ocean.transforms import PRECISIONS, Transforms
 from sim.ocean.wave_sizes import WaveSizes
 from sim.parameters import similar
@@ -45,6 +46,7 @@ from sim.validation import (
     check_positions,
     is_whole_number,
 )
+from sim.waves import Waves
 
 SIZES = (8, 4096)
 LENGTHS = (1e-3, 1e8)  # [m]
@@ -54,7 +56,7 @@ _CONDITIONS = frozenset(f.name for f in dataclasses.fields(Conditions)) | PARAME
 _MEDIUM = frozenset(f.name for f in dataclasses.fields(Medium))
 
 
-class Sea:
+class Sea(TileSurface):
     """A tile of sea. Index [i, j] of a field is x = i length/size, y = j length/size. Not for two threads at once."""
 
     def __init__(
@@ -97,7 +99,7 @@ class Sea:
         self._last = 0.0  # [s] of the last surface computed, or of the last change if that is later
         self.version = 0  # counts changes of the conditions
         self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
-        self._components: tuple[tuple | None, Components | None] = None, None  # key of the amplitudes, and the waves
+        self._known_waves: tuple[tuple | None, Waves | None] = None, None  # key of the amplitudes, and the waves
         self._ripples: Ripples | None = None
 
         self.k = integers(self.size) * (2.0 * math.pi / self.length)  # [rad/m], FFT order
@@ -166,28 +168,20 @@ class Sea:
         fields are bicubic; exact: the sum over all waves instead, slow. Raises ValueError for another shape.
         """
         check_kind("exact", exact, bool, "True or False")
-        return query(self.surface(t), check_positions("points", points), exact)
+        return query(self.surface(t), check_positions("points", points), exact)[:2]
 
-    def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
-        """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t, by the sum over all waves.
-
-        See `Components.kinematics`, also for the errors raised; `components` gives fewer waves, for many points or
-        steps.
-        """
-        return self.components(t).kinematics(points, t, stretching)
-
-    def components(self, t: float | None = None) -> Components:
+    def waves_at(self, t: float | None = None) -> Waves:
         """The waves of the tile, as high as at time t [s], by default the sea's own; `largest` of them picks a few.
 
         They hold at all times unless waves decay, relax or are changed. Raises ValueError as `surface`.
         """
         t = self._last if t is None else self._waves.checked_time(t)
         key = self.version, None if self.is_steady(t) else t
-        known, waves = self._components
+        known, waves = self._known_waves
         if waves is None or known != key:
             h0, omega = self.amplitudes_at(t), self.frequencies
-            waves = components_of_tile(self.k, h0, omega, self._waves.base, self.conditions)
-            self._components = key, waves
+            waves = waves_of_tile(self.k, h0, omega, self._waves.base, self.conditions.water)
+            self._known_waves = key, waves
         return waves
 
     def change(self, t: float, relax: float = 0.0, spectrum: str | Spectrum[Any] | None = None, **changes: Any) -> None:
@@ -215,14 +209,17 @@ class Sea:
         if self._ripples is not None:
             self._ripples.set_medium(t, self._k, waves.rate, waves.decay, self.conditions)
 
-    def expose(self, duration: float, medium: Medium | None = None) -> None:
+    def expose(self, duration: float, medium: Medium | FluidColumn | None = None) -> None:
         """Let the waves decay at once as they would in `duration` [s] in a medium, by default in the sea's own.
 
         The clock stands still, phases stay as they are, rings are not touched. Raises ValueError for a duration that is
         negative or not finite.
         """
         duration = check_not_negative("duration", duration, "s")
-        chosen = self.medium if medium is None else check_kind("medium", medium, Medium, "a Medium, or None")
+        if isinstance(medium, FluidColumn):
+            medium = medium_of(medium)
+        kinds = "a Medium, a FluidColumn, or None"
+        chosen = self.medium if medium is None else check_kind("medium", medium, Medium, kinds)
         if duration == 0.0:
             return
         decay = self._waves.decay if medium is None else self._decay_in(medium)

@@ -16,10 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.ocean.dispersion import SEA_DENSITY, group_speed
+from sim.ocean.dispersion import group_speed
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import Fluid
 from sim.validation import argument_error, check_not_negative, check_positive
+from sim.water import SEA_DENSITY
 
 INERTIAL, VISCOUS, TENSION = 1.14, 1.45, 2.30
 FINAL_AREA = 1e5  # [m^(-1/4)] over V^(3/4)

@@ -1,4 +1,4 @@
-"""The sum of Gerstner waves: over blocks of vertices in single precision, and at points in double.
+"""The sum of Gerstner waves for drawing: over blocks of vertices, in single precision.
 
 A wave of phase p [turns] at label X lifts z by a cos 2 pi p and moves the label by -chop (k/|k|) a sin 2 pi p
 (Gerstner; Lamb, Hydrodynamics, Art. 251). Accumulated at each vertex are z, the displacement (X, Y), the slope of z
@@ -14,36 +14,7 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-
-# sin(2 pi q) on |q| <= 1/4, odd, of least greatest error (3.3e-9; 5e-8 with single coefficients), by Lawson's iteration
-SINE = (6.283185160088972, -41.34165503128634, 81.60100406453265, -76.5497820808528, 39.53670436428712)
-S1, S3, S5, S7, S9 = (np.float32(c) for c in SINE)
-D1, D3, D5, D7, D9 = SINE
-QUARTER = np.float32(0.25)
-TOLERANCE = 1e-7  # [m] at which a label counts as found
-MOST_STEPS = 12
-
-
-@kernel(inline=True)
-def sine(q):
-    """sin(2 pi q), |q| <= 1/4, single."""
-    s = q * q
-    return q * (S1 + s * (S3 + s * (S5 + s * (S7 + s * S9))))
-
-
-@kernel(inline=True)
-def fine_sine(q):
-    """The same in double."""
-    s = q * q
-    return q * (D1 + s * (D3 + s * (D5 + s * (D7 + s * D9))))
-
-
-@kernel(inline=True)
-def fine_wave(t, a):
-    """a cos(2 pi t) and a sin(2 pi t) in double: t [turns] folded to a quarter turn, as `add_pair` explains."""
-    t -= np.rint(t)
-    u = abs(t) - 0.25
-    return -fine_sine(u) * a, math.copysign(fine_sine(0.25 - abs(u)), t) * a
+from sim.turns import single_cos_sin_turns
 
 
 @kernel(noalias=True, allocates=False)
@@ -61,17 +32,8 @@ def add_pair(x, y, first, last, w, wave, scale0, scale1, z, X, Y, hx, hy, xx, yy
     a1, b1, c1, d1 = wave[q + 3] * scale1, wave[q + 4] * scale1, wave[q + 5] * scale1, wave[q + 6] * scale1
     e1, f1, g1, h1 = wave[q + 7] * scale1, wave[q + 8] * scale1, wave[q + 9] * scale1, wave[q + 10] * scale1
     for i in range(first, last):
-        # Folded to a quarter turn, u = |t| - 1/4: cos 2 pi t = -sin 2 pi u, sin 2 pi t = sign(t) sin 2 pi (1/4 - |u|)
-        t = k0 * x[i] + l0 * y[i] + p0
-        t -= np.rint(t)
-        u = abs(t) - QUARTER
-        cos0 = -sine(u)
-        sin0 = math.copysign(sine(QUARTER - abs(u)), t)
-        t = k1 * x[i] + l1 * y[i] + p1
-        t -= np.rint(t)
-        u = abs(t) - QUARTER
-        cos1 = -sine(u)
-        sin1 = math.copysign(sine(QUARTER - abs(u)), t)
+        cos0, sin0 = single_cos_sin_turns(k0 * x[i] + l0 * y[i] + p0)
+        cos1, sin1 = single_cos_sin_turns(k1 * x[i] + l1 * y[i] + p1)
         z[i] += a0 * cos0 + a1 * cos1
         X[i] += b0 * sin0 + b1 * sin1
         Y[i] += c0 * sin0 + c1 * sin1
@@ -125,11 +87,8 @@ def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, r
                     continue
                 kept = math.exp(-loss[w] * path)
                 lost = scale * (one - kept)
-                t = wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)]
-                t -= np.rint(t)
-                turn = abs(t) - QUARTER
-                cos = -sine(turn) * lost
-                sin = math.copysign(sine(QUARTER - abs(turn)), t) * lost
+                cos, sin = single_cos_sin_turns(wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)])
+                cos, sin = cos * lost, sin * lost
                 z[i] -= wave[q + np.uint64(3)] * cos + mean * (one - kept * kept)
                 X[i] -= wave[q + np.uint64(4)] * sin
                 Y[i] -= wave[q + np.uint64(5)] * sin
@@ -158,75 +117,3 @@ def set_mesh(x, y, z, X, Y, hx, hy, xx, yy, xy, vertices, slopes, jacobian):
         vertices[j] = x[i] + X[i]
         vertices[j + np.uint64(1)] = y[i] + Y[i]
         vertices[j + np.uint64(2)] = z[i]
-
-
-@kernel
-def sum_at(x, y, p, kx, ky, phase, amplitude, chop, weight, out):
-    """out (8,): z, X, Y, hx, hy, xx, yy, xy of the sum at label x, y; weight[p] (waves,) scales each wave."""
-    z = X = Y = hx = hy = xx = yy = xy = 0.0
-    for w in range(kx.size):
-        c, s = fine_wave((kx[w] * x + ky[w] * y) / (2.0 * math.pi) + phase[w], amplitude[w] * weight[p, w])
-        k = np.sqrt(kx[w] * kx[w] + ky[w] * ky[w])
-        ex, ey = chop * kx[w] / k, chop * ky[w] / k
-        z += c
-        X -= ex * s
-        Y -= ey * s
-        hx -= kx[w] * s
-        hy -= ky[w] * s
-        xx -= ex * kx[w] * c
-        yy -= ey * ky[w] * c
-        xy -= ex * ky[w] * c
-    out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7] = z, X, Y, hx, hy, xx, yy, xy
-
-
-@kernel
-def find_labels(points, kx, ky, phase, amplitude, chop, weight, labels, found, residual):
-    """Set labels (n, 2) of the resting surface that are displaced to points (n, 2); found (n, 8): the sums there.
-
-    x + D(x) = X by Newton's method from x = X - D(X); residual (n,) [m] is the remaining miss, at rounding unless the
-    surface folds there.
-    """
-    for p in range(points.shape[0]):
-        px, py = points[p, 0], points[p, 1]
-        out = found[p]
-        sum_at(px, py, p, kx, ky, phase, amplitude, chop, weight, out)
-        x, y = px - out[1], py - out[2]
-        miss = 0.0
-        for _ in range(MOST_STEPS):
-            sum_at(x, y, p, kx, ky, phase, amplitude, chop, weight, out)
-            fx, fy = x + out[1] - px, y + out[2] - py
-            miss = np.sqrt(fx * fx + fy * fy)
-            if miss < TOLERANCE:
-                break
-            a, b, c = 1.0 + out[5], 1.0 + out[6], out[7]
-            J = a * b - c * c
-            if J < 0.05:  # folded: a plain step instead of a wild one
-                x, y = x - 0.5 * fx, y - 0.5 * fy
-            else:
-                x, y = x - (b * fx - c * fy) / J, y - (a * fy - c * fx) / J
-        labels[p, 0], labels[p, 1], residual[p] = x, y, miss
-
-
-@kernel
-def set_motion(labels, kx, ky, rate, phase, amplitude, chop, weight, ratio, velocity, acceleration, interface):
-    """Set the motion of the surface at labels (n, 2): velocity (n, 3), upward acceleration (n,), and of the interface.
-
-    interface (n, 4): height, slope along x, y, rise. rate [rad/s]; ratio: interface over surface.
-    """
-    for p in range(labels.shape[0]):
-        u = v = w = g = h = hx = hy = rise = 0.0
-        for i in range(kx.size):
-            t = (kx[i] * labels[p, 0] + ky[i] * labels[p, 1]) / (2.0 * math.pi) + phase[i]
-            c, s = fine_wave(t, amplitude[i] * weight[p, i])
-            k = np.sqrt(kx[i] * kx[i] + ky[i] * ky[i])
-            # d/dt of -e sin and of cos at phase k.X - omega t
-            u += chop * kx[i] / k * rate[i] * c
-            v += chop * ky[i] / k * rate[i] * c
-            w += rate[i] * s
-            g -= rate[i] * rate[i] * c
-            h += ratio[i] * c
-            hx -= ratio[i] * kx[i] * s
-            hy -= ratio[i] * ky[i] * s
-            rise += ratio[i] * rate[i] * s
-        velocity[p, 0], velocity[p, 1], velocity[p, 2], acceleration[p] = u, v, w, g
-        interface[p, 0], interface[p, 1], interface[p, 2], interface[p, 3] = h, hx, hy, rise

@@ -24,7 +24,6 @@ FIRST = {
     "sim.floating.stability": ("",),
     "sim.ocean.dispersion": ("omega", "phase_speed", "group_speed"),
     "sim.ocean.gerstner": ("draw_waves",),
-    "sim.ocean.kinematics": ("",),
     "sim.ocean.nonlinear.sea": ("",),
     "sim.ocean.nonlinear.stokes": ("",),
     "sim.ocean.planets": ("gravity_of",),
@@ -42,6 +41,7 @@ FIRST = {
     "sim.springs.stability": ("critical_step",),
     "sim.springs.state": ("advance",),
     "sim.springs.statics": ("hanging_chain", "catenary"),
+    "sim.waves": ("",),
 }
 
 

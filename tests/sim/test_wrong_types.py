@@ -77,7 +77,7 @@ CALLS = (
          drag_per_length=1.0),
     call(catenary, points=5, length=2.0, span=1.0, rise=0.0, stiffness=8.0, mass=1.0, gravity=10.0),
     call(Sea, size=16, length=50.0, spectrum="jonswap", fetch=1e5, density=1025.0, film=False, spreading="cos2"),
-    call(SEA.surface, t=0.0), call(SEA.height_at, points=[[0.0, 0.0]], t=0.0), call(SEA.components),
+    call(SEA.surface, t=0.0), call(SEA.height_at, points=[[0.0, 0.0]], t=0.0), call(SEA.waves_at),
     call(SEA.kinematics, points=[[0.0, 0.0, -1.0]], t=0.0), call(SEA.expose, duration=0.0), call(SEA.resized, size=16),
     call(SEA.significant_height_at, t=0.0), call(POND.change, t=0.0),
     call(POND.ripples.add, t=0.0, points=[[1.0, 1.0]], width=1.0),

@@ -1,5 +1,6 @@
 """The mooring that the parameters describe: sea, body, anchors, fairleads and lines as a `System`."""
 
+import dataclasses
 import itertools
 import math
 from typing import NamedTuple
@@ -12,9 +13,10 @@ from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.parameters import Params
 from sim import floating
 from sim.mooring import Body, Line, LineType, Point, System, moored
-from sim.ocean.gerstner import Waves, draw_waves
-from sim.ocean.kinematics import Components, components_of
+from sim.ocean.gerstner import draw_waves, waves_under
 from sim.ocean.spectra import SPECTRA
+from sim.water import Water
+from sim.waves import Waves
 
 GRAVITY, DENSITY = 9.81, 1025.0  # [m/s2], [kg/m3]
 WAVE_COUNT = 16  # of an irregular sea: each node feels each of them
@@ -36,20 +38,11 @@ class Places(NamedTuple):
     fairleads: tuple[Vector, ...]  # [m] from the body's centre
 
 
-class Water(NamedTuple):
-    """The water of a mooring."""
-
-    depth: float  # [m]
-    density: float  # [kg/m3]
-    gravity: float  # [m/s2]
-
-
 def water_of(params: Params) -> Water:
     """The water of the parameters, or that of their file."""
     if not params.moordyn_file:
-        return Water(params.depth, DENSITY, GRAVITY)
-    system = mooring_of(params.moordyn_file).system
-    return Water(system.depth, system.density, system.gravity)
+        return Water(params.depth, GRAVITY, DENSITY)
+    return mooring_of(params.moordyn_file).system.water
 
 
 def depth_of(params: Params) -> float:
@@ -112,29 +105,20 @@ def first_places(params: Params) -> Places:
     return Places(tuple(anchors), tuple(fairleads))
 
 
-def sea_of(params: Params) -> Components | None:
+def sea_of(params: Params) -> Waves | None:
     """The waves, all in one direction; None for a level sea."""
     if params.wave_height == 0.0:
         return None
     spectrum = SPECTRA["sea_state"]
-    water = water_of(params)._asdict()
+    water = dataclasses.asdict(water_of(params))
     conditions = spectrum.conditions(hs=params.wave_height, tp=params.wave_period, **water)
     c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
     if params.regular:
         k = conditions.wavenumber(2.0 * math.pi / params.wave_period)
-        drawn = Waves(*(np.array([value]) for value in (k, 0.0, 0.5 * params.wave_height, 0.0)))
+        drawn = waves_under(conditions, *(np.array([value]) for value in (k, 0.0, 0.5 * params.wave_height, 0.0)))
     else:
         drawn = draw_waves(spectrum, conditions, WAVE_COUNT)
-    return components_of(Waves(drawn.k * c, drawn.k * s, drawn.amplitude, drawn.phase), conditions)
-
-
-def heights(sea: Components | None, along: NDArray[np.float64], t: float, fade: float) -> NDArray[np.float64]:
-    """Height of the water [m] at distances (n,) [m] along the direction of the waves at time t [s]; fade: of all."""
-    if sea is None:
-        return np.zeros_like(along)
-    k = np.hypot(sea.kx, sea.ky)
-    phase = np.outer(along, k) + 2.0 * math.pi * sea.phase - sea.omega * t
-    return fade * (np.cos(phase) @ sea.amplitude)
+    return dataclasses.replace(drawn, kx=drawn.k * c, ky=drawn.k * s)
 
 
 def surface_side(params: Params) -> float:
@@ -142,14 +126,17 @@ def surface_side(params: Params) -> float:
     return SURFACE_SIDE * extent(params)
 
 
-def surface_heights(params: Params, sea: Components | None, t: float, fade: float) -> NDArray[np.float32]:
+def surface_heights(params: Params, sea: Waves | None, t: float, fade: float) -> NDArray[np.float32]:
     """Heights (m, m) [m] of the drawn surface, which lies about the origin, at time t [s]; fade: of all."""
     side = surface_side(params)
+    if sea is None:
+        return np.zeros((MAX_SURFACE_POINTS, MAX_SURFACE_POINTS), np.float32)
     axis = np.linspace(-0.5 * side, 0.5 * side, MAX_SURFACE_POINTS)
     along = np.linspace(-0.75 * side, 0.75 * side, 512)
     bearing = math.radians(params.direction)
-    place = axis[:, None] * math.cos(bearing) + axis[None] * math.sin(bearing)
-    return np.interp(place, along, heights(sea, along, t, fade)).astype(np.float32)
+    c, s = math.cos(bearing), math.sin(bearing)
+    heights = fade * sea.elevation(np.outer(along, (c, s)), t)
+    return np.interp(axis[:, None] * c + axis[None] * s, along, heights).astype(np.float32)
 
 
 def line_types(params: Params) -> tuple[LineType, LineType]:
@@ -182,7 +169,7 @@ def sections(params: Params) -> tuple[tuple[LineType, float, int], ...]:
     return tuple((kind, params.length * n / params.segments, n) for kind, n in zip(types, counts, strict=True))
 
 
-def body_of(params: Params, sea: Components | None) -> Body:
+def body_of(params: Params, sea: Waves | None) -> Body:
     """The body, with the forces of waves and the steady force."""
     body = floating.Body(hull_of(params), density=params.density)
     found = moored(BODY, body, 2.0 * math.pi / params.wave_period, sea, GRAVITY)
@@ -191,7 +178,7 @@ def body_of(params: Params, sea: Components | None) -> Body:
     return found._replace(steady=(force * c, force * s, 0.0, 0.0, 0.0, 0.0))
 
 
-def build(params: Params, places: Places, body: Body, sea: Components | None) -> System:
+def build(params: Params, places: Places, body: Body, sea: Waves | None) -> System:
     """The system. Anchors are points that are moved, since a user may drag them."""
     # Drag on the body acts in the middle of its wet side.
     draft = params.density / DENSITY * HEIGHT_OVER_WIDTH * params.size

@@ -18,8 +18,8 @@ from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.interruption import raise_if_stopped
 from sim.mooring import System, at_rest
-from sim.ocean.kinematics import Components
 from sim.validation import ConvergenceError
+from sim.waves import Waves
 
 VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
 FARTHEST = 10.0  # in `extent`s, beyond which a run has diverged
@@ -217,14 +217,12 @@ class FileScene(LineScene):
         return found
 
 
-def water_motion(sea: Components | None, place: Any, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def water_motion(sea: Waves | None, place: Any, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Displacement [m] and velocity [m/s] (3,) of the water at the surface above a place, by linear theory."""
     if sea is None:
         return np.zeros(3), np.zeros(3)
-    k = np.hypot(sea.kx, sea.ky)
-    theta = sea.kx * place[0] + sea.ky * place[1] - sea.omega * t + 2.0 * math.pi * sea.phase
-    level = sea.amplitude / np.tanh(np.minimum(k * sea.depth, 300.0))
-    ways = np.stack((sea.kx / k, sea.ky / k))
-    along, upward = -level * np.sin(theta), sea.amplitude * np.cos(theta)
-    speed_along, speed_up = level * sea.omega * np.cos(theta), sea.amplitude * sea.omega * np.sin(theta)
-    return np.append(ways @ along, upward.sum()), np.append(ways @ speed_along, speed_up.sum())
+    level = 1j / (sea.k * np.tanh(np.minimum(sea.k * sea.water.depth, 300.0)))
+    moved = np.column_stack((level * sea.kx, level * sea.ky, np.ones_like(level)))
+    X = np.column_stack((moved, -1j * sea.omega[:, None] * moved))
+    ((dx, dy, dz, u, v, w),) = sea.response([place[:2]], t, X)
+    return np.array((dx, dy, dz)), np.array((u, v, w))

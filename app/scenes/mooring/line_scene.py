@@ -24,11 +24,11 @@ from sim.mooring import System, at_rest
 from sim.mooring.gauge import modes
 from sim.mooring.simulate import LineState
 from sim.mooring.statics import Rest, rest_of, straight
-from sim.ocean.kinematics import Components
 from sim.springs import INTEGRATORS
 from sim.springs.lines.energy import set_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of
 from sim.validation import ConvergenceError, DivergenceError
+from sim.waves import AMPLITUDE, Waves
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
@@ -49,7 +49,7 @@ class LineScene(abc.ABC):
     note = ""
     changing: tuple[str, ...]  # attributes that a checkpoint holds
     system: System
-    sea: Components | None
+    sea: Waves | None
 
     links: NDArray[np.int64]  # (lines, n) of each piece of a line, from its anchor
 
@@ -203,7 +203,7 @@ class LineScene(abc.ABC):
             return {}
         p = self.system.kernel_view(self.step)
         waves = p.waves.copy()
-        waves[[6, 8]] *= self.fade
+        waves[AMPLITUDE] *= self.fade
         return {"waves": waves, "current": self.fade * p.current}
 
     @property

@@ -29,7 +29,7 @@ from sim.floating.rotation import body_z_axes
 from sim.floating.shapes import Appearance
 from sim.interruption import raise_if_stopped
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.radial import SurfaceAt
+from sim.ocean.radial import RadialSea, SurfaceAt
 
 GRAVITY = 9.81  # [m/s2]
 FIRST_PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the first three bodies
@@ -273,13 +273,12 @@ class FloatingBodies:
         h: float,
         slick: np.ndarray,
         coefficients: MotionCoefficients,
-        waves: tuple[np.ndarray, ...] | None = None,
+        forces: np.ndarray | None = None,
     ) -> None:
         """One step of h [s] on the sea `at` the bodies in the middle of the step.
 
-        slick (n,) [m]: thickness of oil at each that is no layer. waves: (kx, ky, amplitude, omega, phase, ratio) that
-        the sea is a sum of, as `RadialSea.current` has them; None for a sea that is no sum. Raises FloatingPointError
-        where a body's state is no longer finite.
+        slick (n,) [m]: thickness of oil at each that is no layer. forces: those of `forces_of`; None for a sea that is
+        no sum of waves. Raises FloatingPointError where a body's state is no longer finite.
         """
         if self.count == 0:
             return
@@ -301,8 +300,8 @@ class FloatingBodies:
             at.height,
             slope=at.slope,
             velocity=at.velocity,
-            acceleration=at.acceleration if waves is not None else self.acceleration_of(at, h, coefficients.gravity),
-            excitation=None if waves is None else self.forces_of(at.label, waves, coefficients.gravity, h),
+            acceleration=at.acceleration if forces is not None else self.acceleration_of(at, h, coefficients.gravity),
+            excitation=forces,
             lead=h / 2,
             **interface,
         )
@@ -325,11 +324,9 @@ class FloatingBodies:
             return at.acceleration
         return np.clip(rate_of_change(self.rises, h), -MAX_ACCELERATION * gravity, MAX_ACCELERATION * gravity)
 
-    def forces_of(self, label: np.ndarray, waves: tuple[np.ndarray, ...], gravity: float, h: float) -> np.ndarray:
-        """Force and moment (n, 6) of waves on the bodies, which are at `label` (n, 2) [m] of the resting surface for
-        the next h [s]."""
-        kx, ky, amplitude, omega, phase, _ = waves
-        return self.excitation.forces(self.fleet, label, kx, ky, amplitude, omega, phase, h, gravity)
+    def forces_of(self, sea: RadialSea, at: SurfaceAt, t: float, h: float) -> np.ndarray:
+        """Force and moment (n, 6) of waves on the bodies for the next h [s], from the sea in the middle of it."""
+        return self.excitation.forces(self.fleet, at.label, sea.waves_at(t), t, h)
 
     def measure(self, t: float, at: SurfaceAt, duration: float, lead: float = 0.0) -> None:
         """Measure drafts at time t [s]: the length of each body below the plane of the water, along its own axis.

@@ -16,10 +16,9 @@ from app.scenes.radial_sea.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
 from app.scenes.radial_sea.wave_choice import WaveChoice
 from sim.ocean import Sea
 from sim.ocean.foam import whitecaps
-from sim.ocean.gerstner import Waves
 from sim.ocean.radial import CLEAN, RadialSea, RadialSurface, lost
 from sim.ocean.statistics import energy_by_wavenumber, expected
-from sim.ocean.tile_sea import TileSea
+from sim.waves import Waves
 
 if TYPE_CHECKING:
     from app.scenes.radial_sea.scene import RadialSeaScene
@@ -110,7 +109,7 @@ class DrawnSurface:
         return self.known_clean[1]
 
     def timed_surface(
-        self, name: str, sea: RadialSea | TileSea, scene: "RadialSeaScene", centre: tuple[float, float]
+        self, name: str, sea: RadialSea | Sea, scene: "RadialSeaScene", centre: tuple[float, float]
     ) -> RadialSurface:
         """Surface of a sea on the scene's grid about a centre [m]; its cost is recorded under `name`."""
         start = time.perf_counter()
@@ -149,7 +148,7 @@ class DrawnSurface:
                 error=error(s.significant_height),
             )
         if "fft" in self.costs and tile is not None:
-            height = expected(tile.sea).significant_height
+            height = expected(tile).significant_height
             found["fft"] = SurfaceReading(
                 cost=self.costs["fft"],
                 waves=TILE_SIZE * TILE_SIZE // 2,
@@ -174,7 +173,7 @@ class DrawnSurface:
         return self.decayed_height[1]
 
 
-def tile_of(scene: "RadialSeaScene") -> TileSea:
+def tile_of(scene: "RadialSeaScene") -> Sea:
     """The square sea under the same wind, on the same fluids."""
     p, column = scene.params, scene.column
     conditions = conditions_of(p)
@@ -186,7 +185,9 @@ def tile_of(scene: "RadialSeaScene") -> TileSea:
         frequency=lambda k: column.roots(k)[0],
         **{field.name: getattr(conditions, field.name) for field in dataclasses.fields(conditions)},
     )
-    return TileSea(sea, scene.sum.past)
+    for past, duration in scene.sum.past.items():
+        sea.expose(duration, past)
+    return sea
 
 
 def make_cutaway(scene: "RadialSeaScene") -> Cutaway:

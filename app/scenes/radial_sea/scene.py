@@ -38,8 +38,8 @@ from sim.interruption import kept_whole
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSea
 from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.sea import Sea
 from sim.ocean.slick import SlickCover
-from sim.ocean.tile_sea import TileSea
 from sim.ocean.weathering import Weathering, weather
 from sim.parameters import Value, check_record
 from sim.particles.fire import Fire
@@ -145,7 +145,7 @@ class RadialSeaScene:
         self.column, self.age = self.fluids(p), exposure_of(p)
         self.wave_choice = wave_choice_of(p)
         self.sum = RadialSea(draw(self.wave_choice), self.column, self.age, p.choppiness)
-        self.tile: TileSea | None = None
+        self.tile: Sea | None = None
         self.bodies = self.make_bodies()
         if self.student is not None:
             self.student.want(p, self.bodies)
@@ -202,14 +202,14 @@ class RadialSeaScene:
             self.grid_choice = choice
             self.drawing.forget_costs()
 
-    def tile_now(self) -> TileSea:
+    def tile_now(self) -> Sea:
         """The square sea, made where it is not there."""
         if self.tile is None:
             self.tile = tile_of(self)
         return self.tile
 
     @property
-    def sea(self) -> RadialSea | TileSea:
+    def sea(self) -> RadialSea | Sea:
         """The surface in force."""
         return self.sum if self.params.surface == "sum" else self.tile_now()
 
@@ -294,9 +294,9 @@ class RadialSeaScene:
                 slick = self.slick_at(bodies.fleet.position[:, :2])
                 bodies.measure(self.time, at, h, h / 2)
                 bodies.moor(h, moored=self.params.mooring)
-                waves = sea.current(middle) if isinstance(sea, RadialSea) else None
+                forces = bodies.forces_of(sea, at, middle, h) if isinstance(sea, RadialSea) else None
                 try:
-                    bodies.step(at, h, slick, coefficients, waves)
+                    bodies.step(at, h, slick, coefficients, forces)
                 except FloatingPointError as error:
                     raise DivergenceError(f"At t = {self.time:.2f} s {error}. Reset, or take a smaller step.") from None
                 if self.plot_rows.is_due(self.time):

@@ -3,8 +3,9 @@
 from typing import Any, NamedTuple
 
 from app.scenes.radial_sea.parameters import Params, conditions_of, spectrum_of
-from sim.ocean.gerstner import Waves, draw_waves
+from sim.ocean.gerstner import draw_waves
 from sim.ocean.spectra import Conditions, Spectrum
+from sim.waves import Waves
 
 
 class WaveChoice(NamedTuple):

@@ -11,8 +11,8 @@ from app.scenes.radial_sea.parameters import Params
 from sim.interruption import raise_if_stopped
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSea
+from sim.ocean.sea import Sea
 from sim.ocean.slick import SlickCover, slick_radius, slick_thickness, spreading_coefficient
-from sim.ocean.tile_sea import TileSea
 from sim.ocean.weathering.laws import DRIFT
 from sim.particles.fire import Fire
 from sim.particles.jet import Jet
@@ -138,7 +138,7 @@ class WellBlowout:
             self.closed_jets_total = JetTotal(total.ejected + jet.ejected, fed, total.hits + jet.hits)
             self.jet = None
 
-    def step(self, sea: RadialSea | TileSea, t: float, duration: float) -> None:
+    def step(self, sea: RadialSea | Sea, t: float, duration: float) -> None:
         """Let `duration` [s] pass, up to time t [s]."""
         if self.fire is not None:
             self.fire.step(duration)

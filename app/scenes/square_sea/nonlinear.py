@@ -1,5 +1,6 @@
 """The nonlinear sea of the square sea: its start, its highest wave, and its heights beside theory."""
 
+import dataclasses
 import math
 from typing import NamedTuple
 
@@ -34,13 +35,13 @@ def nonlinear_sea(p: Params, linear: Sea, t: float, place: tuple[float, float]) 
     c, n = linear.conditions, solved_points(p)
     hs, period = linear.significant_height_at(t), expected(linear, t).peak_period
     period = period if period > 0.0 else 1.0
-    waves, fade = linear.components(t), FADE_PERIODS * period
+    waves, fade = linear.waves_at(t), FADE_PERIODS * period
     if p.start == "rogue" and hs > 0.0:
         crest = min(ROGUE_CREST * hs, 0.9 * float(waves.amplitude.sum()))
         waves, fade = waves.with_crest(crest, place, t + ROGUE_PERIODS * period), ROGUE_FADE_PERIODS * period
     elif p.start in LONG_CRESTED_STARTS:
         carrier = waves.largest(1)
-        count = max(round(float(np.hypot(carrier.kx, carrier.ky).sum()) * p.length / (2.0 * math.pi)), 1)
+        count = max(round(float(carrier.k.sum()) * p.length / (2.0 * math.pi)), 1)
         amplitude = hs / (2.0 * math.sqrt(2.0))
         if p.start == "breather":
             waves, _ = breather(amplitude, count, p.length, place[0], c.gravity, c.density)
@@ -48,11 +49,10 @@ def nonlinear_sea(p: Params, linear: Sea, t: float, place: tuple[float, float]) 
             waves = modulated_waves(amplitude, count, p.length, c.gravity, c.density)
         # Its phases are those of its start; water that is not deep has a dispersion of its own.
         omega = c.omega(waves.kx)
-        waves = waves._replace(depth=c.depth, omega=omega, phase=waves.phase + omega * t / (2.0 * math.pi))
+        phase = waves.phase + omega * t / (2.0 * math.pi)
+        waves = dataclasses.replace(waves, water=c.water, omega=omega, phase=phase)
     size = (n, 1) if p.start in LONG_CRESTED_STARTS else n
-    return NonlinearSea(
-        size, p.length, p.order, start=waves, gravity=c.gravity, density=c.density, fade=fade, rtol=TOLERANCE, time=t
-    )
+    return NonlinearSea(size, p.length, p.order, start=waves, fade=fade, rtol=TOLERANCE, time=t)
 
 
 def on_tile(field: NDArray[np.floating]) -> NDArray[np.float32]:

@@ -35,9 +35,9 @@ from app.scenes.square_sea.parameters import (
 )
 from app.scenes.square_sea.rain_view import RainMesh
 from app.scenes.square_sea.tile_mesh import Highest
-from sim.ocean.dispersion import SEA_DENSITY
 from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
+from sim.water import SEA_DENSITY
 
 DEFAULTS = Params()
 TARGETS = {  # [m] of each view: how far ahead its target is, and the target's height

@@ -13,10 +13,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.ocean.kinematics import Kinematics
 from sim.ocean.nonlinear.expansion import Expansion
 from sim.ocean.nonlinear.modes import Modes
 from sim.ocean.nonlinear.padded_transforms import set_truncated
+from sim.waves import Kinematics
 
 
 class Flow:

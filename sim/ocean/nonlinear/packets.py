@@ -11,8 +11,9 @@ import math
 
 import numpy as np
 
-from sim.ocean.kinematics import Components
 from sim.validation import argument_error, check_finite, check_not_negative, check_positive, is_whole_number
+from sim.water import Water
+from sim.waves import Waves
 
 SAMPLES = 8  # of an envelope, to a wave
 BEFORE = 3.0  # time of a breather's start before its peak, over 1/(omega (ka)^2): it is 1.3 times the carrier
@@ -22,7 +23,7 @@ SIDE_BAND = 0.1  # amplitude of each side band over the carrier's
 
 def breather(
     amplitude: float, count: int, length: float, place: float = 0.0, gravity: float = 9.81, density: float = 1025.0
-) -> tuple[Components, float]:
+) -> tuple[Waves, float]:
     """Waves of Peregrine's breather on deep water (1983, J. Aust. Math. Soc. B 25:16), and the time [s] to its peak.
 
     A carrier of this amplitude [m], with `count` waves on the length [m], grows threefold at `place` x [m], and becomes
@@ -46,7 +47,7 @@ def breather(
 
 def modulated_waves(
     amplitude: float, count: int, length: float, gravity: float = 9.81, density: float = 1025.0
-) -> Components:
+) -> Waves:
     """A carrier as in `breather` with the two side bands that grow fastest (Benjamin and Feir 1967, J. Fluid Mech.
     27:417): k (1 +- 2ka), in the phase in which they grow. Raises ValueError for a value that is not allowed."""
     k, _ = carrier(amplitude, count, length, gravity)
@@ -66,8 +67,8 @@ def carrier(amplitude: float, count: int, length: float, gravity: float) -> tupl
     return k, math.sqrt(check_positive("gravity", gravity, "m/s2") * k)
 
 
-def free_waves(numbers: np.ndarray, waves: np.ndarray, length: float, gravity: float, density: float) -> Components:
+def free_waves(numbers: np.ndarray, waves: np.ndarray, length: float, gravity: float, density: float) -> Waves:
     """Waves with these numbers on the length; waves: complex amplitudes [m] at time 0."""
     k = numbers * (2.0 * math.pi / length)
     phase = np.angle(waves) / (2.0 * math.pi)
-    return Components(k, np.zeros_like(k), np.abs(waves), np.sqrt(gravity * k), phase, math.inf, density)
+    return Waves(k, np.zeros_like(k), np.abs(waves), phase, water=Water(math.inf, gravity, density))

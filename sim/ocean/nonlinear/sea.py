@@ -23,7 +23,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.ocean.kinematics import Components, Kinematics
 from sim.ocean.nonlinear.breaking import Eddies, tail_decay
 from sim.ocean.nonlinear.expansion import Expansion
 from sim.ocean.nonlinear.flow import Flow, set_heights
@@ -44,6 +43,7 @@ from sim.validation import (
     check_positive,
     is_whole_number,
 )
+from sim.waves import Kinematics, Waves
 
 ORDERS = (1, 7)
 FADE_POWER = 4  # of time in the fade-in
@@ -77,7 +77,7 @@ class NonlinearSea:
         length: float | tuple[float, float] | None = None,
         order: int = 3,
         depth: float | None = None,
-        start: Sea | Components | tuple[ArrayLike, ArrayLike] | None = None,
+        start: Sea | Waves | tuple[ArrayLike, ArrayLike] | None = None,
         gravity: float | None = None,
         density: float | None = None,
         fade: float | None = None,
@@ -260,13 +260,13 @@ class NonlinearSea:
         return SurfaceAt(height, slope.T.copy(), flow.velocity, flow.acceleration[:, 2].copy(), nothing,
                          np.zeros((len(where), 2)), nothing.copy(), where, residual)  # fmt: skip
 
-    def components(self, t: float | None = None) -> Components:
-        """Linear waves with this elevation and potential at time t [s], by default the present one: `Components`.
+    def waves_at(self, t: float | None = None) -> Waves:
+        """Linear waves with this elevation and potential at time t [s], by default the present one.
 
         They go on as linear waves; moorings take them, and `largest` picks a few.
         """
         self.advance(self._time if t is None else t)
-        return free_waves(self._modes, self._u, self._time, self.density)
+        return free_waves(self._modes, self._u, self._time, self.conditions.water)
 
     def kinematics(self, points: ArrayLike, t: float | None = None) -> Kinematics:
         """The water at points (n, 3) [m], z up from still water, by the sum over all waves; see `flow.py`.

@@ -1,18 +1,20 @@
 """Starts of a nonlinear sea: from a linear one, or from elevation and surface potential."""
 
+import dataclasses
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim.ocean.kinematics import Components
 from sim.ocean.medium import Medium
 from sim.ocean.nonlinear.modes import Modes, make_modes, spectrum_of
 from sim.ocean.sea import LENGTHS, SIZES, Sea
 from sim.ocean.spectra import Conditions
 from sim.validation import argument_error, as_array, check_number, is_whole_number
+from sim.water import Water
+from sim.waves import Waves
 
-ALLOWED = "a Sea, Components, or elevation and potential, two finite arrays (n, m) or (n,) of one shape"
+ALLOWED = "a Sea, Waves, or elevation and potential, two finite arrays (n, m) or (n,) of one shape"
 
 
 class Start(NamedTuple):
@@ -34,12 +36,12 @@ def started(start: Any, size: Any, length: Any, water: dict[str, Any], time: flo
     if isinstance(start, Sea):
         if start.medium != Medium() or start.conditions.tension != 0.0:
             raise argument_error("start", start, "a sea without tension, viscosity, film or a dispersion of its own")
-        c, time = start.conditions, start.time
-        own = {"length": start.length, "depth": c.depth, "gravity": c.gravity, "density": c.density}
+        time = start.time
+        own = {"length": start.length, **dataclasses.asdict(start.conditions.water)}
         length, size = start.length if length is None else length, start.size if size is None else size
-        waves = start.components(time)
-    elif isinstance(start, Components):
-        waves, own = start, {"depth": start.depth, "density": start.density}
+        waves = start.waves_at(time)
+    elif isinstance(start, Waves):
+        waves, own = start, dataclasses.asdict(start.water)
     else:
         return of_fields(start, size, length, {"density": 1025.0} | given, time)
     for name, value in {**given, "length": length}.items():
@@ -84,7 +86,7 @@ def sides_of(length: Any) -> tuple[float, float]:
     return check_number("length", x, *LENGTHS, "m"), check_number("length", y, *LENGTHS, "m")
 
 
-def linear_start(waves: Components, modes: Modes, t: float) -> np.ndarray:
+def linear_start(waves: Waves, modes: Modes, t: float) -> np.ndarray:
     """Spectra (2, rows, columns) of elevation and potential at z = 0 of linear waves at time t [s].
 
     Waves that the grid does not have are left out; others count for its nearest.
@@ -105,7 +107,7 @@ def linear_start(waves: Components, modes: Modes, t: float) -> np.ndarray:
     return u
 
 
-def free_waves(modes: Modes, u: np.ndarray, t: float, density: float) -> Components:
+def free_waves(modes: Modes, u: np.ndarray, t: float, water: Water) -> Waves:
     """The linear waves that have these spectra (2, rows, columns) of elevation and potential at time t [s]."""
     there = (modes.k > 0.0) & u.any(axis=0)
     kx, ky = (k[there] for k in np.broadcast_arrays(modes.kx, modes.ky[:, None]))
@@ -115,7 +117,7 @@ def free_waves(modes: Modes, u: np.ndarray, t: float, density: float) -> Compone
     waves, frequency = np.concatenate([onward, back]), np.tile(omega, 2)
     phase = (np.angle(waves) + frequency * t) / (2.0 * math.pi)
     kx, ky = np.concatenate([kx, -kx]), np.concatenate([ky, -ky])
-    return Components(kx, ky, np.abs(waves), frequency, phase, modes.depth, density)
+    return Waves(kx, ky, np.abs(waves), phase, frequency, water)
 
 
 def resized(modes: Modes, u: np.ndarray, size: tuple[int, int]) -> tuple[Modes, np.ndarray]:

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.interruption import pieces
-from sim.ocean.dispersion import SEA_DENSITY, group_speed, omega
+from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
 from sim.validation import argument_error, as_array, as_float, check_angle, check_kind, check_number, check_positive
+from sim.water import SEA_DENSITY, Water
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
 MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
@@ -63,6 +64,11 @@ class Conditions:
         check_number("low_pass", self.low_pass, 0.0, 1e9, "m")
         for name, declared in parameters_of(self).items():
             check_value(name, declared, getattr(self, name))
+
+    @property
+    def water(self) -> Water:
+        """The water under these conditions, without its tension."""
+        return Water(self.depth, self.gravity, self.density)
 
     def omega(self, k: np.ndarray) -> np.ndarray:
         """Angular frequency [rad/s] under these conditions."""

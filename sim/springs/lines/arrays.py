@@ -46,7 +46,7 @@ class LineArrays(NamedTuple):
     stop_rate: float  # 1/h [1/s]: friction takes at most the force that stops a node within the step
     current: NDArray[np.float64]  # (3,) [m/s]
     depth: float  # [m]
-    waves: NDArray[np.float64]  # (9, waves) of `sim.wave_motion.flow_at`
+    waves: NDArray[np.float64]  # (9, waves): `Waves.table`
     pins: NDArray[np.int64]  # (pins,) nodes that are moved
     paths: NDArray[np.float64]  # (pins, 5, 3): four coefficients, and the start time in [4, 0]
     carried: NDArray[np.int64]  # (fairleads, 2): node, body

@@ -34,7 +34,7 @@ from sim.springs.lines.arrays import (
 )
 from sim.springs.lines.bending import add_bending
 from sim.springs.lines.curves import curve_at
-from sim.wave_motion import flow_at, sincos_turns
+from sim.waves import AMPLITUDE, sums_at
 
 TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction, and no force
 
@@ -105,8 +105,9 @@ def water_at(x, t, p, j):
     u, v, w, du, dv, dw, z = p.current[0], p.current[1], p.current[2], 0.0, 0.0, 0.0, x[2 * p.cols + j]
     if p.waves.shape[1] > 0:
         n = p.cols
-        wu, wv, ww, du, dv, dw, _, elevation = flow_at(x[j], x[n + j], z, t, p.waves, p.depth)
-        u, v, w, z = u + wu, v + wv, w + ww, z - elevation
+        sums = sums_at(x[j], x[n + j], z, t, p.waves, p.waves, AMPLITUDE, None, 0, p.depth)
+        (wu, wv, ww), (du, dv, dw) = sums.velocity, sums.acceleration
+        u, v, w, z = u + wu, v + wv, w + ww, z - sums.elevation
     return u, v, w, du, dv, dw, z
 
 
@@ -305,20 +306,13 @@ def set_six(y, n, j, q):
 @kernel(allocates=False)
 def wave_force(x, t, p, b):
     """Steady force and that of waves on body b: a Re(X exp(i theta)) of each wave, theta where the body is now."""
-    n, j, w = p.cols, p.nodes + 2 * b, p.excitation[b]
+    n, j = p.cols, p.nodes + 2 * b
     px, py = p.bodies[b, PLACE] + x[j], p.bodies[b, PLACE + 1] + x[n + j]
     f = p.steady[b]
-    s0, s1, s2, s3, s4, s5 = f[0], f[1], f[2], f[3], f[4], f[5]
-    for i in range(w.shape[1]):
-        c, s = sincos_turns(p.waves[0, i] * px + p.waves[1, i] * py + p.waves[2, i] - p.waves[3, i] * t)
-        c, s = p.waves[8, i] * c, p.waves[8, i] * s
-        s0 += w[0, i] * c - w[6, i] * s
-        s1 += w[1, i] * c - w[7, i] * s
-        s2 += w[2, i] * c - w[8, i] * s
-        s3 += w[3, i] * c - w[9, i] * s
-        s4 += w[4, i] * c - w[10, i] * s
-        s5 += w[5, i] * c - w[11, i] * s
-    return s0, s1, s2, s3, s4, s5
+    if p.excitation.shape[2] == 0:
+        return f[0], f[1], f[2], f[3], f[4], f[5]
+    e = sums_at(px, py, None, t, p.waves, p.waves, AMPLITUDE, p.excitation, b, p.depth).response
+    return f[0] + e[0], f[1] + e[1], f[2] + e[2], f[3] + e[3], f[4] + e[4], f[5] + e[5]
 
 
 @kernel(noalias=True, allocates=False)

@@ -12,7 +12,17 @@ import pytest
 from app.messages import Grab, Place, Release, vector_of
 from app.scenes import scene_named
 from app.scenes.contract import Advice
-from app.scenes.mooring.arrangement import DENSITY, body_of, build, first_places, heights, hull_of, line_types, sea_of
+from app.scenes.mooring.arrangement import (
+    DENSITY,
+    body_of,
+    build,
+    first_places,
+    hull_of,
+    line_types,
+    sea_of,
+    surface_heights,
+    surface_side,
+)
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.line_scene import FADE, MAX_PATH, PATH_INTERVAL
 from app.scenes.mooring.parameters import PRESETS, Params
@@ -95,12 +105,15 @@ def test_the_drawn_water_is_the_water_that_moves_the_lines():
     params = Params(wave_height=4.0, direction=30.0)
     sea = sea_of(params)
     assert sea is not None
-    bearing, place, t = math.radians(30.0), np.array([[12.0, -7.0, 0.0]]), 3.3
+    place, t = np.array([[12.0, -7.0, 0.0]]), 3.3
     flow = sea.kinematics(place, t)
-    along = place[0, :2] @ [math.cos(bearing), math.sin(bearing)]
     # Linear waves: dz/dt is the upward velocity at the surface.
     h = 1e-4
-    rise = (heights(sea, np.array([along]), t + h, 1.0) - heights(sea, np.array([along]), t - h, 1.0)) / (2.0 * h)
+    rise = (sea.elevation(place[:, :2], t + h) - sea.elevation(place[:, :2], t - h)) / (2.0 * h)
+    drawn = surface_heights(params, sea, t, 0.5)
+    axis = np.linspace(-0.5, 0.5, len(drawn)) * surface_side(params)
+    wanted = 0.5 * sea.elevation(np.column_stack([axis, np.full_like(axis, axis[5])]), t)
+    assert drawn[:, 5] == pytest.approx(wanted, abs=0.01)
     assert flow.velocity[0, 2] == pytest.approx(rise[0], rel=1e-5)
     assert 4.0 * math.sqrt(0.5 * float(np.square(sea.amplitude).sum())) == pytest.approx(4.0, rel=0.02)
 

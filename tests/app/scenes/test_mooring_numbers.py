@@ -17,6 +17,7 @@ from app.scenes.mooring.parameters import Params
 from app.scenes.mooring.restoring import force_of_lines
 from app.scenes.mooring.tensions import Tensions
 from sim.mooring import critical_step
+from sim.waves import AMPLITUDE
 
 PARAMS: dict[str, Any] = {"segments": 12, "lines": 2, "steady_force": 15.0, "time_step": 1 / 120, "wave_height": 0.0}
 
@@ -157,8 +158,8 @@ def test_waves_and_current_begin_smoothly():
         if t < FADE:
             p = scene.system.kernel_view(1.0)
             assert driven["current"] == pytest.approx(fades[-1] * p.current)
-            assert driven["waves"][[6, 8]] == pytest.approx(fades[-1] * p.waves[[6, 8]])
-            assert driven["waves"][:6] == pytest.approx(p.waves[:6])
+            assert driven["waves"][AMPLITUDE] == pytest.approx(fades[-1] * p.waves[AMPLITUDE])
+            assert driven["waves"][:AMPLITUDE] == pytest.approx(p.waves[:AMPLITUDE])
         else:
             assert driven == {}
     assert fades == pytest.approx([0.0, 0.15625, 0.5, 1.0, 1.0])

@@ -11,7 +11,6 @@ from sim.floating.hydrodynamics import radiated_share, wavenumber_of
 from sim.floating.response import linear_forces
 from sim.mooring.moored import moored
 from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves
-from sim.ocean.kinematics import components_of
 from tests.refusals import assert_refused
 
 xarray = pytest.importorskip("xarray")
@@ -142,7 +141,7 @@ def test_a_sea_or_mooring_of_another_depth_or_heading_is_refused():
     for sea in (deep, RadialSea(waves)):
         assert_refused("bodies[0]", lambda sea=sea: float_in(sea, [body], duration=0.1, frames=2), "dataset's depth")
     conditions = regular.conditions(wave_height=0.5, wave_period=6.0, depth=50.0)
-    other = components_of(draw_waves(regular, conditions), conditions)
+    other = draw_waves(regular, conditions)
     assert_refused("waves", lambda: moored(1, body, 1.0, other), "dataset's depth")
     shallow = Sea(32, 200.0, "regular", wave_height=0.5, wave_period=6.0, wind_speed=0.0, depth=20.0)
     assert np.isfinite(float_in(shallow, [body], duration=0.1, frames=2).x).all()

@@ -8,8 +8,8 @@ import pytest
 from sim.floating import Body, Hull, MotionCoefficients, float_in, response_amplitude
 from sim.ocean import Sea
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import Waves
 from sim.ocean.radial import RadialSea
+from sim.waves import Waves
 
 FREE = MotionCoefficients(quadratic_drag=0.0)
 BUOY = Body(Hull.cylinder(0.5, 1.0), mass=390.0, center_of_gravity=(0.0, 0.0, -0.25))

@@ -24,8 +24,8 @@ from sim.floating.excitation import WaveExcitation
 from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange, plane_force
 from sim.floating.linear_table import table_of
 from sim.floating.prediction import predict
-from sim.ocean.gerstner import Waves
 from sim.ocean.radial import RadialSea
+from sim.waves import Waves
 
 WATER = ((1025.0, math.inf),)
 FREE = MotionCoefficients(quadratic_drag=0.0)
@@ -149,8 +149,7 @@ def test_response_in_regular_waves_is_that_of_the_coefficients(name: str, direct
         for i in range(steps):
             middle = (i + 0.5) * INTERVAL
             at = sea.at(fleet.position[:, :2], middle, width)
-            kx, ky, a, omega, phase, _ = sea.current(middle)
-            forces = excitation.forces(fleet, at.label, kx, ky, a, omega, phase, INTERVAL)
+            forces = excitation.forces(fleet, at.label, sea.waves_at(middle), middle, INTERVAL)
             water = make_water(
                 fleet, WATER, at.height, slope=at.slope, velocity=at.velocity, acceleration=at.acceleration,
                 excitation=forces, lead=INTERVAL / 2,

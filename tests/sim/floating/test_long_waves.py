@@ -9,9 +9,9 @@ from sim.floating import Body, Hull, MotionCoefficients, float_in, response_ampl
 from sim.floating.equilibrium import upright
 from sim.floating.hydrodynamics import haskind, linear_hull
 from sim.mooring.moored import moored
-from sim.ocean.gerstner import Waves
-from sim.ocean.kinematics import Components
 from sim.ocean.radial import RadialSea
+from sim.water import Water
+from sim.waves import Waves
 
 SEA = 1025.0  # [kg/m3]
 # Boxes of edges x, y, z [m], density over that of the water, heading [rad], and yaw over k in waves of half the first
@@ -112,7 +112,7 @@ def test_waves_push_a_moored_body_as_its_own_mass_is_pushed() -> None:
     w = 0.1 * first_frequency(body)
     k, heading = w * w / 9.81, 0.7
     one = np.ones(1)
-    waves = Components(k * math.cos(heading) * one, k * math.sin(heading) * one, one, w * one, 0.0 * one, math.inf, SEA)
+    waves = Waves(k * math.cos(heading) * one, k * math.sin(heading) * one, one, 0.0 * one, w * one, Water(density=SEA))
     own = moored(1, body, w, waves)
     motion = np.append(with_the_water(k, heading), 0.0)
     wanted = own.stiffness @ motion - w * w * own.mass @ motion

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from sim.mooring import Body, Line, LineType, Point, System
-from sim.ocean.kinematics import Components
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.lines.damping import damp_lines, make_lines_decay
 from sim.springs.lines.energy import lines_pins_damping_power, lines_power, set_tensions
+from sim.water import Water
+from sim.waves import Waves
 
 ROPE = LineType("rope", 0.1, 12.0, 1.0, 0.0, 0.9, 1.3, 0.4, 0.07)  # so soft that it does not pull
 LENGTH, SPACING = 20.0, 10.0  # of the line and of its two links, which are slack
@@ -76,7 +77,7 @@ def test_drag_split_off_has_the_closed_form_across_and_along(way):
 def test_a_wave_alone_pushes_by_its_acceleration_and_drags_by_its_velocity(way, t):
     k, omega = 0.08, math.sqrt(9.81 * 0.08 * math.tanh(0.08 * 60.0))
     one = np.ones(1)
-    waves = Components(0.8 * k * one, 0.6 * k * one, 1.2 * one, omega * one, 0.15 * one, 60.0, 1025.0)
+    waves = Waves(0.8 * k * one, 0.6 * k * one, 1.2 * one, 0.15 * one, omega * one, Water(60.0))
     system, x = one_node(way, waves=waves)
     p, v, a = system.kernel_view(1.0), np.zeros(9), np.empty(9)
     place = x[2::3]

@@ -9,21 +9,20 @@ import pytest
 from sim import floating
 from sim.mooring import Line, LineType, Point, System, moored, simulate
 from sim.mooring.statics import Rest, straight
-from sim.ocean.kinematics import Components
 from sim.springs.forces.acceleration import set_acceleration
+from sim.water import Water
+from sim.waves import Waves
 from tests.refusals import assert_refused
 
 RATE, AMPLITUDE = 0.8, 0.5  # [rad/s], [m] of the wave
 THREAD = LineType("thread", 1e-3, 1e-3, 10.0)  # a line that does not matter
 
 
-def wave(heading: float) -> Components:
+def wave(heading: float) -> Waves:
     k = RATE**2 / 9.81
     one = np.ones(1)
-    return Components(
-        k * math.cos(heading) * one, k * math.sin(heading) * one, AMPLITUDE * one, RATE * one, 0.1 * one, 300.0,
-        1025.0,
-    )  # fmt: skip
+    kx, ky = k * math.cos(heading) * one, k * math.sin(heading) * one
+    return Waves(kx, ky, AMPLITUDE * one, 0.1 * one, RATE * one, Water(300.0))
 
 
 def box_in_waves(heading: float) -> System:
@@ -86,9 +85,9 @@ def test_forces_that_are_not_those_of_the_waves_are_refused(field, value):
     ("name", "waves"),
     [
         ("waves", "sea"),
-        ("waves: depth", wave(0.0)._replace(depth=math.inf)),
-        ("waves: density", wave(0.0)._replace(density=1000.0)),
-        ("waves: omega", wave(0.0)._replace(omega=np.array([1.1 * RATE]))),
+        ("waves", dataclasses.replace(wave(0.0), water=Water())),
+        ("waves", dataclasses.replace(wave(0.0), water=Water(300.0, density=1000.0))),
+        ("waves: omega", dataclasses.replace(wave(0.0), omega=np.array([1.1 * RATE]))),
     ],
 )
 def test_waves_in_another_water_are_refused(name, waves):
@@ -99,5 +98,8 @@ def test_waves_in_another_water_are_refused(name, waves):
         points=(Point(1, "fixed", (0.0, 0.0, -300.0)), Point(2, "fixed", (0.0, 0.0, 0.0))),
     )
     assert_refused(name, lambda: dataclasses.replace(still, waves=waves))
-    with pytest.raises(ValueError, match="waves: omega"):
+    both = "waves on water 300 m deep of 1025 kg/m3 under a gravity of 9.81 .*the system's water 300 m .* of 1.62 "
+    with pytest.raises(ValueError, match=both):
         dataclasses.replace(still, waves=wave(0.0), gravity=1.62)
+    box = floating.Body(floating.Hull.box(12.0, 8.0, 4.0), density=450.0)
+    assert_refused("gravity", lambda: moored(1, box, RATE, wave(0.0), gravity=1.62), "9.81 m/s2")

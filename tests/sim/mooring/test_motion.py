@@ -12,10 +12,11 @@ from sim import springs
 from sim.mooring import Body, Line, LineType, Point, System, critical_step, simulate
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
-from sim.ocean.kinematics import Components
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.lines.damping import damp_lines, make_lines_decay
 from sim.springs.lines.energy import lines_energies, lines_power
+from sim.water import Water
+from sim.waves import Waves
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope
 
 
@@ -81,9 +82,9 @@ def test_a_line_without_water_and_bed_is_a_rope(integrator):
 
 def suspended_in_waves() -> tuple[System, Rest]:
     """A taut line in a regular wave and a current, displaced so that it swings."""
-    waves = Components(
+    waves = Waves(
         kx=np.array([0.1]), ky=np.array([0.05]), amplitude=np.array([0.8]), omega=np.array([1.05]),
-        phase=np.array([0.1]), depth=60.0, density=1025.0,
+        phase=np.array([0.1]), water=Water(60.0),
     )  # fmt: skip
     kind = LineType("rope", 0.08, 12.0, 4e4, 200.0, 1.0, 1.2, 0.3, 0.05)
     points = (Point(1, "fixed", (0.0, 0.0, -40.0)), Point(2, "fixed", (30.0, 5.0, -2.0)))

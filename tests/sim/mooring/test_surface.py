@@ -10,10 +10,11 @@ from sim.mooring import Line, LineType, Point, System, simulate
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
 from sim.mooring.tangent import stiffness_matrix, upright_stiffness
-from sim.ocean.kinematics import Components
 from sim.springs import INTEGRATORS
 from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.lines.energy import lines_energies, lines_power
+from sim.water import Water
+from sim.waves import Waves
 
 CHAIN = LineType("chain", 0.05, 50.0, 1.674e9)
 HAIR = LineType("hair", 1e-9, 1e-9, 1.0)  # slack, and nothing beside the float
@@ -45,7 +46,7 @@ def test_a_line_that_floats_lies_on_the_water_as_deep_as_it_is_heavy():
     assert np.median(rest.x[1][afloat, 2]) == pytest.approx(level, abs=1e-6)
 
 
-def one_float(z: float, waves: Components | None = None) -> tuple[System, np.ndarray]:
+def one_float(z: float, waves: Waves | None = None) -> tuple[System, np.ndarray]:
     """A float of 0.6 m3 and 300 kg on a hair, at a height z [m]."""
     points = [Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "free", (0.0, 0.0, z), 300.0, 0.6, 0.8, 0.5)]
     system = System([Line(1, HAIR, 1, 2, 200.0, 1)], points, 50.0, bed_stiffness=0.0, waves=waves)
@@ -101,7 +102,7 @@ def test_a_float_rides_on_long_waves():
     omega = 2.0 * math.pi / period
     k = omega**2 / 9.81
     one = np.ones(1)
-    waves = Components(k * one, 0.0 * one, amplitude * one, omega * one, 0.0 * one, 5000.0, 1025.0)
+    waves = Waves(k * one, 0.0 * one, amplitude * one, 0.0 * one, omega * one, Water(5000.0))
     system, x = one_float(0.0)
     system = dataclasses.replace(system, depth=5000.0, waves=waves)
     state = LineState(system, Rest({}, {}, {}, x.reshape(3, 2)))

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from sim.ocean import RadialSea, Sea, draw_waves, measured_spectrum, read_spectrum, recorded_waves
-from sim.ocean.kinematics import components_of
 from sim.ocean.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import Conditions
 from sim.ocean.statistics import expected, theory
@@ -293,7 +292,7 @@ def test_a_record_passes_its_place_as_it_was_recorded(record):
 def test_a_record_on_water_of_a_depth_passes_as_recorded(record):
     t, eta = record
     conditions = Conditions(depth=15.0)
-    waves = components_of(recorded_waves(t, eta, -1.0, (5.0, 0.0), conditions, error=0.001), conditions)
+    waves = recorded_waves(t, eta, -1.0, (5.0, 0.0), conditions, error=0.001)
     theta = 2.0 * math.pi * waves.phase + 5.0 * waves.kx - waves.omega * t[::7, None]
     found = (waves.amplitude * np.cos(theta)).sum(axis=1)
     assert np.sqrt(np.mean((found - eta[::7] + eta.mean()) ** 2)) < 0.002 * 4.0 * eta.std()

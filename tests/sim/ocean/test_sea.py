@@ -472,7 +472,7 @@ def test_a_regular_wave_that_a_tile_cannot_hold_is_the_nearest_that_it_can_and_w
     for sea, length in ((long, 20.0), (short, 54.0 / 31)):
         assert sea.significant_height == pytest.approx(math.sqrt(2.0))
         assert sea.surface(1.0).height.std() == pytest.approx(1.0 / math.sqrt(8.0), rel=1e-9)
-        waves = sea.components()
+        waves = sea.waves_at()
         assert 2.0 * math.pi / max(abs(waves.kx[0]), abs(waves.ky[0])) == pytest.approx(length)
     assert abs(expected_of(long).direction - direction) < math.radians(30.0)
     with warnings.catch_warnings():

@@ -7,11 +7,12 @@ import pytest
 
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import fluids
-from sim.ocean.gerstner import Waves, draw_waves
-from sim.ocean.radial import RadialSea
+from sim.ocean.gerstner import draw_waves
+from sim.ocean.radial import RadialSea, phases_at
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import SlickCover, slick_radius, spreading_coefficient
 from sim.ocean.spectra import SPECTRA
+from sim.waves import Waves
 
 
 def test_fay_s_regimes_have_their_powers_and_meet_where_he_says():
@@ -77,10 +78,12 @@ def test_a_wave_loses_its_decay_rate_over_its_group_speed():
 
 def test_a_sea_under_a_slick_is_the_sum_of_its_calmed_waves():
     waves = draw_waves(SPECTRA["jonswap"], SPECTRA["jonswap"].conditions(wind_speed=4.0, fetch=3000.0), 25)
-    waves = Waves(*(values[::-1].copy() for values in waves))  # not in the order in which they are drawn
+    values = waves.kx, waves.ky, waves.amplitude, waves.phase
+    waves = Waves(*(one[::-1] for one in values))  # not in the order in which they are drawn
     sea, grid, t = RadialSea(waves, choppiness=0.0), RadialGrid(160, 128, 0.05, 200.0), 7.3
     sea.slick = SlickCover((6.0, 4.0), 25.0, FluidColumn(oil=fluids()["IFO 180"], thickness=0.03))
-    kx, ky, amplitude, _, phase, _ = sea.current(t)
+    found = sea.waves_at(t)
+    kx, ky, amplitude, phase = found.kx, found.ky, found.amplitude, phases_at(found, t)
     assert sea.losses(np.hypot(kx, ky)).max() * 25.0 > 1.0  # the shortest wave hardly gets through
 
     def naive(x: float, y: float) -> float:

@@ -12,7 +12,6 @@ from sim.floating.float_in import float_in
 from sim.ocean import Sea
 from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves
 from sim.ocean.radial import SurfaceAt
-from sim.ocean.tile_sea import TileSea
 
 LINEAR: dict[str, Any] = {
     "size": 32, "length": 160.0, "spectrum": "sea_state", "hs": 1.0, "tp": 6.0, "choppiness": 0.0,
@@ -57,21 +56,21 @@ def test_heights_at_points_on_a_rectangle() -> None:
 
 def test_its_components_are_the_linear_waves_of_the_moment() -> None:
     sea, other = linear_pair(depth=15.0)
-    waves = other.components(4.0)
+    waves = other.waves_at(4.0)
     where = np.column_stack([POINTS, [-1.0, -3.0, -7.0]])
     for t in (4.0, 9.0):
         found, wanted = waves.kinematics(where, t), sea.kinematics(where, t)
         assert found.velocity == pytest.approx(wanted.velocity, abs=1e-9)
         assert found.pressure == pytest.approx(wanted.pressure, abs=1e-6)
     steep = NonlinearSea(start=Sea(**LINEAR), order=3)
-    again = NonlinearSea(steep.size, 160.0, 3, start=steep.components(6.0), time=6.0, fade=0.0)
+    again = NonlinearSea(steep.size, 160.0, 3, start=steep.waves_at(6.0), time=6.0, fade=0.0)
     assert again.height == pytest.approx(steep.height, abs=1e-12)
     assert again.potential == pytest.approx(steep.potential, abs=1e-12)
 
 
 def test_the_sea_above_points_is_that_for_bodies() -> None:
     sea, other = linear_pair(hs=0.2)
-    found, wanted = other.at(POINTS, 5.0), TileSea(sea).at(POINTS, 5.0)
+    found, wanted = other.at(POINTS, 5.0), sea.at(POINTS, 5.0)
     assert isinstance(found, SurfaceAt)
     # The tile's fields between grid points are bicubic, its rates differences of them, and its particles displaced.
     assert found.height == pytest.approx(wanted.height, abs=1e-9)
@@ -118,7 +117,7 @@ def test_another_grid_goes_on_with_the_same_waves() -> None:
 
 def test_a_crest_of_a_given_height_at_a_place_and_time() -> None:
     sea = Sea(**LINEAR)
-    waves = sea.components(0.0)
+    waves = sea.waves_at(0.0)
     focused = waves.with_crest(1.7, (50.0, 60.0), 30.0)
     assert np.array_equal(focused.amplitude, waves.amplitude)
     other = NonlinearSea(32, 160.0, 1, start=focused)

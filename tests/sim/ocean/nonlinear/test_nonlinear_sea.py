@@ -182,7 +182,7 @@ LEVEL = np.zeros((16, 8))
         ({"step": 0.0}, "step: 0.0"),
         ({"rtol": 1.0}, "rtol: 1.0"),
         ({"breaking": 1}, "breaking: 1"),
-        ({"start": None}, "start: None.*a Sea, Components, or elevation and potential"),
+        ({"start": None}, "start: None.*a Sea, Waves, or elevation and potential"),
         ({"start": (LEVEL, LEVEL[:8])}, "start: "),
         ({"start": (LEVEL, LEVEL + math.nan)}, "start: "),
         ({"start": (LEVEL[:, :3], LEVEL[:, :3])}, "size: "),

@@ -1,0 +1,37 @@
+"""The water that carries waves."""
+
+import dataclasses
+import math
+
+import numpy as np
+
+from sim.validation import check_not_negative, check_positive
+
+SEA_DENSITY = 1025.0  # [kg/m3] of the water where none is named
+SAME_WATER = 1e-6  # relative difference of two waters that count as one
+
+
+@dataclasses.dataclass(frozen=True)
+class Water:
+    """A water of one density, by default the deep sea. Raises ValueError for a value that is not allowed."""
+
+    depth: float = math.inf  # [m]
+    gravity: float = 9.81  # [m/s2]
+    density: float = SEA_DENSITY  # [kg/m3]; 0: none
+
+    def __post_init__(self) -> None:
+        check_positive("depth", self.depth, "m", allow_infinite=True)
+        check_not_negative("gravity", self.gravity, "m/s2")
+        check_not_negative("density", self.density, "kg/m3")
+
+    def __str__(self) -> str:
+        return f"water {self.depth:g} m deep of {self.density:g} kg/m3 under a gravity of {self.gravity:g} m/s2"
+
+    def omega(self, k: np.ndarray) -> np.ndarray:
+        """Angular frequency [rad/s] of gravity waves of wavenumber k [rad/m]: sqrt(g k tanh kh) (Lamb, Art. 228)."""
+        return np.sqrt(self.gravity * k * np.tanh(np.minimum(k * self.depth, 300.0)))
+
+    def is_same(self, other: "Water") -> bool:
+        """True for the same water but for rounding."""
+        pairs = zip(dataclasses.astuple(self), dataclasses.astuple(other), strict=True)
+        return all(math.isclose(a, b, rel_tol=SAME_WATER) for a, b in pairs)

@@ -22,9 +22,10 @@ from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
 from sim.springs.analysis.strain import strain_range
+from sim.springs.forces.matrices import DAMPING, STIFFEST, TRANSVERSE
 from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.integrators.implicit.tangent import DAMPING, STIFFEST, TRANSVERSE, quotients, set_lanczos
+from sim.springs.integrators.implicit.tangent import quotients, set_lanczos
 from sim.springs.laws import largest_stiffness
 from sim.springs.net import Net
 from sim.springs.state import State, check_net, check_state

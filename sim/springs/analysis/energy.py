@@ -10,15 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.forces.acceleration import grab_secant
-from sim.springs.forces.contact import contact_force, surface_velocity, touches, touching
+from sim.springs.arrays import by_net, link_ratio, mass_at
+from sim.springs.forces import FORCES, each
 from sim.springs.forces.links import TINY
-from sim.springs.forces.self_contact import self_contact_energy, self_contact_power
-from sim.springs.forces.wind import wind_power
 from sim.springs.laws import damps, force_density
 from sim.springs.laws import energy as link_energy
 from sim.springs.lines.energy import lines_energies, lines_kinetic_energy, lines_pins_damping_power, lines_power
-from sim.springs.net import by_net, link_ratio, mass_at
 
 
 class Energy(NamedTuple):
@@ -86,21 +83,6 @@ def gravity_energy(x, p):
     for j in range(n):
         if p.inverse_masses[j] > 0.0:
             total -= mass_at(p, j) * (p.gx * x[j] + p.gy * x[n + j] + p.gz * x[2 * n + j])
-    return total
-
-
-@kernel(allocates=False)
-def contact_energy(x, t, p):
-    """1/2 k depth^2 over the touching points [J]."""
-    total = 0.0
-    n = p.rows * p.cols
-    for surface in range(2):
-        on_sphere = surface == 1
-        if p.has_sphere if on_sphere else p.has_floor:
-            for j in range(n):
-                depth, _, _, _ = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-                if depth > 0.0 and p.inverse_masses[j] > 0.0:
-                    total += 0.5 * p.contact_k * depth * depth
     return total
 
 
@@ -185,66 +167,8 @@ def moving_pins_power(x, v, p, elastic, damping):
     return work
 
 
-@kernel(allocates=False)
-def contact_power(x, v, t, p, with_damping):
-    """(dissipated, put in by a moving sphere) [W] through contact."""
-    dissipated = 0.0
-    work = 0.0
-    n = p.rows * p.cols
-    for surface in range(2):
-        on_sphere = surface == 1
-        if not touches(x, t, p, on_sphere):
-            continue
-        su, sv, sw = surface_velocity(p, on_sphere)
-        if not with_damping and su == 0.0 and sv == 0.0 and sw == 0.0:
-            continue
-        for j in range(n):
-            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-            if depth > 0.0 and p.inverse_masses[j] > 0.0:
-                ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, mass_at(p, j), p, on_sphere, with_damping)
-                push = p.contact_k * depth
-                dissipated -= (fx - push * nx) * ru + (fy - push * ny) * rv + (fz - push * nz) * rw
-                work += fx * su + fy * sv + fz * sw
-    return dissipated, work
-
-
-@kernel
-def wide_power(x, v, p, with_damping):
-    """(dissipated, put in) [W] by air, and through the net's contact with itself."""
-    dissipated = 0.0
-    work = 0.0
-    if p.has_air and with_damping:
-        lost, done = wind_power(x, v, p)
-        dissipated += lost
-        work += done
-    if p.thickness > 0.0 and (with_damping or p.pins.shape[0] > 0):
-        lost, done = self_contact_power(x, v, p, with_damping)
-        dissipated += lost
-        work += done
-    return dissipated, work
-
-
-power_of_width = by_net(rope=kernel(lambda x, v, p, with_damping: (0.0, 0.0), inline=True), grid=wide_power)
-
-
-@kernel
-def wide_damping_work(x, v, p):
-    if p.thickness > 0.0:
-        return self_contact_power(x, v, p, True)[1] - self_contact_power(x, v, p, False)[1]
-    return 0.0
-
-
-# What moving pins put in [W] through the damping of the net's contact with itself.
-damping_work_of_width = by_net(rope=kernel(lambda x, v, p: 0.0, inline=True), grid=wide_damping_work)
-
-
-@kernel
-def wide_self_contact_energy(x, p):
-    return self_contact_energy(x, p) if p.thickness > 0.0 else 0.0
-
-
-energy_of_own_contacts = by_net(rope=kernel(lambda x, p: 0.0, inline=True), grid=wide_self_contact_energy)
+pins_power_of_others = each("pins_power", "x, v, p", "sum")
+power_of_others = each("power", "x, v, t, p, with_damping", "two sums", allocates=False)
 
 
 @kernel(allocates=False)
@@ -254,20 +178,8 @@ def net_power(x, v, t, p, with_damping):
         dissipated += link_damping_power(x, v, p)
         if p.drag > 0.0:
             dissipated += drag_power(v, p)
-    lost, done = power_of_width(x, v, p, with_damping)
-    dissipated += lost
-    work += done
-    if p.has_floor or p.has_sphere:
-        lost, done = contact_power(x, v, t, p, with_damping)
-        dissipated += lost
-        work += done
-    if p.grabbed >= 0:
-        n, g = p.rows * p.cols, p.grabbed
-        dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
-        work += grab_secant(dx, dy, dz, p) * (dx * v[g] + dy * v[n + g] + dz * v[2 * n + g])
-        if with_damping:
-            dissipated += p.grab_b * (v[g] ** 2 + v[n + g] ** 2 + v[2 * n + g] ** 2)
-    return dissipated, work
+    lost, done = power_of_others(x, v, t, p, with_damping)
+    return dissipated + lost, work + done
 
 
 # (dissipated, put in) [W]. with_damping False: without every force that depends on v.
@@ -284,7 +196,7 @@ def add_power(x, v, t, p, with_damping, weight, ledger):
 
 @kernel(allocates=False)
 def net_pins_damping_power(x, v, p):
-    return moving_pins_power(x, v, p, 0.0, 1.0) + damping_work_of_width(x, v, p)
+    return moving_pins_power(x, v, p, 0.0, 1.0) + pins_power_of_others(x, v, p)
 
 
 # What moving pins put in [W] through all damping.
@@ -321,11 +233,17 @@ def close_damping(x, v, p, s, kinetic, by_sphere, before, ledger):
     ledger[1] += put_in
 
 
+def stored_as(name):
+    """A kernel (x, t, p) -> energy [J] of the forces that store it as this field of `Energy`."""
+    return each("energy", "x, t, p", "sum", [force for force in FORCES if force.stores == name], allocates=False)
+
+
+contact_energy = stored_as("contact")
+
+
 @kernel(allocates=False)
 def net_energies(x, v, t, p):
-    contact = contact_energy(x, t, p) if p.has_floor or p.has_sphere else 0.0
-    contact += energy_of_own_contacts(x, p)
-    return kinetic_energy(v, p), elastic_energy(x, p), gravity_energy(x, p), contact
+    return kinetic_energy(v, p), elastic_energy(x, p), gravity_energy(x, p), contact_energy(x, t, p)
 
 
 # (kinetic, elastic, gravity, contact) [J].

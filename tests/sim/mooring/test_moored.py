@@ -10,7 +10,7 @@ from sim import floating
 from sim.mooring import Line, LineType, Point, System, moored, simulate
 from sim.mooring.statics import Rest, straight
 from sim.ocean.kinematics import Components
-from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.acceleration import set_acceleration
 from tests.refusals import assert_refused
 
 RATE, AMPLITUDE = 0.8, 0.5  # [rad/s], [m] of the wave

@@ -13,7 +13,7 @@ from sim.mooring import Body, Line, LineType, Point, System, critical_step, simu
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
 from sim.ocean.kinematics import Components
-from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.acceleration import set_acceleration
 from sim.springs.lines.damping import damp_lines, make_lines_decay
 from sim.springs.lines.energy import lines_energies, lines_power
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope

@@ -12,7 +12,7 @@ from sim.mooring.statics import Rest
 from sim.mooring.tangent import stiffness_matrix, upright_stiffness
 from sim.ocean.kinematics import Components
 from sim.springs import INTEGRATORS
-from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.acceleration import set_acceleration
 from sim.springs.lines.energy import lines_energies, lines_power
 
 CHAIN = LineType("chain", 0.05, 50.0, 1.674e9)

@@ -1,0 +1,36 @@
+"""`Force`: what a file of `sim.springs.forces` declares."""
+
+from typing import Any, NamedTuple
+
+from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays
+
+NETS = (RopeArrays, GridArrays, ClothArrays)  # ropes, and nets of several rows
+WIDE_NETS = (GridArrays, ClothArrays)
+
+
+class Force(NamedTuple):
+    """What acts on the points of a net. Facets are kernels; None: the force has none.
+
+    x, v: positions [m] and velocities [m/s], flat (3 rows cols,), at the time t [s]; p: the net's record, see
+    `sim.springs.arrays`. Points whose p.inverse_masses is 0 are pinned.
+    """
+
+    name: str
+    rank: int  # forces act in the order of their ranks; those of one rank by name
+    acts: Any  # (p) -> whether it acts at all; no other facet is called otherwise
+    accelerate: Any  # (x, v, t, p, with_damping, f, a): adds to the accelerations a; f: scratch of `make_scratch`
+    damp: Any = None  # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] of what moves it
+    energy: Any = None  # (x, t, p) -> stored energy [J]
+    power: Any = None  # (x, v, t, p, with_damping) -> (dissipated, put in) [W]
+    pins_power: Any = None  # (x, v, p) -> what moving pins put in through its damping [W]
+    tangent: Any = None  # (x, u, t, p, part, out): adds a matrix times u, see `sim.springs.forces.matrices`
+    blocks: Any = None  # (x, v, t, g, p, points): adds g D + g^2 K of each point, see `sim.springs.forces.matrices`
+    # A force between points that no link joins has blocks of its own, so many numbers from index o of `coupled` on.
+    # They are set, added to the points' blocks, and added times u to q.
+    coupled_size: Any = None  # (p)
+    set_coupled: Any = None  # (x, v, g, p, coupled, o)
+    add_coupled: Any = None  # (p, coupled, points, o)
+    multiply_coupled: Any = None  # (p, coupled, u, q, o)
+    stores: str = "gravity"  # field of `Energy` that its energy counts in
+    is_smooth: bool = False  # its derivatives are continuous
+    nets: tuple[type, ...] = NETS  # records of the nets that it acts on

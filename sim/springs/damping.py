@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 from sim.springs.arrays import by_net, link_ratio
-from sim.springs.forces import each
+from sim.springs.forces import SEPARATE, each
 from sim.springs.forces.links import TINY
 from sim.springs.laws import by_damping, damps
 from sim.springs.lines.damping import damp_lines, make_lines_decay
@@ -247,7 +247,7 @@ def damp_motion(x, v, decay, p, reverse):
 
 
 never = kernel(lambda p: False, inline=True)
-other_acts = each("acts", "p", "truth", inline=True)
+other_acts = each("acts", "p", "truth", SEPARATE, inline=True)
 damp_others = each("damp", "x, v, t, s, p, reverse", "sum", turns=True, allocates=False)
 
 

@@ -17,6 +17,8 @@ FORCES: tuple[Force, ...] = tuple(
         key=lambda force: (force.rank, force.name),
     )
 )
+# Those that are not in the loops over the links.
+SEPARATE = tuple(force for force in FORCES if force.accelerate is not None)
 # What a kernel of `each` begins with, does with the call of a force that acts, and ends with.
 RESULTS = {
     "none": ("", "{call}", "return None"),
@@ -29,28 +31,36 @@ RESULTS = {
 
 
 def each(
-    facet: str, parameters: str, result: str, forces: Sequence[Force] = FORCES, *, turns: bool = False, **options: Any
+    facet: str,
+    parameters: str,
+    result: str,
+    forces: Sequence[Force] = FORCES,
+    *,
+    turns: bool = False,
+    lines: Any = None,
+    **options: Any,
 ) -> Any:
     """A kernel of `parameters` that calls this facet of all forces that have it and act.
 
-    result: a key of RESULTS. turns: in the reverse order if the parameter `reverse` is True. options: of `kernel`.
+    result: a key of RESULTS. turns: in the reverse order if the parameter `reverse` is True. lines: the kernel of lines
+    under water. options: of `kernel`.
     """
+    start, middle, end = RESULTS[result]
+    given = f"{parameters}, o" if result == "placed" else parameters
+
+    def call(force: Force) -> str:
+        guard = f"if {force.name}_acts(p): " if force.acts else ""
+        return guard + middle.format(call=f"{force.name}_{facet}({given})", name=force.name)
 
     def of(net: type, name: str) -> Any:
         having = [force for force in forces if getattr(force, facet) is not None and net in force.nets]
-        start, middle, end = RESULTS[result]
-        given = f"{parameters}, o" if result == "placed" else parameters
-        calls = [
-            f"if {one.name}_acts(p): {middle.format(call=f'{one.name}_{facet}({given})', name=one.name)}"
-            for one in having
-        ]
+        calls = list(map(call, having))
         if turns and len(calls) > 1:
-            indented = [f"    {call}" for call in calls]
+            indented = [f"    {one}" for one in calls]
             calls = ["if reverse:", *reversed(indented), "else:", *indented]
-        lines = [start, *calls, end]
         head = f"def {'_'.join((name, facet, *(force.name for force in having)))}({parameters}):"
         used = (facet, "acts", "coupled_size")
         names = {f"{force.name}_{one}": getattr(force, one) for force in having for one in used}
-        return generated("\n    ".join([head, *lines]), names, __name__, **options)
+        return generated("\n    ".join([head, start, *calls, end]), names, __name__, **options)
 
-    return by_net(rope=of(RopeArrays, "rope"), grid=of(GridArrays, "wide"))
+    return by_net(rope=of(RopeArrays, "rope"), grid=of(GridArrays, "wide"), lines=lines)

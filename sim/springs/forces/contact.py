@@ -204,7 +204,7 @@ def power(x, v, t, p, with_damping):
 
 
 @kernel(noalias=True, allocates=False)
-def tangent(x, u, t, p, part, out):
+def tangent(x, u, t, p, part, longest, out):
     """Every touching point: K = k [n n^T - depth/r (I - n n^T)] with r the distance to the sphere's centre."""
     n = p.rows * p.cols
     if part == TRANSVERSE:

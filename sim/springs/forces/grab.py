@@ -53,7 +53,7 @@ def power(x, v, t, p, with_damping):
 
 
 @kernel(noalias=True, allocates=False)
-def tangent(x, u, t, p, part, out):
+def tangent(x, u, t, p, part, longest, out):
     """K = k I within reach; beyond it the force is capped and K = (F/r) (I - n n^T)."""
     if part in (TRANSVERSE, FRICTION):
         return

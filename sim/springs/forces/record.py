@@ -17,13 +17,15 @@ class Force(NamedTuple):
 
     name: str
     rank: int  # forces act in the order of their ranks; those of one rank by name
-    acts: Any  # (p) -> whether it acts at all; no other facet is called otherwise
-    accelerate: Any  # (x, v, t, p, with_damping, f, a): adds to the accelerations a; f: scratch of `make_scratch`
+    acts: Any = None  # (p) -> whether it acts at all; no other facet is called otherwise. None: always
+    # (x, v, t, p, with_damping, f, a): adds to the accelerations a; f: scratch of `make_scratch`. None: it is in the
+    # loops over the links.
+    accelerate: Any = None
     damp: Any = None  # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] of what moves it
     energy: Any = None  # (x, t, p) -> stored energy [J]
     power: Any = None  # (x, v, t, p, with_damping) -> (dissipated, put in) [W]
     pins_power: Any = None  # (x, v, p) -> what moving pins put in through its damping [W]
-    tangent: Any = None  # (x, u, t, p, part, out): adds a matrix times u, see `sim.springs.forces.matrices`
+    tangent: Any = None  # (x, u, t, p, part, longest, out): adds a matrix times u, see `sim.springs.forces.matrices`
     blocks: Any = None  # (x, v, t, g, p, points): adds g D + g^2 K of each point, see `sim.springs.forces.matrices`
     # A force between points that no link joins has blocks of its own, so many numbers from index o of `coupled` on.
     # They are set, added to the points' blocks, and added times u to q.

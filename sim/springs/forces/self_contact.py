@@ -240,7 +240,7 @@ def pins_power(x, v, p):
 
 
 @kernel(noalias=True, allocates=False)
-def tangent(x, u, t, p, part, out):
+def tangent(x, u, t, p, part, longest, out):
     """The net's touching pairs: K = k [n n^T - depth/r (I - n n^T)] between the two, D = b n n^T."""
     if part in (TRANSVERSE, FRICTION):
         return

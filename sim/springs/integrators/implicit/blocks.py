@@ -56,7 +56,7 @@ coupled_size = each("coupled_size", "p", "count", inline=True)
 set_coupled = each("set_coupled", "x, v, g, p, coupled", "placed", allocates=False)
 add_coupled = each("add_coupled", "p, coupled, points", "placed", allocates=False)
 multiply_coupled = each("multiply_coupled", "p, coupled, u, q", "placed", allocates=False)
-add_other_blocks = each("blocks", "x, v, t, g, p, points", "none", allocates=False)
+add_blocks = each("blocks", "x, v, t, g, p, points", "none", allocates=False)
 
 
 @kernel(allocates=False)
@@ -66,10 +66,9 @@ def set_point_blocks(x, v, t, g, p, points):
     for j in range(points.shape[0]):
         points[j] = 0.0
     for j in range(n):
-        alone = mass_at(p, j) + g * p.drag
         for e in (0, 3, 5):
-            points[j + e * n] = alone
-    add_other_blocks(x, v, t, g, p, points)
+            points[j + e * n] = mass_at(p, j)
+    add_blocks(x, v, t, g, p, points)
 
 
 @kernel(noalias=True, allocates=False)

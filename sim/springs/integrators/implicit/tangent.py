@@ -10,51 +10,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import link_ratio
 from sim.springs.forces import each
-from sim.springs.forces.links import linearised
-from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
-from sim.springs.laws import TAUT, damps, stiffness
-
-
-@kernel(noalias=True, allocates=False)
-def add_links(x, u, p, part, longest, out):
-    """Links: K = T' n n^T + T/l (I - n n^T), of `linearised`; D = b I, or b n n^T where damping is axial.
-
-    longest: strain of part STIFFEST, see `longest_strain`.
-    """
-    n = p.rows * p.cols
-    for q in range(p.offsets.shape[0]):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest = p.links[q, 0]
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                c = a + di * p.cols + dj
-                rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
-                du, dv, dw = u[c] - u[a], u[n + c] - u[n + a], u[2 * n + c] - u[2 * n + a]
-                rr = rx * rx + ry * ry + rz * rz
-                ratio = link_ratio(p, q, i, j)
-                k, b = ratio * p.links[q, 1], ratio * p.links[q, 2]
-                length = math.sqrt(rr)
-                along, across = linearised(p.law, k, rest, length)
-                # Of a link that is pressed further only this counts: it buckles, which no step can mend.
-                across = max(across, -along) if rr > 0.0 else -along
-                if part == DAMPING:
-                    along = b if damps(p.law, rest, length) else 0.0
-                    across = 0.0 if p.axial else along
-                elif part == STIFFEST:
-                    along = max(along, stiffness(p.law, k, rest, (1.0 + longest) * rest))
-                elif part == TRANSVERSE:
-                    along = 0.0
-                s = (along - across) * (rx * du + ry * dv + rz * dw) / rr if rr > 0.0 else 0.0
-                fx, fy, fz = across * du + s * rx, across * dv + s * ry, across * dw + s * rz
-                out[a] -= fx
-                out[n + a] -= fy
-                out[2 * n + a] -= fz
-                out[c] += fx
-                out[n + c] += fy
-                out[2 * n + c] += fz
+from sim.springs.forces.links import tangent as add_link_tangent
+from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST
+from sim.springs.laws import TAUT
 
 
 @kernel(allocates=False)
@@ -83,7 +42,7 @@ def set_over_root_mass(y, p, out):
             out[e * n + j] = math.sqrt(p.inverse_masses[j]) * y[e * n + j]
 
 
-add_other_tangents = each("tangent", "x, u, t, p, part, out", "none", noalias=True, allocates=False)
+add_tangents = each("tangent", "x, u, t, p, part, longest, out", "none", noalias=True, allocates=False)
 
 
 @kernel(noalias=True)
@@ -97,10 +56,8 @@ def set_tangent(x, y, t, p, part, longest, out):
     u = np.empty_like(y)
     set_over_root_mass(y, p, u)
     for j in range(y.shape[0]):
-        out[j] = p.drag * u[j] if part == DAMPING else 0.0
-    if part != FRICTION:
-        add_links(x, u, p, part, longest, out)
-    add_other_tangents(x, u, t, p, part, out)
+        out[j] = 0.0
+    add_tangents(x, u, t, p, part, longest, out)
     set_over_root_mass(out, p, out)
 
 
@@ -162,7 +119,7 @@ def quotients(x, y, t, p):
     for j in range(w.shape[0]):
         w[j] = 0.0
     set_over_root_mass(y, p, u)
-    add_links(x, u, p, STIFFEST, longest, w)
+    add_link_tangent(x, u, t, p, STIFFEST, longest, w)
     links = dot(u, w)
     set_tangent(x, y, t, p, DAMPING, longest, w)
     rate = dot(y, w)

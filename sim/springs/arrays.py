@@ -24,6 +24,7 @@ class RopeArrays(NamedTuple):
     offsets: NDArray[np.int64]  # (families, 2)
     links: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
     law: Any  # numbers of the links' law, see sim/springs/laws
+    forces: Any  # `Declared`: numbers of the forces that have any, see sim/springs/forces
     damped: bool  # any link damping
     axial: bool
     has_floor: bool

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sim.interruption import stop_request
 from sim.jit import MAX_THREADS
 from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays, WideArrays
+from sim.springs.forces import OWN, check_forces, declared
 from sim.springs.laws import LAWS, check_law
 from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
 
@@ -109,6 +110,7 @@ class Net:
     thickness: float = 0.0  # [m]: particles nearer to each other than this push, 0: they pass
     mass_ratios: NDArray[np.float64] | None = None  # (rows, cols), each point's mass over `mass`; None: 1
     side_ratio: float = 1.0  # stiffness and damping of links along a side of the net, over their family's
+    forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces that have any, one of each
     threads: int = 1  # that a cloth's forces are worked out on
 
     def __deepcopy__(self, memo: object) -> "Net":
@@ -120,6 +122,7 @@ class Net:
         object.__setattr__(self, "x0", start_positions(self.x0))
         rows, cols = self.shape
         object.__setattr__(self, "law", check_law(self.law))
+        object.__setattr__(self, "forces", check_forces(self.forces))
         for family in self.families:
             check_family(family)
             if self.law != LAWS["spring"].numbers:
@@ -180,6 +183,7 @@ class Net:
             self.drag > 0.0
             or self.air is not None
             or any(f.damping > 0.0 for f in self.families)
+            or any(OWN[type(one)].damp for one in self.forces)
             or (touched and rough)
         )
 
@@ -254,6 +258,7 @@ class Net:
             offsets=np.array([f[:2] for f in self.families], dtype=np.int64).reshape(-1, 2),
             links=np.array([f[2:] for f in self.families], dtype=np.float64).reshape(-1, 3),
             law=self.law,
+            forces=declared(self.forces),
             damped=any(f.damping > 0 for f in self.families),
             axial=self.damping_model == "axial",
             has_floor=self.floor is not None,

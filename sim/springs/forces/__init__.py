@@ -4,12 +4,15 @@ A file declares `FORCE = Force(...)`, see `record.py`. `each` writes the kernels
 the program starts, a call a force: so a list costs no more than the calls written by hand.
 """
 
+import math
+from collections import namedtuple
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
-from sim.jit import generated, modules_of
+from sim.jit import chosen, generated, kernel, modules_of
 from sim.springs.arrays import GridArrays, RopeArrays, by_net
-from sim.springs.forces.record import Force
+from sim.springs.forces.record import Absent, Force
+from sim.validation import argument_error, check_number
 
 FORCES: tuple[Force, ...] = tuple(
     sorted(
@@ -19,14 +22,31 @@ FORCES: tuple[Force, ...] = tuple(
 )
 # Those that are not in the loops over the links.
 SEPARATE = tuple(force for force in FORCES if force.accelerate is not None)
-# What a kernel of `each` begins with, does with the call of a force that acts, and ends with.
+# Those with numbers of their own. A net has a record of these, so that its kernels hold only the forces that it has.
+OWN = {force.numbers: force for force in FORCES if force.numbers is not None}
+Declared = namedtuple("Declared", [force.name for force in OWN.values()], module=__name__)
+yes = kernel(lambda own, p: True, inline=True)
+no = kernel(lambda own, p: False, inline=True)
+
+
+class Result(NamedTuple):
+    """How a kernel of `each` puts together what the forces return."""
+
+    start: str  # its first line
+    call: str  # what is done with the `call` of a force that acts
+    end: str  # its last line
+    nothing: str  # what a force that a net does not have returns
+
+
 RESULTS = {
-    "none": ("", "{call}", "return None"),
-    "truth": ("", "return True", "return False"),
-    "sum": ("total = 0.0", "total += {call}", "return total"),
-    "count": ("total = 0", "total += {call}", "return total"),
-    "placed": ("o = 0", "{call}; o += {name}_coupled_size(p)", "return None"),
-    "two sums": ("first = second = 0.0", "one, other = {call}; first += one; second += other", "return first, second"),
+    "none": Result("pass", "{call}", "return None", "None"),
+    "truth": Result("pass", "return True", "return False", "False"),
+    "sum": Result("total = 0.0", "total += {call}", "return total", "0.0"),
+    "count": Result("total = 0", "total += {call}", "return total", "0"),
+    "placed": Result("o = 0", "{call}; o += {size}", "return None", "None"),
+    "two sums": Result(
+        "first = second = 0.0", "one, other = {call}; first += one; second += other", "return first, second", "0.0, 0.0"
+    ),
 }
 
 
@@ -45,22 +65,56 @@ def each(
     result: a key of RESULTS. turns: in the reverse order if the parameter `reverse` is True. lines: the kernel of lines
     under water. options: of `kernel`.
     """
-    start, middle, end = RESULTS[result]
+    sums = RESULTS[result]
     given = f"{parameters}, o" if result == "placed" else parameters
 
     def call(force: Force) -> str:
-        guard = f"if {force.name}_acts(p): " if force.acts else ""
-        return guard + middle.format(call=f"{force.name}_{facet}({given})", name=force.name)
+        own = f"p.forces.{force.name}, " if force.numbers else ""
+        guard = f"if {force.name}_acts({own}p): " if force.numbers or force.acts else ""
+        size = f"{force.name}_coupled_size({own}p)"
+        return guard + sums.call.format(call=f"{force.name}_{facet}({own}{given})", size=size)
+
+    def kernels(force: Force) -> dict[str, Any]:
+        """What `call` names; of a force that a net may not have, the choice between it and nothing."""
+        found = {"acts": force.acts, "coupled_size": force.coupled_size, facet: getattr(force, facet)}
+        if force.numbers:
+            found["acts"] = chosen({force.numbers: force.acts or yes, Absent: no})
+            if facet != "acts":
+                source = f"def no_{facet}(own, {given}):\n    return {sums.nothing}"
+                nothing = generated(source, {}, __name__, inline=True)
+                found[facet] = chosen({force.numbers: found[facet], Absent: nothing})
+            if force.coupled_size:
+                nothing = generated("def no_size(own, p):\n    return 0", {}, __name__, inline=True)
+                found["coupled_size"] = chosen({force.numbers: force.coupled_size, Absent: nothing})
+        return {f"{force.name}_{name}": one for name, one in found.items()}
 
     def of(net: type, name: str) -> Any:
-        having = [force for force in forces if getattr(force, facet) is not None and net in force.nets]
+        having = [one for one in forces if (facet == "acts" or getattr(one, facet) is not None) and net in one.nets]
         calls = list(map(call, having))
         if turns and len(calls) > 1:
             indented = [f"    {one}" for one in calls]
             calls = ["if reverse:", *reversed(indented), "else:", *indented]
         head = f"def {'_'.join((name, facet, *(force.name for force in having)))}({parameters}):"
-        used = (facet, "acts", "coupled_size")
-        names = {f"{force.name}_{one}": getattr(force, one) for force in having for one in used}
-        return generated("\n    ".join([head, start, *calls, end]), names, __name__, **options)
+        names = {name: one for force in having for name, one in kernels(force).items()}
+        return generated("\n    ".join([head, sums.start, *calls, sums.end]), names, __name__, **options)
 
     return by_net(rope=of(RopeArrays, "rope"), grid=of(GridArrays, "wide"), lines=lines)
+
+
+def check_forces(forces: Any) -> tuple[Any, ...]:
+    """The numbers of the forces that a net declares, as they are. Raises ValueError for others."""
+    known = f"numbers of the forces of sim.springs.forces: {', '.join(one.__name__ for one in OWN) or 'there are none'}"
+    if not isinstance(forces, tuple) or any(type(one) not in OWN for one in forces):
+        raise argument_error("forces", forces, known)
+    if len({type(one) for one in forces}) < len(forces):
+        raise argument_error("forces", forces, "one of each force")
+    for one in forces:
+        for name, value in one._asdict().items():
+            check_number(f"{OWN[type(one)].name}.{name}", value, -math.inf, math.inf, "")
+    return forces
+
+
+def declared(forces: tuple[Any, ...]) -> Any:
+    """The kernels' record of the forces that a net declares."""
+    given = {type(one): type(one)(*map(float, one)) for one in forces}
+    return Declared(*(given.get(numbers, Absent()) for numbers in OWN))

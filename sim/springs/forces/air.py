@@ -241,6 +241,6 @@ def multiply_coupled(p, coupled, u, q, o):
 
 
 FORCE = Force(
-    "air", 20, acts, accelerate, power=power, is_smooth=True, nets=WIDE_NETS,
+    "air", rank=20, nets=WIDE_NETS, acts=acts, accelerate=accelerate, power=power, is_smooth=True,
     coupled_size=coupled_size, set_coupled=set_coupled, add_coupled=add_coupled, multiply_coupled=multiply_coupled,
 )  # fmt: skip

@@ -261,5 +261,6 @@ def blocks(x, v, t, g, p, points):
 
 
 FORCE = Force(
-    "contact", 40, acts, accelerate, damp, energy, power, tangent=tangent, blocks=blocks, stores="contact"
+    "contact", rank=40, acts=acts, accelerate=accelerate, damp=damp, energy=energy, power=power, tangent=tangent,
+    blocks=blocks, stores="contact",
 )  # fmt: skip

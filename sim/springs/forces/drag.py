@@ -39,4 +39,4 @@ def blocks(x, v, t, g, p, points):
             points[j + e * n] += g * p.drag
 
 
-FORCE = Force("drag", 5, acts, power=power, tangent=tangent, blocks=blocks, is_smooth=True)
+FORCE = Force("drag", rank=5, acts=acts, power=power, tangent=tangent, blocks=blocks, is_smooth=True)

@@ -84,4 +84,4 @@ def blocks(x, v, t, g, p, points):
     add_block(points, j, n, along, across, dx / r, dy / r, dz / r)
 
 
-FORCE = Force("grab", 50, acts, accelerate, damp, power=power, tangent=tangent, blocks=blocks)
+FORCE = Force("grab", rank=50, acts=acts, accelerate=accelerate, damp=damp, power=power, tangent=tangent, blocks=blocks)

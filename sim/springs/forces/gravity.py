@@ -16,4 +16,4 @@ def energy(x, t, p):
     return total
 
 
-FORCE = Force("gravity", 0, energy=energy, stores="gravity", is_smooth=True)
+FORCE = Force("gravity", rank=0, energy=energy, stores="gravity", is_smooth=True)

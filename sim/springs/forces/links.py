@@ -224,5 +224,6 @@ def tangent(x, u, t, p, part, longest, out):
 
 
 FORCE = Force(
-    "links", 10, energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="elastic", is_smooth=True
-)
+    "links", rank=10, energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="elastic",
+    is_smooth=True,
+)  # fmt: skip

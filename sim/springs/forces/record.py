@@ -8,15 +8,21 @@ NETS = (RopeArrays, GridArrays, ClothArrays)  # ropes, and nets of several rows
 WIDE_NETS = (GridArrays, ClothArrays)
 
 
+class Absent(NamedTuple):
+    """Stands for the numbers of a force that a net does not have."""
+
+
 class Force(NamedTuple):
     """What acts on the points of a net. Facets are kernels; None: the force has none.
 
     x, v: positions [m] and velocities [m/s], flat (3 rows cols,), at the time t [s]; p: the net's record, see
-    `sim.springs.arrays`. Points whose p.inverse_masses is 0 are pinned.
+    `sim.springs.arrays`. Points whose p.inverse_masses is 0 are pinned. The facets of a force with numbers of its own
+    take these before all else; `Net.forces` has them.
     """
 
     name: str
-    rank: int  # forces act in the order of their ranks; those of one rank by name
+    rank: int = 100  # forces act in the order of their ranks; those of one rank by name
+    numbers: type | None = None  # NamedTuple of floats, with their defaults
     acts: Any = None  # (p) -> whether it acts at all; no other facet is called otherwise. None: always
     # (x, v, t, p, with_damping, f, a): adds to the accelerations a; f: scratch of `make_scratch`. None: it is in the
     # loops over the links.
@@ -33,6 +39,7 @@ class Force(NamedTuple):
     set_coupled: Any = None  # (x, v, g, p, coupled, o)
     add_coupled: Any = None  # (p, coupled, points, o)
     multiply_coupled: Any = None  # (p, coupled, u, q, o)
+    bound: Any = None  # a function of a force with numbers: () -> most (stiffness [N/m], damping [N s/m]) of a point
     stores: str = "gravity"  # field of `Energy` that its energy counts in
     is_smooth: bool = False  # its derivatives are continuous
     nets: tuple[type, ...] = NETS  # records of the nets that it acts on

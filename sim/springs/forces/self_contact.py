@@ -314,6 +314,7 @@ def multiply_coupled(p, coupled, u, q, o):
 
 
 FORCE = Force(
-    "self_contact", 30, acts, accelerate, damp, energy, power, pins_power, tangent, stores="contact", nets=WIDE_NETS,
+    "self_contact", rank=30, nets=WIDE_NETS, acts=acts, accelerate=accelerate, damp=damp, energy=energy, power=power,
+    pins_power=pins_power, tangent=tangent, stores="contact",
     coupled_size=coupled_size, set_coupled=set_coupled, add_coupled=add_coupled, multiply_coupled=multiply_coupled,
 )  # fmt: skip

@@ -4,11 +4,11 @@ energy - initial + dissipated - work is numerical error: the exact motion keeps 
 Potential of gravity and kinetic energy are those of the free particles; pins trade through `work`.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sim.jit import kernel
 from sim.springs.arrays import by_net, mass_at
-from sim.springs.forces import FORCES, each
+from sim.springs.forces import each
 from sim.springs.lines.energy import lines_energies, lines_kinetic_energy, lines_pins_damping_power, lines_power
 
 
@@ -86,17 +86,14 @@ def close_damping(x, v, p, s, kinetic, by_sphere, before, ledger):
     ledger[1] += put_in
 
 
-def stored_as(name: str) -> Any:
-    """A kernel (x, t, p) -> energy [J] of the forces that store it as this field of `Energy`."""
-    return each("energy", "x, t, p", "sum", [force for force in FORCES if force.stores == name], allocates=False)
-
-
-elastic_energy, gravity_energy, contact_energy = stored_as("elastic"), stored_as("gravity"), stored_as("contact")
+# (elastic, gravity, contact) [J].
+stored_energies = each("energy", "x, t, p", "stores", allocates=False)
 
 
 @kernel(allocates=False)
 def net_energies(x, v, t, p):
-    return kinetic_energy(v, p), elastic_energy(x, t, p), gravity_energy(x, t, p), contact_energy(x, t, p)
+    elastic, gravity, contact = stored_energies(x, t, p)
+    return kinetic_energy(v, p), elastic, gravity, contact
 
 
 # (kinetic, elastic, gravity, contact) [J].

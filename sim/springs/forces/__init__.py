@@ -25,8 +25,8 @@ SEPARATE = tuple(force for force in FORCES if force.accelerate is not None)
 # Those with numbers of their own. A net has a record of these, so that its kernels hold only the forces that it has.
 OWN = {force.numbers: force for force in FORCES if force.numbers is not None}
 Declared = namedtuple("Declared", [force.name for force in OWN.values()], module=__name__)
-yes = kernel(lambda own, p: True, inline=True)
-no = kernel(lambda own, p: False, inline=True)
+there = kernel(lambda own: True, inline=True)
+missing = kernel(lambda own: False, inline=True)
 
 
 class Result(NamedTuple):
@@ -42,6 +42,9 @@ RESULTS = {
     "none": Result("pass", "{call}", "return None", "None"),
     "truth": Result("pass", "return True", "return False", "False"),
     "sum": Result("total = 0.0", "total += {call}", "return total", "0.0"),
+    "stores": Result(
+        "elastic = gravity = contact = 0.0", "{stores} += {call}", "return elastic, gravity, contact", "0.0"
+    ),
     "count": Result("total = 0", "total += {call}", "return total", "0"),
     "placed": Result("o = 0", "{call}; o += {size}", "return None", "None"),
     "two sums": Result(
@@ -70,30 +73,31 @@ def each(
 
     def call(force: Force) -> str:
         own = f"p.forces.{force.name}, " if force.numbers else ""
-        guard = f"if {force.name}_acts({own}p): " if force.numbers or force.acts else ""
+        acts = f"{force.name}_is_there(p.forces.{force.name})" if force.numbers else force.acts
         size = f"{force.name}_coupled_size({own}p)"
-        return guard + sums.call.format(call=f"{force.name}_{facet}({own}{given})", size=size)
+        done = sums.call.format(call=f"{force.name}_{facet}({own}{given})", size=size, stores=force.stores)
+        return done if acts == "True" else f"if {acts}: {done}"
 
     def kernels(force: Force) -> dict[str, Any]:
         """What `call` names; of a force that a net may not have, the choice between it and nothing."""
-        found = {"acts": force.acts, "coupled_size": force.coupled_size, facet: getattr(force, facet)}
+        found = {facet: getattr(force, facet, None), "coupled_size": force.coupled_size}
         if force.numbers:
-            found["acts"] = chosen({force.numbers: force.acts or yes, Absent: no})
-            if facet != "acts":
-                source = f"def no_{facet}(own, {given}):\n    return {sums.nothing}"
-                nothing = generated(source, {}, __name__, inline=True)
-                found[facet] = chosen({force.numbers: found[facet], Absent: nothing})
-            if force.coupled_size:
-                nothing = generated("def no_size(own, p):\n    return 0", {}, __name__, inline=True)
-                found["coupled_size"] = chosen({force.numbers: force.coupled_size, Absent: nothing})
+            for name, (parameters, nothing) in {"coupled_size": ("p", "0"), facet: (given, sums.nothing)}.items():
+                source = f"def no_{name}(own, {parameters}):\n    return {nothing}"
+                absent = generated(source, {}, __name__, inline=True)
+                found[name] = chosen({force.numbers: found[name] or absent, Absent: absent})
+            found["is_there"] = chosen({force.numbers: there, Absent: missing})
         return {f"{force.name}_{name}": one for name, one in found.items()}
 
     def of(net: type, name: str) -> Any:
         having = [one for one in forces if (facet == "acts" or getattr(one, facet) is not None) and net in one.nets]
+        if len(having) == 1 and having[0].acts == "True" and not having[0].numbers:
+            return getattr(having[0], facet)
         calls = list(map(call, having))
-        if turns and len(calls) > 1:
-            indented = [f"    {one}" for one in calls]
-            calls = ["if reverse:", *reversed(indented), "else:", *indented]
+        if turns:
+            order = [f"({len(calls) - 1 - at} if reverse else {at})" for at in range(len(calls))]
+            calls = [f"    if turn == {at}:\n            {one}" for at, one in zip(order, calls, strict=True)]
+            calls.insert(0, f"for turn in range({len(having)}):")
         head = f"def {'_'.join((name, facet, *(force.name for force in having)))}({parameters}):"
         names = {name: one for force in having for name, one in kernels(force).items()}
         return generated("\n    ".join([head, sums.start, *calls, sums.end]), names, __name__, **options)

@@ -74,11 +74,13 @@ def add_quarters(f, of, cols, n, w, a, o):
 
 
 @kernel(noalias=True, allocates=False)
-def add_wind(x, v, p, f, a):
-    """Add the accelerations by the air; f: scratch; its last (wind_scratch_size,) are free, but 0 where no cell is.
+def accelerate(x, v, t, p, with_damping, f, a):
+    """All of it is damping. f: scratch; its last (wind_scratch_size,) are free, but 0 where no cell is.
 
     All cells are worked out in one loop, as the rows of most cloths are short.
     """
+    if not with_damping:
+        return
     n, m, cols = np.uint64(p.rows * p.cols), np.uint64(cell_room(p)), np.uint64(p.cols)
     first = np.uint64(f.shape[0] - wind_scratch_size(p) + p.cols + 1)
     count = np.uint64((p.rows - 1) * p.cols - 1)
@@ -88,17 +90,6 @@ def add_wind(x, v, p, f, a):
         for i in range(1, p.rows - 1):
             f[of + np.uint64(i * p.cols - 1)] = 0.0
         add_quarters(f, of, cols, n, p.inverse_masses, a, np.uint64(e) * n)
-
-
-@kernel(inline=True)
-def acts(p):
-    return p.has_air
-
-
-@kernel(inline=True)
-def accelerate(x, v, t, p, with_damping, f, a):
-    if with_damping:
-        add_wind(x, v, p, f, a)
 
 
 @kernel
@@ -112,7 +103,7 @@ def power(x, v, t, p, with_damping):
         return gained, work
     n = p.rows * p.cols
     a = np.zeros(v.shape[0])
-    add_wind(x, v, p, np.zeros(wind_scratch_size(p)), a)
+    accelerate(x, v, t, p, True, np.zeros(wind_scratch_size(p)), a)
     for j in range(n):
         work += p.mass[j] * (a[j] * p.wind_x + a[n + j] * p.wind_y + a[2 * n + j] * p.wind_z)
         gained += p.mass[j] * (a[j] * v[j] + a[n + j] * v[n + j] + a[2 * n + j] * v[2 * n + j])
@@ -130,11 +121,11 @@ def blow(x, v, s, p, f, a, middle, with_account, ledger):
         return
     for j in range(v.shape[0]):
         a[j] = 0.0
-    add_wind(x, v, p, f, a)
+    accelerate(x, v, 0.0, p, True, f, a)
     set_sum(middle, v, 0.5 * s, a)
     for j in range(v.shape[0]):
         a[j] = 0.0
-    add_wind(x, middle, p, f, a)
+    accelerate(x, middle, 0.0, p, True, f, a)
     if not with_account:
         add_scaled(v, s, a)
         return
@@ -241,6 +232,6 @@ def multiply_coupled(p, coupled, u, q, o):
 
 
 FORCE = Force(
-    "air", rank=20, nets=WIDE_NETS, acts=acts, accelerate=accelerate, power=power, is_smooth=True,
+    "air", rank=20, nets=WIDE_NETS, acts="p.has_air", accelerate=accelerate, power=power, is_smooth=True,
     coupled_size=coupled_size, set_coupled=set_coupled, add_coupled=add_coupled, multiply_coupled=multiply_coupled,
 )  # fmt: skip

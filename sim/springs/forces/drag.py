@@ -5,11 +5,6 @@ from sim.springs.forces.matrices import DAMPING
 from sim.springs.forces.record import Force
 
 
-@kernel(inline=True)
-def acts(p):
-    return p.drag > 0.0
-
-
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
     """c v^2 over the free particles [W]."""
@@ -39,4 +34,4 @@ def blocks(x, v, t, g, p, points):
             points[j + e * n] += g * p.drag
 
 
-FORCE = Force("drag", rank=5, acts=acts, power=power, tangent=tangent, blocks=blocks, is_smooth=True)
+FORCE = Force("drag", rank=5, acts="p.drag > 0.0", power=power, tangent=tangent, blocks=blocks, is_smooth=True)

@@ -9,15 +9,10 @@ from sim.springs.forces.record import Force
 
 
 @kernel(inline=True)
-def acts(p):
-    return p.grabbed >= 0
-
-
-@kernel(allocates=False)
-def secant(dx, dy, dz, p):
-    """Secant stiffness of the pull [N/m]: grab_k within reach, grab_max / distance beyond."""
+def secant(dx, dy, dz, stiffness, most):
+    """Secant stiffness of the pull [N/m]: its own within reach, most / distance beyond."""
     distance = math.sqrt(dx * dx + dy * dy + dz * dz)
-    return p.grab_max / distance if p.grab_k * distance > p.grab_max else p.grab_k
+    return most / distance if stiffness * distance > most else stiffness
 
 
 @kernel(allocates=False)
@@ -26,7 +21,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
     n, g = p.rows * p.cols, p.grabbed
     b = p.grab_b if with_damping else 0.0
     dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
-    s = secant(dx, dy, dz, p)
+    s = secant(dx, dy, dz, p.grab_k, p.grab_max)
     w = p.inverse_masses[g]
     a[g] += w * (s * dx - b * v[g])
     a[n + g] += w * (s * dy - b * v[n + g])
@@ -48,7 +43,7 @@ def power(x, v, t, p, with_damping):
     """All that the spring gives is put in: the hand that holds it stores nothing."""
     n, g = p.rows * p.cols, p.grabbed
     dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
-    work = secant(dx, dy, dz, p) * (dx * v[g] + dy * v[n + g] + dz * v[2 * n + g])
+    work = secant(dx, dy, dz, p.grab_k, p.grab_max) * (dx * v[g] + dy * v[n + g] + dz * v[2 * n + g])
     return p.grab_b * (v[g] ** 2 + v[n + g] ** 2 + v[2 * n + g] ** 2) if with_damping else 0.0, work
 
 
@@ -84,4 +79,7 @@ def blocks(x, v, t, g, p, points):
     add_block(points, j, n, along, across, dx / r, dy / r, dz / r)
 
 
-FORCE = Force("grab", rank=50, acts=acts, accelerate=accelerate, damp=damp, power=power, tangent=tangent, blocks=blocks)
+FORCE = Force(
+    "grab", rank=50, acts="p.grabbed >= 0", accelerate=accelerate, damp=damp, power=power, tangent=tangent,
+    blocks=blocks,
+)  # fmt: skip

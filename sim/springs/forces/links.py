@@ -109,32 +109,6 @@ def row_damping_power(x, v, a, b, count, n, law, rest, axial):
 
 
 @kernel(allocates=False)
-def link_damping_power(x, v, p):
-    """Power lost to the links' damping [W]."""
-    total = 0.0
-    n = np.uint64(p.rows * p.cols)
-    for q in range(p.offsets.shape[0]):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest, c = p.links[q, 0], p.links[q, 2]
-        first = max(0, -dj)
-        count = max(0, p.cols - abs(dj))
-        if c == 0.0 or count == 0:
-            continue
-        for i in range(p.rows - di):
-            a = np.uint64(i * p.cols + first)
-            b = np.uint64((i + di) * p.cols + first + dj)
-            ratio = link_ratio(p, q, i, 1)
-            total += ratio * c * row_damping_power(x, v, a, b, np.uint64(count), n, p.law, rest, p.axial)
-            more = link_ratio(p, q, i, 0) - ratio  # of the links in the first and the last column
-            if dj == 0 and more != 0.0:
-                for j in (0, count - 1):
-                    o = np.uint64(j)
-                    lost = row_damping_power(x, v, a + o, b + o, np.uint64(1), n, p.law, rest, p.axial)
-                    total += more * c * lost
-    return total
-
-
-@kernel(allocates=False)
 def moving_pins_power(x, v, p, elastic, damping):
     """Power of moving pins [W] through the links' elastic forces, their damping, or both: 1.0 counts it, 0.0 not."""
     work = 0.0
@@ -171,12 +145,32 @@ def moving_pins_power(x, v, p, elastic, damping):
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
     """The damping takes, and moving pins put in."""
+    total, work = 0.0, moving_pins_power(x, v, p, 1.0, 1.0 if with_damping else 0.0)
     if not with_damping:
-        return 0.0, moving_pins_power(x, v, p, 1.0, 0.0)
-    return link_damping_power(x, v, p), moving_pins_power(x, v, p, 1.0, 1.0)
+        return total, work
+    n = np.uint64(p.rows * p.cols)
+    for q in range(p.offsets.shape[0]):
+        di, dj = p.offsets[q, 0], p.offsets[q, 1]
+        rest, c = p.links[q, 0], p.links[q, 2]
+        first = max(0, -dj)
+        count = max(0, p.cols - abs(dj))
+        if c == 0.0 or count == 0:
+            continue
+        for i in range(p.rows - di):
+            a = np.uint64(i * p.cols + first)
+            b = np.uint64((i + di) * p.cols + first + dj)
+            ratio = link_ratio(p, q, i, 1)
+            total += ratio * c * row_damping_power(x, v, a, b, np.uint64(count), n, p.law, rest, p.axial)
+            more = link_ratio(p, q, i, 0) - ratio  # of the links in the first and the last column
+            if dj == 0 and more != 0.0:
+                for j in (0, count - 1):
+                    o = np.uint64(j)
+                    lost = row_damping_power(x, v, a + o, b + o, np.uint64(1), n, p.law, rest, p.axial)
+                    total += more * c * lost
+    return total, work
 
 
-@kernel(allocates=False)
+@kernel(inline=True)
 def pins_power(x, v, p):
     return moving_pins_power(x, v, p, 0.0, 1.0)
 

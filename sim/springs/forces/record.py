@@ -23,7 +23,7 @@ class Force(NamedTuple):
     name: str
     rank: int = 100  # forces act in the order of their ranks; those of one rank by name
     numbers: type | None = None  # NamedTuple of floats, with their defaults
-    acts: Any = None  # (p) -> whether it acts at all; no other facet is called otherwise. None: always
+    acts: str = "True"  # condition on p: no facet is called otherwise. Of a force with numbers: that a net has them
     # (x, v, t, p, with_damping, f, a): adds to the accelerations a; f: scratch of `make_scratch`. None: it is in the
     # loops over the links.
     accelerate: Any = None

@@ -24,11 +24,6 @@ NEIGHBOURS = 2  # rows and columns apart, within which a pair is held by links a
 
 
 @kernel(inline=True)
-def acts(p):
-    return p.thickness > 0.0
-
-
-@kernel(inline=True)
 def cell(x, inverse):
     return np.int64(math.floor(x * inverse))
 
@@ -314,7 +309,7 @@ def multiply_coupled(p, coupled, u, q, o):
 
 
 FORCE = Force(
-    "self_contact", rank=30, nets=WIDE_NETS, acts=acts, accelerate=accelerate, damp=damp, energy=energy, power=power,
-    pins_power=pins_power, tangent=tangent, stores="contact",
+    "self_contact", rank=30, nets=WIDE_NETS, acts="p.thickness > 0.0", accelerate=accelerate, damp=damp,
+    energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="contact",
     coupled_size=coupled_size, set_coupled=set_coupled, add_coupled=add_coupled, multiply_coupled=multiply_coupled,
 )  # fmt: skip

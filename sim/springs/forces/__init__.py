@@ -1,7 +1,17 @@
 """The forces on a net: one file each, found by being here, with all that the program knows of the force.
 
-A file declares `FORCE = Force(...)`, see `record.py`. `each` writes the kernels that go through the list of forces when
-the program starts, a call a force: so a list costs no more than the calls written by hand.
+`each` makes the kernels that go through the list of forces: it writes their source when the program starts, one call a
+force, so that a list costs no more than the calls written by hand.
+
+To add a force, write a module in this folder with
+
+1. a NamedTuple class of the force's numbers, all floats, with defaults. `Net.forces` holds one, and kernels take it as
+   their first argument: a net without the force has kernels without it.
+2. kernels for its facets, as `Force` lists them; none for a facet that it does not have.
+3. `FORCE = Force(...)`.
+
+The forces without numbers of their own read those of the net's record. Links, gravity and drag accelerate in the loops
+over links of `sim/springs/acceleration.py`, which are written by hand for ropes, cloths and other nets.
 """
 
 import math
@@ -30,7 +40,7 @@ missing = kernel(lambda own: False, inline=True)
 
 
 class Result(NamedTuple):
-    """How a kernel of `each` puts together what the forces return."""
+    """Sums of the results of forces in a kernel of `each`."""
 
     start: str  # its first line
     call: str  # what is done with the `call` of a force that acts
@@ -79,13 +89,14 @@ def each(
         return done if acts == "True" else f"if {acts}: {done}"
 
     def kernels(force: Force) -> dict[str, Any]:
-        """What `call` names; of a force that a net may not have, the choice between it and nothing."""
-        found = {facet: getattr(force, facet, None), "coupled_size": force.coupled_size}
+        """Kernels by their names in `call`; of a force with numbers, the choice between it and nothing."""
+        found = {name: getattr(force, name) for name in {facet, "coupled_size"} - {"acts"}}
         if force.numbers:
-            for name, (parameters, nothing) in {"coupled_size": ("p", "0"), facet: (given, sums.nothing)}.items():
-                source = f"def no_{name}(own, {parameters}):\n    return {nothing}"
+            for name, one in found.items():
+                all_given, nothing = (given, sums.nothing) if name == facet else ("p", "0")
+                source = f"def no_{name}(own, {all_given}):\n    return {nothing}"
                 absent = generated(source, {}, __name__, inline=True)
-                found[name] = chosen({force.numbers: found[name] or absent, Absent: absent})
+                found[name] = chosen({force.numbers: one or absent, Absent: absent})
             found["is_there"] = chosen({force.numbers: there, Absent: missing})
         return {f"{force.name}_{name}": one for name, one in found.items()}
 

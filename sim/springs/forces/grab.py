@@ -40,7 +40,7 @@ def damp(x, v, t, s, p, reverse):
 
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
-    """All that the spring gives is put in: the hand that holds it stores nothing."""
+    """The work of the spring is put in, as its energy is not counted."""
     n, g = p.rows * p.cols, p.grabbed
     dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
     work = secant(dx, dy, dz, p.grab_k, p.grab_max) * (dx * v[g] + dy * v[n + g] + dz * v[2 * n + g])

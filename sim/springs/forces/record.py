@@ -1,5 +1,6 @@
-"""`Force`: what a file of `sim.springs.forces` declares."""
+"""`Force`: the declaration of a force, one in a file of `sim.springs.forces`."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays
@@ -8,12 +9,17 @@ NETS = (RopeArrays, GridArrays, ClothArrays)  # ropes, and nets of several rows
 WIDE_NETS = (GridArrays, ClothArrays)
 
 
+def no_bound(numbers: Any) -> tuple[float, float]:
+    """Of a constant force."""
+    return 0.0, 0.0
+
+
 class Absent(NamedTuple):
-    """Stands for the numbers of a force that a net does not have."""
+    """Placeholder for the numbers of a force that a net does not have."""
 
 
 class Force(NamedTuple):
-    """What acts on the points of a net. Facets are kernels; None: the force has none.
+    """A force on the points of a net. Facets are kernels; None: the force has none.
 
     x, v: positions [m] and velocities [m/s], flat (3 rows cols,), at the time t [s]; p: the net's record, see
     `sim.springs.arrays`. Points whose p.inverse_masses is 0 are pinned. The facets of a force with numbers of its own
@@ -39,7 +45,8 @@ class Force(NamedTuple):
     set_coupled: Any = None  # (x, v, g, p, coupled, o)
     add_coupled: Any = None  # (p, coupled, points, o)
     multiply_coupled: Any = None  # (p, coupled, u, q, o)
-    bound: Any = None  # a function of a force with numbers: () -> most (stiffness [N/m], damping [N s/m]) of a point
+    # Of a force with numbers, a function of these: most stiffness [N/m] and damping [N s/m] at any point.
+    bound: Callable[[Any], tuple[float, float]] = no_bound
     stores: str = "gravity"  # field of `Energy` that its energy counts in
     is_smooth: bool = False  # its derivatives are continuous
     nets: tuple[type, ...] = NETS  # records of the nets that it acts on

@@ -111,43 +111,54 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 
 @kernel(allocates=False)
-def damp(x, v, t, s, p, reverse):
+def damp_on(x, v, t, s, p, on_sphere, reverse):
     """Contact damping and friction of every touching point, exact or capped at standstill.
 
     Friction takes the normal force of the velocity before the normal damping, in reverse of the one after it: the two
     together are then symmetric, and of second order.
     """
     work = 0.0
+    if not touches(x, t, p, on_sphere):
+        return work
     n = p.rows * p.cols
-    for turn in range(2):
-        on_sphere = (turn == 1) != reverse
-        if not touches(x, t, p, on_sphere):
+    su, sv, sw = surface_velocity(p, on_sphere)
+    moves = su != 0.0 or sv != 0.0 or sw != 0.0
+    for j in range(n):
+        w = p.inverse_masses[j]
+        depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+        if depth <= 0.0 or w == 0.0:
             continue
-        su, sv, sw = surface_velocity(p, on_sphere)
-        moves = su != 0.0 or sv != 0.0 or sw != 0.0
-        for j in range(n):
-            w = p.inverse_masses[j]
-            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-            if depth <= 0.0 or w == 0.0:
-                continue
-            ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-            b = p.contact_b
-            if p.lab_contact:
-                keep = math.exp(-(b * depth if on_sphere else b) * w * s)
-                ru, rv, rw = ru * keep, rv * keep, rw * keep
-            else:
-                vn = ru * nx + rv * ny + rw * nz
-                tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
-                # The whole normal force, k depth - b v_n, never pulls: separating, damping takes at most k depth.
-                after = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s)
-                normal = max(0.0, p.contact_k * depth - b * (after if reverse else vn))
-                speed = math.sqrt(tx * tx + ty * ty + tz * tz)
-                slow = p.friction * normal * w * s
-                keep = 1.0 - slow / speed if slow < speed else 0.0
-                ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
-            if moves:
-                work += ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw) / w
-            v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
+        ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
+        b = p.contact_b
+        if p.lab_contact:
+            keep = math.exp(-(b * depth if on_sphere else b) * w * s)
+            ru, rv, rw = ru * keep, rv * keep, rw * keep
+        else:
+            vn = ru * nx + rv * ny + rw * nz
+            tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
+            # The whole normal force, k depth - b v_n, never pulls: separating, damping takes at most k depth.
+            after = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s)
+            normal = max(0.0, p.contact_k * depth - b * (after if reverse else vn))
+            speed = math.sqrt(tx * tx + ty * ty + tz * tz)
+            slow = p.friction * normal * w * s
+            keep = 1.0 - slow / speed if slow < speed else 0.0
+            ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
+        if moves:
+            work += ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw) / w
+        v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
+    return work
+
+
+@kernel(inline=True)
+def damp(x, v, t, s, p, reverse):
+    """The floor's, then the sphere's, or in reverse; each with its surface as a constant, which LLVM makes use of."""
+    work = 0.0
+    for turn in range(2):
+        if (turn == 1) != reverse:
+            if p.has_sphere:
+                work += damp_on(x, v, t, s, p, True, reverse)
+        elif p.has_floor:
+            work += damp_on(x, v, t, s, p, False, reverse)
     return work
 
 

@@ -14,7 +14,7 @@ STATES = {
 }  # fmt: skip
 
 
-class Mistake(NamedTuple):
+class ClassMistake(NamedTuple):
     """A mistake, and the folders that have it."""
 
     place: str
@@ -22,7 +22,7 @@ class Mistake(NamedTuple):
     folders: tuple[str, ...]
 
 
-def mistakes(students: Iterable[tuple[str, Sequence[TaskResult]]]) -> list[Mistake]:
+def mistakes(students: Iterable[tuple[str, Sequence[TaskResult]]]) -> list[ClassMistake]:
     """The mistakes of all students, the most frequent first: of a function, a file that does not run, an answer.
 
     students: name of the folder and results of each.
@@ -31,7 +31,7 @@ def mistakes(students: Iterable[tuple[str, Sequence[TaskResult]]]) -> list[Mista
     for name, results in students:
         for key in dict.fromkeys(key for result in results for key in mistakes_of(result)):
             folders.setdefault(key, []).append(name)
-    found = [Mistake(*key, tuple(own)) for key, own in folders.items()]
+    found = [ClassMistake(*key, tuple(own)) for key, own in folders.items()]
     return sorted(found, key=lambda mistake: -len(mistake.folders))
 
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.lab.diagnosis.explanation import Equation, Piece
-from app.lab.diagnosis.tableau import FIRST_ACCELERATION, POWERS, Tableau
+from app.lab.diagnosis.tableau import FIRST_ACCELERATION, POWERS, StepTableau
 
 LARGEST_DENOMINATOR = 48
 MOST_CHANGES = 3  # of an expression, beyond which it is written in x, v and the accelerations
@@ -28,7 +28,7 @@ Monomial = tuple[str, int]  # a symbol, and the power of h before it
 Expression = dict[Monomial, float]  # a sum of terms with coefficients
 
 
-class Line(NamedTuple):
+class TableauRow(NamedTuple):
     """One row of a tableau, as vectors over x, v and accelerations, and powers of h."""
 
     name: str
@@ -36,7 +36,7 @@ class Line(NamedTuple):
     is_position: bool
 
 
-def lines_of(tableau: Tableau) -> list[Line]:
+def lines_of(tableau: StepTableau) -> list[TableauRow]:
     """The rows of a tableau: position and velocity of each stage, and of the result."""
     found = []
     for stage in range(tableau.stages + 1):
@@ -44,11 +44,11 @@ def lines_of(tableau: Tableau) -> list[Line]:
         for letter, part in (("x", tableau.positions), ("v", tableau.velocities)):
             if letter == "x" or is_last or tableau.with_velocity:
                 name = f"{NEW} {letter}" if is_last else f"{letter}{stage + 1}"
-                found.append(Line(name, part[stage], letter == "x"))
+                found.append(TableauRow(name, part[stage], letter == "x"))
     return found
 
 
-def symbols_of(tableau: Tableau, line: Line) -> dict[str, np.ndarray]:
+def symbols_of(tableau: StepTableau, line: TableauRow) -> dict[str, np.ndarray]:
     """The symbols that the equation of a row may have, by name."""
     size = tableau.stages + FIRST_ACCELERATION
     unit = np.zeros((size, size, len(POWERS)))
@@ -83,7 +83,7 @@ def times_power(vector: np.ndarray, power: int) -> np.ndarray:
     return shifted
 
 
-def terms_for(line: Line, symbols: Mapping[str, np.ndarray]) -> dict[Monomial, np.ndarray]:
+def terms_for(line: TableauRow, symbols: Mapping[str, np.ndarray]) -> dict[Monomial, np.ndarray]:
     """The terms that the equation of a row may have."""
     found = {}
     for name, vector in symbols.items():
@@ -111,7 +111,7 @@ def fitted(vector: np.ndarray, columns: list[np.ndarray], tolerance: float) -> n
     return found if np.abs(matrix @ found - vector.ravel()).max() <= tolerance else None
 
 
-def plain_expression(tableau: Tableau, line: Line) -> Expression:
+def plain_expression(tableau: StepTableau, line: TableauRow) -> Expression:
     """A row in x, v and the accelerations."""
     names = ["x", "v", *(f"a{stage + 1}" for stage in range(tableau.stages))]
     return {
@@ -122,7 +122,7 @@ def plain_expression(tableau: Tableau, line: Line) -> Expression:
     }
 
 
-def short_expression(tableau: Tableau, line: Line) -> Expression:
+def short_expression(tableau: StepTableau, line: TableauRow) -> Expression:
     """A row with few terms: of the velocities of the stages rather than of accelerations, from x or v if it can be."""
     symbols = symbols_of(tableau, line)
     terms = terms_for(line, symbols)
@@ -144,7 +144,7 @@ def short_expression(tableau: Tableau, line: Line) -> Expression:
     return best
 
 
-def nearest_expression(tableau: Tableau, line: Line, right: Expression) -> Expression:
+def nearest_expression(tableau: StepTableau, line: TableauRow, right: Expression) -> Expression:
     """A row with as few changes of the right expression as it can be written with."""
     terms = terms_for(line, symbols_of(tableau, line))
     start = {term: c for term, c in right.items() if term in terms}
@@ -205,19 +205,19 @@ def differing(found: Expression, right: Expression, tolerance: float) -> set[Mon
     return {term for term in terms if abs(found.get(term, 0.0) - right.get(term, 0.0)) > tolerance}
 
 
-class Method(NamedTuple):
+class RightMethod(NamedTuple):
     """A right method: its tableau and its equations."""
 
-    tableau: Tableau
+    tableau: StepTableau
     expressions: tuple[Expression, ...]  # of `lines_of`
 
 
-def method_of(tableau: Tableau) -> Method:
+def method_of(tableau: StepTableau) -> RightMethod:
     """A tableau as a right method."""
-    return Method(tableau, tuple(short_expression(tableau, line) for line in lines_of(tableau)))
+    return RightMethod(tableau, tuple(short_expression(tableau, line) for line in lines_of(tableau)))
 
 
-class Compared(NamedTuple):
+class ComparedRow(NamedTuple):
     """A row of a tableau beside that of the method that was asked for."""
 
     name: str
@@ -230,7 +230,7 @@ class Compared(NamedTuple):
         return bool(self.equation.right)
 
 
-def compared(tableau: Tableau, method: Method) -> list[Compared]:
+def compared(tableau: StepTableau, method: RightMethod) -> list[ComparedRow]:
     """The rows of a tableau beside those of a method with as many stages.
 
     Those of a stage at x and v in both are left out.
@@ -243,16 +243,16 @@ def compared(tableau: Tableau, method: Method) -> list[Compared]:
         if wrong or not is_start(line, right):
             pieces = tuple(written(found, tolerance, wrong, right))
             equation = Equation(line.name, pieces, text_of(right, tolerance) if wrong else "")
-            rows.append(Compared(line.name, found, right, equation))
+            rows.append(ComparedRow(line.name, found, right, equation))
     return rows
 
 
-def is_start(line: Line, expression: Expression) -> bool:
+def is_start(line: TableauRow, expression: Expression) -> bool:
     """True if a stage lies at the start of the step."""
     return not line.name.startswith(NEW) and set(expression) == {(line.name[0], 0)}
 
 
-def equations_of(tableau: Tableau) -> list[Equation]:
+def equations_of(tableau: StepTableau) -> list[Equation]:
     """The equations of a tableau by itself."""
     found = []
     for line in lines_of(tableau):

@@ -4,9 +4,9 @@ import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from app.lab.diagnosis.equations import NEW, Compared, Method, compared, equations_of, method_of
+from app.lab.diagnosis.equations import NEW, ComparedRow, RightMethod, compared, equations_of, method_of
 from app.lab.diagnosis.explanation import Explanation
-from app.lab.diagnosis.tableau import NoTableau, Tableau, merged, order_of, pruned, read_tableau
+from app.lab.diagnosis.tableau import NoTableau, StepTableau, merged, order_of, pruned, read_tableau
 
 PARTS = {f"{NEW} x": "The new position is", f"{NEW} v": "The new velocity is"}
 ALTERNATES = (
@@ -36,7 +36,7 @@ def explain_step(
     except (ValueError, IndexError, TypeError):  # results of another shape
         return None
     references = [right_method(method, with_velocity=with_velocity) for method in methods]
-    best: tuple[list[Compared], Method] | None = None
+    best: tuple[list[ComparedRow], RightMethod] | None = None
     for reference in references:
         for own in (found, pruned(found), merged(pruned(found))):
             if own.stages == reference.tableau.stages:
@@ -56,16 +56,16 @@ def explain_step(
 
 
 @functools.cache
-def right_method(step: Callable[..., Any], *, with_velocity: bool) -> Method:
+def right_method(step: Callable[..., Any], *, with_velocity: bool) -> RightMethod:
     """A right step as a method."""
     return method_of(read_tableau(step, with_velocity=with_velocity))
 
 
-def count_wrong(rows: Sequence[Compared]) -> int:
+def count_wrong(rows: Sequence[ComparedRow]) -> int:
     return sum(row.is_wrong for row in rows)
 
 
-def explain_stages(found: Tableau, reference: Tableau) -> Explanation:
+def explain_stages(found: StepTableau, reference: StepTableau) -> Explanation:
     """The explanation of a step with more or fewer states than the method has."""
     few, many = ("few", "more") if found.stages < reference.stages else ("many", "fewer")
     number = "1 state" if found.stages == 1 else f"{found.stages} states"
@@ -74,7 +74,7 @@ def explain_stages(found: Tableau, reference: Tableau) -> Explanation:
     return Explanation(f"too {few} stages", f"{text} {order}".strip(), tuple(equations_of(found)))
 
 
-def order_sentence(found: Tableau, reference: Tableau) -> str:
+def order_sentence(found: StepTableau, reference: StepTableau) -> str:
     """The order of a method where it is lower than it must be."""
     has, needs = order_of(found), order_of(reference)
     if has >= needs:
@@ -86,7 +86,7 @@ def order_sentence(found: Tableau, reference: Tableau) -> str:
     )
 
 
-def mistake_of(row: Compared) -> tuple[str, str]:
+def mistake_of(row: ComparedRow) -> tuple[str, str]:
     """The mistake of a wrong row, and the sentence about it."""
     found, must = said_of(row), f"it must be {row.equation.right}."
     if is_reversed(row):
@@ -100,7 +100,7 @@ def mistake_of(row: Compared) -> tuple[str, str]:
     return found[0].lower() + found[1:], must[0].upper() + must[1:]
 
 
-def said_of(row: Compared) -> str:
+def said_of(row: ComparedRow) -> str:
     """The student's row in words."""
     if row.name in PARTS:
         return f"{PARTS[row.name]} {row.equation.text}"
@@ -108,12 +108,12 @@ def said_of(row: Compared) -> str:
     return f"Acceleration a{row.name[1:]} is computed {where} {row.equation.text}"
 
 
-def is_reversed(row: Compared) -> bool:
+def is_reversed(row: ComparedRow) -> bool:
     """True if each term has the other sign."""
     return set(row.found) == set(row.right) and all(abs(c + row.right[term]) < 1e-9 for term, c in row.found.items())
 
 
-def is_chained(row: Compared) -> bool:
+def is_chained(row: ComparedRow) -> bool:
     """True if a row starts from a stage in place of the start of the step."""
     own = row.name.removeprefix(f"{NEW} ")[0]
     return (
@@ -123,7 +123,7 @@ def is_chained(row: Compared) -> bool:
     )
 
 
-def weights_of(row: Compared) -> float | None:
+def weights_of(row: ComparedRow) -> float | None:
     """The sum of the weights of a result with the right terms; None where it is 1, or a term is another one."""
     if row.name not in PARTS or set(row.found) != set(row.right) or len(row.right) < 3:
         return None
@@ -131,7 +131,7 @@ def weights_of(row: Compared) -> float | None:
     return None if abs(total - 1.0) < 1e-9 else total
 
 
-def step_change(row: Compared) -> str:
+def step_change(row: ComparedRow) -> str:
     """ "used twice" or "forgotten" where a term has another power of h than it must have, or ""."""
     for (symbol, power), c in row.right.items():
         if power > 0 and (symbol, power) not in row.found:

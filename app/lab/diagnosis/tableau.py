@@ -26,7 +26,7 @@ FIRST_ACCELERATION = 2  # column of a tableau
 Step = Callable[..., Any]
 
 
-class Tableau(NamedTuple):
+class StepTableau(NamedTuple):
     """The coefficients of a step.
 
     positions, velocities: (stages + 1, columns, powers) of the states at which the acceleration is computed, and last
@@ -81,7 +81,7 @@ class Oracle:
         return self.basis[min(len(self.states), MOST_STAGES) + FIRST_ACCELERATION - 1].reshape(shape).copy()
 
 
-class Call(NamedTuple):
+class StepCall(NamedTuple):
     """One call of a step. rows: (stages + 1, 2, dimensions) coordinates of the states and of the result."""
 
     rows: np.ndarray
@@ -95,7 +95,7 @@ def orthogonal_basis() -> np.ndarray:
     return np.linalg.qr(np.random.default_rng(20150130).normal(size=(size, size)))[0] * np.sqrt(size)
 
 
-def call_step(step: Step, h: float) -> Call:
+def call_step(step: Step, h: float) -> StepCall:
     """The coordinates of the states and results of a step. Raises NoTableau."""
     basis = orthogonal_basis()
     oracle = Oracle(basis)
@@ -108,10 +108,10 @@ def call_step(step: Step, h: float) -> Call:
     if not np.isfinite(rows).all():
         raise NoTableau
     known = FIRST_ACCELERATION + len(oracle.states)
-    return Call(rows[:, :, :known], float(np.abs(rows[:, :, known:]).max(initial=0.0)))
+    return StepCall(rows[:, :, :known], float(np.abs(rows[:, :, known:]).max(initial=0.0)))
 
 
-def read_tableau(step: Step, *, with_velocity: bool) -> Tableau:
+def read_tableau(step: Step, *, with_velocity: bool) -> StepTableau:
     """The tableau of a step(x, v, h, acceleration).
 
     Each call of the acceleration is a stage, also one that the result does not depend on (`pruned`), or at a state of
@@ -138,10 +138,10 @@ def read_tableau(step: Step, *, with_velocity: bool) -> Tableau:
     coefficients[np.abs(coefficients) < tolerance] = 0.0
     if not with_velocity:
         coefficients[:-1, 1] = 0.0  # no acceleration depends on them
-    return Tableau(coefficients[:, 0], coefficients[:, 1], tolerance, with_velocity)
+    return StepTableau(coefficients[:, 0], coefficients[:, 1], tolerance, with_velocity)
 
 
-def pruned(tableau: Tableau) -> Tableau:
+def pruned(tableau: StepTableau) -> StepTableau:
     """A tableau without the stages that its result does not depend on."""
     depends = [
         {int(j) for j in np.flatnonzero(np.any(tableau.positions[i], axis=1) | np.any(tableau.velocities[i], axis=1))}
@@ -158,7 +158,7 @@ def pruned(tableau: Tableau) -> Tableau:
     return with_stages(tableau, sorted(used))
 
 
-def with_stages(tableau: Tableau, stages: list[int]) -> Tableau:
+def with_stages(tableau: StepTableau, stages: list[int]) -> StepTableau:
     """A tableau with some of its stages."""
     rows = [*stages, tableau.stages]
     columns = [0, 1, *(stage + FIRST_ACCELERATION for stage in stages)]
@@ -166,7 +166,7 @@ def with_stages(tableau: Tableau, stages: list[int]) -> Tableau:
     return tableau._replace(positions=positions, velocities=velocities)
 
 
-def merged(tableau: Tableau) -> Tableau:
+def merged(tableau: StepTableau) -> StepTableau:
     """A tableau whose stages at the same state are one."""
     positions, velocities = tableau.positions.copy(), tableau.velocities.copy()
     kept: list[int] = []
@@ -183,7 +183,7 @@ def merged(tableau: Tableau) -> Tableau:
     return with_stages(tableau._replace(positions=positions, velocities=velocities), kept)
 
 
-def order_of(tableau: Tableau) -> int:
+def order_of(tableau: StepTableau) -> int:
     """The order of a method: half the step leaves a 2^(order + 1)-th of the error of a step; 0 for one of none."""
     x, v = np.array([0.7, -0.4]), np.array([0.3, 0.9])
 

@@ -58,7 +58,7 @@ class Group(NamedTuple):
     forms: tuple[Form, ...] = ()
 
 
-class Change(NamedTuple):
+class ChangedForm(NamedTuple):
     """A form of terms. text: in words, behind their name; "" as it must be. cost: how far-fetched it is."""
 
     text: str
@@ -80,7 +80,7 @@ class Finding(NamedTuple):
     """A form of a unit, with its factor, that explains the student's results."""
 
     unit: Unit
-    change: Change
+    change: ChangedForm
     factor: float
     cost: float
 
@@ -151,10 +151,10 @@ def explain_terms(
     if not np.allclose(np.asarray(student(*copied(samples[0])), np.float64), found[0], rtol=1e-6, atol=1e-9):
         return Explanation("state kept between calls", KEEPS_STATE)
     y = inputs.joined(found)
-    table = table_of(terms, inputs)
+    values = values_of(terms, inputs)
     units = units_of(terms, groups)
-    changes = [changes_of(unit, table, inputs) for unit in units]
-    findings = one_change(y, table.right, units, changes) or two_changes(y, table.right, units, changes)
+    changes = [changes_of(unit, values, inputs) for unit in units]
+    findings = one_change(y, values.right, units, changes) or two_changes(y, values.right, units, changes)
     if not findings:
         return None
     lines = [Equation(line_name(term), (Piece(term.formula),)) for term in terms if term.formula]
@@ -207,7 +207,7 @@ class Argument(NamedTuple):
     doubles: int | None = None
 
 
-class Table(NamedTuple):
+class TermValues(NamedTuple):
     """The values of each term, as it must be and with changed arguments.
 
     right: (terms, values). changed: (terms, changes, values).
@@ -218,24 +218,24 @@ class Table(NamedTuple):
     changed: np.ndarray
 
 
-def table_of(terms: Sequence[Term], inputs: Inputs) -> Table:
+def values_of(terms: Sequence[Term], inputs: Inputs) -> TermValues:
     """The values of the terms, each computed once."""
     changes = list(argument_changes(inputs))
     right = np.array([inputs.vector(term.function) for term in terms])
     changed = np.array([[inputs.vector(term.function, other.change) for other in changes] for term in terms])
-    return Table(right, changes, changed)
+    return TermValues(right, changes, changed)
 
 
-def changes_of(unit: Unit, table: Table, inputs: Inputs) -> list[Change]:
+def changes_of(unit: Unit, values: TermValues, inputs: Inputs) -> list[ChangedForm]:
     """All forms of a unit that are finite and not 0."""
     members = list(unit.members)
     with np.errstate(all="ignore"):
-        same, totals = table.right[members].sum(axis=0), table.changed[members].sum(axis=0)
-    found = [Change("", same, 0.0)]
-    found += [Change(f"is {form.formula}", inputs.vector(form.function), 1.0, form) for form in unit.forms]
-    for other, total in zip(table.changes, totals, strict=True):
+        same, totals = values.right[members].sum(axis=0), values.changed[members].sum(axis=0)
+    found = [ChangedForm("", same, 0.0)]
+    found += [ChangedForm(f"is {form.formula}", inputs.vector(form.function), 1.0, form) for form in unit.forms]
+    for other, total in zip(values.changes, totals, strict=True):
         if unit.name != WHOLE or other.text.startswith(UNUSED):  # the rest are edits of the reference solution
-            found.append(Change(other.text, total, other.cost))
+            found.append(ChangedForm(other.text, total, other.cost))
         if (i := other.doubles) is not None:
             has = exponent_in(same, total)
             for exponent in EXPONENTS:
@@ -243,8 +243,8 @@ def changes_of(unit: Unit, table: Table, inputs: Inputs) -> list[Change]:
                     vector = same * inputs.argument(i) ** exponent
                 text = power_text(inputs.names[i], has, exponent, whole=unit.name == WHOLE)
                 likely = abs(exponent) == 1.0 or has == -exponent
-                found.append(Change(text, vector, 2.0 if likely else 3.5))
-    found += [Change(text, vector, cost) for text, cost, vector in value_changes(same, inputs)]
+                found.append(ChangedForm(text, vector, 2.0 if likely else 3.5))
+    found += [ChangedForm(text, vector, cost) for text, cost, vector in value_changes(same, inputs)]
     return [change for change in found if np.isfinite(change.vector).all() and np.abs(change.vector).max() > TOLERANCE]
 
 
@@ -353,7 +353,7 @@ def without_row(block: np.ndarray, row: int) -> np.ndarray:
 
 
 def one_change(
-    y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[Change]]
+    y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[ChangedForm]]
 ) -> list[Finding]:
     """The form of one unit that explains the results; an empty list where there is none."""
     best: Finding | None = None
@@ -374,7 +374,7 @@ def one_change(
 
 
 def one_more(
-    y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[Change]]
+    y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[ChangedForm]]
 ) -> Finding | None:
     """A term that is there beside the right ones, or None."""
     left, best = y - total_of(right, set(range(len(right)))), None
@@ -390,7 +390,7 @@ def one_more(
 
 
 def two_changes(
-    y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[Change]]
+    y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[ChangedForm]]
 ) -> list[Finding]:
     """The forms of two units that explain the results; an empty list where there are none."""
     best: tuple[float, list[Finding]] | None = None

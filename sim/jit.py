@@ -32,7 +32,7 @@ from numba.extending import intrinsic, overload
 
 from sim.cache import own_folder, processor, shared_kernels
 
-__all__ = ["CACHE", "MAX_THREADS", "chosen", "is_stopped", "kernel", "modules_of", "prange", "set_threads"]
+__all__ = ["CACHE", "MAX_THREADS", "chosen", "generated", "is_stopped", "kernel", "modules_of", "prange", "set_threads"]
 
 ROOT = Path(__file__).resolve().parent.parent
 OWN_PACKAGES = ("sim", "app", "tests")
@@ -267,6 +267,18 @@ def kernel(
         folders = COMPILER.Folders(folder, tuple(other / folder_name(path) for other in SHARED))
     with kept_in(place):
         return COMPILER.make_kernel(function, folders, options, noalias=noalias, counts=allocates and not inline)
+
+
+def generated(source: str, names: dict[str, Any], module: str, **options: Any) -> Any:
+    """A kernel whose source, one function, was written by the program; kept with those of this module of ours.
+
+    names: the kernels that it calls, by their names in the source. options: as of `kernel`. Two kernels of one module
+    must differ in the name of the function, as numba's own cache does not look at what names stand for.
+    """
+    scope = {**names, "__name__": module}
+    code = compile(source, str(Path(sys.modules[module].__file__ or "").resolve()), "exec")
+    exec(code, scope)
+    return kernel(scope[code.co_names[0]], **options)
 
 
 def chosen(variants: dict[type, Any]) -> Any:

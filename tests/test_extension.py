@@ -180,6 +180,13 @@ def test_an_integrator_and_a_law_of_a_link_are_one_file_each(extended, heading, 
     assert parameters_in(copy / written)[parameter] == value
 
 
+def test_a_force_with_energy_and_tangent_is_one_file(extended):
+    copy, touched = extended("Add a force")
+    assert len(touched) == 1
+    (test,) = commands(section("Add a force"))
+    run_tests(copy, test)
+
+
 @pytest.mark.skipif(shutil.which("pyright") is None, reason="pyright is not installed")
 def test_the_examples_pass_the_type_checker(extended):
     headings = re.findall(r"^## (Add .+)$", PAGE.read_text("utf-8"), re.MULTILINE)

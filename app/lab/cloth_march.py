@@ -93,7 +93,7 @@ class ClothFunctions(Functions):
         return self.fit("cloth_forces", value, x.shape)
 
     def wind(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """The force [N], shape (n, 3), of the air (`sim/springs/forces/wind.py`)."""
+        """The force [N], shape (n, 3), of the air (`sim/springs/forces/air.py`)."""
         f, shape = self.forces, (self.sheet.rows, self.sheet.cols, 3)
         force = np.zeros(shape)
         if f.air_drag == f.air_lift == 0.0:

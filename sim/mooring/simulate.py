@@ -13,9 +13,9 @@ from sim.mooring.gauge import critical_step
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.system import System
 from sim.springs import INTEGRATORS
+from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import EnergyHistory, energy_history
-from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.lines.arrays import LineArrays
 from sim.springs.lines.energy import set_tensions

@@ -7,16 +7,16 @@ Links are families of neighbour offsets, never index lists: every particle of th
 import dataclasses
 import functools
 import math
-from collections import namedtuple
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import stop_request
-from sim.jit import MAX_THREADS, chosen, kernel
+from sim.jit import MAX_THREADS
+from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays, WideArrays
+from sim.springs.forces import OWN, check_forces, declared
 from sim.springs.laws import LAWS, check_law
-from sim.springs.lines.arrays import LineArrays
 from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
@@ -27,7 +27,6 @@ CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, 
 LEAST_BAND = 8  # rows that are worth a thread
 PAIRS = 24  # most pairs within reach, for each particle, on average; what is beyond them is not pushed
 FARTHEST = 1e9  # [m] from the origin: a net that is farther counts as diverged
-SKIN = 0.5  # of the thickness: how far pairs are looked for beyond it, so that the list of them lasts
 
 
 class Family(NamedTuple):
@@ -87,102 +86,6 @@ class PinPath(NamedTuple):
     coefficients: tuple[Vector, Vector, Vector, Vector]
 
 
-class RopeArrays(NamedTuple):
-    """Kernel data of a rope without air around it: flat numbers and arrays."""
-
-    rows: int  # 1
-    cols: int
-    inverse_masses: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
-    mass: Any  # [kg] of every point; of any other net (rows cols,) of each
-    drag: float  # [N s/m] per point
-    gx: float  # gravity [m/s^2]
-    gy: float
-    gz: float
-    offsets: NDArray[np.int64]  # (families, 2)
-    links: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
-    law: Any  # numbers of the links' law, see sim/springs/laws
-    damped: bool  # any link damping
-    axial: bool
-    has_floor: bool
-    floor: float  # [m] where points meet it
-    has_sphere: bool
-    sx: float  # sphere centre at time `epoch` [m]
-    sy: float
-    sz: float
-    sr: float  # radius at which points meet it [m]
-    svx: float  # sphere velocity [m/s]
-    svy: float
-    svz: float
-    epoch: float  # [s]
-    contact_k: float
-    contact_b: float
-    friction: float
-    stop_rate: float  # 1/h [1/s]: friction takes at most the force that stops a point within the step
-    lab_contact: bool
-    pins: NDArray[np.int64]  # (pins,) flat indices of the moving ones
-    paths: NDArray[np.float64]  # (pins, 5, 3): four coefficients, and the start time in [4, 0]
-    grabbed: int  # flat index, -1: none
-    grab_x: float
-    grab_y: float
-    grab_z: float
-    grab_k: float
-    grab_b: float
-    grab_max: float
-    stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption
-
-
-class WideArrays(NamedTuple):
-    """Additional kernel data of any other net."""
-
-    has_air: bool
-    wind_x: float  # [m/s]
-    wind_y: float
-    wind_z: float
-    air_drag: float  # rho C_D / 2 [kg/m^3]
-    air_lift: float
-    thickness: float  # [m] at which particles of the net push each other, 0: never
-    row_spacing: float  # [m] at rest from row to row, FARTHEST where no link says it
-    col_spacing: float
-    # (most + 1, 2): those within reach, their number in [-1, 0], -1: not yet looked for; in [-1, 1] the most particles
-    # that were left out as the list was full
-    pairs: NDArray[np.int64]
-    seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
-    bands: int  # number of bands of rows; each thread computes the forces of one band
-    side: float  # stiffness and damping of links along a side, over their family's
-
-
-# A net of any families of links, and one of those of CLOTH. A kernel is compiled for each of the three classes of
-# arrays, with no more than nets of that class can need: numba tells them apart by their types.
-GridArrays = namedtuple("GridArrays", RopeArrays._fields + WideArrays._fields)
-ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + WideArrays._fields)
-
-
-def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
-    """A kernel that stands for one of these, by the class of its argument p.
-
-    cloth: None for that of any other net. lines: those under water; None where they have no such kernel.
-    """
-    variants = {RopeArrays: rope, GridArrays: grid, ClothArrays: cloth or grid}
-    return chosen(variants if lines is None else {**variants, LineArrays: lines})
-
-
-# Mass of point j [kg]. A rope of equal masses has one number for all, which its kernels need not load.
-mass_at = by_net(
-    rope=kernel(lambda p, j: p.mass, inline=True), grid=kernel(lambda p, j: p.mass[j], inline=True)
-)  # fmt: skip
-
-
-@kernel(inline=True)
-def placed_link(p, q, i, j):
-    on_row = p.offsets[q, 0] == 0 and (i == 0 or i == p.rows - 1)
-    on_column = p.offsets[q, 1] == 0 and (j == 0 or j == p.cols - 1)
-    return p.side if on_row or on_column else 1.0
-
-
-# Stiffness and damping of the link of family q that begins at (i, j), over the family's.
-link_ratio = by_net(rope=kernel(lambda p, q, i, j: 1.0, inline=True), grid=placed_link)
-
-
 @dataclasses.dataclass(frozen=True)
 class Net:
     """The immutable description of a spring-mass system; its state is `State`."""
@@ -207,6 +110,7 @@ class Net:
     thickness: float = 0.0  # [m]: particles nearer to each other than this push, 0: they pass
     mass_ratios: NDArray[np.float64] | None = None  # (rows, cols), each point's mass over `mass`; None: 1
     side_ratio: float = 1.0  # stiffness and damping of links along a side of the net, over their family's
+    forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces that have any, one of each
     threads: int = 1  # that a cloth's forces are worked out on
 
     def __deepcopy__(self, memo: object) -> "Net":
@@ -218,6 +122,7 @@ class Net:
         object.__setattr__(self, "x0", start_positions(self.x0))
         rows, cols = self.shape
         object.__setattr__(self, "law", check_law(self.law))
+        object.__setattr__(self, "forces", check_forces(self.forces))
         for family in self.families:
             check_family(family)
             if self.law != LAWS["spring"].numbers:
@@ -278,6 +183,7 @@ class Net:
             self.drag > 0.0
             or self.air is not None
             or any(f.damping > 0.0 for f in self.families)
+            or any(OWN[type(one)].damp for one in self.forces)
             or (touched and rough)
         )
 
@@ -352,6 +258,7 @@ class Net:
             offsets=np.array([f[:2] for f in self.families], dtype=np.int64).reshape(-1, 2),
             links=np.array([f[2:] for f in self.families], dtype=np.float64).reshape(-1, 3),
             law=self.law,
+            forces=declared(self.forces),
             damped=any(f.damping > 0 for f in self.families),
             axial=self.damping_model == "axial",
             has_floor=self.floor is not None,

@@ -22,9 +22,11 @@ from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
 from sim.springs.analysis.strain import strain_range
+from sim.springs.forces import OWN
+from sim.springs.forces.matrices import DAMPING, STIFFEST, TRANSVERSE
 from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.integrators.implicit.tangent import DAMPING, STIFFEST, TRANSVERSE, quotients, set_lanczos
+from sim.springs.integrators.implicit.tangent import quotients, set_lanczos
 from sim.springs.laws import largest_stiffness
 from sim.springs.net import Net
 from sim.springs.state import State, check_net, check_state
@@ -122,6 +124,10 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
     if net.grab is not None:
         stiffness[net.grab.row, net.grab.col] += net.grab.stiffness
         damping[net.grab.row, net.grab.col] += net.grab.damping
+    for numbers in net.forces:
+        most_stiffness, most_damping = OWN[type(numbers)].bound(numbers)
+        stiffness += most_stiffness
+        damping += most_damping
     free = net.inverse_masses().reshape(rows, cols)
     return math.sqrt(float((free * stiffness).max())), float((free * damping).max())
 
@@ -254,7 +260,7 @@ def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) ->
     if not start.any():
         return []
     parts = [(STIFFEST, start)]
-    if p.damped or p.has_floor or p.has_sphere or p.grabbed >= 0 or net.thickness > 0.0:
+    if p.damped or p.has_floor or p.has_sphere or p.grabbed >= 0 or net.thickness > 0.0 or net.forces:
         parts.append((DAMPING, start))
     if p.damped:
         parts.append((TRANSVERSE, start) if p.axial else (DAMPING, across(net, x, p)))

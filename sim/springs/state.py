@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
 from sim.jit import set_threads
+from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import Energy, energies
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
-from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
 from sim.validation import argument_error, check_kind, check_number, is_whole_number

@@ -12,8 +12,8 @@ HEADINGS = re.findall(r"^## (Add .+)$", text_of(PAGE), re.MULTILINE)
 
 def test_there_is_an_example_of_each_thing_to_add():
     assert HEADINGS == [
-        "Add an integrator", "Add a law of a link", "Add a spectrum", "Add a parameter", "Add a body shape",
-        "Add a task", "Add a scene",
+        "Add an integrator", "Add a law of a link", "Add a force", "Add a spectrum", "Add a parameter",
+        "Add a body shape", "Add a task", "Add a scene",
     ]  # fmt: skip
 
 

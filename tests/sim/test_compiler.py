@@ -140,7 +140,7 @@ def test_a_parallel_part_of_a_kept_entry_runs(tmp_path):
     code = """
 import numpy as np
 from sim.springs import cloth
-from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.acceleration import set_acceleration
 import dataclasses
 net = dataclasses.replace(cloth(16, 16), threads=2)
 a = np.zeros(net.x0.size)

@@ -1,1 +1,135 @@
-"""Forces of springs, contact and air on the particles of a net."""
+"""The forces on a net: one file each, found by being here, with all that the program knows of the force.
+
+`each` makes the kernels that go through the list of forces: it writes their source when the program starts, one call a
+force, so that a list costs no more than the calls written by hand.
+
+To add a force, write a module in this folder with
+
+1. a NamedTuple class of the force's numbers, all floats, with defaults. `Net.forces` holds one, and kernels take it as
+   their first argument: a net without the force has kernels without it.
+2. kernels for its facets, as `Force` lists them; none for a facet that it does not have.
+3. `FORCE = Force(...)`.
+
+The forces without numbers of their own read those of the net's record. Links, gravity and drag accelerate in the loops
+over links of `sim/springs/acceleration.py`, which are written by hand for ropes, cloths and other nets.
+"""
+
+import math
+from collections import namedtuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from sim.jit import chosen, generated, kernel, modules_of
+from sim.springs.arrays import GridArrays, RopeArrays, by_net
+from sim.springs.forces.record import Absent, Force
+from sim.validation import argument_error, check_number
+
+FORCES: tuple[Force, ...] = tuple(
+    sorted(
+        (module.FORCE for module in modules_of(__name__) if hasattr(module, "FORCE")),
+        key=lambda force: (force.rank, force.name),
+    )
+)
+# Those that are not in the loops over the links.
+SEPARATE = tuple(force for force in FORCES if force.accelerate is not None)
+# Those with numbers of their own. A net has a record of these, so that its kernels hold only the forces that it has.
+OWN = {force.numbers: force for force in FORCES if force.numbers is not None}
+Declared = namedtuple("Declared", [force.name for force in OWN.values()], module=__name__)
+there = kernel(lambda own: True, inline=True)
+missing = kernel(lambda own: False, inline=True)
+
+
+class Result(NamedTuple):
+    """Sums of the results of forces in a kernel of `each`."""
+
+    start: str  # its first line
+    call: str  # what is done with the `call` of a force that acts
+    end: str  # its last line
+    nothing: str  # what a force that a net does not have returns
+
+
+RESULTS = {
+    "none": Result("pass", "{call}", "return None", "None"),
+    "truth": Result("pass", "return True", "return False", "False"),
+    "sum": Result("total = 0.0", "total += {call}", "return total", "0.0"),
+    "stores": Result(
+        "elastic = gravity = contact = 0.0", "{stores} += {call}", "return elastic, gravity, contact", "0.0"
+    ),
+    "count": Result("total = 0", "total += {call}", "return total", "0"),
+    "placed": Result("o = 0", "{call}; o += {size}", "return None", "None"),
+    "two sums": Result(
+        "first = second = 0.0", "one, other = {call}; first += one; second += other", "return first, second", "0.0, 0.0"
+    ),
+}
+
+
+def each(
+    facet: str,
+    parameters: str,
+    result: str,
+    forces: Sequence[Force] = FORCES,
+    *,
+    turns: bool = False,
+    lines: Any = None,
+    **options: Any,
+) -> Any:
+    """A kernel of `parameters` that calls this facet of all forces that have it and act.
+
+    result: a key of RESULTS. turns: in the reverse order if the parameter `reverse` is True. lines: the kernel of lines
+    under water. options: of `kernel`.
+    """
+    sums = RESULTS[result]
+    given = f"{parameters}, o" if result == "placed" else parameters
+
+    def call(force: Force) -> str:
+        own = f"p.forces.{force.name}, " if force.numbers else ""
+        acts = f"{force.name}_is_there(p.forces.{force.name})" if force.numbers else force.acts
+        size = f"{force.name}_coupled_size({own}p)"
+        done = sums.call.format(call=f"{force.name}_{facet}({own}{given})", size=size, stores=force.stores)
+        return done if acts == "True" else f"if {acts}: {done}"
+
+    def kernels(force: Force) -> dict[str, Any]:
+        """Kernels by their names in `call`; of a force with numbers, the choice between it and nothing."""
+        found = {name: getattr(force, name) for name in {facet, "coupled_size"} - {"acts"}}
+        if force.numbers:
+            for name, one in found.items():
+                all_given, nothing = (given, sums.nothing) if name == facet else ("p", "0")
+                source = f"def no_{name}(own, {all_given}):\n    return {nothing}"
+                absent = generated(source, {}, __name__, inline=True)
+                found[name] = chosen({force.numbers: one or absent, Absent: absent})
+            found["is_there"] = chosen({force.numbers: there, Absent: missing})
+        return {f"{force.name}_{name}": one for name, one in found.items()}
+
+    def of(net: type, name: str) -> Any:
+        having = [one for one in forces if (facet == "acts" or getattr(one, facet) is not None) and net in one.nets]
+        if len(having) == 1 and having[0].acts == "True" and not having[0].numbers:
+            return getattr(having[0], facet)
+        calls = list(map(call, having))
+        if turns:
+            order = [f"({len(calls) - 1 - at} if reverse else {at})" for at in range(len(calls))]
+            calls = [f"    if turn == {at}:\n            {one}" for at, one in zip(order, calls, strict=True)]
+            calls.insert(0, f"for turn in range({len(having)}):")
+        head = f"def {'_'.join((name, facet, *(force.name for force in having)))}({parameters}):"
+        names = {name: one for force in having for name, one in kernels(force).items()}
+        return generated("\n    ".join([head, sums.start, *calls, sums.end]), names, __name__, **options)
+
+    return by_net(rope=of(RopeArrays, "rope"), grid=of(GridArrays, "wide"), lines=lines)
+
+
+def check_forces(forces: Any) -> tuple[Any, ...]:
+    """The numbers of the forces that a net declares, as they are. Raises ValueError for others."""
+    known = f"numbers of the forces of sim.springs.forces: {', '.join(one.__name__ for one in OWN) or 'there are none'}"
+    if not isinstance(forces, tuple) or any(type(one) not in OWN for one in forces):
+        raise argument_error("forces", forces, known)
+    if len({type(one) for one in forces}) < len(forces):
+        raise argument_error("forces", forces, "one of each force")
+    for one in forces:
+        for name, value in one._asdict().items():
+            check_number(f"{OWN[type(one)].name}.{name}", value, -math.inf, math.inf, "")
+    return forces
+
+
+def declared(forces: tuple[Any, ...]) -> Any:
+    """The kernels' record of the forces that a net declares."""
+    given = {type(one): type(one)(*map(float, one)) for one in forces}
+    return Declared(*(given.get(numbers, Absent()) for numbers in OWN))

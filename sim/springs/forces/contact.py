@@ -10,7 +10,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.net import mass_at
+from sim.springs.arrays import mass_at
+from sim.springs.forces.links import TINY
+from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block, add_product
+from sim.springs.forces.record import Force
 
 
 @kernel(inline=True)
@@ -89,8 +92,7 @@ def touches(x, t, p, on_sphere):
 
 
 @kernel(noalias=True, allocates=False)
-def add_contacts(x, v, t, p, with_damping, a):
-    """Add the accelerations of floor and sphere."""
+def accelerate(x, v, t, p, with_damping, f, a):
     n = p.rows * p.cols
     for surface in range(2):
         on_sphere = surface == 1
@@ -106,3 +108,157 @@ def add_contacts(x, v, t, p, with_damping, a):
                 a[j] += w * fx
                 a[n + j] += w * fy
                 a[2 * n + j] += w * fz
+
+
+@kernel(allocates=False)
+def damp_on(x, v, t, s, p, on_sphere, reverse):
+    """Contact damping and friction of every touching point, exact or capped at standstill.
+
+    Friction takes the normal force of the velocity before the normal damping, in reverse of the one after it: the two
+    together are then symmetric, and of second order.
+    """
+    work = 0.0
+    if not touches(x, t, p, on_sphere):
+        return work
+    n = p.rows * p.cols
+    su, sv, sw = surface_velocity(p, on_sphere)
+    moves = su != 0.0 or sv != 0.0 or sw != 0.0
+    for j in range(n):
+        w = p.inverse_masses[j]
+        depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+        if depth <= 0.0 or w == 0.0:
+            continue
+        ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
+        b = p.contact_b
+        if p.lab_contact:
+            keep = math.exp(-(b * depth if on_sphere else b) * w * s)
+            ru, rv, rw = ru * keep, rv * keep, rw * keep
+        else:
+            vn = ru * nx + rv * ny + rw * nz
+            tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
+            # The whole normal force, k depth - b v_n, never pulls: separating, damping takes at most k depth.
+            after = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s)
+            normal = max(0.0, p.contact_k * depth - b * (after if reverse else vn))
+            speed = math.sqrt(tx * tx + ty * ty + tz * tz)
+            slow = p.friction * normal * w * s
+            keep = 1.0 - slow / speed if slow < speed else 0.0
+            ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
+        if moves:
+            work += ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw) / w
+        v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
+    return work
+
+
+@kernel(inline=True)
+def damp(x, v, t, s, p, reverse):
+    """The floor's, then the sphere's, or in reverse; each with its surface as a constant, which LLVM makes use of."""
+    work = 0.0
+    for turn in range(2):
+        if (turn == 1) != reverse:
+            if p.has_sphere:
+                work += damp_on(x, v, t, s, p, True, reverse)
+        elif p.has_floor:
+            work += damp_on(x, v, t, s, p, False, reverse)
+    return work
+
+
+@kernel(allocates=False)
+def energy(x, t, p):
+    """1/2 k depth^2 over the touching points [J]."""
+    total = 0.0
+    n = p.rows * p.cols
+    for surface in range(2):
+        on_sphere = surface == 1
+        if p.has_sphere if on_sphere else p.has_floor:
+            for j in range(n):
+                depth, _, _, _ = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+                if depth > 0.0 and p.inverse_masses[j] > 0.0:
+                    total += 0.5 * p.contact_k * depth * depth
+    return total
+
+
+@kernel(allocates=False)
+def power(x, v, t, p, with_damping):
+    """(dissipated, put in by a moving sphere) [W] through contact."""
+    dissipated = 0.0
+    work = 0.0
+    n = p.rows * p.cols
+    for surface in range(2):
+        on_sphere = surface == 1
+        if not touches(x, t, p, on_sphere):
+            continue
+        su, sv, sw = surface_velocity(p, on_sphere)
+        if not with_damping and su == 0.0 and sv == 0.0 and sw == 0.0:
+            continue
+        for j in range(n):
+            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+            if depth > 0.0 and p.inverse_masses[j] > 0.0:
+                ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
+                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, mass_at(p, j), p, on_sphere, with_damping)
+                push = p.contact_k * depth
+                dissipated -= (fx - push * nx) * ru + (fy - push * ny) * rv + (fz - push * nz) * rw
+                work += fx * su + fy * sv + fz * sw
+    return dissipated, work
+
+
+@kernel(noalias=True, allocates=False)
+def tangent(x, u, t, p, part, longest, out):
+    """Every touching point: K = k [n n^T - depth/r (I - n n^T)] with r the distance to the sphere's centre."""
+    n = p.rows * p.cols
+    if part == TRANSVERSE:
+        return
+    for surface in range(2):
+        on_sphere = surface == 1
+        if not (p.has_sphere if on_sphere else p.has_floor):
+            continue
+        for j in range(n):
+            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+            if depth <= 0.0:
+                continue
+            along = p.contact_k
+            across = -p.contact_k * depth / max(p.sr - depth, depth) if on_sphere else 0.0
+            if part == DAMPING:
+                along = p.contact_b
+                if p.lab_contact and on_sphere:
+                    along *= depth
+                across = along if p.lab_contact else 0.0
+            elif part == FRICTION:
+                along, across = 0.0, mass_at(p, j)
+            add_product(out, u, j, n, along, across, nx, ny, nz)
+
+
+@kernel(allocates=False)
+def blocks(x, v, t, g, p, points):
+    """g^2 k n n^T of touching points, their damping, and friction as the secant of its force over the sliding speed."""
+    n = p.rows * p.cols
+    for surface in range(2):
+        on_sphere = surface == 1
+        if not (p.has_sphere if on_sphere else p.has_floor):
+            continue
+        su, sv, sw = surface_velocity(p, on_sphere)
+        for j in range(n):
+            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+            if depth <= 0.0:
+                continue
+            b = p.contact_b
+            ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
+            vn = ru * nx + rv * ny + rw * nz
+            along, across = g * g * p.contact_k, 0.0
+            if p.lab_contact:
+                across = g * b * (depth if on_sphere else 1.0)
+                along += across
+            else:
+                normal = p.contact_k * depth - b * vn
+                if normal <= 0.0:
+                    continue
+                along += g * b
+                speed = math.sqrt((ru - vn * nx) ** 2 + (rv - vn * ny) ** 2 + (rw - vn * nz) ** 2)
+                if p.friction > 0.0:
+                    across = g * min(mass_at(p, j) * p.stop_rate, p.friction * normal / (speed + TINY))
+            add_block(points, j, n, along, across, nx, ny, nz)
+
+
+FORCE = Force(
+    "contact", rank=40, acts="p.has_floor or p.has_sphere", accelerate=accelerate, damp=damp, energy=energy,
+    power=power, tangent=tangent, blocks=blocks, stores="contact",
+)  # fmt: skip

@@ -14,9 +14,12 @@ import math
 import numpy as np
 
 from sim.jit import is_stopped, kernel
-from sim.springs.net import SKIN
+from sim.springs.forces.links import TINY
+from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
+from sim.springs.forces.record import WIDE_NETS, Force
 
 UNASKED = 64  # particles between two looks at whether the search is to end
+SKIN = 0.5  # of the thickness: how far pairs are looked for beyond it, so that the list of them lasts
 NEIGHBOURS = 2  # rows and columns apart, within which a pair is held by links and never pushes
 
 
@@ -152,7 +155,7 @@ def push_apart(out, i, j, n, wi, wj, dx, dy, dz):
 
 
 @kernel(allocates=False)
-def add_self_contacts(x, v, p, with_damping, a):
+def accelerate(x, v, t, p, with_damping, f, a):
     """Add the accelerations of touching pairs, max(0, k depth - b v_n) each way."""
     n = p.rows * p.cols
     for s in range(refresh_pairs(x, p)):
@@ -171,7 +174,7 @@ def add_self_contacts(x, v, p, with_damping, a):
 
 
 @kernel(allocates=False)
-def damp_self_contacts(x, v, s, p, reverse):
+def damp(x, v, t, s, p, reverse):
     """Damping of touching pairs alone for a time s [s]: exact, but for separating pairs at most their push."""
     n = p.rows * p.cols
     count = refresh_pairs(x, p)
@@ -188,14 +191,16 @@ def damp_self_contacts(x, v, s, p, reverse):
         after = max(opening * math.exp(-p.contact_b * both * s), opening - p.contact_k * (p.thickness - r) * both * s)
         change = (after - opening) / (both * r)
         push_apart(v, i, j, n, p.inverse_masses[i] * change, p.inverse_masses[j] * change, dx, dy, dz)
+    return 0.0
 
 
 @kernel(allocates=False)
-def self_contact_power(x, v, p, with_damping):
+def power(x, v, t, p, with_damping):
     """(dissipated, put in by moving pins) [W] through the touching pairs."""
     n = p.rows * p.cols
-    dissipated = 0.0
-    work = 0.0
+    dissipated = work = 0.0
+    if not with_damping and p.pins.shape[0] == 0:
+        return dissipated, work
     for s in range(refresh_pairs(x, p)):
         i, j = p.pairs[s, 0], p.pairs[s, 1]
         dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
@@ -213,7 +218,7 @@ def self_contact_power(x, v, p, with_damping):
 
 
 @kernel(allocates=False)
-def self_contact_energy(x, p):
+def energy(x, t, p):
     """1/2 k depth^2 over the touching pairs [J]."""
     n = p.rows * p.cols
     total = 0.0
@@ -222,3 +227,89 @@ def self_contact_energy(x, p):
         dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
         total += 0.5 * p.contact_k * max(0.0, p.thickness - math.sqrt(dx * dx + dy * dy + dz * dz)) ** 2
     return total
+
+
+@kernel
+def pins_power(x, v, p):
+    return power(x, v, 0.0, p, True)[1] - power(x, v, 0.0, p, False)[1]
+
+
+@kernel(noalias=True, allocates=False)
+def tangent(x, u, t, p, part, longest, out):
+    """The net's touching pairs: K = k [n n^T - depth/r (I - n n^T)] between the two, D = b n n^T."""
+    if part in (TRANSVERSE, FRICTION):
+        return
+    n = p.rows * p.cols
+    for s in range(refresh_pairs(x, p)):
+        i, j = p.pairs[s, 0], p.pairs[s, 1]
+        rx, ry, rz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
+        rr = rx * rx + ry * ry + rz * rz
+        if rr >= p.thickness * p.thickness or rr == 0.0:
+            continue
+        along, across = p.contact_b, 0.0
+        if part != DAMPING:
+            along, across = p.contact_k, p.contact_k * max(-1.0, 1.0 - p.thickness / math.sqrt(rr))
+        du, dv, dw = u[j] - u[i], u[n + j] - u[n + i], u[2 * n + j] - u[2 * n + i]
+        q = (along - across) * (rx * du + ry * dv + rz * dw) / rr
+        fx, fy, fz = across * du + q * rx, across * dv + q * ry, across * dw + q * rz
+        out[i] -= fx
+        out[n + i] -= fy
+        out[2 * n + i] -= fz
+        out[j] += fx
+        out[n + j] += fy
+        out[2 * n + j] += fz
+
+
+@kernel(inline=True)
+def coupled_size(p):
+    return 3 * (p.pairs.shape[0] - 1)
+
+
+@kernel(allocates=False)
+def set_coupled(x, v, g, p, coupled, o):
+    """Contact with itself: q of each pair's block q q^T = (g b + g^2 k) n n^T, 0 of those that do not push."""
+    n = p.rows * p.cols
+    stiff = math.sqrt(g * p.contact_b + g * g * p.contact_k)
+    for s in range(refresh_pairs(x, p)):
+        i, j = p.pairs[s, 0], p.pairs[s, 1]
+        dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
+        r = math.sqrt(dx * dx + dy * dy + dz * dz + TINY)
+        opening = ((v[j] - v[i]) * dx + (v[n + j] - v[n + i]) * dy + (v[2 * n + j] - v[2 * n + i]) * dz) / r
+        pushes = r < p.thickness and p.contact_k * (p.thickness - r) > p.contact_b * opening
+        q = stiff / r if pushes else 0.0
+        k = o + 3 * s
+        coupled[k], coupled[k + 1], coupled[k + 2] = q * dx, q * dy, q * dz
+
+
+@kernel(allocates=False)
+def add_coupled(p, coupled, points, o):
+    """Each pair's block onto the blocks of both its particles."""
+    n = p.rows * p.cols
+    for s in range(p.pairs[p.pairs.shape[0] - 1, 0]):
+        k = o + 3 * s
+        for e in range(2):
+            add_block(points, p.pairs[s, e], n, 1.0, 0.0, coupled[k], coupled[k + 1], coupled[k + 2])
+
+
+@kernel(allocates=False)
+def multiply_coupled(p, coupled, u, q, o):
+    """q += the pairs' part of the matrix times u."""
+    n = p.rows * p.cols
+    for s in range(p.pairs[p.pairs.shape[0] - 1, 0]):
+        i, j = p.pairs[s, 0], p.pairs[s, 1]
+        k = o + 3 * s
+        qx, qy, qz = coupled[k], coupled[k + 1], coupled[k + 2]
+        closing = qx * (u[i] - u[j]) + qy * (u[n + i] - u[n + j]) + qz * (u[2 * n + i] - u[2 * n + j])
+        q[i] += closing * qx
+        q[n + i] += closing * qy
+        q[2 * n + i] += closing * qz
+        q[j] -= closing * qx
+        q[n + j] -= closing * qy
+        q[2 * n + j] -= closing * qz
+
+
+FORCE = Force(
+    "self_contact", rank=30, nets=WIDE_NETS, acts="p.thickness > 0.0", accelerate=accelerate, damp=damp,
+    energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="contact",
+    coupled_size=coupled_size, set_coupled=set_coupled, add_coupled=add_coupled, multiply_coupled=multiply_coupled,
+)  # fmt: skip

@@ -1,6 +1,6 @@
 """Leapfrog (velocity Verlet) with damping split off: D(h/2) K(h/2) X(h) K(h/2) D'(h/2).
 
-K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.forces.damping`, D' the
+K kicks with the forces of position alone, X drifts, D is the exact damping of `sim.springs.damping`, D' the
 same in reverse order, and the two change places from step to step; air blows in the middle of X. A symmetric
 composition: second order with damping, stable for h omega < 2 at any damping but the air's. One force evaluation a
 step, as the force at the end of a step opens the next. Of a rope, D' of a step and D of the next are one pass.
@@ -11,10 +11,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
-from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.forces.damping import cross_gap, damp, gaps_merge, is_odd, make_decay, make_gap
-from sim.springs.forces.wind import air_scratch_size, drift
+from sim.springs.damping import cross_gap, damp, gaps_merge, is_odd, make_decay, make_gap
+from sim.springs.forces.air import air_scratch_size, drift
 from sim.springs.integrators import Integrator
 from sim.springs.vector_ops import add_scaled
 

@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import add_power
-from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.integrators import Integrator
 from sim.springs.vector_ops import add_scaled
 

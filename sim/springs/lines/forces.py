@@ -16,7 +16,6 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.forces.pins import set_paths
 from sim.springs.laws import damps, energy, stiffness, tension
 from sim.springs.lines.arrays import (
     ACROSS,
@@ -34,6 +33,7 @@ from sim.springs.lines.arrays import (
 )
 from sim.springs.lines.bending import add_bending
 from sim.springs.lines.curves import curve_at
+from sim.springs.pins import set_paths
 from sim.waves import AMPLITUDE, sums_at
 
 TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction, and no force

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.mooring import Body, Line, LineType, Point, System
-from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.acceleration import set_acceleration
 from sim.springs.lines.damping import damp_lines, make_lines_decay
 from sim.springs.lines.energy import lines_pins_damping_power, lines_power, set_tensions
 from sim.water import Water

@@ -9,7 +9,7 @@ import pytest
 from sim import floating
 from sim.mooring import Line, LineType, Point, System, moored, simulate
 from sim.mooring.statics import Rest, straight
-from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.acceleration import set_acceleration
 from sim.water import Water
 from sim.waves import Waves
 from tests.refusals import assert_refused

@@ -12,7 +12,7 @@ from sim import springs
 from sim.mooring import Body, Line, LineType, Point, System, critical_step, simulate
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
-from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.acceleration import set_acceleration
 from sim.springs.lines.damping import damp_lines, make_lines_decay
 from sim.springs.lines.energy import lines_energies, lines_power
 from sim.water import Water

@@ -11,7 +11,7 @@ from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
 from sim.mooring.tangent import stiffness_matrix, upright_stiffness
 from sim.springs import INTEGRATORS
-from sim.springs.forces.acceleration import set_acceleration
+from sim.springs.acceleration import set_acceleration
 from sim.springs.lines.energy import lines_energies, lines_power
 from sim.water import Water
 from sim.waves import Waves

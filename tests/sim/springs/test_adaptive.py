@@ -10,8 +10,8 @@ from scipy.integrate._ivp import dop853_coefficients
 from scipy.integrate._ivp.rk import RK45
 
 from sim.springs import INTEGRATORS, rope, simulate
+from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.amplification import polynomial_of
-from sim.springs.forces.acceleration import set_acceleration
 from sim.springs.integrators import dop853, dopri5, rkn8
 from sim.springs.integrators.embedded import stages
 from sim.springs.integrators.embedded.errors import error_of

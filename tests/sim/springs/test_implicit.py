@@ -75,21 +75,19 @@ def test_a_net_s_solver_solves_with_the_derivatives_of_its_forces(model):
 
     work = newton.make_work(p, False)
     blocks.set_point_blocks(x, v, 0.0, g, p, work.points)
-    blocks.set_pair_blocks(x, v, g, p, work.own)
-    blocks.set_air_blocks(x, v, g, p, work.air)
+    blocks.set_coupled(x, v, g, p, work.coupled)
     blocks.set_link_blocks(x, g, p, work.links)
-    assert np.any(work.own)
+    assert np.any(work.coupled[6 * net.x0[0].size :])  # of the pairs that touch, after those of the air
     work.factors[:] = work.points
     blocks.add_links_to_points(p, work.links, work.factors)
-    blocks.add_pairs_to_points(p, work.own, work.factors)
-    blocks.add_air_to_points(p, work.air, work.factors)
+    blocks.add_coupled(p, work.coupled, work.factors)
     diagonal = work.factors.reshape(6, -1)[[0, 3, 5]].ravel()[free]
     assert diagonal == pytest.approx(np.diag(dense), rel=1e-6)
     factorise(work.factors, net.x0[0].size)
     r = np.random.default_rng(1).standard_normal(x.size) * free
     work.r[:] = r
     taken = solve_conjugate_gradients(
-        work.points, work.links, work.own, work.air, work.factors, work.r, 1e-12, p, work.f, work.z, work.d, work.q,
+        work.points, work.links, work.coupled, work.factors, work.r, 1e-12, p, work.f, work.z, work.d, work.q,
         work.u,
     )  # fmt: skip
     assert work.u[free] == pytest.approx(np.linalg.solve(dense, r[free]), rel=1e-6, abs=1e-9)

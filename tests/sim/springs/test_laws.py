@@ -13,7 +13,7 @@ from sim.springs.analysis.growth import STABLE, outcome
 from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.analysis.strain import strain_range
 from sim.springs.analysis.tension import rope_tension
-from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS
+from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.laws import energy as link_energy
 from sim.springs.laws import largest_stiffness, over_step, stiffness, tension
 from sim.springs.laws.stiffening import Stiffening

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, rope
-from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS
+from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.state import State, advance, velocities
 from sim.springs.statics import equilibrium
 from tests.sim.springs.test_stability import products

@@ -49,6 +49,7 @@ FIELDS: list[Row] = [  # of a rope of ten points
     *each(replaced, side_ratio=[0.5], air=[1.2], threads=[0, 1.5], radius=[-0.1], thickness=[math.inf, -0.1]),
     *each(replaced, mass_ratios=[np.ones(10), np.zeros((1, 10)), np.full((1, 10), math.nan)], damping_model=["Axial"]),
     *each(replaced, x0=[np.zeros((2, 1, 10)), np.zeros((3, 10)), np.zeros((3, 0, 10)), np.full((3, 1, 10), 2e9)]),
+    *each(replaced, forces=[(1.0,), [], ((0.0, 1.0),)]),
     *each(replaced, x0=[np.zeros((3, 1, 10), dtype=bool), [[0.0]]], gravity=[(0.0, 10.0)]),
     *each(replaced, sphere_velocity=[(0.0, 1.0), (0.0, 1.0, math.inf)]),
     *(("pinned", partial(replaced, pinned=frozenset({pin})), "") for pin in ((0, 10), (-1, 0), (0, 0.5))),

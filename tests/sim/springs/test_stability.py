@@ -7,8 +7,9 @@ import pytest
 
 from sim.springs import INTEGRATORS, Contact, Grab, cloth, rope, simulate
 from sim.springs.analysis.amplification import eigenvalues, limit_of_polynomial
+from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.integrators import dop853, dopri5
-from sim.springs.integrators.implicit.tangent import DAMPING, STIFFNESS, set_tangent
+from sim.springs.integrators.implicit.tangent import set_tangent
 from sim.springs.stability import critical_step, critical_stiffness, gauge, gershgorin, most_touching, top_modes
 from sim.springs.state import State, advance
 from tests.naive import own_contacts, tangent

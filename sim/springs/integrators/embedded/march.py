@@ -11,11 +11,10 @@ is as long as the one before, holds no frame, and stands only if the next one ke
 import numpy as np
 
 from sim.jit import is_stopped, kernel
+from sim.springs.acceleration import accelerate, set_pins
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
-from sim.springs.forces.acceleration import accelerate, set_pins
-from sim.springs.forces.damping import pushes_itself
 from sim.springs.integrators.embedded.errors import error_of
-from sim.springs.integrators.embedded.stages import is_bare, make_stages, take_step
+from sim.springs.integrators.embedded.stages import is_smooth, make_stages, take_step
 
 SAFETY = 0.9
 NOW, BEFORE = 0.7, 0.4  # exponents of this step's error and the last one's (Gustafsson's PI), over the order
@@ -87,7 +86,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
     power, before = -1.0 / method.error_order, 1.0
     grow = GROW
     tries = 0
-    is_smooth = is_bare(p) and not pushes_itself(p)
+    smooth = is_smooth(p)
     calm = unsure = False  # the next step needs no estimate; the last one had none
     frame_kept, t_kept = frame, t
     while frame < len(times):
@@ -147,7 +146,7 @@ def march(method, x, v, times, rtol, atol, p, with_account, xs, vs, ledgers):
         if not is_bounded(x):
             break
         factor = grow
-        calm = is_smooth and error < CALM and before < CALM and error < RISE * before
+        calm = smooth and error < CALM and before < CALM and error < RISE * before
         if error > 0.0:
             factor = min(grow, SAFETY * error ** (NOW * power) / before ** (BEFORE * power))
             before = max(error, 1e-4)

@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
+from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import add_power
-from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.arrays import by_net
+from sim.springs.damping import other_acts
+from sim.springs.forces import FORCES, each
 from sim.springs.forces.links import link_forces
-from sim.springs.net import by_net
 
 WHOLE = 160  # points: a rope no longer than this is one block
 BLOCK = 96  # points in a block of a longer one: the rows of their stages are 30 kB
@@ -175,13 +177,16 @@ def accelerate_all(x, v, t, p, f, a):
     accelerate(x, v, t, p, True, f, a)
 
 
+rough_acts = each("acts", "p", "truth", [force for force in FORCES if not force.is_smooth], inline=True)
+
+
 @kernel(inline=True)
-def is_bare_net(p):
-    return not (p.has_floor or p.has_sphere) and p.grabbed < 0 and p.pins.shape[0] == 0
+def is_smooth_net(p):
+    return not rough_acts(p) and p.pins.shape[0] == 0
 
 
-# Whether links, gravity and drag are all there is.
-is_bare = by_net(rope=is_bare_net, grid=is_bare_net, lines=kernel(lambda p: False, inline=True))
+# Whether all that acts is as smooth as the estimates of the error need it.
+is_smooth = by_net(rope=is_smooth_net, grid=is_smooth_net, lines=kernel(lambda p: False, inline=True))
 
 
 @kernel(noalias=True, inline=True)
@@ -274,7 +279,7 @@ def weight_of(method, i):
 @kernel(allocates=False)
 def step_rope(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
     """`take_step` of a rope."""
-    if is_bare(p) and not with_account:
+    if not (other_acts(p) or p.pins.shape[0] > 0 or with_account):
         step_bare_rope(method, x, v, h, p, stages, xn, vn)
     else:
         step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_account)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from sim.jit import is_stopped, kernel
-from sim.springs.forces.acceleration import add_row
-from sim.springs.integrators.implicit.blocks import SYMMETRIC, add_air_products, add_pair_products
+from sim.springs.acceleration import add_row
+from sim.springs.integrators.implicit.blocks import SYMMETRIC, multiply_coupled
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
@@ -45,7 +45,7 @@ def hold_pinned(w, u, o, n):
 
 
 @kernel(noalias=True, allocates=False)
-def set_matrix_product(points, links, own, air, u, p, f, q):
+def set_matrix_product(points, links, coupled, u, p, f, q):
     """q = (M + g D + g^2 K) u of `sim.springs.integrators.implicit.blocks`, 0 where pinned; u is 0 there."""
     n, m = np.uint64(p.rows * p.cols), np.uint64(p.cols + 1)
     set_products(points, np.uint64(0), u, n, q)
@@ -62,8 +62,7 @@ def set_matrix_product(points, links, own, air, u, p, f, q):
                 of, o = np.uint64(e) * m, np.uint64(e) * n
                 add_row(f, of, count, 1.0, q, o + ia)
                 add_row(f, of, count, -1.0, q, o + ib)
-    add_pair_products(p, own, u, q)
-    add_air_products(p, air, u, q)
+    multiply_coupled(p, coupled, u, q)
     for e in range(3):
         hold_pinned(p.inverse_masses, q, np.uint64(e) * n, n)
 
@@ -110,7 +109,7 @@ def set_direction(d, beta, z):
 
 
 @kernel(noalias=True, allocates=False)
-def solve_conjugate_gradients(points, links, own, air, factors, r, reduction, p, f, z, d, q, u):
+def solve_conjugate_gradients(points, links, coupled, factors, r, reduction, p, f, z, d, q, u):
     """Solve A u = r until r has shrunk to `reduction` of itself in the preconditioner's norm; r is overwritten.
 
     factors: `factorise` of A's diagonal. f, z, d, q: scratch.
@@ -124,7 +123,7 @@ def solve_conjugate_gradients(points, links, own, air, factors, r, reduction, p,
     for count in range(MOST):
         if rho <= goal or (count % UNASKED == UNASKED - 1 and is_stopped(p.stop)):
             return count
-        set_matrix_product(points, links, own, air, d, p, f, q)
+        set_matrix_product(points, links, coupled, d, p, f, q)
         alpha = rho / dot(d, q)
         add_scaled(u, alpha, d)
         add_scaled(r, -alpha, q)

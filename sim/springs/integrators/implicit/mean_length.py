@@ -13,10 +13,10 @@ spring the first factor is the tension at l, and where it does not turn F is the
 import math
 
 from sim.jit import kernel
+from sim.springs.arrays import by_net, link_ratio
 from sim.springs.forces.links import TINY
 from sim.springs.integrators.implicit.blocks import least_across, set_link_blocks
 from sim.springs.laws import damps, force_density, over_step
-from sim.springs.net import by_net, link_ratio
 
 
 @kernel(inline=True)

@@ -11,25 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import is_stopped, kernel
-from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.arrays import by_net, mass_at
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
 from sim.springs.integrators.implicit.blocks import (
     GENERAL,
     SYMMETRIC,
-    add_air_to_points,
+    add_coupled,
     add_links_to_points,
-    add_pairs_to_points,
-    air_numbers,
-    pair_numbers,
-    set_air_blocks,
+    coupled_size,
+    set_coupled,
     set_link_blocks,
-    set_pair_blocks,
     set_point_blocks,
 )
 from sim.springs.integrators.implicit.conjugate_gradients import factorise, solve_conjugate_gradients
 from sim.springs.integrators.implicit.mean_length import add_mean_lengths, set_mean_blocks
 from sim.springs.integrators.implicit.tangent import dot
-from sim.springs.net import by_net, mass_at
 from sim.springs.vector_ops import set_sum
 
 MOST = 25  # corrections a stage: a stage that has not settled by then is taken as it is
@@ -49,8 +46,7 @@ class NewtonArrays(NamedTuple):
     f: NDArray[np.float64]  # scratch of `accelerate`
     points: NDArray[np.float64]  # (6 rows cols,) blocks of the particles
     links: NDArray[np.float64]  # (families numbers rows cols,) blocks of the links
-    own: NDArray[np.float64]  # (3 pairs,) blocks of the pairs of a net that may touch
-    air: NDArray[np.float64]  # (6 rows cols,) blocks of the cells of a net in air
+    coupled: NDArray[np.float64]  # blocks of the forces that couple points otherwise than links do
     diagonal: NDArray[np.float64]  # (cols, 9) of a rope
     beside: NDArray[np.float64]  # (cols, 9) of a rope
     factors: NDArray[np.float64]  # (6 rows cols,) of a net
@@ -79,8 +75,7 @@ def make_work(p, mean):
         make_scratch(p),
         np.zeros(6 * size),
         np.zeros(numbers * size * p.offsets.shape[0]),
-        np.zeros(pair_numbers(p)),
-        np.zeros(air_numbers(p)),
+        np.zeros(coupled_size(p)),
         np.zeros((n, 9)),
         np.zeros((n, 9)),
         np.zeros(2 * m),
@@ -153,11 +148,10 @@ def correct_net(before, p, work):
     for j in range(6 * n):
         work.factors[j] = work.points[j]
     add_links_to_points(p, work.links, work.factors)
-    add_pairs_to_points(p, work.own, work.factors)
-    add_air_to_points(p, work.air, work.factors)
+    add_coupled(p, work.coupled, work.factors)
     factorise(work.factors, n)
     solve_conjugate_gradients(
-        work.points, work.links, work.own, work.air, work.factors, work.r, reduction, p, work.f, work.z, work.d,
+        work.points, work.links, work.coupled, work.factors, work.r, reduction, p, work.f, work.z, work.d,
         work.q, work.u,
     )  # fmt: skip
     # The scratch of forces is zero at its ends for whoever relies on it.
@@ -205,8 +199,7 @@ def solve_stage(x0, v0, g, t, p, x, v, work, most):
                 i = e * n + j
                 work.r[i] = mass_at(p, j) * (v0[i] + g * work.a[i] - v[i]) if p.inverse_masses[j] > 0.0 else 0.0
         set_point_blocks(x, v, t, g, p, work.points)
-        set_pair_blocks(x, v, g, p, work.own)
-        set_air_blocks(x, v, g, p, work.air)
+        set_coupled(x, v, g, p, work.coupled)
         if work.mean:
             set_mean_blocks(x0, x, g, p, work.links)
         else:

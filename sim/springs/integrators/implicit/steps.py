@@ -13,8 +13,8 @@ import math
 import numpy as np
 
 from sim.jit import is_stopped, kernel
+from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import add_power
-from sim.springs.forces.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.integrators.implicit.newton import MOST, make_work, solve_stage
 
 EULER, MIDPOINT, TR_BDF2 = 0, 1, 2

@@ -10,57 +10,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.forces.contact import touching
-from sim.springs.forces.links import linearised
-from sim.springs.forces.self_contact import refresh_pairs
-from sim.springs.laws import TAUT, damps, stiffness
-from sim.springs.net import by_net, link_ratio, mass_at
-
-STIFFNESS = 0  # K
-DAMPING = 1  # D
-TRANSVERSE = 2  # the part of K across the links, which axial damping does not reach
-FRICTION = 3  # M over what slides along floor or sphere: friction's strongest damping, times h
-STIFFEST = 4  # K of links that are as stiff as any may soon be
-
-
-@kernel(noalias=True, allocates=False)
-def add_links(x, u, p, part, longest, out):
-    """Links: K = T' n n^T + T/l (I - n n^T), of `linearised`; D = b I, or b n n^T where damping is axial.
-
-    longest: strain of part STIFFEST, see `longest_strain`.
-    """
-    n = p.rows * p.cols
-    for q in range(p.offsets.shape[0]):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest = p.links[q, 0]
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                c = a + di * p.cols + dj
-                rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
-                du, dv, dw = u[c] - u[a], u[n + c] - u[n + a], u[2 * n + c] - u[2 * n + a]
-                rr = rx * rx + ry * ry + rz * rz
-                ratio = link_ratio(p, q, i, j)
-                k, b = ratio * p.links[q, 1], ratio * p.links[q, 2]
-                length = math.sqrt(rr)
-                along, across = linearised(p.law, k, rest, length)
-                # Of a link that is pressed further only this counts: it buckles, which no step can mend.
-                across = max(across, -along) if rr > 0.0 else -along
-                if part == DAMPING:
-                    along = b if damps(p.law, rest, length) else 0.0
-                    across = 0.0 if p.axial else along
-                elif part == STIFFEST:
-                    along = max(along, stiffness(p.law, k, rest, (1.0 + longest) * rest))
-                elif part == TRANSVERSE:
-                    along = 0.0
-                s = (along - across) * (rx * du + ry * dv + rz * dw) / rr if rr > 0.0 else 0.0
-                fx, fy, fz = across * du + s * rx, across * dv + s * ry, across * dw + s * rz
-                out[a] -= fx
-                out[n + a] -= fy
-                out[2 * n + a] -= fz
-                out[c] += fx
-                out[n + c] += fy
-                out[2 * n + c] += fz
+from sim.springs.forces import each
+from sim.springs.forces.links import tangent as add_link_tangent
+from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST
+from sim.springs.laws import TAUT
 
 
 @kernel(allocates=False)
@@ -80,76 +33,6 @@ def longest_strain(x, p):
     return longest
 
 
-@kernel(noalias=True, allocates=False)
-def add_surface(x, u, t, p, part, on_sphere, out):
-    """Every touching point: K = k [n n^T - depth/r (I - n n^T)] with r the distance to the sphere's centre."""
-    n = p.rows * p.cols
-    for j in range(n):
-        depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-        if depth <= 0.0:
-            continue
-        along = p.contact_k
-        across = -p.contact_k * depth / max(p.sr - depth, depth) if on_sphere else 0.0
-        if part == DAMPING:
-            along = p.contact_b
-            if p.lab_contact and on_sphere:
-                along *= depth
-            across = along if p.lab_contact else 0.0
-        elif part == FRICTION:
-            along, across = 0.0, mass_at(p, j)
-        un = (along - across) * (u[j] * nx + u[n + j] * ny + u[2 * n + j] * nz)
-        out[j] += across * u[j] + un * nx
-        out[n + j] += across * u[n + j] + un * ny
-        out[2 * n + j] += across * u[2 * n + j] + un * nz
-
-
-@kernel(noalias=True, allocates=False)
-def add_pull(x, u, p, part, out):
-    """The grab: K = k I within reach; beyond it the force is capped and K = (F/r) (I - n n^T)."""
-    n, g = p.rows * p.cols, p.grabbed
-    dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
-    r = math.sqrt(dx * dx + dy * dy + dz * dz)
-    across, inward = p.grab_k, 0.0
-    if part == DAMPING:
-        across = p.grab_b
-    elif p.grab_k * r > p.grab_max:
-        across = p.grab_max / r
-        inward = across * (dx * u[g] + dy * u[n + g] + dz * u[2 * n + g]) / (r * r)
-    out[g] += across * u[g] - inward * dx
-    out[n + g] += across * u[n + g] - inward * dy
-    out[2 * n + g] += across * u[2 * n + g] - inward * dz
-
-
-@kernel(noalias=True, allocates=False)
-def add_pairs(x, u, p, part, out):
-    """The net's touching pairs: K = k [n n^T - depth/r (I - n n^T)] between the two, D = b n n^T."""
-    n = p.rows * p.cols
-    if p.thickness == 0.0:
-        return
-    for s in range(refresh_pairs(x, p)):
-        i, j = p.pairs[s, 0], p.pairs[s, 1]
-        rx, ry, rz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
-        rr = rx * rx + ry * ry + rz * rz
-        if rr >= p.thickness * p.thickness or rr == 0.0:
-            continue
-        along, across = p.contact_b, 0.0
-        if part != DAMPING:
-            along, across = p.contact_k, p.contact_k * max(-1.0, 1.0 - p.thickness / math.sqrt(rr))
-        du, dv, dw = u[j] - u[i], u[n + j] - u[n + i], u[2 * n + j] - u[2 * n + i]
-        q = (along - across) * (rx * du + ry * dv + rz * dw) / rr
-        fx, fy, fz = across * du + q * rx, across * dv + q * ry, across * dw + q * rz
-        out[i] -= fx
-        out[n + i] -= fy
-        out[2 * n + i] -= fz
-        out[j] += fx
-        out[n + j] += fy
-        out[2 * n + j] += fz
-
-
-# A rope does not push itself.
-add_own_contacts = by_net(rope=kernel(lambda x, u, p, part, out: None, inline=True), grid=add_pairs)
-
-
 @kernel(noalias=True, inline=True)
 def set_over_root_mass(y, p, out):
     """out = M^-1/2 y, 0 where pinned."""
@@ -157,6 +40,9 @@ def set_over_root_mass(y, p, out):
     for e in range(3):
         for j in range(n):
             out[e * n + j] = math.sqrt(p.inverse_masses[j]) * y[e * n + j]
+
+
+add_tangents = each("tangent", "x, u, t, p, part, longest, out", "none", noalias=True, allocates=False)
 
 
 @kernel(noalias=True)
@@ -170,18 +56,8 @@ def set_tangent(x, y, t, p, part, longest, out):
     u = np.empty_like(y)
     set_over_root_mass(y, p, u)
     for j in range(y.shape[0]):
-        out[j] = p.drag * u[j] if part == DAMPING else 0.0
-    if part != FRICTION:
-        add_links(x, u, p, part, longest, out)
-        if part != TRANSVERSE:
-            add_own_contacts(x, u, p, part, out)
-    if part != TRANSVERSE:
-        if p.has_floor:
-            add_surface(x, u, t, p, part, False, out)
-        if p.has_sphere:
-            add_surface(x, u, t, p, part, True, out)
-        if p.grabbed >= 0 and part != FRICTION:
-            add_pull(x, u, p, part, out)
+        out[j] = 0.0
+    add_tangents(x, u, t, p, part, longest, out)
     set_over_root_mass(out, p, out)
 
 
@@ -243,7 +119,7 @@ def quotients(x, y, t, p):
     for j in range(w.shape[0]):
         w[j] = 0.0
     set_over_root_mass(y, p, u)
-    add_links(x, u, p, STIFFEST, longest, w)
+    add_link_tangent(x, u, t, p, STIFFEST, longest, w)
     links = dot(u, w)
     set_tangent(x, y, t, p, DAMPING, longest, w)
     rate = dot(y, w)

@@ -17,12 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.forces.contact import surface_velocity, touches, touching
+from sim.springs.arrays import by_net, link_ratio
+from sim.springs.forces import SEPARATE, each
 from sim.springs.forces.links import TINY
-from sim.springs.forces.self_contact import damp_self_contacts
 from sim.springs.laws import by_damping, damps
 from sim.springs.lines.damping import damp_lines, make_lines_decay
-from sim.springs.net import by_net, link_ratio
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
 
@@ -145,54 +144,6 @@ def scale(v, keep, o, n):
         v[o + j] *= keep[j]
 
 
-@kernel(allocates=False)
-def damp_contact(x, v, t, s, p, on_sphere, reverse):
-    """Contact damping and friction of every touching point, exact or capped at standstill.
-
-    Friction takes the normal force of the velocity before the normal damping, in reverse of the one after it: the two
-    together are then symmetric, and of second order. Returns the work [J] that a moving sphere did by it.
-    """
-    work = 0.0
-    if not touches(x, t, p, on_sphere):
-        return work
-    n = p.rows * p.cols
-    su, sv, sw = surface_velocity(p, on_sphere)
-    moves = su != 0.0 or sv != 0.0 or sw != 0.0
-    for j in range(n):
-        w = p.inverse_masses[j]
-        depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
-        if depth <= 0.0 or w == 0.0:
-            continue
-        ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-        b = p.contact_b
-        if p.lab_contact:
-            keep = math.exp(-(b * depth if on_sphere else b) * w * s)
-            ru, rv, rw = ru * keep, rv * keep, rw * keep
-        else:
-            vn = ru * nx + rv * ny + rw * nz
-            tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
-            # The whole normal force, k depth - b v_n, never pulls: separating, damping takes at most k depth.
-            after = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s)
-            normal = max(0.0, p.contact_k * depth - b * (after if reverse else vn))
-            speed = math.sqrt(tx * tx + ty * ty + tz * tz)
-            slow = p.friction * normal * w * s
-            keep = 1.0 - slow / speed if slow < speed else 0.0
-            ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
-        if moves:
-            work += ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw) / w
-        v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
-    return work
-
-
-@kernel(allocates=False)
-def damp_grab(v, s, p):
-    n, g = p.rows * p.cols, p.grabbed
-    keep = math.exp(-p.grab_b * p.inverse_masses[g] * s)
-    v[g] *= keep
-    v[n + g] *= keep
-    v[2 * n + g] *= keep
-
-
 @kernel
 def make_net_decay(p, s):
     """(families + 1, rows cols): the share of each family's link that begins at a point, then what drag leaves of each
@@ -296,25 +247,8 @@ def damp_motion(x, v, decay, p, reverse):
 
 
 never = kernel(lambda p: False, inline=True)
-pushes_itself = by_net(rope=never, grid=kernel(lambda p: p.thickness > 0.0, inline=True), lines=never)
-damp_own_contacts = by_net(rope=kernel(lambda x, v, s, p, reverse: None, inline=True), grid=damp_self_contacts)
-
-
-@kernel(allocates=False)
-def damp_surfaces(x, v, t, s, p, reverse):
-    """Itself, floor, sphere, pull, or in reverse. Returns the work [J] that a moving sphere did."""
-    work = 0.0
-    for step in range(4):
-        part = 2 - step if reverse else step - 1
-        if part == -1 and pushes_itself(p):
-            damp_own_contacts(x, v, s, p, reverse)
-        if part == 0 and p.has_floor:
-            work += damp_contact(x, v, t, s, p, False, reverse)
-        elif part == 1 and p.has_sphere:
-            work += damp_contact(x, v, t, s, p, True, reverse)
-        elif part == 2 and p.grabbed >= 0:
-            damp_grab(v, s, p)
-    return work
+other_acts = each("acts", "p", "truth", SEPARATE, inline=True)
+damp_others = each("damp", "x, v, t, s, p, reverse", "sum", turns=True, allocates=False)
 
 
 @kernel(inline=True)
@@ -327,12 +261,12 @@ def is_odd(t, h, s):
 def damp_inline(x, v, t, s, decay, p, reverse):
     """`damp` of a rope, which is over so soon that a call would count."""
     work = 0.0
-    outside = p.has_floor or p.has_sphere or p.grabbed >= 0 or pushes_itself(p)
+    outside = other_acts(p)
     if outside and reverse:
-        work += damp_surfaces(x, v, t, s, p, reverse)
+        work += damp_others(x, v, t, s, p, reverse)
     damp_motion(x, v, decay, p, reverse)
     if outside and not reverse:
-        work += damp_surfaces(x, v, t, s, p, reverse)
+        work += damp_others(x, v, t, s, p, reverse)
     return work
 
 
@@ -352,7 +286,7 @@ def rope_gaps_merge(p):
     """Links on their own, damped alike in all directions, act on each component of the velocities alone."""
     if kept_shares(p.law, 1) > 0:
         return False
-    return p.damped and not (p.axial or p.has_floor or p.has_sphere) and p.grabbed < 0
+    return p.damped and not (p.axial or other_acts(p))
 
 
 # Whether `cross_gap` knows the net's damping.

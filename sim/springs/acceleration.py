@@ -6,19 +6,16 @@ a negative). Two passes over a rope, link forces and then their differences, vec
 force does not.
 """
 
-import math
-
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.arrays import by_net
+from sim.springs.forces import each
+from sim.springs.forces.air import wind_scratch_size
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
-from sim.springs.forces.contact import add_contacts
 from sim.springs.forces.links import link_forces, scale_ends
-from sim.springs.forces.pins import set_paths
-from sim.springs.forces.self_contact import add_self_contacts
-from sim.springs.forces.wind import add_wind, wind_scratch_size
 from sim.springs.lines.forces import accelerate_lines, lines_scratch_size, set_line_pins
-from sim.springs.net import by_net
+from sim.springs.pins import set_paths
 
 
 @kernel(noalias=True, inline=True)
@@ -92,39 +89,10 @@ def accelerate_grid(x, v, p, b, c, f, a):
     scale_rows(p.inverse_masses, n, a, n + n)
 
 
-@kernel(allocates=False)
-def add_grab(x, v, p, b, a):
-    """The pull on the grabbed particle: at most grab_max from its spring, plus its damping."""
-    n, g = p.rows * p.cols, p.grabbed
-    dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
-    s = grab_secant(dx, dy, dz, p)
-    w = p.inverse_masses[g]
-    a[g] += w * (s * dx - b * p.grab_b * v[g])
-    a[n + g] += w * (s * dy - b * p.grab_b * v[n + g])
-    a[2 * n + g] += w * (s * dz - b * p.grab_b * v[2 * n + g])
-
-
-@kernel(allocates=False)
-def grab_secant(dx, dy, dz, p):
-    """Secant stiffness of the pull [N/m]: grab_k within reach, grab_max / distance beyond."""
-    distance = math.sqrt(dx * dx + dy * dy + dz * dz)
-    return p.grab_max / distance if p.grab_k * distance > p.grab_max else p.grab_k
-
-
 accelerate_links = by_net(rope=accelerate_rope, grid=accelerate_grid, cloth=accelerate_cloth)
 
 
-@kernel(noalias=True, inline=True)
-def add_wide_forces(x, v, p, with_damping, f, a):
-    """Air, and the net against itself."""
-    if p.has_air and with_damping:
-        add_wind(x, v, p, f, a)
-    if p.thickness > 0.0:
-        add_self_contacts(x, v, p, with_damping, a)
-
-
-# A rope has no cells that catch air, and does not push itself.
-add_forces_of_width = by_net(rope=kernel(lambda x, v, p, with_damping, f, a: None, inline=True), grid=add_wide_forces)
+add_others = each("accelerate", "x, v, t, p, with_damping, f, a", "none", noalias=True, inline=True)
 
 
 @kernel(noalias=True, inline=True)
@@ -132,11 +100,7 @@ def accelerate_inline(x, v, t, p, with_damping, f, a):
     """`accelerate` of a rope, which is over so soon that a call would count."""
     b = 1.0 if with_damping else 0.0
     accelerate_links(x, v, p, b, b * p.drag, f, a)
-    add_forces_of_width(x, v, p, with_damping, f, a)
-    if p.has_floor or p.has_sphere:
-        add_contacts(x, v, t, p, with_damping, a)
-    if p.grabbed >= 0:
-        add_grab(x, v, p, b, a)
+    add_others(x, v, t, p, with_damping, f, a)
 
 
 @kernel(noalias=True, allocates=False)

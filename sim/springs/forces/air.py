@@ -9,7 +9,9 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.net import by_net
+from sim.springs.arrays import by_net
+from sim.springs.forces.matrices import add_block
+from sim.springs.forces.record import WIDE_NETS, Force
 from sim.springs.vector_ops import add_scaled, set_sum
 
 STILL = 1e-300  # under the roots: no air or no area gives no force instead of 0/0
@@ -72,11 +74,13 @@ def add_quarters(f, of, cols, n, w, a, o):
 
 
 @kernel(noalias=True, allocates=False)
-def add_wind(x, v, p, f, a):
-    """Add the accelerations by the air; f: scratch; its last (wind_scratch_size,) are free, but 0 where no cell is.
+def accelerate(x, v, t, p, with_damping, f, a):
+    """All of it is damping. f: scratch; its last (wind_scratch_size,) are free, but 0 where no cell is.
 
     All cells are worked out in one loop, as the rows of most cloths are short.
     """
+    if not with_damping:
+        return
     n, m, cols = np.uint64(p.rows * p.cols), np.uint64(cell_room(p)), np.uint64(p.cols)
     first = np.uint64(f.shape[0] - wind_scratch_size(p) + p.cols + 1)
     count = np.uint64((p.rows - 1) * p.cols - 1)
@@ -89,16 +93,17 @@ def add_wind(x, v, p, f, a):
 
 
 @kernel
-def wind_power(x, v, p):
+def power(x, v, t, p, with_damping):
     """(dissipated, put in) [W] by the air on the free particles: the wind does the work of its force at its own speed.
 
     The difference is what the particles get. In still air all is dissipated.
     """
+    work = gained = 0.0
+    if not with_damping:
+        return gained, work
     n = p.rows * p.cols
     a = np.zeros(v.shape[0])
-    add_wind(x, v, p, np.zeros(wind_scratch_size(p)), a)
-    work = 0.0
-    gained = 0.0
+    accelerate(x, v, t, p, True, np.zeros(wind_scratch_size(p)), a)
     for j in range(n):
         work += p.mass[j] * (a[j] * p.wind_x + a[n + j] * p.wind_y + a[2 * n + j] * p.wind_z)
         gained += p.mass[j] * (a[j] * v[j] + a[n + j] * v[n + j] + a[2 * n + j] * v[2 * n + j])
@@ -116,11 +121,11 @@ def blow(x, v, s, p, f, a, middle, with_account, ledger):
         return
     for j in range(v.shape[0]):
         a[j] = 0.0
-    add_wind(x, v, p, f, a)
+    accelerate(x, v, 0.0, p, True, f, a)
     set_sum(middle, v, 0.5 * s, a)
     for j in range(v.shape[0]):
         a[j] = 0.0
-    add_wind(x, middle, p, f, a)
+    accelerate(x, middle, 0.0, p, True, f, a)
     if not with_account:
         add_scaled(v, s, a)
         return
@@ -157,3 +162,76 @@ drift = by_net(rope=drift_rope, grid=drift_wide, lines=drift_rope)
 no_size = kernel(lambda x, p: 0, inline=True)
 wide_size = kernel(lambda x, p: x.shape[0] if p.has_air else 0, inline=True)
 air_scratch_size = by_net(rope=no_size, grid=wide_size, lines=no_size)
+
+
+@kernel(inline=True)
+def coupled_size(p):
+    return 6 * p.rows * p.cols
+
+
+@kernel(allocates=False)
+def set_coupled(x, v, g, p, coupled, o):
+    """Air: g times the symmetric part of the derivative of a cell's force by its velocity, with n fixed.
+
+    rho/2 A [C_D |s| (I + n n^T) + C_L |u| (1 - s^2/u^2)^2 n n^T], s = u . n, at the cell's first particle. What turns
+    the force is left out: it is not symmetric.
+    """
+    n = p.rows * p.cols
+    for j in range(6 * n):
+        coupled[o + j] = 0.0
+    for i in range(p.rows - 1):
+        for j in range(p.cols - 1):
+            a = i * p.cols + j
+            c = a + p.cols
+            ax, ay, az = cell_areas(x, np.uint64(a), np.uint64(c), np.uint64(n))
+            ux = p.wind_x - 0.25 * (v[a] + v[a + 1] + v[c] + v[c + 1])
+            uy = p.wind_y - 0.25 * (v[n + a] + v[n + a + 1] + v[n + c] + v[n + c + 1])
+            uz = p.wind_z - 0.25 * (v[2 * n + a] + v[2 * n + a + 1] + v[2 * n + c] + v[2 * n + c + 1])
+            area = math.sqrt(ax * ax + ay * ay + az * az + STILL)
+            speed = math.sqrt(ux * ux + uy * uy + uz * uz + STILL)
+            head_on = abs(ux * ax + uy * ay + uz * az) / (area * speed)
+            across = g * p.air_drag * area * speed * head_on
+            along = 2.0 * across + g * p.air_lift * area * speed * (1.0 - head_on * head_on) ** 2
+            add_block(coupled, o + a, n, along, across, ax / area, ay / area, az / area)
+
+
+@kernel(allocates=False)
+def add_coupled(p, coupled, points, o):
+    """A sixteenth of each cell's block onto those of its corners.
+
+    A corner moves the cell by a quarter of its own motion, and takes a quarter of the cell's force.
+    """
+    n = p.rows * p.cols
+    for i in range(p.rows - 1):
+        for j in range(p.cols - 1):
+            a = i * p.cols + j
+            for m in (a, a + 1, a + p.cols, a + p.cols + 1):
+                for e in range(6):
+                    points[e * n + m] += coupled[o + e * n + a] / 16.0
+
+
+@kernel(allocates=False)
+def multiply_coupled(p, coupled, u, q, o):
+    """q += the air's part of the matrix times u."""
+    n = p.rows * p.cols
+    for i in range(p.rows - 1):
+        for j in range(p.cols - 1):
+            a = i * p.cols + j
+            c = a + p.cols
+            k = o + a
+            x = u[a] + u[a + 1] + u[c] + u[c + 1]
+            y = u[n + a] + u[n + a + 1] + u[n + c] + u[n + c + 1]
+            z = u[2 * n + a] + u[2 * n + a + 1] + u[2 * n + c] + u[2 * n + c + 1]
+            fx = (coupled[k] * x + coupled[k + n] * y + coupled[k + 2 * n] * z) / 16.0
+            fy = (coupled[k + n] * x + coupled[k + 3 * n] * y + coupled[k + 4 * n] * z) / 16.0
+            fz = (coupled[k + 2 * n] * x + coupled[k + 4 * n] * y + coupled[k + 5 * n] * z) / 16.0
+            for m in (a, a + 1, c, c + 1):
+                q[m] += fx
+                q[n + m] += fy
+                q[2 * n + m] += fz
+
+
+FORCE = Force(
+    "air", rank=20, nets=WIDE_NETS, acts="p.has_air", accelerate=accelerate, power=power, is_smooth=True,
+    coupled_size=coupled_size, set_coupled=set_coupled, add_coupled=add_coupled, multiply_coupled=multiply_coupled,
+)  # fmt: skip

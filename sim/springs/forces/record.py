@@ -1,0 +1,52 @@
+"""`Force`: the declaration of a force, one in a file of `sim.springs.forces`."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays
+
+NETS = (RopeArrays, GridArrays, ClothArrays)  # ropes, and nets of several rows
+WIDE_NETS = (GridArrays, ClothArrays)
+
+
+def no_bound(numbers: Any) -> tuple[float, float]:
+    """Of a constant force."""
+    return 0.0, 0.0
+
+
+class Absent(NamedTuple):
+    """Placeholder for the numbers of a force that a net does not have."""
+
+
+class Force(NamedTuple):
+    """A force on the points of a net. Facets are kernels; None: the force has none.
+
+    x, v: positions [m] and velocities [m/s], flat (3 rows cols,), at the time t [s]; p: the net's record, see
+    `sim.springs.arrays`. Points whose p.inverse_masses is 0 are pinned. The facets of a force with numbers of its own
+    take these before all else; `Net.forces` has them.
+    """
+
+    name: str
+    rank: int = 100  # forces act in the order of their ranks; those of one rank by name
+    numbers: type | None = None  # NamedTuple of floats, with their defaults
+    acts: str = "True"  # condition on p: no facet is called otherwise. Of a force with numbers: that a net has them
+    # (x, v, t, p, with_damping, f, a): adds to the accelerations a; f: scratch of `make_scratch`. None: it is in the
+    # loops over the links.
+    accelerate: Any = None
+    damp: Any = None  # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] of what moves it
+    energy: Any = None  # (x, t, p) -> stored energy [J]
+    power: Any = None  # (x, v, t, p, with_damping) -> (dissipated, put in) [W]
+    pins_power: Any = None  # (x, v, p) -> what moving pins put in through its damping [W]
+    tangent: Any = None  # (x, u, t, p, part, longest, out): adds a matrix times u, see `sim.springs.forces.matrices`
+    blocks: Any = None  # (x, v, t, g, p, points): adds g D + g^2 K of each point, see `sim.springs.forces.matrices`
+    # A force between points that no link joins has blocks of its own, so many numbers from index o of `coupled` on.
+    # They are set, added to the points' blocks, and added times u to q.
+    coupled_size: Any = None  # (p)
+    set_coupled: Any = None  # (x, v, g, p, coupled, o)
+    add_coupled: Any = None  # (p, coupled, points, o)
+    multiply_coupled: Any = None  # (p, coupled, u, q, o)
+    # Of a force with numbers, a function of these: most stiffness [N/m] and damping [N s/m] at any point.
+    bound: Callable[[Any], tuple[float, float]] = no_bound
+    stores: str = "gravity"  # field of `Energy` that its energy counts in
+    is_smooth: bool = False  # its derivatives are continuous
+    nets: tuple[type, ...] = NETS  # records of the nets that it acts on

@@ -28,6 +28,7 @@ from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.panel.share import Share
 from app.panel.task_setups import setup_of_task
+from app.panel.timeline import Timeline
 from app.render.cameras import ClientCamera, place_camera
 from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
@@ -104,6 +105,7 @@ class Panel:
         self.controls, self.folders = self.shown.own, self.shown.folders
         self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
         self.recorder = Recorder(kind.packing)
+        self.timeline = Timeline(self, wake)
         self.share = Share(self, wake, make_replay, changes)
         self.guide: Guide | None = None
         self.code: CodePanel | None = None
@@ -345,6 +347,7 @@ class Panel:
         if self.guide is not None:
             self.guide.update(snapshot, refresh)
         self.share.update()
+        self.timeline.update(running=snapshot.status.running)
         if self.compare is not None:
             self.compare.update()
 

@@ -1,4 +1,4 @@
-"""The tab "Share": the timeline, links, set-ups and files.
+"""The tab "Share": links, set-ups and files.
 
 Callbacks run on viser's event loop; `update` runs on the viewer's thread.
 """
@@ -15,7 +15,6 @@ from app.messages import Vector
 from app.panel.changes import Change, Changes, Notice
 from app.panel.files import Files, MakeReplay, file_name
 from app.panel.task_setups import read_link
-from app.panel.timeline import Timeline
 from app.render.cameras import place_camera
 from app.render.html import fill, note
 from app.render.viser_inside import uuid_of
@@ -60,7 +59,6 @@ class Share:
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         with panel.head.folder:
             self.notice = Notice(gui, panel.kind.name, changes, self.restore)
-            self.moment = gui.add_html("", visible=False)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
         holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
@@ -69,9 +67,6 @@ class Share:
     def add(self) -> None:
         """The controls, in the container that is open."""
         gui, panel = self.panel.gui, self.panel
-        with gui.add_folder("Recording"):
-            self.timeline = Timeline(panel, self.moment, self.wake, lambda text: self.say("Recording", text))
-            self.add_line("Recording")
         with gui.add_folder("Curves"):
             gui.add_button_group("", (KEEP_CURVES, DROP_CURVES)).on_click(self.on_curves)
             self.add_line("Curves")
@@ -241,10 +236,9 @@ class Share:
             self.say("Set-up", str(reason))
 
     def update(self) -> None:
-        """Keep notice and timeline up to date."""
+        """Keep notice and buttons up to date."""
         self.notice.draw()
         self.end_confirmations()
-        self.timeline.update()
 
 
 def camera_of(client: viser.ClientHandle) -> Camera:

@@ -10,7 +10,7 @@ from urllib.parse import quote
 import imageio.v3 as iio
 import pytest
 
-from app.messages import Pause, Play, Reset
+from app.messages import Pause, Reset
 from app.panel.changes import UNDO
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import NAMES, scene_named
@@ -21,11 +21,6 @@ from sim.parameters import check_record
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
-# The time [s] at which each chart has a line, where the whole of its time axis is seen.
-MOMENT_PLACES = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).flatMap(({ chart }) => {
-    const line = chart.over.querySelector(".springtide-moment"), times = chart.data[0];
-    const whole = chart.scales.x.min === times[0] && chart.scales.x.max === times[times.length - 1];
-    return line && whole ? [chart.posToVal(parseFloat(line.style.left), "x")] : []; })"""
 
 
 @pytest.fixture
@@ -114,40 +109,6 @@ def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
     tab.page.get_by_role("option", name="Mine: Seventeen beads").click()
     tab.wait(lambda: vars(lab.panel.params)["points"] == 17, 20)
     assert preset.input_value() == "Mine: Seventeen beads"
-
-
-def test_the_timeline_shows_what_was(opened: tuple[Viewer, Tab]) -> None:
-    lab, tab = opened
-    tab.wait(lambda: len(lab.panel.recorder.frames) > 10, 30)
-    tab.page.get_by_role("button", name="◀ Back").click()
-    tab.wait(lambda: lab.panel.recorder.shown is not None and not lab.loop.running, 20)
-    shown = lab.panel.recorder.shown
-    assert shown is not None
-    tab.wait(lambda: f"t = {shown.time:.2f} s of the recording" in tab.page.locator("body").inner_text(), 20)
-    tab.page.get_by_role("button", name="Back to live", exact=True).click()
-    tab.wait(lambda: lab.panel.recorder.shown is None, 20)
-
-
-def test_the_plots_show_the_moment_and_the_run_goes_on_from_it(opened: tuple[Viewer, Tab]) -> None:
-    lab, tab = opened
-    lab.panel.set("plot_tip", True)
-    lab.loop.commands.put(Play())
-    tab.wait(lambda: lab.loop.scene.time > lab.panel.recorder.span()[0] + 2.0, 60)
-    lab.panel.recorder.show_time(lab.panel.recorder.span()[0] + 1.0)
-    lab.loop.commands.put(Pause())
-    tab.wait(lambda: not lab.loop.running, 20)
-    time = lab.loop.scene.time
-    shown = lab.panel.recorder.shown
-    assert shown is not None
-    place = tab.wait(lambda: tab.page.evaluate(MOMENT_PLACES), 30)
-    assert place[0] == pytest.approx(shown.time, abs=0.05)
-    tab.page.get_by_role("button", name="Continue from here").click()
-    tab.wait(lambda: lab.panel.recorder.shown is None, 20)
-    tab.wait(lambda: lab.loop.running, 20)
-    assert lab.loop.scene.time < time + 0.5
-    assert lab.panel.recorder.span()[1] <= lab.loop.scene.time + 0.1
-    tab.wait(lambda: not tab.page.evaluate(MOMENT_PLACES), 20)
-    lab.panel.set("plot_tip", False)
 
 
 def test_film_clip_and_plots_are_made_as_files(

@@ -81,7 +81,7 @@ def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
     words = f"t = {moment.time:.2f} s"
     for one in (tab, other):
         one.wait(lambda one=one: one.page.locator("#springtide-time").inner_text().endswith(words), 20)
-    bar, _, scene = other.page.evaluate(BOXES)
+    bar, _, _ = other.page.evaluate(BOXES)
     assert 0 <= bar["left"] < 5
     assert 385 < bar["right"] <= 390
     assert bar["bottom"] == pytest.approx(other.page.evaluate(PANEL_EDGE)[1], abs=1)

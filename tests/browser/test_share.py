@@ -30,6 +30,27 @@ def opened(shown: tuple[Viewer, Tab]) -> tuple[Viewer, Tab]:
     return shown
 
 
+def test_the_tab_has_three_groups_and_few_buttons(
+    opened: tuple[Viewer, Tab], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SPRINGTIDE_DATA", str(tmp_path))
+    lab, tab = opened
+    lab.panel.share.remove.visible = False  # a list without presets of the user
+    groups = tab.page.locator(".mantine-Paper-root > .mantine-Paper-root:first-child").all_inner_texts()
+    assert [name for name in groups if name in ("Recording", "Curves", "This run", "This set-up", "Files")] == [
+        "This run", "This set-up", "Files",
+    ]  # fmt: skip
+    names = ("Keep curves", "Replay (last 20 s)", "Data (.npz)", "Copy link", "Save set-up", "Keep as preset",
+             "Save plots", "Record", "Picture")  # fmt: skip
+    for name in names:
+        tab.wait(tab.page.get_by_role("button", name=name, exact=True).is_visible, 20)
+    assert not tab.page.get_by_role("button", name="Remove preset").is_visible()
+    tab.page.get_by_role("button", name="Keep curves").click()
+    tab.wait(tab.page.get_by_role("button", name="Drop curves").is_visible, 20)
+    tab.page.get_by_role("button", name="Drop curves").click()
+    tab.wait(tab.page.get_by_role("button", name="Keep curves").is_visible, 20)
+
+
 def load(tab: Tab, path: Path, content: object) -> None:
     """Choose a file in the page."""
     path.write_text(content if isinstance(content, str) else json.dumps(content), "utf-8")
@@ -120,7 +141,7 @@ def test_film_clip_and_plots_are_made_as_files(
     tab.show("Share")
     lab.panel.set("plot_tip", True)
     tab.wait(lambda: len(lab.panel.recorder.frames) > 10 and "plot_tip" in lab.panel.plots.charts, 30)
-    tab.page.get_by_role("button", name="Record clip").click()
+    tab.page.get_by_role("button", name="Record", exact=True).click()
     tab.page.wait_for_timeout(800)
 
     def saved(button: str) -> Path:
@@ -131,7 +152,11 @@ def test_film_clip_and_plots_are_made_as_files(
 
     clip = saved("[data-springtide-clip]").read_bytes()
     assert clip[4:8] == b"ftyp" or clip[:4] == b"\x1a\x45\xdf\xa3"  # MP4 or WebM
-    assert iio.imread(saved("[data-springtide-charts]")).std() > 1.0
+    for form, begin in (("CSV", b"t [s],"), ("SVG", b"<?xml"), ("PNG", b"\x89PNG")):
+        tab.page.locator("[data-springtide-plots]").select_option(form)
+        made = saved("[data-springtide-charts]").read_bytes()
+        assert made.startswith(begin)
+    assert iio.imread(made).std() > 1.0
     recorder, starts = lab.panel.recorder, lab.loop.counts["starts"]
     lab.loop.commands.put(Reset())
     tab.wait(lambda: recorder.starts > starts and len(recorder.frames) > 4, 30)
@@ -139,7 +164,8 @@ def test_film_clip_and_plots_are_made_as_files(
     tab.wait(lambda: not lab.loop.running, 20)
     frames = lab.panel.recorder.kept()
     lab.panel.recorder.show_frame(frames[-4])
-    with zipfile.ZipFile(saved("button:has-text('Film pictures')")) as film:
+    tab.page.locator("[data-springtide-film]").select_option("as pictures")
+    with zipfile.ZipFile(saved("[data-springtide-clip]")) as film:
         assert len(film.namelist()) == 4 + 1
         pictures = [iio.imread(film.read(name)) for name in film.namelist()[:-1]]
         times = film.read("times.csv").decode().splitlines()

@@ -112,6 +112,7 @@
   const ARROWS = { "◀": "Previous task", "▶": "Next task" };
   function nameArrows() {
     for (const button of document.querySelectorAll(".mantine-Button-root")) {
+      button.classList.toggle("springtide-quiet", button.textContent === "Remove preset");
       const name = ARROWS[button.textContent];
       if (!name || button.title === name) continue;
       button.title = name;

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from app.formats.formatting import longest_step, number, percent, time_step
+from app.formats.formatting import longest_step, number, percent
 from app.messages import Moment, vector_of
 from app.scenes.springs.methods import method_name
 from sim.springs import INTEGRATORS
@@ -66,7 +66,7 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
         return f"{start} {over} for {method} ({limit}). Use {proposals or 'another method'}."
     return (
         f"{start} within the limit of {method} ({limit}), so an impact or a pull was too sudden for it. "
-        f"Try a time step of {time_step(step / 4)}."
+        f"Try a time step of {longest_step(step / 4)}."
     )
 
 

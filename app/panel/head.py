@@ -67,7 +67,7 @@ class Head:
                 self.actions.undo()
             case "Reset":
                 self.actions.reset()
-            case "View":
+            case "Camera":
                 if event.client is not None:
                     self.actions.reset_view(event.client)
             case name:
@@ -108,7 +108,7 @@ class Head:
 
 def button_names(*, running: bool) -> tuple[str, ...]:
     """Labels of the buttons: the first names its next action."""
-    return "Pause" if running else "Play", "Step", "Reset", "View", "Plots", "Undo"
+    return "Pause" if running else "Play", "Step", "Reset", "Camera", "Plots", "Undo"
 
 
 def add_scene_chooser(

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 Key = Literal["space", "G", "N", "P", "R", "U", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
 DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 KEYS = Html(
-    "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
+    "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset camera · <b>P</b> plots · "
     "<b>G</b> grid · <b>U</b> undo · <b>C</b> to the first control · <b>1-9</b> presets"
 )
 
@@ -39,4 +39,4 @@ def add_keys(panel: "Panel") -> None:
         async def _(_: ViserEvent, action: Callable[[], None] = action) -> None:
             action()
 
-    panel.gui.add_command("Reset view", hotkey="V").on_trigger(panel.reset_view)
+    panel.gui.add_command("Reset camera", hotkey="V").on_trigger(panel.reset_view)

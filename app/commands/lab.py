@@ -1,6 +1,6 @@
 """`springtide lab new` and `springtide lab check`."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from app.files import check_out_file
 from app.formats import text_tables
 from app.lab.check import FolderResult, TaskResult, check_folder
 from app.lab.folder import folder_names, make_folder
+from app.lab.mistakes import mistakes, present_mistake, standing
 from app.lab.report import page_of
 from app.lab.results_file import csv_text, json_text
 from app.lab.runners import Runners
@@ -28,6 +29,7 @@ STYLES = {
 }
 ITEM_WIDTH = 7  # [characters]
 STATE_WIDTH = 2 + max(map(len, STYLES))  # [characters]
+FREQUENT = 3  # mistakes of a class that are printed
 PARALLEL = 2  # folders of a class that are checked at the same time
 
 
@@ -81,6 +83,7 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
     if len(results) > 1:
         names = folder_names(result.folder for result in results)
         text_tables.show("", [class_row(result, names[result.folder]) for result in results])
+        print_frequent((names[result.folder], result.tasks) for result in results)
         return
     result, console = results[0], get_console()
     for entry in result.tasks:
@@ -120,11 +123,19 @@ def plain(text: str) -> str:
 def class_row(result: FolderResult, name: str) -> dict[str, str]:
     """Result of the check of one folder of a class. name: of the folder."""
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
-    rest = [entry.task.item for entry in result.tasks if entry.state != "right" and not entry.task.optional]
     return {
         "Folder": plain(name),
         "Name": plain(result.answers.name),
-        "Right": f"{right} of {count}",
-        "Optional": f"{more} of {optional}",
-        "Not right": plain(", ".join(dict.fromkeys(rest))),
+        "Right": f"{right} of {count}, {more} of {optional} optional",
+        "Tasks": standing(result.tasks),
+        "Mistake": plain(result.answers.error or present_mistake(result.tasks)),
     }
+
+
+def print_frequent(students: Iterable[tuple[str, Sequence[TaskResult]]]) -> None:
+    """Print the mistakes that most students of a class have. students: name of the folder and results of each."""
+    found = [mistake for mistake in mistakes(students) if len(mistake.folders) > 1][:FREQUENT]
+    for mistake in found:
+        get_console().print()
+        names = ", ".join(mistake.folders)
+        text_tables.say(plain(f"{len(mistake.folders)} students, {mistake.place}: {mistake.text} ({names})"))

@@ -12,6 +12,8 @@ import threading
 from collections.abc import Iterable
 from pathlib import Path
 
+import msgspec
+
 from app.lab.job import end_with_this_program
 from app.lab.process import BACKGROUND_NICENESS, lower_priority
 from app.lab.program_check import Verdict, check_program, not_checked
@@ -90,7 +92,7 @@ class BackgroundCheck(Service):
         with contextlib.suppress(OSError, ValueError):
             process.stdin.write(json.dumps([str(folder), name]) + "\n")
             process.stdin.flush()
-            return Verdict(**json.loads(process.stdout.readline()))
+            return msgspec.json.decode(process.stdout.readline(), type=Verdict)
         end(process)
         return None
 
@@ -142,4 +144,5 @@ def main() -> None:
             if runner is None or runner.folder != Path(folder).resolve():
                 opened.close()
                 runner = opened.enter_context(Runner(Path(folder)))
-            print(json.dumps(dataclasses.asdict(check_program(Path(folder), runner, tasks[name]))), flush=True)
+            verdict = check_program(Path(folder), runner, tasks[name])
+            print(msgspec.json.encode(verdict).decode(), flush=True)

@@ -6,6 +6,9 @@ Beside the reference solution, such a file has
 - `ALTERNATIVES`, a tuple of functions that are right as well, though they return something else.
 - `behaviour(student)`: calls the student's function and raises `Wrong` where it does not behave as it must.
 - `CURVE`, a `Curve` that the report draws.
+- `METHOD`, a `Method`: the function is a step, and what it does is compared with right ones, equation by equation.
+- `TERMS` and `GROUPS`, tuples of `Term` and `Group` (`diagnosis/terms.py`): what the result adds up.
+- `adds_up(student, *arguments)`: whether it does so for these arguments; without it, for all.
 - `normalise(result)`: brings results that mean the same to one form, for example a list in any order.
 """
 
@@ -14,6 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from app.lab.diagnosis.explanation import Equation
+
 
 class Mistake(NamedTuple):
     """A typical mistake: its name, a hint for the student, and a function that makes it."""
@@ -21,6 +26,16 @@ class Mistake(NamedTuple):
     name: str
     hint: str
     function: Callable[..., Any]
+
+
+class Method(NamedTuple):
+    """An integration method. steps: right solutions, the usual one first.
+
+    with_velocity: whether the acceleration that a step gets may depend on the velocity.
+    """
+
+    steps: tuple[Callable[..., Any], ...]
+    with_velocity: bool = True
 
 
 class Curve(NamedTuple):
@@ -33,11 +48,15 @@ class Curve(NamedTuple):
 
 
 class Wrong(Exception):  # noqa: N818 - a judgement on a solution, not an error of the program
-    """The student's function does not behave as it must. mistake: its name where it is a known one."""
+    """The student's function does not behave as it must.
 
-    def __init__(self, text: str, mistake: str = "") -> None:
+    mistake: its name where it is a known one. equations: what the function does, beside the right ones.
+    """
+
+    def __init__(self, text: str, mistake: str = "", equations: tuple[Equation, ...] = ()) -> None:
         super().__init__(text)
         self.mistake = mistake
+        self.equations = equations
 
 
 class Counted:

@@ -38,6 +38,7 @@ class Student(NamedTuple):
     at: str = ""  # name of the task whose result changed last; at first of the last that is begun
     changed_at: str = ""  # clock time of that
     error: str = ""  # why the folder could not be checked, or its answers not be read
+    name: str = ""  # as the student typed it
 
 
 class Desk:
@@ -64,7 +65,7 @@ class Desk:
         self.is_open = True  # until this is done
         after = self.judged()
         self.is_open = bool(self.versions.unchecked()) or after.rope.text == NOT_DRAWN
-        same = after.saved is student.saved and after.rope is student.rope
+        same = after.saved is student.saved and after.rope is student.rope and after.name == student.name
         return student if same and (after.results, after.error) == (student.results, student.error) else after
 
     def judged(self) -> Student:
@@ -82,7 +83,7 @@ class Desk:
         programs = dict(versions.verdicts)
         results = tuple(result_of(task, programs.get(task.name), answers) for task in self.tasks)
         after = Student(before.folder, versions.newest, programs, results, rope, before.at, before.changed_at)
-        return turned(before, after)._replace(error=answers.error)
+        return turned(before, after)._replace(error=answers.error, name=answers.name)
 
 
 class Classroom:

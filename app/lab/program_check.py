@@ -1,20 +1,24 @@
 """Judges a student's function: against the reference at random inputs, then by its behaviour.
 
-A wrong function is compared with the typical mistakes of its task, and with those that any function can have: the
-sign, a factor, an argument that is not used.
+A wrong function is compared with the typical mistakes of its task, then looked at by its structure
+(`diagnosis/`): the tableau of a step, the terms of a sum. Any function can leave an argument unused.
 """
 
 import copy
 import dataclasses
 import itertools
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from app.lab.checking import Wrong, number_text
+from app.lab.diagnosis.edits import explain_edit
+from app.lab.diagnosis.explanation import Equation, Explanation
+from app.lab.diagnosis.steps import explain_step
+from app.lab.diagnosis.terms import WHOLE, Term, explain_terms
 from app.lab.runner import BUSY, MAX_WAIT, RunError, Runner
 from app.lab.source import read_source
 from app.lab.task import Task
@@ -23,6 +27,8 @@ from app.lab.wire import Foreign
 MAX_TRIES = 3  # of a check, on a machine that is too busy to start a process
 RETRY_INTERVAL = 0.5  # [s] between two of them
 SAMPLES = 12  # random inputs
+TERM_SAMPLES = 16  # random inputs at which terms are compared
+MAX_DRAWS = 200  # of inputs, to find so many
 TOLERANCE = 1e-4  # of the largest value of a result: single precision is right too
 TASK_LIMIT = 10.0  # [s] of processor time for all calls of one task
 NO_SPECIAL_CASE = ": look for a division by 0 or the root of a negative number"
@@ -35,7 +41,8 @@ class Verdict:
 
     state: "not begun", "right", "wrong", "failed" (no result), or "not checked" (the machine is too busy). mistake: the
     name of a recognised mistake, or "". place: file and line of a mistake, as an editor takes it: "rope.py:17"; "" if
-    it is unknown. file: the file that does not run, whatever function of it is asked for, or "".
+    it is unknown. file: the file that does not run, whatever function of it is asked for, or "". equations: what a
+    wrong function does, beside the right ones.
     """
 
     state: str
@@ -43,6 +50,7 @@ class Verdict:
     mistake: str = ""
     place: str = ""
     file: str = ""
+    equations: tuple[Equation, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -90,9 +98,10 @@ class Student:
         if self.like is None:
             self.like = self.reference(*arguments)
         found = conform(value, self.like)
-        if has_nan(found) and not has_nan(self.reference(*arguments)):
-            why = special_case(self.task.arguments, arguments)
-            raise Wrong(f"it returns NaN (not a number){why or NO_SPECIAL_CASE}", "NaN")
+        for is_such, what, name in ((np.isnan, "NaN (not a number)", "NaN"), (np.isinf, "infinity", "infinite")):
+            if has(is_such, found) and not has(is_such, self.reference(*arguments)):
+                why = special_case(self.task.arguments, arguments)
+                raise Wrong(f"it returns {what}{why or NO_SPECIAL_CASE}", name)
         return found
 
     def reference(self, *arguments: Any) -> Any:
@@ -169,9 +178,9 @@ def same(found: Any, expected: Any) -> bool:
     return True
 
 
-def has_nan(value: Any) -> bool:
-    """True if a result has a part that is not a number."""
-    return any(np.isnan(part).any() for part in parts(value))
+def has(is_such: Callable[[np.ndarray], np.ndarray], value: Any) -> bool:
+    """True if a result has a number of a kind."""
+    return any(is_such(part).any() for part in parts(value))
 
 
 def special_case(names: Sequence[str], arguments: Sequence[Any]) -> str:
@@ -211,13 +220,14 @@ def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
     try:
         compare(student)
         behave(student)
+        check_exactly(student)
     except RunError as error:
         place = place_of(error.file, error.line)
         if error.kind == BUSY:
             return not_checked(error.text)
         return Verdict("failed", error.text, error.kind, place, task.file if error.loading else "")
     except Wrong as error:
-        return Verdict("wrong", str(error), error.mistake, place_of(task.file, line))
+        return Verdict("wrong", str(error), error.mistake, place_of(task.file, line), equations=error.equations)
     return Verdict("right")
 
 
@@ -271,14 +281,18 @@ def compare(student: Student) -> None:
     for other in getattr(task.check, "ALTERNATIVES", ()):
         if all(same(a, normalise(call(other, s))) for a, s in zip(found, samples, strict=True)):
             return
+    why = explain(student)
     for mistake in getattr(task.check, "MISTAKES", ()):
         if all(same(a, normalise(call(mistake.function, s))) for a, s in zip(found, samples, strict=True)):
-            raise Wrong(mistake.hint, mistake.name)
+            raise Wrong(mistake.hint, mistake.name, why.equations if why else ())
     for a, b in zip(found, expected, strict=True):
         if [(p.ndim, p.shape[1:]) for p in parts(a)] != [(p.ndim, p.shape[1:]) for p in parts(b)]:
             raise Wrong(f"it returns {form_of(a)}; expected is {form_of(b)}", "wrong shape")
+    why = why or explain_edit(task.function, lambda function: agrees(function, samples, found, normalise))
+    if why is not None:
+        raise Wrong(why.text, why.mistake, why.equations)
     if all(same_shape(a, b) for a, b in zip(found, expected, strict=True)):
-        name_common_mistake(student, samples, found, expected)
+        name_unused_arguments(student, samples, found)
     behave(student)
     for a, b in zip(found, expected, strict=True):
         if not same_shape(a, b):
@@ -296,38 +310,44 @@ def compare(student: Student) -> None:
     )
 
 
-def name_common_mistake(student: Student, samples: list[Any], found: list[Any], expected: list[Any]) -> None:
-    """Raises Wrong for a mistake that a function of any task can have."""
-    task = student.task
-    if all(same(a, negative(b)) for a, b in zip(found, expected, strict=True)):
-        raise Wrong("every result has the right size and the wrong sign", "sign reversed")
-    if factor := common_factor(found, expected):
-        raise Wrong(f"every result is {factor:.4g} times what it must be", "constant factor")
-    unused = [name for i, name in enumerate(task.arguments) if ignores(student, samples, found, i)]
+def agrees(function: Callable[..., Any], samples: Sequence[Any], found: Sequence[Any], normalise: Any) -> bool:
+    """True if a function has these results at all samples, without an error."""
+    try:
+        return all(same(a, normalise(call(function, s))) for a, s in zip(found, samples, strict=True))
+    except Exception:  # of a function that an edit has broken
+        return False
+
+
+def check_exactly(student: Student) -> None:
+    """Raises Wrong for a step whose coefficients differ by less than the results may."""
+    if hasattr(student.task.check, "METHOD") and (why := explain(student)) is not None:
+        raise Wrong(why.text, why.mistake, why.equations)
+
+
+def explain(student: Student) -> Explanation | None:
+    """The difference of a function from the reference; None where its structure does not tell."""
+    check = student.task.check
+    try:
+        if (method := getattr(check, "METHOD", None)) is not None:
+            return explain_step(student, method.steps, with_velocity=method.with_velocity)
+        adds_up = getattr(check, "adds_up", lambda *_: True)
+        rng = np.random.default_rng(SEED)
+        drawn = (tuple(check.inputs(rng)) for _ in range(MAX_DRAWS))  # type: ignore[union-attr]
+        chosen = (sample for sample in drawn if adds_up(student, *sample))
+        samples = list(itertools.islice(chosen, TERM_SAMPLES))
+        if len(samples) < TERM_SAMPLES:
+            return None
+        terms = getattr(check, "TERMS", (Term(WHOLE, "", student.task.function),))
+        return explain_terms(student, terms, getattr(check, "GROUPS", ()), student.task.arguments, samples)
+    except (RunError, Wrong):
+        return None
+
+
+def name_unused_arguments(student: Student, samples: list[Any], found: list[Any]) -> None:
+    """Raises Wrong for a function that leaves an argument unused."""
+    unused = [name for i, name in enumerate(student.task.arguments) if ignores(student, samples, found, i)]
     if unused:
         raise Wrong(f"the result does not change with {' and '.join(unused)}", f"{unused[0]} not used")
-
-
-def negative(value: Any) -> Any:
-    """A result with its sign reversed."""
-    return tuple(-part for part in value) if isinstance(value, tuple) else -np.asarray(value)
-
-
-def common_factor(found: list[Any], expected: list[Any]) -> float | None:
-    """The number that all results are too large by, if there is one."""
-    a = np.concatenate([part.ravel() for value in found for part in parts(value)])
-    b = np.concatenate([part.ravel() for value in expected for part in parts(value)])
-    both = np.isfinite(a) & np.isfinite(b)
-    if not np.array_equal(np.isfinite(a), np.isfinite(b)) or not (norm := float(b[both] @ b[both])):
-        return None
-    factor = float(a[both] @ b[both]) / norm
-    fits = all(same(x, scaled(y, factor)) for x, y in zip(found, expected, strict=True))
-    return factor if fits and factor != 0.0 else None
-
-
-def scaled(value: Any, factor: float) -> Any:
-    """A result times a number."""
-    return tuple(factor * part for part in value) if isinstance(value, tuple) else factor * np.asarray(value)
 
 
 def ignores(student: Student, samples: list[Any], found: list[Any], i: int) -> bool:

@@ -12,6 +12,7 @@ from app.lab.answer_check import AnswerVerdict
 from app.lab.answers import Answers, Value
 from app.lab.chart import chart
 from app.lab.check import FolderResult, TaskResult
+from app.lab.diagnosis.shown import equation_lines
 from app.lab.folder import MAX_PICTURES, PICTURES, folder_names
 from app.lab.program_check import SAMPLES
 from app.lab.source import is_empty
@@ -40,6 +41,8 @@ h3 { border-top: 2px solid #ccd3da; padding-top: 0.8em; }
 pre { background: #f3f5f7; padding: 0.7em; overflow-x: auto; font-size: 13px; } img, svg { max-width: 100%; }
 .right { color: #1e6b2c; } .wrong, .failed { color: #b51d1d; } .incomplete { color: #9a4b00; }
 .faint { color: #4d5560; }
+.springtide-equations { border-left: 3px solid #ccd3da; padding-left: 1em; }
+.springtide-equations .right { padding-left: 1.5em; }
 .overview td { padding: 0.1em 0.5em; } figure { margin: 1em 0; } figcaption { color: #4d5560; font-size: 14px; }
 """
 
@@ -169,11 +172,18 @@ def program_text(entry: TaskResult) -> Html:
         text = ""
     if program.state == "right":
         behaviour = inspect.getdoc(getattr(entry.task.check, "behaviour", None)) or ""
-        text = f"As the reference at {SAMPLES} random inputs. {behaviour and 'Behaviour: '}{behaviour}"
+        told = behaviour if is_answered(entry) else ""
+        text = f"As the reference at {SAMPLES} random inputs. {told and 'Behaviour: '}{told}"
     return fill(
-        '<p>Function <code>{}</code>: <b class="{}">{}</b>. {}</p>',
+        '<p>Function <code>{}</code>: <b class="{}">{}</b>. {}</p>{}',
         entry.task.name, state_class(program.state), program.state, text,
+        equation_lines(program.equations) if program.equations else Html(),
     )  # fmt: skip
+
+
+def is_answered(entry: TaskResult) -> bool:
+    """True if the questions of a task have answers: what its check covers may give one away."""
+    return all(answer.state != "not begun" for answer in entry.answers)
 
 
 def answers_of(answers: Answers, entry: TaskResult) -> Html:

@@ -4,6 +4,7 @@ import numpy as np
 import viser
 
 from app.formats.formatting import number
+from app.lab.diagnosis.shown import equation_lines
 from app.lab.live_net import CLOTH, ROPE, StudentReport
 from app.lab.live_tables import Call, LiveTables, TableReport
 from app.lab.live_values import LiveValues
@@ -296,8 +297,9 @@ def function_line(task: Task, verdict: Verdict, compared: Html) -> Html:
     """One function: its name and state, its errors, and its values in the scene."""
     why = verdict.located if verdict.text else ""
     return fill(
-        '<div class="springtide-function" data-function="{}" data-state="{}">{} {}{}{}</div>',
+        '<div class="springtide-function" data-function="{}" data-state="{}">{} {}{}{}{}</div>',
         task.name, verdict.state, task.name, coloured(verdict.state, COLOURS[verdict.state]),
         fill('<div class="springtide-faint">{}</div>', why) if why else "",
+        equation_lines(verdict.equations) if verdict.equations else "",
         compared,
     )  # fmt: skip

@@ -128,13 +128,21 @@ class QuestionWidgets:
         elif verdict.state in STATE_WORDS and (verdict.state != "given" or self.question.kind == "text"):
             text = verdict.text
             if verdict.state == "given":
-                text = f"Compare: {self.question.why}" if self.question.why else ""
+                text = self.comparison()
             said = fill(
                 '<div class="springtide-line springtide-verdict">{} {}</div>',
                 coloured(STATE_WORDS[verdict.state], STATE_COLOURS[verdict.state]),
                 text,
             )
         self.line.content = str(said)
+
+    def comparison(self) -> str:
+        """The program's answer beside a text of the student's, once the answer of the task has been shown."""
+        if not self.question.why:
+            return ""
+        if not self.workbook.is_shown(self.task):
+            return f"“{SHOW}” puts the program's beside it."
+        return f"Compare: {self.question.why}"
 
     def remove(self) -> None:
         """Take it from the page."""
@@ -312,7 +320,8 @@ class Guide:
         """Show the texts of the task with the values of now."""
         shown = self.workbook.is_shown(task)
         self.show_titles(task)
-        tools = (SET_UP, SHOW, PICTURE) if task.guide is not None else (SET_UP, PICTURE)
+        compares = any(question.kind == "text" and question.why for question in task.questions)
+        tools = (SET_UP, SHOW, PICTURE) if task.guide is not None or compares else (SET_UP, PICTURE)
         if self.workbook.folder is None:
             tools = (SET_UP, HIDE if shown else SHOW)
         if self.tools.options != tools:

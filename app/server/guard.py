@@ -15,6 +15,7 @@ import dataclasses
 import ipaddress
 import logging
 import math
+import os
 import socket
 import threading
 import time
@@ -376,7 +377,8 @@ def check_port(host: str, port: int) -> None:
     """Raise OSError where it cannot be bound: viser would take the next port, or wait for the address forever."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.socket(family, socket.SOCK_STREAM) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if os.name == "posix":  # ports of servers that have just ended; elsewhere also those of others that run
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         probe.bind((host, port))
 
 

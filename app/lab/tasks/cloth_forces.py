@@ -3,6 +3,8 @@
 import numpy as np
 
 from app.lab.checking import Mistake, require
+from app.lab.diagnosis import links as laws
+from app.lab.diagnosis.terms import Form, Group, Term
 
 
 def cloth_forces(x, v, links, rest_lengths, stiffness, damping):
@@ -66,15 +68,10 @@ def overwritten(x, v, links, d, k, b):
     return force
 
 
-def undamped(x, v, links, d, k, b):
-    return cloth_forces(x, v, links, d, k, 0.0)
-
-
 MISTAKES = (
     Mistake("force on one end only", "Only the first point of each link gets a force.", summed(1.0, 0.0)),
     Mistake("force on one end only", "Only the second point of each link gets a force.", summed(0.0, -1.0)),
     Mistake("same force on both ends", "Both ends get a force of the same sign.", summed(1.0, 1.0)),
-    Mistake("sign reversed", "Stretched links push their ends apart.", summed(-1.0, 1.0)),
     Mistake("rest length forgotten", "The links pull as if their rest lengths were 0.", summed(1.0, -1.0, rest=0.0)),
     Mistake(
         "repeated indices",
@@ -83,13 +80,67 @@ MISTAKES = (
         lost,
     ),
     Mistake("forces overwritten", "Each link overwrites the force of the link before. Add with +=.", overwritten),
-    Mistake("damping forgotten", "There is no damping: subtract b (v1 - v2).", undamped),
     Mistake(
         "damping on absolute velocity",
         "The damping uses the velocity of one end. It damps v1 - v2.",
         summed(1.0, -1.0, other_end=0.0),
     ),
 )
+
+
+def of_law(law, first=1.0, second=-1.0, chosen=slice(None)):
+    """The forces of the links by a law, as a function of the arguments. chosen: links."""
+
+    def function(x, v, links, rest_lengths, stiffness, damping):
+        i, j = links[chosen].T
+        r = x[j] - x[i]
+        pull = law(r, laws.size(r), v[i] - v[j], stiffness, damping, rest_lengths[chosen, None])
+        force = np.zeros(x.shape)
+        np.add.at(force, i, first * pull)
+        np.add.at(force, j, second * pull)
+        return force
+
+    return function
+
+
+def both(*arguments):
+    """The whole force of a link, by its law."""
+    return laws.spring(*arguments) + laws.damping(*arguments)
+
+
+TERMS = (
+    Term("the spring on the first end", laws.SPRING, of_law(laws.spring, second=0.0)),
+    Term("the spring on the second end", f"-{laws.SPRING}", of_law(laws.spring, first=0.0)),
+    Term("the damping on the first end", laws.DAMPING, of_law(laws.damping, second=0.0)),
+    Term("the damping on the second end", "b (v1 - v2)", of_law(laws.damping, first=0.0)),
+)
+GROUPS = (
+    Group(
+        "the spring", f"{laws.SPRING} on the first end, and the opposite on the second",
+        ("the spring on the first end", "the spring on the second end"),
+        tuple(Form(text, why, of_law(law)) for text, why, law in laws.SPRING_FORMS),
+    ),
+    Group(
+        "the damping", f"{laws.DAMPING} on the first end, and the opposite on the second",
+        ("the damping on the first end", "the damping on the second end"),
+        tuple(Form(text, why, of_law(law)) for text, why, law in laws.DAMPING_FORMS),
+    ),
+    Group(
+        "the force on the first end", "added to the first point",
+        ("the spring on the first end", "the damping on the first end"),
+    ),
+    Group(
+        "the force on the second end", "the opposite of that on the first",
+        ("the spring on the second end", "the damping on the second end"),
+    ),
+    Group(
+        "the force of the links", "the sum over all links, each once", tuple(term.name for term in TERMS),
+        (
+            Form("that of all links but the last", "One link is left out.", of_law(both, chosen=slice(None, -1))),
+            Form("that of all links but the first", "One link is left out.", of_law(both, chosen=slice(1, None))),
+        ),
+    ),
+)  # fmt: skip
 
 
 def behaviour(student):

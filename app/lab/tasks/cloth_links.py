@@ -59,14 +59,12 @@ ALL = ((0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0))
 MISTAKES = (
     Mistake(
         "no shear links",
-        "The diagonals of the cells are missing: the cloth shears without resistance.",
+        "The diagonals of the cells are missing.",
         variant(((0, 1), (1, 0), (0, 2), (2, 0))),
     ),
     Mistake("one diagonal only", "Each cell has two diagonals, and one is missing.", variant((*ALL[:3], *ALL[4:]))),
     Mistake("one diagonal only", "Each cell has two diagonals, and one is missing.", variant((*ALL[:2], *ALL[3:]))),
-    Mistake(
-        "no bend links", "The links over two cells are missing: the cloth folds without resistance.", variant(ALL[:4])
-    ),
+    Mistake("no bend links", "The links over two cells are missing.", variant(ALL[:4])),
     Mistake(
         "structural links only",
         "Only direct neighbours are joined. Shear and bend links are missing.",

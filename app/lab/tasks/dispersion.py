@@ -9,7 +9,7 @@ def dispersion(k, calm, repeat_time, gravity):
     """The angular frequency [rad/s] that the lab gives a wave on deep water.
 
     omega = calm floor(sqrt(g k)/w0) w0, with w0 = 2 pi/T: whole multiples of w0 make the sea repeat after the time T.
-    calm is 1 for the true speed, and less for a sea that looks calm.
+    calm is 1 for true waves, and less in the storm that is over.
 
     k: wavenumber [rad/m]. calm: a factor. repeat_time: T [s]. gravity: g [m/s2].
     """

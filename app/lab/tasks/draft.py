@@ -76,9 +76,9 @@ def behaviour(student):
     """Reference drafts."""
     require(
         abs(student(500.0, 1.0, 850.0, 0.2, 1025.0) - 0.521951) < 1e-4,
-        "a box of 500 kg/m3, 1 m high, in 0.2 m of oil of 850 kg/m3 on water of 1025 kg/m3 has a draft of 0.5220 m",
+        "a box that reaches through the oil into the water has another draft",
     )
     require(
         abs(student(500.0, 1.0, 850.0, 5.0, 1025.0) - 0.588235) < 1e-4,
-        "the same box in thick oil has a draft of 0.5882 m",
+        "a box that the oil alone carries has another draft",
     )

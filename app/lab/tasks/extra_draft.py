@@ -8,8 +8,8 @@ from app.lab.checking import Curve, Mistake, require
 def extra_draft(oil_thickness, oil_density, water_density):
     """How much deeper [m] a box floats when a layer of oil comes onto the water: depth of its bottom below the surface.
 
-    The box reaches through the oil into the water. Then it sinks by d (1 - rho_oil/rho_water), whatever its own
-    density: oil of thickness d carries as much as water of thickness d rho_oil/rho_water.
+    Before and after, the box displaces its own weight: of water alone, then of a layer of oil of thickness d and of
+    the water below it.
 
     oil_thickness: d [m]. oil_density, water_density: rho [kg/m3].
     """

@@ -42,6 +42,6 @@ CURVE = Curve(
 
 def behaviour(student):
     """Straight down it carries its own weight; the tension is H + w z."""
-    require(abs(student(100.0, 30.0, 30.0) - 3000.0) < 0.01, "a line straight down must carry its weight, w z")
+    require(abs(student(100.0, 30.0, 30.0) - 3000.0) < 0.01, "a line that hangs straight down has another tension")
     level = 100.0 * (50.0**2 - 30.0**2) / 60.0
     require(abs(student(100.0, 50.0, 30.0) - level - 3000.0) < 0.01, "the tension must be w z more than its level part")

@@ -8,8 +8,6 @@ from app.lab.checking import Curve, Mistake, require
 def net_buoyancy(volume, body_density, fluid_density, gravity):
     """The net force [N], positive upwards, on a body that is wholly inside a fluid: buoyancy less weight.
 
-    F = (rho_fluid - rho_body) g V.
-
     volume: V [m3]. body_density, fluid_density: rho [kg/m3]. gravity: g [m/s2].
     """
     return (fluid_density - body_density) * gravity * volume

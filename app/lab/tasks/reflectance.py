@@ -79,5 +79,5 @@ CURVE = Curve("angle [rad]", "reflectance of oil", np.linspace(0.02, 1.55, 30), 
 
 def behaviour(student):
     """Straight down ((n - 1)/(n + 1))^2; along the surface everything."""
-    require(abs(student(0.0, 1.333) - 0.02037) < 1e-4, "water must reflect 2.04 % straight down")
+    require(abs(student(0.0, 1.333) - 0.02037) < 1e-4, "water reflects another share straight down")
     require(student(1.5707, 1.333) > 0.99, "along the surface everything must be reflected")

@@ -3,6 +3,8 @@
 import numpy as np
 
 from app.lab.checking import Curve, Mistake, require
+from app.lab.diagnosis import links
+from app.lab.diagnosis.terms import Form, Group, Term
 
 
 def rope_acceleration(x, v, mass, stiffness, damping, drag, rest_length, gravity):
@@ -35,16 +37,14 @@ def inputs(rng):
     return (x, 3.0 * rng.normal(size=(n, 3)), *(float(number) for number in numbers))
 
 
-def variant(
-    first=1.0, second=-1.0, spring_mass=None, weight=1.0, weight_axis=2, air=1.0, held=True, damped=1.0, rest=1.0
-):
+def variant(first=1.0, second=-1.0, spring_mass=None, weight=1.0, weight_axis=2, held=True, rest=1.0):
     """A function that makes a mistake: a part of the reference with another factor."""
 
     def function(x, v, mass, stiffness, damping, drag, rest_length, gravity):
         r = x[1:] - x[:-1]
         length = np.linalg.norm(r, axis=1)[:, None]
-        pull = stiffness * (length - rest * rest_length) * r / length - damped * damping * (v[:-1] - v[1:])
-        force = -air * drag * v
+        pull = stiffness * (length - rest * rest_length) * r / length - damping * (v[:-1] - v[1:])
+        force = -drag * v
         force[:-1] += first * pull
         force[1:] += second * pull
         a = force / mass if spring_mass is None else force * mass**spring_mass
@@ -85,7 +85,6 @@ MISTAKES = (
         "Gravity points upwards. z points up, so that its acceleration is -g in z.",
         variant(weight=-1.0),
     ),
-    Mistake("gravity forgotten", "There is no gravity: subtract g in z.", variant(weight=0.0)),
     Mistake(
         "gravity along the wrong axis", "Gravity acts along y here. In this lab z points up.", variant(weight_axis=1)
     ),
@@ -103,11 +102,93 @@ MISTAKES = (
             x, v, mass, stiffness, damping, drag, rest_length, gravity * mass
         ),
     ),
-    Mistake("air drag forgotten", "There is no air drag: each point gets -c v.", variant(air=0.0)),
-    Mistake("sign of the drag reversed", "The air drives the points on. The drag is -c v.", variant(air=-1.0)),
-    Mistake("damping forgotten", "The springs have no damping.", variant(damped=0.0)),
     Mistake("rest length forgotten", "The springs pull as if their rest length were 0.", variant(rest=0.0)),
 )
+
+
+def of_law(law, first=1.0, second=-1.0, chosen=slice(None)):
+    """The accelerations of the links by a law, as a function of the arguments. chosen: links."""
+
+    def function(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+        r = x[1:] - x[:-1]
+        force = law(r, links.size(r), v[:-1] - v[1:], stiffness, damping, rest_length)
+        a = np.zeros(x.shape)
+        a[:-1][chosen] += first * force[chosen] / mass
+        a[1:][chosen] += second * force[chosen] / mass
+        a[0] = 0.0
+        return a
+
+    return function
+
+
+def both(*arguments):
+    """The whole force of a link, by its law."""
+    return links.spring(*arguments) + links.damping(*arguments)
+
+
+def overwritten(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    r = x[1:] - x[:-1]
+    force = both(r, links.size(r), v[:-1] - v[1:], stiffness, damping, rest_length) / mass
+    a = np.vstack([force, -force[-1:]])
+    a[0] = 0.0
+    return a
+
+
+def air_drag(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    a = -drag * v / mass
+    a[0] = 0.0
+    return a
+
+
+def squared_drag(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    a = -drag * links.size(v) * v / mass
+    a[0] = 0.0
+    return a
+
+
+def weight(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    a = np.zeros(x.shape)
+    a[1:, 2] = -gravity
+    return a
+
+
+TERMS = (
+    Term("the spring on the first end", f"{links.SPRING} / m", of_law(links.spring, second=0.0)),
+    Term("the spring on the second end", f"-{links.SPRING} / m", of_law(links.spring, first=0.0)),
+    Term("the damping on the first end", f"{links.DAMPING} / m", of_law(links.damping, second=0.0)),
+    Term("the damping on the second end", "b (v1 - v2) / m", of_law(links.damping, first=0.0)),
+    Term("the air drag", "-c v / m", air_drag, (Form("-c |v| v / m", "The speed is squared.", squared_drag),)),
+    Term("gravity", "-g in z", weight),
+)
+GROUPS = (
+    Group(
+        "the spring", f"{links.SPRING} / m on the first end, and the opposite on the second",
+        ("the spring on the first end", "the spring on the second end"),
+        tuple(Form(text, why, of_law(law)) for text, why, law in links.SPRING_FORMS),
+    ),
+    Group(
+        "the damping", f"{links.DAMPING} / m on the first end, and the opposite on the second",
+        ("the damping on the first end", "the damping on the second end"),
+        tuple(Form(text, why, of_law(law)) for text, why, law in links.DAMPING_FORMS),
+    ),
+    Group(
+        "the force on the first end", "added to the first point",
+        ("the spring on the first end", "the damping on the first end"),
+    ),
+    Group(
+        "the force on the second end", "the opposite of that on the first",
+        ("the spring on the second end", "the damping on the second end"),
+    ),
+    Group(
+        "the force of the links", "the sum over all links, each once",
+        tuple(term.name for term in TERMS[:4]),
+        (
+            Form("that of all links but the last", "One link is left out.", of_law(both, chosen=slice(None, -1))),
+            Form("that of all links but the first", "One link is left out.", of_law(both, chosen=slice(1, None))),
+            Form("that of one link at each point", "Add with +=.", overwritten),
+        ),
+    ),
+)  # fmt: skip
 
 CURVE = Curve(
     "length of the last link, 0.2 m at rest [m]",
@@ -131,7 +212,7 @@ def behaviour(student):
     a = student(x, np.zeros((n, 3)), m, k, 7.0, 1.0, d, g)
     require(
         np.abs(a).max() < 1e-2 * g,
-        "a rope that hangs at rest, each spring stretched by the weight below it over k, must have no acceleration",
+        "a rope that hangs at rest must have no acceleration",
     )
     a = student(x, np.zeros((n, 3)), m, k, 7.0, 1.0, 0.3 * d, 0.0)
     middle = a[1:].sum(axis=0) * m

@@ -3,6 +3,7 @@
 import numpy as np
 
 from app.lab.checking import Curve, Mistake, require
+from app.lab.diagnosis.terms import Form, Term
 
 
 def sphere_force(x, v, centre, radius, stiffness, damping):
@@ -79,21 +80,51 @@ MISTAKES = (
         variant(lambda n, p, r, v, k, b: k * p * n - b * v),
     ),
     Mistake(
-        "damping forgotten",
-        "There is no damping: subtract b (v . n).",
-        lambda x, v, c, R, k, b: sphere_force(x, v, c, R, k, 0.0),
-    ),
-    Mistake(
-        "sign of the damping reversed",
-        "The damping drives the point on.",
-        lambda x, v, c, R, k, b: sphere_force(x, v, c, R, k, -b),
-    ),
-    Mistake(
         "distance instead of depth",
         "The force grows with the distance from the centre. It grows with the depth R - |x - c|.",
         variant(lambda n, p, r, v, k, b: max(k * np.linalg.norm(r) - b * (v @ n), 0.0) * n),
     ),
 )
+
+
+def of_part(part):
+    """A function of n, p, r = x - c, v, k and b as one of the arguments."""
+    return variant(part, everywhere=True)
+
+
+TERMS = (
+    Term(
+        "the push", "k (R - |x - c|) n", of_part(lambda n, p, r, v, k, b: k * p * n),
+        (
+            Form("k |x - c| n", "The depth is R - |x - c|.",
+                 of_part(lambda n, p, r, v, k, b: k * np.linalg.norm(r) * n)),
+            Form("k p (x - c)", "The normal must have unit length.", of_part(lambda n, p, r, v, k, b: k * p * r)),
+            Form("k p² n", "The depth is squared.", of_part(lambda n, p, r, v, k, b: k * p * p * n)),
+            Form("k n", "The depth is missing.", of_part(lambda n, p, r, v, k, b: k * n)),
+        ),
+    ),
+    Term(
+        "the damping", "-b (v . n) n", of_part(lambda n, p, r, v, k, b: -b * (v @ n) * n),
+        (
+            Form("-b v", "Only the normal part v . n counts.", of_part(lambda n, p, r, v, k, b: -b * v)),
+            Form("-b p v", "Only the normal part v . n counts, not the depth.",
+                 of_part(lambda n, p, r, v, k, b: -b * p * v)),
+            Form("-b p (v . n) n", "It is multiplied by the depth.",
+                 of_part(lambda n, p, r, v, k, b: -b * p * (v @ n) * n)),
+            Form("-b |v| n", "Only the normal part v . n counts.",
+                 of_part(lambda n, p, r, v, k, b: -b * np.linalg.norm(v) * n)),
+            Form("-b |v . n| n", "It never changes its sign.", of_part(lambda n, p, r, v, k, b: -b * abs(v @ n) * n)),
+            Form("-b (v . (x - c)) (x - c)", "The normal must have unit length.",
+                 of_part(lambda n, p, r, v, k, b: -b * (v @ r) * r)),
+        ),
+    ),
+)  # fmt: skip
+
+
+def adds_up(student, *arguments):
+    """True where the force is the sum of its terms: the sphere pushes."""
+    return np.any(sphere_force(*arguments)) and np.any(student(*arguments))
+
 
 CURVE = Curve(
     "distance from the centre [m]",

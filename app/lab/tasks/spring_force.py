@@ -3,6 +3,8 @@
 import numpy as np
 
 from app.lab.checking import Curve, Mistake, Wrong, require
+from app.lab.diagnosis import links
+from app.lab.diagnosis.terms import Form, Term
 
 
 def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):
@@ -24,10 +26,6 @@ def inputs(rng):
     r = rng.normal(size=3)
     r *= rng.uniform(0.2, 2.0) / np.linalg.norm(r)
     return x1, x1 + r, 3.0 * v1, 3.0 * v2, rng.uniform(5.0, 20.0), rng.uniform(1.0, 5.0), rng.uniform(0.5, 1.5)
-
-
-def no_damping(x1, x2, v1, v2, k, b, d):
-    return spring_force(x1, x2, v1, v2, k, 0.0, d)
 
 
 def only_pulls(x1, x2, v1, v2, k, b, d):
@@ -78,7 +76,6 @@ MISTAKES = (
         "out the condition on the sign of |r| - d.",
         only_pulls,
     ),
-    Mistake("damping forgotten", "There is no damping. Subtract b (v1 - v2).", no_damping),
     Mistake(
         "direction not of unit length",
         "The stretch is multiplied by r instead of r/|r|: a long spring gets too large a force.",
@@ -94,6 +91,32 @@ MISTAKES = (
         "damping along the link only",
         "The damping acts along the spring only. That is a good model, but this rope damps all of v1 - v2.",
         axial_damping,
+    ),
+)
+
+
+def of_law(law):
+    """A law of links as a function of the arguments."""
+
+    def function(x1, x2, v1, v2, stiffness, damping, rest_length):
+        r = x2 - x1
+        return law(r, links.size(r), v1 - v2, stiffness, damping, rest_length)
+
+    return function
+
+
+TERMS = (
+    Term(
+        "the spring",
+        links.SPRING,
+        of_law(links.spring),
+        tuple(Form(text, why, of_law(law)) for text, why, law in links.SPRING_FORMS),
+    ),
+    Term(
+        "the damping",
+        links.DAMPING,
+        of_law(links.damping),
+        tuple(Form(text, why, of_law(law)) for text, why, law in links.DAMPING_FORMS),
     ),
 )
 

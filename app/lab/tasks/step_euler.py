@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.checking import Curve, Mistake, require
+from app.lab.checking import Curve, Method, Mistake, require
 from app.lab.oscillator import amplitude, amplitudes, oscillate, step_inputs
 
 
@@ -19,6 +19,7 @@ def step_euler(x, v, h, acceleration):
 
 
 inputs = step_inputs
+METHOD = Method((step_euler,))
 
 
 def velocity_first(x, v, h, acceleration):
@@ -31,29 +32,8 @@ def position_first(x, v, h, acceleration):
     return x, v + h * acceleration(x, v)
 
 
-def with_square(x, v, h, acceleration):
-    a = acceleration(x, v)
-    return x + h * v + 0.5 * h**2 * a, v + h * a
-
-
-def no_step_in_velocity(x, v, h, acceleration):
-    return x + h * v, v + acceleration(x, v)
-
-
-def no_step_in_position(x, v, h, acceleration):
-    return x + v, v + h * acceleration(x, v)
-
-
-def increments_only(x, v, h, acceleration):
-    return h * v, h * acceleration(x, v)
-
-
 def swapped(x, v, h, acceleration):
     return v + h * acceleration(x, v), x + h * v
-
-
-def against(x, v, h, acceleration):
-    return x + h * v, v - h * acceleration(x, v)
 
 
 MISTAKES = (
@@ -69,12 +49,7 @@ MISTAKES = (
         "before x changes.",
         position_first,
     ),
-    Mistake("a term of second order", "x also gets h^2 a/2. Explicit Euler moves x by h v only.", with_square),
-    Mistake("time step forgotten", "The velocity changes by a instead of h a.", no_step_in_velocity),
-    Mistake("time step forgotten", "The position changes by v instead of h v.", no_step_in_position),
-    Mistake("changes instead of new values", "It returns the changes h v and h a. Add x and v.", increments_only),
     Mistake("results swapped", "It returns (v, x). Return the positions first.", swapped),
-    Mistake("sign of the acceleration reversed", "The velocity changes by -h a.", against),
 )
 
 CURVE = Curve("steps of h omega = 0.5", "amplitude of an oscillator", np.arange(1.0, 31.0), amplitudes)
@@ -87,5 +62,5 @@ def behaviour(student):
     expected = (1.0 + z * z) ** (0.5 * np.arange(1, steps + 1))
     require(
         np.allclose(size, expected, rtol=1e-3),
-        "the amplitude of an oscillator must grow by the factor sqrt(1 + (h omega)^2) in each step of explicit Euler",
+        "the amplitude of an oscillator does not change from step to step as with explicit Euler",
     )

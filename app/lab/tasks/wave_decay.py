@@ -29,7 +29,7 @@ MISTAKES = (
     Mistake("factor 2 forgotten", "The rate is 2 nu k^2.", lambda a, k, n, t: a * np.exp(-n * k**2 * t)),
     Mistake(
         "wavenumber not squared",
-        "The rate is 2 nu k^2: half the wavelength, four times the rate.",
+        "The rate is 2 nu k^2: k is squared.",
         lambda a, k, n, t: a * np.exp(-2 * n * k * t),
     ),
     Mistake("wave grows", "The wave grows: the exponent is negative.", lambda a, k, n, t: a * np.exp(2 * n * k**2 * t)),

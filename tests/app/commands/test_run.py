@@ -33,7 +33,8 @@ def test_run_writes_arrays_units_and_all_parameters(tmp_path):
     (tmp_path / "other").write_text("")
     out = tmp_path / "rope.npz"
     assert run(out, "--seconds", "1", "--set", "points=20", "integrator=rk4") == 0
-    data = np.load(out)
+    with np.load(out) as file:  # Windows replaces no file that is open
+        data = dict(file)
     assert data["x"].shape == (len(data["t"]), 20, 3)
     assert data["t"][-1] == pytest.approx(1.0)
     assert np.isfinite(data["x"]).all()

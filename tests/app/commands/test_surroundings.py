@@ -21,6 +21,7 @@ from app.scenes import NAMES
 
 ROOT = Path(__file__).parents[3]
 RUN = ("run", "rope", "--seconds", "0.1", "--out")
+needs_posix = pytest.mark.skipif(os.name != "posix", reason="links, pipes, full devices and signals are POSIX")
 
 
 def program(*arguments: str, **changes: str) -> subprocess.Popen[str]:
@@ -79,6 +80,7 @@ def test_a_host_that_is_none_is_refused(capsys, monkeypatch, host):
     assert "--host" in argument_error(capsys, "--host", host, "--port", "0", "--no-open")
 
 
+@needs_posix
 def test_a_link_is_followed_and_stays_a_link(tmp_path):
     (tmp_path / "there").mkdir()
     target, link = tmp_path / "there" / "b.npz", tmp_path / "a.npz"
@@ -90,6 +92,7 @@ def test_a_link_is_followed_and_stays_a_link(tmp_path):
     assert [path.name for path in target.parent.iterdir()] == ["b.npz"]
 
 
+@needs_posix
 def test_what_is_no_file_is_refused_and_left_alone(capsys, tmp_path):
     pipe, loop = tmp_path / "pipe.npz", tmp_path / "loop.npz"
     os.mkfifo(pipe)
@@ -117,6 +120,7 @@ def served_ports(pid: int) -> list[int]:
     return [c.laddr.port for c in connections if c.status == psutil.CONN_LISTEN]
 
 
+@needs_posix
 def test_the_lab_is_served_where_nothing_can_be_printed(tmp_path):
     """As a newcomer has it, without compiled kernels."""
     command = [sys.executable, "-m", "app", "--port", "0", "--no-open"]
@@ -136,6 +140,7 @@ def test_the_lab_is_served_where_nothing_can_be_printed(tmp_path):
         process.wait()
 
 
+@needs_posix
 def test_a_run_that_is_told_to_end_leaves_nothing(tmp_path):
     # A file of 100 MB, so that the signal comes while it is written.
     parameters = ("--set", "points=1000", "time_step=1e-3", "stiffness=100")

@@ -87,7 +87,8 @@ def test_the_lab_says_one_line_a_task_and_each_problem_with_its_place(capsys: py
     check_whole(everything, "3.2-2 not begun")
     assert everything.count("not begun") == 25
     main(["lab", "check", "mine", "mine"])
-    check_whole(capsys.readouterr().out, "0 of 19", "1.1-1, 1.1-2")
+    said = capsys.readouterr().out
+    check_whole(said, "0 of 19", "wrong 1, not begun 25", "2 students, 3.2-1 spring_force: direction not of unit")
 
 
 def test_the_comparison_of_hulls_is_whole(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -18,9 +18,10 @@ from app.__main__ import main
 from app.commands.lab_class import make_server
 from app.lab.answers import change_answer, read_answers
 from app.lab.check import check_folder
-from app.lab.class_page import mistakes, page, rows
+from app.lab.class_page import page, rows
 from app.lab.classroom import Classroom, Desk, Student
 from app.lab.folder import folder_names, make_folder
+from app.lab.mistakes import mistakes, standing
 from app.lab.program_check import Verdict, not_checked
 from app.lab.rope_picture import RopePicture, rope_picture, svg
 from app.lab.runner import Runner
@@ -125,7 +126,8 @@ def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(fold
     save(folders[1], "+")
     (folders[2] / "rope.py").write_text("def spring_force(:\n")
     change_answer(folders[1], TASKS, read_answers(folders[1]), "spring_force", "stretch", 0.5625)
-    found = mistakes([state_of(folder) for folder in folders], folder_names(folders))
+    names = folder_names(folders)
+    found = mistakes((names[folder], state_of(folder).results) for folder in folders)
     assert [(mistake.place, mistake.folders) for mistake in found] == [
         ("3.2-1 spring_force", ("ada", "bo")),
         ("3.2-1 Stretch", ("bo",)),
@@ -134,12 +136,13 @@ def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(fold
     assert "stretch of the whole rope" in found[1].text
 
 
-def test_the_page_has_folders_and_no_names_and_escapes_all(folders: list[Path], state_of) -> None:
+def test_the_page_has_folders_with_the_names_typed_and_escapes_all(folders: list[Path], state_of) -> None:
     save(folders[2], "+")
-    (folders[2] / "answers.toml").write_text(f'name = "Ada Lovelace"\n\n[spring_force]\npredict = "{EVIL}"\n')
+    (folders[2] / "answers.toml").write_text(f'name = "Ada <i>Lovelace"\n\n[spring_force]\npredict = "{EVIL}"\n')
     text = page([state_of(folders[2])], 7, "word")
     assert "&lt;b&gt;" in text
-    assert "Lovelace" not in text
+    assert "Ada &lt;i&gt;Lovelace" in text
+    assert standing(state_of(folders[2]).results) in text
     assert "<b><" not in text
     assert EVIL not in text
     assert "http" not in text.replace("http-equiv", "")

@@ -16,6 +16,7 @@ from sim.ocean.planets import gravity_of
 from sim.ocean.spectra.phillips import PhillipsConditions, density
 from sim.springs import rope, simulate
 from sim.springs.stability import critical_step
+from tests.app.lab.leaks import ALLOWED, gives_away, leaks
 from tests.sim.mooring.catenary import catenary
 
 TASKS = load_tasks()
@@ -28,6 +29,16 @@ OPTIONAL = {"1.1-8", "1.1-9", "3.3-1", "3.3-2", "3.3-3"} | BEYOND
 
 def question(task: str, key: str):
     return next(q for t in TASKS if t.name == task for q in t.questions if q.key == key)
+
+
+def test_no_text_gives_an_answer_away_before_it_is_given() -> None:
+    assert leaks() == []
+    for name in ALLOWED:
+        assert question(*name.split("."))
+    growth = question("step_euler", "growth")
+    assert not gives_away(growth, "the amplitude changes from step to step")
+    assert gives_away(growth, "by a factor of 1.414 in each step")
+    assert gives_away(question("top_fluid", "on_top"), "the oil lies above")
 
 
 def test_every_item_of_the_lab_has_a_task_and_the_optional_ones_are_marked() -> None:

@@ -62,7 +62,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             r = x2 - x1
             stretch = max(np.linalg.norm(r) - rest_length, 0)
             return stiffness * stretch * r / np.linalg.norm(r) - damping * (v1 - v2)"""),
-        ("", """
+        ("the spring is k max(|r| - d, 0) r/|r|", """
             r = x2 - x1
             stretch = max(np.linalg.norm(r) - rest_length, 0)
             return stiffness * stretch * r / np.linalg.norm(r) - 1.5 * damping * (v1 - v2)"""),
@@ -75,7 +75,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             r = x2 - x1
             l = np.linalg.norm(r)
             return stiffness * (l - rest_length) * r / l - damping * v1"""),
-        ("damping forgotten", """
+        ("the damping is missing", """
             r = x2 - x1
             l = np.linalg.norm(r)
             return stiffness * (l - rest_length) * r / l"""),
@@ -90,7 +90,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("wrong shape", """
             l = np.linalg.norm(x2 - x1)
             return stiffness * (l - rest_length)"""),
-        ("", """
+        ("the spring is k (|r| - d)² r/|r|, times 0.5", """
             r = x2 - x1
             l = np.linalg.norm(r)
             return 0.5 * stiffness * (l - rest_length) ** 2 * r / l - damping * (v1 - v2)"""),
@@ -111,7 +111,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("root not held", changed(ROPE, "\n            a[0] = 0", "")),
         ("gravity divided by the mass", changed(ROPE, "a[:, 2] -= gravity", "a[:, 2] -= gravity / mass")),
         ("gravity along the wrong axis", changed(ROPE, "a[:, 2] -= gravity", "a[:, 1] -= gravity")),
-        ("air drag forgotten", changed(ROPE, "-drag * v", "np.zeros_like(x)")),
+        ("the air drag is missing", changed(ROPE, "-drag * v", "np.zeros_like(x)")),
         ("", changed(ROPE, "-drag * v", "-drag * np.abs(v) * v")),
     ),
     "step_euler": (
@@ -123,11 +123,11 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             x = x + h * v
             v = v + h * acceleration(x, v)
             return x, v"""),
-        ("a term of second order", """
+        ("the new position is x + h v + h²/2 a1", """
             a = acceleration(x, v)
             return x + v * h + a * h * h / 2, v + a * h"""),
         ("results swapped", "return v + h * acceleration(x, v), x + h * v"),
-        ("changes instead of new values", "return h * v, h * acceleration(x, v)"),
+        ("the new position is h v", "return h * v, h * acceleration(x, v)"),
         ("position before velocity", """
             for i in range(len(x)):
                 x[i] += h * v[i]
@@ -140,9 +140,9 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             a = acceleration(x, v)
             v1, v2, v3, v4 = v, v + h / 2 * a, v + h / 2 * a, v + h * a
             return x + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a + 2 * a + 2 * a + a)"""),
-        ("weights do not sum to one", changed(RK4, "h / 6 * (", "h * (")),
-        ("weights do not sum to one", changed(RK4, "+ 2 * ", "+ ")),
-        ("full steps to the middle", """
+        ("weights do not add up to one", changed(RK4, "h / 6 * (", "h * (")),
+        ("weights do not add up to one", changed(RK4, "+ 2 * ", "+ ")),
+        ("acceleration a2 is computed at the position x + h v", """
             k1x, k1v = v, acceleration(x, v)
             k2x, k2v = v + h * k1v, acceleration(x + h * k1x, v + h * k1v)
             k3x, k3v = v + h * k2v, acceleration(x + h * k2x, v + h * k2v)
@@ -152,7 +152,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             a1 = acceleration(x, v)
             xm, vm = x + h / 2 * v, v + h / 2 * a1
             return x + h * vm, v + h * acceleration(xm, vm)"""),
-        ("", """
+        ("too few stages", """
             a1 = acceleration(x, v)
             v2 = v + h * a1
             a2 = acceleration(x + h * v, v2)

@@ -1,0 +1,35 @@
+"""An explanation of a wrong function: words, and its equations beside the right ones."""
+
+from typing import NamedTuple
+
+
+class Piece(NamedTuple):
+    """A part of an equation. wrong: it differs from the right one."""
+
+    text: str
+    wrong: bool = False
+
+
+class Equation(NamedTuple):
+    """One equation of a function.
+
+    name: its left side, as "x3" or "new x". found: the student's right side, in pieces. right: the right one; "" where
+    both agree.
+    """
+
+    name: str
+    found: tuple[Piece, ...]
+    right: str = ""
+
+    @property
+    def text(self) -> str:
+        """The student's right side."""
+        return "".join(piece.text for piece in self.found)
+
+
+class Explanation(NamedTuple):
+    """mistake: its name in a few words. text: the sentence for the student."""
+
+    mistake: str
+    text: str
+    equations: tuple[Equation, ...] = ()

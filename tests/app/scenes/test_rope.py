@@ -14,6 +14,7 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
+from app.scenes.rope.view import bead_radius
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.html import stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, SPHERE
@@ -396,3 +397,11 @@ def test_a_rope_has_left_its_bounds_at_three_times_the_length_it_hangs_at() -> N
     scene = Rope(Params(floor=False))
     start = extremes(scene.state.x, scene.state.v).reach
     assert scene.max_reach == pytest.approx(4.0 + 3.0 * 2.5625 + start)  # the lab's ten points hang 2.56 m deep
+
+
+def test_beads_are_as_large_in_every_direction_of_the_rope() -> None:
+    """They are made once for a number of points: level at a start, in any shape when a run comes back."""
+    along = np.array([1.0, 0.0, 0.0]), np.array([1.0, 1.0, 1.0]) / math.sqrt(3.0)
+    level, slanted = (bead_radius(0.05 * np.outer(np.arange(40), direction)) for direction in along)
+    assert level == pytest.approx(0.4 * 0.05, rel=1e-12)
+    assert slanted == pytest.approx(level, rel=1e-12)

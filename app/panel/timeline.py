@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from app.messages import Pause, Play
-from app.panel.recorder import RATES
+from app.panel.recorder import RATES, Kept
 from app.render.html import fill
 from app.render.viser_inside import uuid_of
 from app.render.viser_types import GuiHandle, ViserEvent
@@ -28,6 +28,8 @@ class Timeline:
         """wake: makes the viewer's thread look at the recorder."""
         self.panel, self.recorder, self.wake = panel, panel.recorder, wake
         self.span_at = 0.0
+        self.told: Kept | None = None  # frame of the recording that the pages know of
+        self.told_playing = False
         self.is_running = False  # the lab, at the last update
         self.ran_before = False  # the lab ran when a page chose a frame of the recording
         self.actions: dict[str, Callable[[float], None]] = {
@@ -97,9 +99,9 @@ class Timeline:
         self.is_running = running
         now = time.monotonic()
         recorder, shown = self.recorder, self.recorder.shown
-        if shown is None and now - self.span_at < SPAN_INTERVAL:
+        if shown is self.told and recorder.playing == self.told_playing and now - self.span_at < SPAN_INTERVAL:
             return
-        self.span_at = now
+        self.span_at, self.told, self.told_playing = now, shown, recorder.playing
         low, high = recorder.span()
         state = {
             "inbox": uuid_of(self.inbox),

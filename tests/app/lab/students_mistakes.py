@@ -239,24 +239,44 @@ CASES: tuple[tuple[str, str, str], ...] = (
                 F[j] -= pull + damping * (v[i] - v[j])
             return F""",
     ),
-    ("dispersion", "gravity / k", """
+    (
+        "dispersion",
+        "gravity / k",
+        """
             w0 = 2 * np.pi / repeat_time
-            return calm * w0 * np.floor(np.sqrt(gravity / k) / w0)"""),
-    ("reflectance", "must be", """
+            return calm * w0 * np.floor(np.sqrt(gravity / k) / w0)""",
+    ),
+    (
+        "reflectance",
+        "must be",
+        """
             c, t = np.cos(angle), np.sqrt(1 - (np.sin(angle) / index) ** 2)
             s, p = ((c - index * t) / (c + index * t)) ** 2, ((index * c - t) / (index * c + t)) ** 2
-            return 0.5 * (s - p)"""),
-    ("spectrum", "size ** 3", """
+            return 0.5 * (s - p)""",
+    ),
+    (
+        "spectrum",
+        "size ** 3",
+        """
             kk, U = np.hypot(*k), np.hypot(*wind)
             if kk == 0:
                 return 0
-            return amplitude * np.exp(-((gravity / (kk * U * U)) ** 2)) / kk ** 3 * (k @ wind / kk / U) ** 2"""),
-    ("draft", "oil_thickness -", """
+            return amplitude * np.exp(-((gravity / (kk * U * U)) ** 2)) / kk ** 3 * (k @ wind / kk / U) ** 2""",
+    ),
+    (
+        "draft",
+        "oil_thickness -",
+        """
             if body_density * height < oil_density * oil_thickness:
                 return body_density * height / oil_density
-            return oil_thickness - (body_density * height - oil_density * oil_thickness) / water_density"""),
+            return oil_thickness - (body_density * height - oil_density * oil_thickness) / water_density""",
+    ),
     ("wave_decay", "wavenumber ** 3", "return amplitude * np.exp(-2 * viscosity * wavenumber ** 3 * time)"),
-    ("surface_colour", "1 +", """
+    (
+        "surface_colour",
+        "1 +",
+        """
             T = np.exp(-2 * absorption * thickness)
-            return T * water_colour + (1 + T) * oil_colour"""),
+            return T * water_colour + (1 + T) * oil_colour""",
+    ),
 )

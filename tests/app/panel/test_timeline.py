@@ -93,3 +93,16 @@ def test_speed_and_loop_are_set_to_what_is_offered(lab: Lab) -> None:
 def test_what_is_no_action_is_ignored(lab: Lab, text: str) -> None:
     lab.take(text)
     assert (lab.time, lab.posted) == (None, [])
+
+
+def test_pages_learn_of_a_moment_at_once_and_of_the_span_twice_a_second(lab: Lab) -> None:
+    before = lab.line.state.content
+    lab.line.update(running=True)
+    assert lab.line.state.content == before
+    for text, words in (
+        ("a1 show 6.4", "&quot;shown&quot;: 6.4,"), ("a2 play 0", "&quot;playing&quot;: true"),
+        ("a3 play 0", "&quot;playing&quot;: false"), ("a4 live 0", "&quot;shown&quot;: null"),
+    ):  # fmt: skip
+        lab.take(text)
+        lab.line.update(running=False)
+        assert words in lab.line.state.content.replace("&#34;", "&quot;"), text

@@ -4,75 +4,28 @@
 source, which pyright checks, so that no text from outside can be taken for HTML.
 """
 
-import functools
-import html
-import string
 from collections.abc import Iterable, Sequence
-from typing import Any, LiteralString, NamedTuple
+from typing import LiteralString
+
+import markupsafe
 
 # Declared in `js/page.css`, once for the light and once for the dark panel.
 GOOD_COLOUR, WARNING_COLOUR, ERROR_COLOUR = (f"var(--springtide-{name})" for name in ("good", "warning", "error"))
 
-
-class Html(str):
-    """Text that is HTML. Any other text is escaped where it becomes part of HTML.
-
-    What is handed to viser is converted by `str` first: viser's encoder refuses subclasses of `str`.
-    """
-
-    __slots__ = ()
-
-
-class Field(NamedTuple):
-    """A part of a template: text, and the field behind it."""
-
-    text: str
-    value: int | str | None  # place or name of the value; None where no field follows
-    attributes: tuple[str, ...]  # of the value, of which the last is shown
-    form: str
-
-
-@functools.lru_cache(maxsize=1024)
-def fields_of(template: str) -> tuple[Field, ...]:
-    """The parts of a template, which are read once: the panel fills hundreds of fields a second."""
-    found: list[Field] = []
-    place = 0
-    for text, field, form, conversion in string.Formatter().parse(template):
-        assert conversion is None, template
-        if field is None:
-            found.append(Field(text, None, (), ""))
-            continue
-        name, *attributes = field.split(".")
-        value = place if name == "" else int(name) if name.isdecimal() else name
-        place += name == ""
-        found.append(Field(text, value, tuple(attributes), form or ""))
-    return tuple(found)
+# Text that is HTML: any other text is escaped where it becomes part of it. What is handed to viser is converted by
+# `str` first, as viser's encoder refuses subclasses of `str`.
+Html = markupsafe.Markup
+escape = markupsafe.escape  # any text as HTML; `Html` as it is
 
 
 def fill(template: LiteralString, *values: object, **named: object) -> Html:
-    """The HTML `template` with its fields filled in; `Html` says how values are escaped.
-
-    A field is `{}`, `{0}`, `{name:.3g}` or `{name.attribute}`, as in `str.format`; a format is a literal.
-    """
-    parts: list[str] = []
-    for text, place, attributes, form in fields_of(template):
-        parts.append(text)
-        if place is not None:
-            value: Any = values[place] if isinstance(place, int) else named[place]
-            for attribute in attributes:
-                value = getattr(value, attribute)
-            parts.append(value if isinstance(value, Html) else html.escape(format(value, form)))
-    return Html("".join(parts))
-
-
-def escape(text: object) -> Html:
-    """Any text as HTML; `Html` as it is."""
-    return text if isinstance(text, Html) else Html(html.escape(str(text)))
+    """The HTML `template` with its fields filled in as by `str.format`; `Html` says how values are escaped."""
+    return Html(template).format(*values, **named)
 
 
 def join(parts: Iterable[object], separator: LiteralString = "") -> Html:
     """Parts one after the other, each escaped unless it is `Html`."""
-    return Html(separator.join(escape(part) for part in parts))
+    return Html(separator).join(map(escape, parts))
 
 
 def note(text: object) -> str:

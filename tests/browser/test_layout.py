@@ -22,6 +22,11 @@ LARGE_BOXES = """() => {
     return { panel: document.querySelector("[data-floating-window]").offsetWidth, list: list[2] ? right(list[2]) : 0,
         fields: fields.map((one) => [one.ariaLabel, right(one)]),
         gap: list[1] ? Number.parseFloat(getComputedStyle(list[1]).paddingRight) : 0 }; }"""
+# The buttons of the lab that a mouse can press where they are: a click of Playwright would scroll first.
+ICONS_ON_TOP = """() => [...document.querySelectorAll("[data-springtide-icon]")].filter((one) => {
+    const box = one.getBoundingClientRect();
+    return one.contains(document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2));
+}).map((one) => one.textContent)"""
 ON_TOP = "([x, y]) => document.elementFromPoint(x, y)?.tagName ?? ''"
 
 
@@ -107,9 +112,7 @@ def test_the_buttons_of_the_lab_stay_while_a_small_panel_is_scrolled(
     top = preset.bounding_box()["y"]
     scroll_to_end(tab)
     tab.wait(lambda: preset.bounding_box()["y"] < top - 30, 10)  # it is scrolled
-    for name in ("Pause", "Reset"):
-        tab.page.get_by_role("button", name=name, exact=True).click(trial=True, timeout=5000)
-    assert tab.page.locator(".springtide-panel[data-state]").is_visible()
+    assert {"Step", "Reset", "Undo"} <= set(tab.page.evaluate(ICONS_ON_TOP))
 
 
 def test_large_text_fits_the_panel(resized: tuple[Viewer, Tab]) -> None:

@@ -244,6 +244,8 @@ def add_lab(lab: argparse.ArgumentParser) -> None:
     live.add_argument("folders", type=Path, nargs="+", metavar="DIR", help=made)
     add_serving(live)
     live.set_defaults(command=serve_folder)
+    # The options of `springtide lab DIR` stand in the help of `springtide lab`: nobody asks for that of DIR.
+    lab.format_help = lambda: f"{argparse.ArgumentParser.format_help(lab)}\n{live.format_help()}"
     new = commands.add_parser("new", help="write a folder with the exercises")
     new.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
     new.add_argument("--solutions", action="store_true", help="for teachers: with the reference solutions")
@@ -444,17 +446,11 @@ def with_mooring(params: Any, path: Path, given: Container[str]) -> Any:
     return dataclasses.replace(params, time_step=clamp_value(parameters_of(params)["time_step"], step))
 
 
-def serve(arguments: argparse.Namespace, session: Any = None) -> int:
-    """`springtide`: the lab in a browser. session: of a student's folder."""
+def serve(arguments: argparse.Namespace, session: Any = None, workbook: Any = None) -> int:
+    """`springtide`: the lab in a browser. session, workbook: of a student's folder."""
     name, params = opening_setup(arguments)
     from app.commands.serve import serve_lab
-    from app.lab.workbook import Workbook
 
-    workbook = None
-    if session is not None:
-        verdicts = session.versions
-        states = lambda: {name: verdict.state for name, verdict in verdicts.verdicts.items()}  # noqa: E731
-        workbook = Workbook(session.tasks, session.folder, states)
     common = serving(arguments)
     return serve_lab(name, params, **common, workbook=workbook, session=session, resumes=arguments.resume)
 
@@ -556,15 +552,27 @@ def serve_folder(arguments: argparse.Namespace) -> int:
         return serve_class(arguments)
     from app.lab.session import Session
     from app.lab.task import load_tasks
+    from app.lab.workbook import Workbook
 
+    session = Session(arguments.folders[0], load_tasks(*arguments.tasks), arguments.tasks)
+    try:
+        verdicts = session.versions
+        states = lambda: {name: verdict.state for name, verdict in verdicts.verdicts.items()}  # noqa: E731
+        workbook = Workbook(session.tasks, session.folder, states)
+        choose_scene(arguments, workbook.set_up_of(workbook.task).scene)
+        return serve(arguments, session, workbook)
+    finally:
+        session.close()
+
+
+def choose_scene(arguments: argparse.Namespace, of_task: str) -> None:
+    """Have a student's lab begin where the work is, if nothing else is asked for. of_task: scene of the next task."""
+    is_asked = arguments.scene or arguments.resume or arguments.preset is not None or arguments.set
+    if not is_asked and all(getattr(arguments, option) is None for option in SCENE_OF_FILE):
+        arguments.scene = of_task
     if scene_name(arguments) == DEFAULT_SCENE and arguments.preset is None and not arguments.set:
         # Of this method the program's rope and a student's right one are the same to rounding.
         arguments.set = ["integrator=rk4"]
-    session = Session(arguments.folders[0], load_tasks(*arguments.tasks), arguments.tasks)
-    try:
-        return serve(arguments, session)
-    finally:
-        session.close()
 
 
 def serve_class(arguments: argparse.Namespace) -> int:

@@ -100,6 +100,8 @@ class Halt(NamedTuple):
 class Reset(NamedTuple):
     """Back to the start of the scene; parameters and camera stay."""
 
+    run: int = 0  # number of the run that begins, so that an undo can go back to the one before; 0: no undo does
+
 
 class KeptState(NamedTuple):
     """A state from which a scene can go on."""
@@ -117,6 +119,8 @@ class Take(NamedTuple):
     params: BaseParams  # the scene's `Params`
     start: bool = False  # begin again and run, whatever has changed, as for a preset
     state: KeptState | None = None  # go on from here and run; of a scene that had these parameters
+    run: int = 0  # number of the run with these parameters; 0: that of no panel
+    back: bool = False  # with `start`: go back to the run of that number, as it was when it was left
 
     @property
     def changes_only(self) -> bool:
@@ -202,6 +206,7 @@ class Status(NamedTuple):
     # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
     replayed: tuple[Vector, Vector] | None = None
     unmade: bool = False  # the scene could not begin with its parameters
+    restarted: bool = False  # an undo has lately found that the run was not kept, so it began again
     faster: str = ""  # what would make a run that is capped faster, or ""
 
 

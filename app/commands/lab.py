@@ -98,11 +98,11 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
         for text in entry.missing:
             console.print()
             text_tables.say(f"{entry.task.item}, still to do: {text}")
-    rest = 0 if everything else sum(entry.state == "not begun" for entry in result.tasks)
+    rest = () if everything else [entry.task.optional for entry in result.tasks if entry.state == "not begun"]
     (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
     console.print()
     if rest:
-        text_tables.say(f"Not begun: {rest} of {len(result.tasks)} tasks; --all lists them.")
+        text_tables.say(f"Not begun: {rest.count(False)} tasks, {rest.count(True)} optional ones; --all lists them.")
     said = f"{right} of {count} tasks right, {more} of {optional} optional ones ({result.seconds:.1f} s)."
     text_tables.say(said)
 

@@ -270,17 +270,17 @@ def function_lines(session: Session, scene: str) -> Html:
     """State and errors of every function that is begun; the right ones come last."""
     verdicts, waiting = session.versions.verdicts, session.check.waiting
     rows: list[tuple[int, Html]] = []
-    not_begun = 0
+    is_left = False
     for task in session.tasks:
         if not task.file:
             continue
         verdict = verdicts.get(task.name, Verdict("checking" if task.name in waiting else "not begun"))
         if verdict.state == "not begun":
-            not_begun += 1
+            is_left = True
         else:
             compared = compared_text(scene, task.name, session.values)
             rows.append((ORDER.index(verdict.state), function_line(task, verdict, compared)))
-    rest = faint(f"{not_begun} functions not begun") if not_begun else Html()
+    rest = faint("The other functions are not begun.") if is_left else Html()
     return join([*(row for _, row in sorted(rows, key=lambda row: row[0])), rest])
 
 

@@ -1,4 +1,4 @@
-"""Files of the recording and of a browser's view, in the tab "Share".
+"""Files of the run and of a browser's view, in the tab "Share".
 
 Callbacks run on viser's event loop. Each file is made in a separate thread.
 """
@@ -18,7 +18,9 @@ from app.messages import Pause
 from app.panel.picture import take_picture
 from app.panel.recorder import Kept
 from app.panel.recording_files import Plotted, plots_csv, plots_svg, recording_npz
-from app.render.viser_types import ViserEvent
+from app.render.html import fill
+from app.render.viser_inside import uuid_of
+from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.contract import AnyKind
 
 if TYPE_CHECKING:
@@ -30,16 +32,20 @@ PICTURE_SIZES = {  # [pixels]
     "1920 x 1080": (1920, 1080),
     "3840 x 2160": (3840, 2160),
 }
-PLOTS, PICTURE, REPLAY = "Plots as CSV", "Picture", "Replay"
-CHARTS, ARRAYS, FILM = "Plots as SVG", "Data (.npz)", "Film pictures"
+REPLAY_DURATION = 20.0  # [s] of a replay as it plays
+REPLAY, ARRAYS, PICTURE = f"Replay (last {REPLAY_DURATION:g} s)", "Data (.npz)", "Picture"
+PLOTS, CHARTS, FILM = "Plots as CSV", "Plots as SVG", "Film pictures"
 MAX_PICTURES = 900  # of a film: half a minute of a recording
 MAX_FILM = 400e6  # [bytes] of all pictures of a film
 BARRIER_SIZE = (16, 16)  # [pixels] of a picture that is asked for only to know that what was sent before it has come
 DRAWN_TIMEOUT = 5.0  # [s] for the viewer's thread to send a frame of the recording
-# Buttons that the page itself answers (app/render/js/share.js).
+# Buttons with a choice. The page makes clips and PNG files of plots, and has the others made (app/render/js/share.js).
 PAGE_BUTTONS = (
-    '<div class="springtide-switches"><button type="button" data-springtide-clip>Record clip</button>'
-    '<button type="button" data-springtide-charts>Plots as PNG</button></div>'
+    '<div class="springtide-switches" data-springtide-makers="{}"><label>Plots <select data-springtide-plots>'
+    "<option>CSV</option><option>SVG</option><option>PNG</option></select></label>"
+    '<button type="button" data-springtide-charts>Save plots</button></div><div class="springtide-switches">'
+    '<label>Film <select data-springtide-film><option value="">as a clip</option><option value="{}">as pictures'
+    '</option></select></label><button type="button" data-springtide-clip>Record</button></div>'
 )
 
 Make = Callable[[viser.ClientHandle], tuple[str, bytes]]  # name and content of a file
@@ -47,29 +53,34 @@ MakeReplay = Callable[[AnyKind, Sequence[Kept], Plotted], str]
 
 
 class Files:
-    """The buttons that make a file, in the folder that is open where this is made."""
+    """The buttons that make a file; `add_run` and `add` put them into the folder that is open."""
 
-    def __init__(
-        self,
-        panel: "Panel",
-        wake: Callable[[], None],
-        make_replay: MakeReplay,
-        say: Callable[[object], None],
-    ) -> None:
-        """wake: makes the viewer's thread look at the recorder. make_replay: makes the page of a replay.
-
-        say: shows a line.
-        """
+    def __init__(self, panel: "Panel", wake: Callable[[], None], make_replay: MakeReplay) -> None:
+        """wake: makes the viewer's thread look at the recorder. make_replay: makes the page of a replay."""
         self.panel, self.recorder, self.wake = panel, panel.recorder, wake
-        self.make_replay, self.say = make_replay, say
+        self.make_replay = make_replay
         self.awaited: tuple[Kept, Future[None]] | None = None  # a frame of the recording that is to be sent
         self.busy = threading.Lock()  # one file at a time
-        gui = panel.gui
+        self.group = ""  # in which the line on it stands
+
+    def add_run(self) -> None:
+        """The files that hold the run."""
+        self.panel.gui.add_button_group("", (REPLAY, ARRAYS)).on_click(self.on_file)
+
+    def add(self) -> None:
+        """The other files."""
+        gui = self.panel.gui
+        makers: GuiHandle = gui.add_button_group("", (PLOTS, CHARTS, FILM), visible=False)
+        makers.on_click(self.on_file)
+        makers.visible = not uuid_of(makers)  # the page presses them
+        gui.add_html(str(fill(PAGE_BUTTONS, uuid_of(makers), FILM)))
         self.size = gui.add_dropdown("Picture size", tuple(PICTURE_SIZES))
         self.transparent = gui.add_checkbox("Transparent background", initial_value=False)
-        for names in ((PLOTS, PICTURE, REPLAY), (CHARTS, ARRAYS, FILM)):
-            gui.add_button_group("", names).on_click(self.on_file)
-        gui.add_html(PAGE_BUTTONS)
+        gui.add_button_group("", (PICTURE,)).on_click(self.on_file)
+
+    def say(self, text: str) -> None:
+        """Say something below the button that was pressed last."""
+        self.panel.share.say(self.group, text)
 
     async def on_file(self, event: ViserEvent) -> None:
         """Make a file in a separate thread, and send it to the browser that asks."""
@@ -85,6 +96,7 @@ class Files:
             ARRAYS: lambda _: (file_name(panel, ".npz"), recording_npz(kind, self.recorder.kept())),
             FILM: self.film_file,
         }
+        self.group = "This run" if event.target.value in (REPLAY, ARRAYS) else "Files"
         if not self.busy.acquire(blocking=False):
             self.say("Another file is still being made.")
             return

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import viser
 
-from app.messages import Command, Pause, Play, Reset, StepOnce
+from app.messages import Command, Pause, Play, StepOnce
 from app.panel.remedy import Remedy
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.render.viser_types import ViserEvent
@@ -13,13 +13,14 @@ from app.scenes.contract import Advice, AnyKind, AnySnapshot, AnyView
 from sim.parameters import in_words
 
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
-COMMANDS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce(), "Reset": Reset()}
+COMMANDS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce()}
 
 
 class Actions(NamedTuple):
     """Actions of the block's lists and buttons; each runs on viser's event loop."""
 
     post: Callable[[Command], None]  # takes a command for the simulation
+    reset: Callable[[], None]
     load: Callable[[str], None]  # shows a preset
     open_scene: Callable[[str], None]
     reset_view: Callable[[viser.ClientHandle], None]
@@ -64,7 +65,9 @@ class Head:
                 self.actions.toggle_plots()
             case "Undo":
                 self.actions.undo()
-            case "View":
+            case "Reset":
+                self.actions.reset()
+            case "Camera":
                 if event.client is not None:
                     self.actions.reset_view(event.client)
             case name:
@@ -106,7 +109,7 @@ class Head:
 
 def button_names(*, running: bool) -> tuple[str, ...]:
     """Labels of the buttons: the first names its next action."""
-    return "Pause" if running else "Play", "Step", "Reset", "View", "Plots", "Undo"
+    return "Pause" if running else "Play", "Step", "Reset", "Camera", "Plots", "Undo"
 
 
 def add_scene_chooser(
@@ -137,7 +140,8 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
             coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed,
         )  # fmt: skip
     return fill(
-        '<div class="springtide-panel" data-state="{}" data-snapshot="{}" title="{}">{} t = {:.2f} s{}{}{}{}{}{}</div>',
+        '<div class="springtide-panel" data-state="{}" data-snapshot="{}" title="{}">'
+        "{} t = {:.2f} s{}{}{}{}{}{}{}</div>",
         "running" if s.running else "paused",
         snapshot.serial,  # so that one sees that it is fresh, where its words repeat
         f"Simulated over real time, at {s.frame_rate:.0f} pictures a second" if s.running else "",
@@ -147,6 +151,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
         fill("<br>Faster: {}.", s.faster) if s.faster else "",
+        fill("<br>The earlier run was not kept: it starts again from t = 0.") if s.restarted else "",
         fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
         fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",
     )

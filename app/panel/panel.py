@@ -7,13 +7,13 @@ cannot lose each other.
 import dataclasses
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import viser
 
 from app.lab import task
 from app.lab.workbook import Workbook
-from app.messages import BaseParams, KeptState, PlotRow, Reset, RunOn, StepOnce, Take, TogglePlay
+from app.messages import BaseParams, KeptState, PlotRow, Reset, RunOn, Take
 from app.panel.changes import Changes
 from app.panel.compare import Beside, Compare
 from app.panel.controls import Controls
@@ -22,6 +22,7 @@ from app.panel.files import MakeReplay
 from app.panel.guide import Guide
 from app.panel.head import Actions, Head
 from app.panel.history import History, Settings
+from app.panel.keys import KEYS, add_keys
 from app.panel.plots import Plots
 from app.panel.readings import Readings
 from app.panel.recorder import Recorder
@@ -29,13 +30,14 @@ from app.panel.recording_files import Plotted
 from app.panel.remedy import ControlRemedies
 from app.panel.share import Share
 from app.panel.task_setups import setup_of_task
-from app.render.cameras import ClientCamera, place_camera
+from app.panel.timeline import Timeline
+from app.render.cameras import ClientCamera, client_cameras, place_camera
 from app.render.html import Html, fill, note
 from app.render.viser_types import ViserEvent
 from app.scenes.contract import Advice, AnyKind, AnySnapshot, AnyView, Awaited, PostCommand, SpringParams
 from app.scenes.own_setups import own_files
 from app.scenes.setups import FILES, Setup, file_name, make_setup
-from sim.parameters import Value, changed_names
+from sim.parameters import Value, changed_names, effect_of_change
 
 if TYPE_CHECKING:
     from app.lab.session import Session
@@ -44,17 +46,10 @@ if TYPE_CHECKING:
 
 STATUS_INTERVAL = 0.25  # [s]
 MARKS_INTERVAL = 0.5  # [s]
-Key = Literal["space", "G", "N", "P", "R", "U", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
-DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
 OPEN_GROUP = "Main"  # the group of parameters that starts open
 VIEW_GROUPS = ("Look", "Plots")  # the groups that stand in the tab of the view
 CONTROLS, LAB, SHARE, VIEW = "Controls", "Lab", "Share", "View"  # the tabs
-KEYS = Html(
-    "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset view · <b>P</b> plots · "
-    "<b>G</b> grid · <b>U</b> undo · <b>C</b> to the first control · <b>1-9</b> presets"
-)
-
 
 # Takes a scene to show, its parameters if any, and a camera for one browser if any.
 OpenScene: TypeAlias = Callable[[str, BaseParams | None, ClientCamera | None], None]
@@ -99,13 +94,14 @@ class Panel:
         # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
         self.loaded = self.nearest_preset(params)
         first_views = self.open_first_view_of, self.place_first_view
-        actions = Actions(post, self.load, *first_views, self.toggle_plots, self.undo, self.follow)
+        actions = Actions(post, self.reset, self.load, *first_views, self.toggle_plots, self.undo, self.follow)
         self.head = Head(gui, kind, view, scenes, actions)
         self.shown = Controls(gui, lambda: self.params, self.on_change)
         self.controls, self.folders = self.shown.own, self.shown.folders
-        self.camera: ClientCamera | None = None  # of the set-up that is being loaded, for the viewer to place
+        self.cameras: tuple[ClientCamera, ...] = ()  # of what is being loaded, for the viewer to place
         self.remedies = ControlRemedies(gui, self.controls, self.follow)
         self.recorder = Recorder(kind.packing)
+        self.timeline = Timeline(self, wake)
         self.share = Share(self, wake, make_replay, changes)
         self.guide: Guide | None = None
         self.code: CodePanel | None = None
@@ -116,7 +112,7 @@ class Panel:
         self.fill_tabs(workbook, session)
         self.shown.show(kind.hidden(params))
         self.show_preset()
-        self.add_keys()
+        add_keys(self)
 
     def fill_tabs(self, workbook: Workbook | None, session: "Session | None") -> None:
         """The tabs. Who works in a folder of exercises finds these first, others the controls."""
@@ -171,29 +167,6 @@ class Panel:
 
         return button
 
-    def add_keys(self) -> None:
-        """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
-        actions: list[tuple[str, Key | None, Callable[[], None]]] = [
-            ("Play or pause", "space", lambda: self.post(TogglePlay())),
-            ("Single step", "N", lambda: self.post(StepOnce())),
-            ("Reset", "R", lambda: self.post(Reset())),
-            ("Plots", "P", self.toggle_plots),
-            ("Grid", "G", lambda: self.set("grid", not self.params.grid)),
-            ("Undo", "U", self.undo),
-        ]
-        for number, preset in enumerate(self.kind.presets, 1):
-            # The presets after the ninth are in the command palette and the list only.
-            key = DIGITS[number - 1] if number <= len(DIGITS) else None
-            actions.append((f"Preset: {preset}", key, lambda preset=preset: self.load(preset)))
-        for label, key, action in actions:
-            command = self.gui.add_command(label, hotkey=key)
-
-            @command.on_trigger
-            async def _(_: ViserEvent, action: Callable[[], None] = action) -> None:
-                action()
-
-        self.gui.add_command("Reset view", hotkey="V").on_trigger(self.reset_view)
-
     def set(self, name: str, value: object) -> None:
         """Set one parameter, as its control would; on viser's event loop."""
         self.controls[name].set(value)
@@ -202,8 +175,18 @@ class Panel:
         """A control was set."""
         if getattr(self.params, name) == value:
             return
-        self.history.note(Settings(self.params, self.loaded), name)
-        self.take(Take(dataclasses.replace(self.params, **{name: value})), self.loaded)
+        params = dataclasses.replace(self.params, **{name: value})
+        run = self.history.note(self.settings, name, begins=effect_of_change(self.params, params) == "start")
+        self.take(Take(params, run=run), self.loaded)
+
+    @property
+    def settings(self) -> Settings:
+        """The present settings, for an undo."""
+        return Settings(self.params, self.loaded, cameras=client_cameras(self.server))
+
+    def reset(self) -> None:
+        """Begin the scene again."""
+        self.post(Reset(self.history.note(self.settings, "reset", begins=True)))
 
     def take(self, command: Take, preset: str) -> None:
         """Take parameters, show them, and have the simulation take them too. preset: that they come from."""
@@ -246,7 +229,7 @@ class Panel:
         if setup.scene != self.kind.name:
             self.open_scene(setup.scene, setup.params, camera)
             return
-        self.camera = camera
+        self.cameras = () if camera is None else (camera,)
         self.load_params(with_fields_of(self.params, setup.params), setup.preset or next(iter(self.kind.presets)))
 
     def show_own(self, chosen: str = "") -> None:
@@ -271,20 +254,24 @@ class Panel:
 
     def load_params(self, params: BaseParams, preset: str) -> None:
         """Take parameters, and the scene from its start: one command. preset: that they come from."""
-        self.history.note(Settings(self.params, self.loaded), preset)
-        self.take(Take(params, start=True), preset)
+        run = self.history.note(self.settings, preset, begins=True)
+        self.take(Take(params, start=True, run=run), preset)
 
     def resume(self, params: BaseParams, state: KeptState) -> None:
         """Have the scene go on from a state, with the parameters that it had then: one command."""
-        self.history.note(Settings(self.params, self.loaded), "moment")
-        self.take(Take(params, state=state), self.loaded)
+        run = self.history.note(self.settings, "moment", begins=True)
+        self.take(Take(params, state=state, run=run), self.loaded)
 
     def undo(self) -> None:
-        """The settings before the last change of a parameter or preset."""
-        settings = self.history.take_last()
-        if settings is not None:
-            known = settings.preset in (*self.kind.presets, *self.own)  # a set-up of the user may be gone
-            self.take(Take(settings.params), settings.preset if known else next(iter(self.kind.presets)))
+        """The settings before the last change, and the run that had them if that change has begun another."""
+        run, settings = self.history.run, self.history.take_last()
+        if settings is None:
+            return
+        known = settings.preset in (*self.kind.presets, *self.own)  # a set-up of the user may be gone
+        back = settings.run != run
+        self.cameras = settings.cameras if back else ()
+        take = Take(settings.params, start=back, run=settings.run, back=back)
+        self.take(take, settings.preset if known else next(iter(self.kind.presets)))
 
     def show_preset(self) -> None:
         """Show which preset is loaded, and whether a parameter that matters is not as it has it."""
@@ -311,7 +298,7 @@ class Panel:
     def follow(self, advice: Advice) -> None:
         """Set the parameter of an advice, and start again."""
         self.set(advice.name, advice.value)
-        self.post(Reset())
+        self.reset()
 
     def toggle_plots(self) -> None:
         """Open all plots, or close them where one is open."""
@@ -349,6 +336,7 @@ class Panel:
         if self.guide is not None:
             self.guide.update(snapshot, refresh)
         self.share.update()
+        self.timeline.update(running=snapshot.status.running)
         if self.compare is not None:
             self.compare.update()
 

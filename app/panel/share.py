@@ -1,4 +1,4 @@
-"""The tab "Share": the timeline, links, set-ups and files.
+"""The tab "Share": links, set-ups and files.
 
 Callbacks run on viser's event loop; `update` runs on the viewer's thread.
 """
@@ -15,7 +15,6 @@ from app.messages import Vector
 from app.panel.changes import Change, Changes, Notice
 from app.panel.files import Files, MakeReplay, file_name
 from app.panel.task_setups import read_link
-from app.panel.timeline import Timeline
 from app.render.cameras import place_camera
 from app.render.html import fill, note
 from app.render.viser_inside import uuid_of
@@ -60,7 +59,6 @@ class Share:
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         with panel.head.folder:
             self.notice = Notice(gui, panel.kind.name, changes, self.restore)
-            self.moment = gui.add_html("", visible=False)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
         holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
@@ -69,13 +67,13 @@ class Share:
     def add(self) -> None:
         """The controls, in the container that is open."""
         gui, panel = self.panel.gui, self.panel
-        with gui.add_folder("Recording"):
-            self.timeline = Timeline(panel, self.moment, self.wake, lambda text: self.say("Recording", text))
-            self.add_line("Recording")
-        with gui.add_folder("Curves"):
-            gui.add_button_group("", (KEEP_CURVES, DROP_CURVES)).on_click(self.on_curves)
-            self.add_line("Curves")
-        with gui.add_folder("Set-up"):
+        self.files = Files(panel, self.wake, self.make_replay)
+        with gui.add_folder("This run"):
+            self.curves: GuiHandle = gui.add_button_group("", (KEEP_CURVES,))
+            self.curves.on_click(self.on_curves)
+            self.files.add_run()
+            self.add_line("This run")
+        with gui.add_folder("This set-up"):
             self.name = gui.add_text(
                 "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
             )
@@ -83,14 +81,16 @@ class Share:
                 "Note in the file", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters"
             )
             gui.add_button_group("", (COPY, SAVE)).on_click(self.on_link)
-            gui.add_button_group("", (KEEP, REMOVE)).on_click(self.on_own)
+            gui.add_button_group("", (KEEP,)).on_click(self.on_own)
             gui.add_html(
                 '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
                 '<input type="file" accept=".json,.html,.npz" data-springtide-load></label></div>'
             )
-            self.add_line("Set-up")
+            self.remove: GuiHandle = gui.add_button_group("", (REMOVE,), visible=bool(panel.own))
+            self.remove.on_click(self.on_own)
+            self.add_line("This set-up")
         with gui.add_folder("Files"):
-            self.files = Files(panel, self.wake, self.make_replay, lambda text: self.say("Files", text))
+            self.files.add()
             self.add_line("Files")
 
     def add_line(self, group: str) -> None:
@@ -197,7 +197,7 @@ class Share:
         if event.target.value == COPY:
             query = write_query(panel.kind, panel.params, panel.loaded, camera)
             link = fill('<a class="springtide-link" data-springtide-link="{}" href="{}">{}</a>', query, query, query)
-            self.say("Set-up", link)
+            self.say("This set-up", link)
             self.confirm(event.target, COPY, "Copied")
             return
         if event.target.value != SAVE:
@@ -206,20 +206,21 @@ class Share:
             name, words = self.name.value.strip(), self.note.value.strip()
             text = write_file(panel.kind, panel.params, panel.loaded, camera, name=name, note=words)
         except ValueError as reason:
-            self.say("Set-up", str(reason))
+            self.say("This set-up", str(reason))
             return
         client.send_file_download(file_name(panel, ".json", name), text.encode(), save_immediately=True)
-        self.say("Set-up", "")
+        self.say("This set-up", "")
         self.confirm(event.target, SAVE, "Saved")
 
     async def on_curves(self, event: ViserEvent) -> None:
         """Keep the curves of the plots over time beside those of the next run, or drop them."""
         on = event.target.value == KEEP_CURVES
         end = self.panel.keep_curves(on)
+        self.curves.options = (KEEP_CURVES,) if end is None else (DROP_CURVES,)
         if end is None:
-            self.say("Curves", "There are no curves over time to keep." if on else "")
+            self.say("This run", "There are no curves over time to keep." if on else "")
         else:
-            self.say("Curves", fill("Kept: the curves up to t = {:.2f} s. They are dashed.", end))
+            self.say("This run", fill("Kept: the curves up to t = {:.2f} s. They are dashed.", end))
 
     async def on_own(self, event: ViserEvent) -> None:
         """Keep the present set-up in the list of presets under its name, or remove the one of that name."""
@@ -236,15 +237,15 @@ class Share:
                 remove_own(panel.kind, name)
                 panel.show_own()
                 self.confirm(event.target, REMOVE, "Removed")
-            self.say("Set-up", "")
+            self.remove.visible = bool(panel.own)
+            self.say("This set-up", "")
         except (ValueError, OSError) as reason:
-            self.say("Set-up", str(reason))
+            self.say("This set-up", str(reason))
 
     def update(self) -> None:
-        """Keep notice and timeline up to date."""
+        """Keep notice and buttons up to date."""
         self.notice.draw()
         self.end_confirmations()
-        self.timeline.update()
 
 
 def camera_of(client: viser.ClientHandle) -> Camera:

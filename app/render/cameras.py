@@ -14,7 +14,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.messages import Vector
+from app.messages import Vector, vector_of
 from app.render.of_handles import OfHandles
 
 NEAR, FAR = 0.01, 1000.0  # [m] from the camera, where the picture begins and ends: viser's own
@@ -133,6 +133,15 @@ async def on_report(camera: viser.CameraHandle) -> None:
         else:
             position, target = wanted
             set_camera(camera, position, target)
+
+
+def client_cameras(server: viser.ViserServer) -> tuple[ClientCamera, ...]:
+    """Cameras of all browsers, as last reported or set."""
+    clients = server.get_clients().items()
+    return tuple(
+        ClientCamera(number, vector_of(client.camera.position), vector_of(client.camera.look_at))
+        for number, client in clients
+    )
 
 
 def place_client_camera(server: viser.ViserServer, camera: ClientCamera | None) -> None:

@@ -273,17 +273,11 @@ class SimLoop(Run):
                     self.seat.clock.step_by_hand(steps)
             case Halt(reason):
                 self.halt(reason)
-            case Take(params, start, state):
-                if start or state is not None:
-                    self.awaited = None
-                if start:
-                    self.begin_with(params)
-                elif state is not None:
-                    self.resume(params, state)
-                else:
-                    self.take(params)
-            case Reset():
+            case Take():
+                self.obey(command)
+            case Reset(run):
                 self.awaited = None
+                self.leave_for(run)
                 self.counts["starts"] += 1
                 self.reset()
             case Ask(read, answer):

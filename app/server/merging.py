@@ -34,7 +34,7 @@ def merged(commands: Iterable[Command], params: BaseParams) -> list[Command]:
     kept: list[Command] = []
     for command in commands:
         match kept[-1] if kept else None, command:
-            case (_, Take(start=True)):
+            case (_, Take(start=True, back=False)):
                 while kept and isinstance(kept[-1], Take | Reset | StepOnce | Motion):
                     kept.pop()  # nothing of it is left once the scene has begun again, and runs
             case (Take(), Take()) if command.changes_only:

@@ -16,7 +16,8 @@ ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the s
 TITLE = "<title>Springtide</title>"
 FIRST_SCRIPTS = ("address.js", "leaving.js")
 SCRIPTS = (
-    "page.js", "fields.js", "camera.js", "reach.js", "charts.js", "share.js", "display.js", "access.js", "beside.js",
+    "page.js", "fields.js", "camera.js", "reach.js", "charts.js", "timeline.js", "share.js", "display.js", "access.js",
+    "beside.js",
 )  # fmt: skip
 PANES_PATH = "/beside"  # of the page that shows several labs side by side
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'

@@ -14,6 +14,7 @@ import numpy as np
 
 from app.formats.packing import is_packed
 from app.messages import BaseParams
+from app.panel.files import REPLAY_DURATION
 from app.panel.recorder import Kept, arrays_of_frame
 from app.panel.recording_files import Plotted, plot_charts
 from app.render.cameras import place_cameras
@@ -27,7 +28,6 @@ from app.scenes.setups import setup_block, write_value
 from app.server.guard import open_server
 from sim.parameters import in_words, parameters_of
 
-MAX_DURATION = 20.0  # [s] of a replay as it plays
 MAX_FRAMES = 200  # of a replay
 MAX_RAW_BYTES = 80e6  # of the arrays of all frames, before they are packed: a file of about 20 MB
 TOLERANCE = 1e-3  # [s] of the time between two frames
@@ -54,13 +54,13 @@ def rounded(buffer: memoryview) -> memoryview:
 
 
 def thinned(frames: Sequence[Kept]) -> list[Kept]:
-    """The frames of the last `MAX_DURATION`, evenly thinned to keep within `MAX_FRAMES` and `MAX_RAW_BYTES`.
+    """The frames of the last `REPLAY_DURATION`, evenly thinned to keep within `MAX_FRAMES` and `MAX_RAW_BYTES`.
 
     frames: at least one.
     """
     last = frames[-1]
     size = sum(arrays_of_frame(last.frame).values())
-    span = min(last.wall - frames[0].wall, MAX_DURATION)
+    span = min(last.wall - frames[0].wall, REPLAY_DURATION)
     interval = span / max(1, min(MAX_FRAMES, int(MAX_RAW_BYTES / max(size, 1))))
     chosen: list[Kept] = []
     for kept in (kept for kept in frames if last.wall - kept.wall < span + TOLERANCE):

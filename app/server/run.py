@@ -1,13 +1,16 @@
 """The run of a scene: its steps, within a frame's budget, its divergence, and its beginning again."""
 
+import collections
 import traceback
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import NamedTuple
 
-from app.messages import BaseParams, KeptState
+from app.messages import BaseParams, KeptState, Pause, Take
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
+from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
+from app.server.left_runs import LeftRun, LeftRuns
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
@@ -17,6 +20,7 @@ from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
+RESTARTED_SHOWN = 8.0  # [s] of wall time for which the panel says that a run was not kept
 BEGUN = "the lab was begun again or went on from another moment"  # why the time that a program waits for does not come
 
 
@@ -41,6 +45,7 @@ class Run(Snapshots):
         self.awaited: Callable[[AnySnapshot], bool] | None = None  # event at which it pauses
         self.is_reached = False  # it happened in the last frame
         self.taking = False  # the scene takes other forces: its parameters are the old or the new ones
+        self.number, self.left = 1, LeftRuns()  # of this run; those before it
         super().__init__(scene, audience, clock, effort, paused=paused)
 
     def follow(self, seat: Seat, wall: float) -> bool:
@@ -56,6 +61,23 @@ class Run(Snapshots):
         if n:
             (self.advance_within_budget if self.cost_unknown and self.running else self.advance)(n)
         return n > 0
+
+    def obey(self, command: Take) -> None:
+        """Take a record of parameters: with another run, or according to the effect of the change."""
+        params, start, state, number, back = command
+        if not command.changes_only:
+            self.awaited = None
+        if back:
+            self.go_back(params, number)
+            return
+        if not command.changes_only or effect_of_change(self.scene.params, params) == "start":
+            self.leave_for(number)
+        if start:
+            self.begin_with(params)
+        elif state is not None:
+            self.resume(params, state)
+        else:
+            self.take(params)
 
     def take(self, params: BaseParams) -> None:
         """Take parameters according to the effect of their change."""
@@ -209,27 +231,59 @@ class Run(Snapshots):
         if goal is not None and goal.answer.set_running_or_notify_cancel():
             goal.answer.set_exception(RuntimeError(reason))
 
-    def reset(self) -> None:
-        """The scene from its start; a run that had halted goes on."""
+    def reset(self, action: Callable[[], None] | None = None) -> None:
+        """The scene from its start, or by another action; a run that had halted goes on."""
         self.give_up(BEGUN)
         self.running, self.halted = self.running or bool(self.halted), ""
         self.pacer.debt = 0.0
         self.replay = None
         if self.seat is not None:
             self.seat.begin()
-        self.begin(self.scene.reset)
+        self.begin(action or self.scene.reset)
 
     def begin(self, reset: Callable[[], None]) -> None:
         """Begin the scene again; if that is cancelled, the next tick does it."""
         self.unfinished, self.unmade = None, False
         self.guarded(reset, again=True)
 
-    def begin_with(self, params: BaseParams) -> None:
-        """The scene from its start with these parameters, running."""
+    def begin_with(self, params: BaseParams, left: LeftRun | None = None) -> None:
+        """The scene from its start with these parameters, running; or as it was in a run that was left."""
         self.scene.params, self.cost_unknown = params, True
         self.counts["starts"] += 1
-        self.reset()
+        self.reset(self.scene.reset if left is None else lambda: self.return_to(left))
         self.running = not self.halted
+
+    def leave_for(self, number: int) -> None:
+        """Keep this run as it is for an undo, before the one of that number. A run that has halted is not kept."""
+        if number in (0, self.number):
+            return
+        if not (self.stopped_by or self.unmade or self.unfinished):
+            value = self.scene.keep()
+            self.left.add(LeftRun(self.number, KeptState(value, arrays_in(value)), tuple(self.kept_rows), self.running))
+        self.number = number
+
+    def go_back(self, params: BaseParams, number: int) -> None:
+        """Go back to the run of that number, as it was when it was left; from its start if it is not kept."""
+        if number == self.number:  # the one that would have followed has not begun
+            self.take(params)
+            return
+        self.number, left = number, self.left.take(number)
+        self.begin_with(params, left)
+        if left is None:
+            self.restarted_until = self.wall + RESTARTED_SHOWN
+            return
+        self.running = left.running and not self.halted
+        if self.seat is not None and not self.running:
+            self.seat.tell_others(Pause())
+
+    def return_to(self, left: LeftRun) -> None:
+        """The scene from its start, then as it was in a run that was left, with its plots."""
+        self.scene.reset()
+        self.plot_rows.extend([*self.scene.take_plot_rows(), *left.rows])
+        self.kept_rows = collections.deque(left.rows, maxlen=self.kept_rows.maxlen)
+        self.scene.resume(left.state.value)
+        if self.seat is not None:
+            self.seat.go_on_from(self.scene.time)
 
     def resume(self, params: BaseParams, state: KeptState) -> None:
         """The scene from a state that was kept, with the parameters that it had then, running."""

@@ -128,8 +128,9 @@ class ServedScene:
                 if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras
                     self.starts = snapshot.status.starts
                     place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
-                    place_client_camera(self.server, self.panel.camera)
-                    self.panel.camera = None
+                    for camera in self.panel.cameras:
+                        place_client_camera(self.server, camera)
+                    self.panel.cameras = ()
             self.recorded = recorded
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))

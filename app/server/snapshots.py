@@ -47,6 +47,7 @@ class Snapshots:
         self.counts: collections.Counter[str] = collections.Counter()
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
         self.wall = 0.0
+        self.restarted_until = 0.0  # [s] of `wall`, while the panel says that an undo could only begin a run again
         self.keep_at = 0.0  # [s] of `wall` from which a state is kept again
         self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
@@ -170,5 +171,6 @@ class Snapshots:
             faster=self.scene.faster if capped else "",
             starts=self.counts["starts"],
             unmade=self.unmade,
+            restarted=self.wall < self.restarted_until,
             replayed=None if moment is None else (moment.low, moment.high),
         )

@@ -19,7 +19,7 @@ MOMENTS = {"Peregrine breather": ("breather", 301.7), "Draupner": ("draupner", 5
 SIZE = {"width": 1100, "height": 620}  # [pixels]
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PATIENCE = 40.0  # [s] for the shaders of the page, and for its last frame
-NO_NOTES = "[class*=Notif], #springtide-slow { display: none !important }"
+NO_NOTES = "[class*=Notif], #springtide-slow, #springtide-time { display: none !important }"
 
 
 def main() -> None:

@@ -54,8 +54,8 @@ PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.came
     top.parent.localToWorld(place).project(camera);
     return [box.left + box.width * (1 + place.x) / 2, box.top + box.height * (1 - place.y) / 2]; }"""
 # What viser itself logs without harm: its drag layer at each drag of a node.
-# The notes of viser and of the lab on slow drawing, which lie over the picture.
-NO_NOTES = "[class*=Notif], #springtide-slow { display: none !important }"
+# The notes of viser and of the lab on slow drawing, and the time line, which lie over the picture.
+NO_NOTES = "[class*=Notif], #springtide-slow, #springtide-time { display: none !important }"
 HARMLESS_ERRORS = ("preventDefault inside passive",)
 # The same when one scene or preset follows another: viser 1.1's client collects the updates of a frame and applies them
 # after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a

@@ -82,7 +82,7 @@ def test_reset_view_after_random_drags_gives_the_first_view(shown: tuple[Viewer,
     drag_at_random(tab, moves, drags)
     tab.wait(lambda: np.abs(view_of(lab) - first).max() > 0.1)
     assert tab.page.evaluate("window.lowest") > 0.09
-    tab.page.get_by_role("button", name="View", exact=True).click()
+    tab.page.get_by_role("button", name="Camera", exact=True).click()
     tab.wait(lambda: np.abs(view_of(lab) - first).max() < 1e-3)
     for key in ("v", "r", "1"):  # reset view, reset, preset
         drag_at_random(tab, moves, 3)

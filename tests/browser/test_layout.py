@@ -1,6 +1,7 @@
 """The layout of the page at several sizes, by measuring boxes; all presets under `-m stress`."""
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,9 +9,24 @@ import pytest
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
 from tests.browser.boxes import MEASURE, SIZES, faults, faults_after_change
-from tests.browser.conftest import NO_NOTES, Tab
+from tests.browser.conftest import NO_NOTES, Tab, new_page
 
 SCENE = "rope"
+# Right edges [pixels] of the fields of numbers and of the list of methods, the width of the panel, and the width that
+# its list of presets leaves for the chevron.
+LARGE_BOXES = """() => {
+    const shown = (one) => one.checkVisibility() && one.offsetWidth > 20;
+    const right = (one) => one.getBoundingClientRect().right;
+    const list = [...document.querySelectorAll(".mantine-Select-input")].filter(shown);
+    const fields = [...document.querySelectorAll("input.mantine-TextInput-input[aria-label]")].filter(shown);
+    return { panel: document.querySelector("[data-floating-window]").offsetWidth, list: list[2] ? right(list[2]) : 0,
+        fields: fields.map((one) => [one.ariaLabel, right(one)]),
+        gap: list[1] ? Number.parseFloat(getComputedStyle(list[1]).paddingRight) : 0 }; }"""
+# The buttons of the lab that a mouse can press where they are: a click of Playwright would scroll first.
+ICONS_ON_TOP = """() => [...document.querySelectorAll("[data-springtide-icon]")].filter((one) => {
+    const box = one.getBoundingClientRect();
+    return one.contains(document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2));
+}).map((one) => one.textContent)"""
 ON_TOP = "([x, y]) => document.elementFromPoint(x, y)?.tagName ?? ''"
 
 
@@ -75,6 +91,70 @@ def test_a_phone_shows_the_race_first_and_its_plots_when_asked(
     tab.wait(lambda: tab.page.evaluate(MEASURE)["picture"] > 0.45, 20)
     bar.click()
     tab.wait(lambda: tab.page.evaluate(MEASURE)["picture"] < 0.3 and not faults(tab.page), 20)
+
+
+def scroll_to_end(tab: Tab) -> None:
+    """Scroll the panel to its end."""
+    tab.page.evaluate(
+        """() => { const panel = document.querySelector(".mantine-ScrollArea-viewport:has(.springtide-panel)");
+            panel.scrollTop = panel.scrollHeight; }"""
+    )
+
+
+@pytest.mark.parametrize("size", [(780, 437), (390, 844)])
+def test_the_buttons_of_the_lab_stay_while_a_small_panel_is_scrolled(
+    resized: tuple[Viewer, Tab], size: tuple[int, int]
+) -> None:
+    _, tab = resized
+    tab.page.set_viewport_size({"width": size[0], "height": size[1]})
+    tab.page.wait_for_timeout(500)
+    preset = tab.page.get_by_label("Preset")
+    top = preset.bounding_box()["y"]
+    scroll_to_end(tab)
+    tab.wait(lambda: preset.bounding_box()["y"] < top - 30, 10)  # it is scrolled
+    assert {"Step", "Reset", "Undo"} <= set(tab.page.evaluate(ICONS_ON_TOP))
+
+
+def test_large_text_fits_the_panel(resized: tuple[Viewer, Tab]) -> None:
+    """No field or button lies beyond the lists above and below it, and no chevron over the words of a list."""
+    _, tab = resized
+    tab.page.set_viewport_size({"width": 900, "height": 600})
+    tab.page.evaluate("localStorage.setItem('springtide-large', 'yes')")
+    try:
+        tab.page.reload()
+        tab.wait(lambda: tab.page.get_by_label("Preset").is_visible(), 60)
+        tab.wait(lambda: tab.page.evaluate(LARGE_BOXES)["panel"] == 400, 20)
+        found = tab.page.evaluate(LARGE_BOXES)
+        assert len(found["fields"]) > 4
+        assert [name for name, right in found["fields"] if abs(right - found["list"]) > 1] == [], found
+        assert found["gap"] >= 18, found  # [pixels] of a chevron
+    finally:
+        tab.page.evaluate("localStorage.clear()")
+        tab.page.reload()
+        tab.wait(lambda: tab.page.locator(".springtide-panel[data-state]").count(), 60)
+
+
+def test_the_line_on_slow_drawing_lies_beside_the_panel_and_above_the_time_line(chromium: Any) -> None:
+    """In a window of 700 x 450 its buttons would lie behind the panel."""
+    lab = Viewer("127.0.0.1", 0, plain=False)
+    lab.open("rope")
+    page = new_page(chromium, 700, 450, drawn=False)
+    try:
+        page.goto(f"http://127.0.0.1:{lab.port}/?hideViserLogo")  # without "fixedDpr", which keeps the quality
+        line = page.locator("#springtide-slow")
+        line.wait_for(timeout=60_000)  # this Chromium draws in software
+        page.locator("#springtide-time").wait_for(timeout=60_000)
+        page.wait_for_timeout(1000)
+        for button in line.get_by_role("button").all():
+            button.click(trial=True, timeout=5000)
+        box, panel = line.bounding_box(), page.locator("[data-floating-window]").bounding_box()
+        bar = page.locator("#springtide-time").bounding_box()
+        assert box["x"] + box["width"] <= panel["x"]
+        assert box["y"] + box["height"] <= bar["y"]
+        assert box["height"] < 60
+    finally:
+        page.close()
+        lab.shut()
 
 
 @pytest.mark.stress

@@ -4,7 +4,7 @@
 // The time axis: viser keeps the part of it that is shown, and on a slow page loses it when a chart is made anew. Here all
 // of it is shown again, unless it was zoomed by hand.
 // The name of the first axis, at its end (page.css). The height of the charts: a whole number of them fills their pane.
-// A line in the charts over time, where the recording is shown: the panel says the time in `data-springtide-moment`.
+// A line in the charts over time, where the recording is shown: the time line says the time (timeline.js).
 //
 // Of viser this file uses window.__viserTestpoints.uplots, the charts of the page.
 
@@ -133,7 +133,7 @@
 
   let lastMoment = "", lookedAt = 0;
   function update(now) {
-    const moment = document.querySelector("[data-springtide-moment]")?.dataset.springtideMoment || "";
+    const moment = document.getElementById("springtide-time")?.dataset.moment || "";
     if (now - lookedAt >= SEARCH_INTERVAL || moment !== lastMoment) {
       look(moment);
       lookedAt = now;

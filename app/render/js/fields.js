@@ -117,11 +117,12 @@
   // The block that stays in sight: the folder that says whether the lab plays. The tabs stand below it.
   const HINTS = {
     Play: "Play (space)", Pause: "Pause (space)", Step: "One step (N)", Reset: "Back to the start (R)",
-    View: "Reset the view (V)", Plots: "Open or close the plots (P)", Undo: "Undo the last change (U)",
+    Camera: "Reset the camera (V)", Plots: "Open or close the plots (P)", Undo: "Undo the last change (U)",
   };
   const ARROWS = { "◀": "Previous task", "▶": "Next task" };
   function nameArrows() {
     for (const button of document.querySelectorAll(".mantine-Button-root")) {
+      button.classList.toggle("springtide-quiet", button.textContent === "Remove preset");
       const name = ARROWS[button.textContent];
       if (!name || button.title === name) continue;
       button.title = name;
@@ -131,6 +132,9 @@
   const sizes = new ResizeObserver(([{ target }]) => {
     const height = Math.floor(target.getBoundingClientRect().height); // rounded up, the text would show in between
     document.documentElement.style.setProperty("--springtide-head", `${height}px`);
+    const row = target.querySelector("[data-springtide-icon]");
+    const above = row ? row.getBoundingClientRect().top - target.getBoundingClientRect().top : 0;
+    document.documentElement.style.setProperty("--springtide-above", `${Math.floor(above)}px`);
   });
   function markLab() {
     const status = document.querySelector(".springtide-panel[data-state]"), lab = status?.closest(".mantine-Paper-root");

@@ -141,8 +141,9 @@ const QUALITY = (() => {
     made.setAttribute("role", "status");
     // Written here, because a replay has no style sheet of ours.
     made.style.cssText =
-      "position:fixed;bottom:12px;left:16px;z-index:8;padding:4px 10px;border-radius:6px;" +
-      "background:rgba(16,30,46,0.85);color:#fff;font:13px/1.5 system-ui,sans-serif;max-width:90vw";
+      "position:fixed;bottom:calc(8px + var(--springtide-foot, 0px) + var(--springtide-bar, 0px));z-index:8;padding:4px 10px;" +
+      "left:calc(8px + var(--springtide-left, 0px));border-radius:6px;background:rgba(16,30,46,0.85);color:#fff;" +
+      "font:13px/1.5 system-ui,sans-serif;max-width:calc(100vw - 36px - var(--springtide-left, 0px) - var(--springtide-right, 0px))";
     made.append("Drawing is slow here, so the quality is lower.");
     made.append(button("Keep high quality", () => choose("high")));
     made.append(button("OK", () => {

@@ -34,6 +34,12 @@
     return true;
   }
 
+  // Have the server make a file, by a hidden button of the panel.
+  function make(value) {
+    const uuid = document.querySelector("[data-springtide-makers]").dataset.springtideMakers;
+    window.__viserMutable?.sendMessage({ type: "GuiUpdateMessage", uuid, updates: { value } });
+  }
+
   const own = `[data-springtide-changer="${PAGE}"]`, sentences = document.createElement("style");
   sentences.textContent =
     `${own} .springtide-others, [data-springtide-changer]:not(${own}) .springtide-own { display: none; }`;
@@ -101,7 +107,7 @@
       for (const track of clip.stream.getTracks()) track.stop();
       clip = null;
       window.__springtideClip = false;
-      button.textContent = "Record clip";
+      button.textContent = "Record";
       download(new Blob(parts, { type }), type.startsWith("video/mp4") ? "springtide.mp4" : "springtide.webm");
     };
     clip.start(1000);
@@ -113,7 +119,7 @@
     const charts = Object.values(window.__viserTestpoints?.uplots || {}).map(({ chart }) => chart);
     if (!charts.length) {
       button.textContent = "Open a plot first";
-      setTimeout(() => (button.textContent = "Plots as PNG"), 3000);
+      setTimeout(() => (button.textContent = "Save plots"), 3000);
       return;
     }
     const ratio = devicePixelRatio, line = 26 * ratio;
@@ -170,8 +176,11 @@
     const button = event.target instanceof Element && event.target.closest("button");
     if (!button) return;
     if (button.textContent === "Copy link") pressed = performance.now();
-    if ("springtideClip" in button.dataset) toggleClip(button);
-    if ("springtideCharts" in button.dataset) saveCharts(button);
+    const film = document.querySelector("[data-springtide-film]")?.value;
+    if ("springtideClip" in button.dataset) clip || !film ? toggleClip(button) : make(film);
+    if (!("springtideCharts" in button.dataset)) return;
+    const form = document.querySelector("[data-springtide-plots]").value;
+    form === "PNG" ? saveCharts(button) : make(`Plots as ${form}`);
   }, true);
   document.addEventListener("change", async (event) => {
     const field = event.target;

@@ -280,7 +280,8 @@ class ClothScene(NetScene[Params]):
         else:
             omega, rate = gershgorin(self.net, self.state.x)
             stability = gauge_of([Mode(omega**2, omega**2, rate)], record, self.step)
-        self.stability = ClothReadings(stability, exact, self.corrections, self.fallback_note, self.tuner.threads)
+        readings = ClothReadings(stability, exact, self.corrections, self.fallback_note, self.tuner.threads)
+        self.stability = self.recent.worst(self.state.t, readings)
         self.assessed_at = self.state.t
 
     def alternative(self) -> str:
@@ -295,7 +296,7 @@ class ClothScene(NetScene[Params]):
         self.plot_rows.add(state.t, e.total, e.kinetic, e.elastic, e.gravity, e.contact, dissipated, strain)
 
     def readings(self) -> ClothReadings:
-        """Stability as last assessed, and the cost of the last steps."""
+        """The worst stability of the last assessments, and the cost of the last steps."""
         threads, left_out = self.tuner.threads, self.state.left_out
         return self.stability._replace(corrections=self.corrections, threads=threads, left_out=left_out)
 

@@ -206,7 +206,9 @@ class RopeScene(NetScene[Params]):
         parameter = stiffness_parameter(self.params)
         if parameter == "axial_stiffness":
             largest *= self.net.families[0].rest
-        self.stability = RopeReadings(stability, parameter, largest, self.fallback_note, self.numerical_cost())
+        cost = self.numerical_cost()
+        readings = RopeReadings(stability, parameter, largest, self.fallback_note, cost)
+        self.stability = self.recent.worst(self.state.t, readings)._replace(cost=cost)
         self.assessed_at, self.assessed_x = self.state.t, self.state.x.copy()
 
     def numerical_cost(self) -> NumericalCost | None:
@@ -236,7 +238,7 @@ class RopeScene(NetScene[Params]):
         self.plot_rows.add(state.t, total, e.kinetic, e.elastic, gained, e.contact, state.dissipated, error, tip)
 
     def readings(self) -> RopeReadings:
-        """Stability and cost, as last assessed."""
+        """The worst stability of the last assessments, and the cost, as last assessed."""
         return self.stability
 
     def tension(self) -> NDArray[np.float64]:

@@ -200,7 +200,7 @@ class View(SpringView[Params, RopeFrame, RopeReadings]):
 
 def bead_radius(points: np.ndarray) -> float:
     """Radius [m] of the beads at points (n, 3) [m]: smaller where they are close to each other."""
-    spacing = float(np.abs(np.diff(points, axis=0)).sum()) / max(len(points) - 1, 1)
+    spacing = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()) / max(len(points) - 1, 1)
     return float(np.clip(0.4 * spacing, MIN_BEAD_RADIUS, MAX_BEAD_RADIUS))
 
 

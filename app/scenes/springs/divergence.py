@@ -67,7 +67,7 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
         return f"{start} {over} for {method} ({limit}). Use {proposals or 'another method'}."
     return (
         f"{start} within the limit of {method} ({limit}), so an impact or a pull was too sudden for it. "
-        f"Try a time step of {time_step(step / 4)}."
+        f"Try a time step of {longest_step(step / 4)}."
     )
 
 

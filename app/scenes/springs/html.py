@@ -6,11 +6,12 @@ from app.formats.formatting import longest_step, number, percent
 from app.render.colormap import css_scale
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, faint, fill, info
 from app.scenes.springs.divergence import limit_text
+from app.scenes.springs.recent_gauges import SPAN
 from sim.springs.stability import Gauge
 
 STEP_INFO = (
-    "hω is the time step h times the highest frequency ω of the springs. Above its limit, which depends on the damping "
-    "ratio ζ = {}, the motion grows without end."
+    "The worst of the last {:g} s: {}. hω is the time step h times the highest frequency ω of the springs. Above its "
+    "limit, which depends on the damping ratio ζ = {}, the motion grows without end."
 )
 WARNING_SHARE = 0.8  # of the largest stable step, from which the step is shown in the colour of a warning
 
@@ -24,22 +25,20 @@ def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
         '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 4px">'
         '<div style="height:8px;border-radius:4px;width:{:.0f}%;background:{}"></div></div>',
         share_text(gauge, colour, exact=exact),
-        info(STEP_INFO.format(number(gauge.zeta, 2)), "1. Springs"),
+        info(STEP_INFO.format(SPAN, limit_text(gauge), number(gauge.zeta, 2)), "1. Springs"),
         100.0 * min(share, 1.0),
         colour,
     )
 
 
 def share_text(gauge: Gauge, colour: str, *, exact: bool) -> Html:
-    """The step relative to the largest stable one, in words and then in symbols."""
+    """The step relative to the largest stable one, in words."""
     if gauge.critical_step == math.inf:
         return fill("Step: {}", coloured("any is stable", colour))
     if gauge.critical_step <= 0.0:
         return fill("Step: {}", coloured("none is stable with this method", colour))
     return fill(
-        "Step: {} of the largest stable ({})",
-        coloured(f"{'' if exact else 'at most '}{percent(gauge.share)}", colour),
-        limit_text(gauge),
+        "Step: {} of the largest stable", coloured(f"{'' if exact else 'at most '}{percent(gauge.share)}", colour)
     )
 
 

@@ -12,6 +12,7 @@ from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.drag import Drag
+from app.scenes.springs.recent_gauges import RecentGauges
 from sim.springs import Net
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import Extremes, extremes
@@ -31,7 +32,7 @@ class NetScene(abc.ABC, Generic[P]):
     ASSESSMENT_INTERVAL: ClassVar[float]  # [s] of simulated time between two assessments of the stability
 
     drag: Drag
-    stability: Any  # readings, as last assessed
+    stability: Any  # readings: the worst of the last assessments
     integrator: Integrator
     fallback_note: str
     assessed_at: float  # [s]
@@ -42,6 +43,7 @@ class NetScene(abc.ABC, Generic[P]):
         self.params = params
         self.plot_rows = PlotRows(columns)
         self.last_moments = LastMoments()
+        self.recent: RecentGauges[Any] = RecentGauges()
         self.reset()
 
     @property
@@ -112,6 +114,7 @@ class NetScene(abc.ABC, Generic[P]):
         self.corrections = 0.0  # Newton corrections a step, of implicit methods
         self.plot_rows.restart()
         self.last_moments.clear()
+        self.recent.clear()
 
     def keep(self) -> dict[str, object]:
         """Checkpoint: state, energy account and moved objects."""
@@ -123,9 +126,11 @@ class NetScene(abc.ABC, Generic[P]):
         self.drag.clear()
         self.plot_rows.resume()
         self.last_moments.clear()
+        self.recent.clear()
 
     def take_net(self, net: Net) -> None:
         """Go on with another net; the motion is interpolated where its points are others."""
+        self.recent.clear()
         stored, before, self.net = self.account.stored(self.net, self.state), self.net, net
         if net.shape != before.shape:
             self.state.x, self.state.v = (resample(values, *net.shape) for values in (self.state.x, self.state.v))

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from app.__main__ import main
-from app.lab.answers import read_answers
+from app.lab.answers import Answers, read_answers
 from app.lab.folder import folder_names
 from app.lab.task import load_tasks
 from tests.app.lab.answers_file import write_answers
@@ -318,8 +318,42 @@ def test_a_folder_to_work_on_needs_no_command_before_it(
     folder = tmp_path / "mine"
     assert main(["lab", "new", str(folder)]) == 0
     assert main(["lab", "--no-open", str(folder), "--port", "0"]) == 0
-    (scene, params, *_), options = served[0]
-    assert (scene, params.integrator) == ("rope", "rk4")
+    options = served[0][1]
     assert options["session"].folder == options["workbook"].folder == folder
     assert not options["session"].versions.copies.exists()  # it was closed
     assert "nothing: no such folder" in error_of(capsys, str(tmp_path / "nothing"))
+
+
+@pytest.mark.parametrize(
+    ("options", "scene"),
+    [
+        ([], "radial_sea"),  # of the first task
+        (["--scene", "cloth"], "cloth"),
+        (["--set", "points=20"], "rope"),
+        (["--preset", "Pendulum"], "rope"),
+    ],
+)
+def test_a_student_s_lab_opens_where_the_work_is(
+    empty: Path, monkeypatch: pytest.MonkeyPatch, options: list[str], scene: str
+) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr("app.commands.serve.serve_lab", lambda name, params, **how: opened.append(name) or 0)
+    assert main(["lab", str(empty), "--no-open", *options]) == 0
+    assert opened == [scene]
+
+
+def test_a_lab_that_was_begun_opens_with_the_task_after_it(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = next(task for task in TASKS if task.setup is not None and task.setup.scene == "rope" and task.questions)
+    write_answers(empty, TASKS, Answers("Bo", {(begun.name, begun.questions[0].key): "0"}))
+    opened: list[tuple[str, object]] = []
+    monkeypatch.setattr("app.commands.serve.serve_lab", lambda name, params, **how: opened.append((name, params)) or 0)
+    assert main(["lab", str(empty), "--no-open"]) == 0
+    assert opened[0][0] == "rope"
+    assert vars(opened[0][1])["integrator"] == "rk4"
+
+
+def test_the_help_of_the_lab_shows_the_options_of_a_folder(capsys: pytest.CaptureFixture) -> None:
+    with pytest.raises(SystemExit):
+        main(["lab", "--help"])
+    said = capsys.readouterr().out
+    assert all(option in said for option in ("--port", "--no-open", "--scene", "new", "check"))

@@ -93,7 +93,7 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
         coroutines.run(callback(SimpleNamespace(target=command, client_id=1)))
     assert panel.head.preset.value == "Pendulum" != before
     time.sleep(0.3)  # viser tells of the assignment to the list, too
-    assert posted == [Take(panel.params, start=True)]
+    assert posted == [Take(panel.params, start=True, run=panel.history.run)]
     panel.head.preset.value = before
     chosen: list[Any] = panel.head.preset._impl.update_cb
     for callback in chosen:

@@ -75,3 +75,13 @@ def test_a_slider_that_is_moved_is_one_change() -> None:
     assert history.take_last() == Settings(Params(mass=3.0), "first")
     assert history.take_last() == Settings(Params(stiffness=1.0), "first")
     assert history.take_last() is None
+
+
+def test_each_change_that_begins_a_run_has_a_number_to_which_undo_returns() -> None:
+    history = History()
+    changes = ("b", True), ("mass", False), ("reset", True), ("b", True)
+    assert [history.note(Settings(Params(), "a"), what, begins=begins) for what, begins in changes] == [2, 2, 3, 4]
+    assert history.note(Settings(Params(), "a"), "b", begins=True) == 4  # the same change
+    back = [history.take_last() for _ in range(4)]
+    assert [settings.run for settings in back if settings is not None] == [3, 2, 2, 1]
+    assert history.note(Settings(Params(), "a"), "c", begins=True) == 5  # no number comes twice

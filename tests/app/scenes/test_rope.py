@@ -14,6 +14,7 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import PRESETS, Params
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
+from app.scenes.rope.view import bead_radius
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.html import stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, SPHERE
@@ -54,7 +55,7 @@ def test_explicit_euler_at_the_labs_defaults_explodes_and_the_reason_is_given() 
     scene = Rope(Params(integrator="explicit_euler"))
     with pytest.raises(
         DivergenceError,
-        match=r"for explicit Euler \(hω 0.91 of 0.51\). Use a time step up to 1/109 s \(9.2 ms\) or leap",
+        match=r"for explicit Euler \(hω 0.93 of 0.51\). Use a time step up to 1/111 s \(9 ms\) or leap",
     ):
         run(scene, 600, 1)
     assert np.isfinite(scene.frame().points).all()
@@ -385,7 +386,7 @@ def test_the_stability_bar_has_the_step_in_the_colour_of_its_verdict(h_omega: fl
 def test_the_panel_says_what_limits_a_step_that_only_damping_limits() -> None:
     """The mode nearest to the limit is not stiff; leapfrog's limit is that of the stiffest, 2/50 s."""
     gauge = Gauge(0.0, math.inf, 0.0, 0.0, 1e-3, 2e-3, 50.0)
-    assert "(damping alone limits it)" in stability_bar(gauge)
+    assert "The worst of the last 5 s: damping alone limits it." in stability_bar(gauge)
     assert "200\u00a0%" in stability_bar(gauge)
     assert leapfrog_alternative(INTEGRATORS["rk4"], gauge) == "leapfrog with one up to 1/25 s (40 ms)"
     text = divergence_text(1.0, INTEGRATORS["rk4"], 2e-3, gauge, "")
@@ -396,3 +397,11 @@ def test_a_rope_has_left_its_bounds_at_three_times_the_length_it_hangs_at() -> N
     scene = Rope(Params(floor=False))
     start = extremes(scene.state.x, scene.state.v).reach
     assert scene.max_reach == pytest.approx(4.0 + 3.0 * 2.5625 + start)  # the lab's ten points hang 2.56 m deep
+
+
+def test_beads_are_as_large_in_every_direction_of_the_rope() -> None:
+    """They are made once for a number of points: level at a start, in any shape when a run comes back."""
+    along = np.array([1.0, 0.0, 0.0]), np.array([1.0, 1.0, 1.0]) / math.sqrt(3.0)
+    level, slanted = (bead_radius(0.05 * np.outer(np.arange(40), direction)) for direction in along)
+    assert level == pytest.approx(0.4 * 0.05, rel=1e-12)
+    assert slanted == pytest.approx(level, rel=1e-12)

@@ -11,13 +11,14 @@ import pytest
 import zstandard
 
 from app.formats.packing import pack
+from app.panel.files import REPLAY_DURATION
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import scene_named, view_named
 from app.scenes.setups import read_setup
 from app.server.loop import SimLoop
-from app.server.replay_file import BITS, MAX_DURATION, MAX_FRAMES, MAX_RAW_BYTES, replay_html, rounded, thinned
+from app.server.replay_file import BITS, MAX_FRAMES, MAX_RAW_BYTES, replay_html, rounded, thinned
 
 DURATION = 2.0  # [s]
 
@@ -107,7 +108,7 @@ def test_a_replay_holds_the_last_frames_evenly_thinned(recorded: Any) -> None:
     long = [frames[0]._replace(wall=n / 30) for n in range(6000)]
     walls = np.array([kept.wall for kept in thinned(long)])
     assert 0.9 * MAX_FRAMES <= len(walls) <= MAX_FRAMES + 1
-    assert (walls[0], walls[-1]) == pytest.approx((walls[-1] - MAX_DURATION, long[-1].wall), abs=0.1)
+    assert (walls[0], walls[-1]) == pytest.approx((walls[-1] - REPLAY_DURATION, long[-1].wall), abs=0.1)
     assert np.ptp(np.diff(walls)) < 2 / 30
     points = np.zeros(1_000_000, np.uint8)
     big = [kept._replace(packed=frames[0].frame._replace(points=points)) for kept in long]

@@ -1,0 +1,125 @@
+"""Undo across a preset, a reset or a new start: the run goes on as if nothing had happened."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take
+from app.scenes import NAMES, scene_named
+from app.scenes.setups import make_setup
+from app.server import left_runs
+from app.server.loop import SimLoop
+from app.server.viewer import Viewer
+from tests.waiting import wait_for
+
+TICKS = 12
+TICK = 1 / 30  # [s]
+
+
+def begun(name: str) -> SimLoop:
+    """A scene that has run for a while and stands still, with costs that do not count."""
+    loop = SimLoop(scene_named(name).make(make_setup(scene_named(name)).params), effort=lambda: 0.0)
+    run(loop)
+    loop.handle(Pause())
+    return loop
+
+
+def run(loop: SimLoop) -> None:
+    for _ in range(TICKS):
+        loop.tick(TICK)
+
+
+def arrays_of(loop: SimLoop) -> dict[str, np.ndarray]:
+    """The state of a scene."""
+    found = {name: np.array(array) for name, (array, _) in loop.scene.arrays().items()}
+    assert found
+    return found
+
+
+def check_same(loop: SimLoop, arrays: dict[str, np.ndarray]) -> None:
+    for name, array in arrays_of(loop).items():
+        np.testing.assert_array_equal(array, arrays[name], err_msg=name)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("change", ["preset", "reset", "moment"])
+def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, change: str) -> None:
+    kind = scene_named(name)
+    loop, undisturbed = begun(name), begun(name)
+    params, time, before, rows = loop.scene.params, loop.scene.time, arrays_of(loop), tuple(loop.kept_rows)
+    assert time > 0.0
+    other = make_setup(kind, list(kind.presets)[1]).params
+    moment = Take(params, state=KeptState(loop.scene.keep(), {}), run=2)
+    changes = {"preset": Take(other, start=True, run=2), "reset": Reset(2), "moment": moment}
+    loop.handle(changes[change])
+    loop.handle(Play())
+    run(loop)
+    starts = loop.counts["starts"]
+    loop.handle(Take(params, start=True, run=1, back=True))
+    assert (loop.scene.time, loop.running, loop.halted) == (time, False, "")
+    assert loop.counts["starts"] == starts + 1  # so that the recording and the cameras are those of another run
+    check_same(loop, before)
+    loop.publish()
+    assert tuple(loop.kept_rows)[: len(rows)] == rows
+    for one in (loop, undisturbed):
+        one.handle(StepOnce(5))
+    check_same(loop, arrays_of(undisturbed))
+
+
+def test_a_run_that_is_too_large_begins_again_and_the_panel_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(left_runs, "MAX_BYTES", 1000.0)
+    loop = begun("rope")
+    params = loop.scene.params
+    loop.handle(Take(make_setup(scene_named("rope"), "Pendulum").params, start=True, run=2))
+    assert (len(loop.left.runs), loop.left.memory.bytes) == (0, 0)
+    loop.handle(Take(params, start=True, run=1, back=True))
+    assert (loop.scene.time, loop.running, loop.status().restarted) == (0.0, True, True)
+    loop.tick(10.0)
+    assert not loop.status().restarted
+
+
+def test_memory_is_bounded_and_the_oldest_go_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    loop = begun("rope")
+    loop.handle(Reset(2))
+    size = loop.left.memory.bytes
+    assert size == sum(loop.left.runs[0].arrays.values()) > 0
+    monkeypatch.setattr(left_runs, "MAX_BYTES", 3.5 * size)
+    for number in range(3, 30):
+        loop.handle(Reset(number))
+        assert loop.left.memory.bytes <= 3.5 * size
+    assert loop.left.runs[-1].number == 28
+    assert loop.left.take(1) is None
+    kept = [run.number for run in loop.left.runs]
+    assert kept == list(range(kept[0], 29))
+    for number in kept:
+        assert loop.left.take(number) is not None
+    assert loop.left.memory.bytes == 0
+
+
+def test_a_run_that_never_began_leaves_the_one_before_untouched() -> None:
+    """A preset whose kernels are still compiled, and an undo that comes first."""
+    loop = begun("rope")
+    time = loop.scene.time
+    loop.handle(Take(loop.scene.params, start=True, run=1, back=True))
+    assert (loop.scene.time, loop.counts["starts"]) == (time, 0)
+
+
+@pytest.mark.parametrize("change", [lambda lab: lab.panel.load("Pendulum"), lambda lab: lab.panel.reset()])
+def test_undo_gives_back_the_screen(lab: Viewer, change: Callable[[Viewer], None]) -> None:
+    """As a user meets it: a rope over the sphere, another preset or a reset, one step, undo."""
+    lab.visitors = lambda: 1  # type: ignore[method-assign]
+    lab.panel.load("Over the sphere")
+    wait_for(lambda: lab.loop.scene.time > 0.5 and lab.loop.running)
+    lab.panel.post(Pause())
+    wait_for(lambda: not lab.loop.running)
+    time, before = lab.loop.scene.time, arrays_of(lab.loop)
+    starts = lab.loop.counts["starts"]
+    change(lab)
+    lab.panel.post(StepOnce())
+    wait_for(lambda: lab.loop.counts["starts"] > starts and not lab.loop.running)
+    lab.panel.undo()
+    wait_for(lambda: lab.loop.scene.time == time)
+    check_same(lab.loop, before)
+    assert not lab.loop.running
+    assert lab.panel.head.preset.value == "Over the sphere"

@@ -1,0 +1,109 @@
+"""The time line along the foot of the scene, in a real browser."""
+
+from collections.abc import Callable
+
+import pytest
+
+from app.messages import Pause, Play
+from app.server.viewer import Viewer
+from tests.browser.conftest import Tab
+
+SCENE = "rope"
+# The time [s] at which each chart has a line, where the whole of its time axis is seen.
+MOMENT_PLACES = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).flatMap(({ chart }) => {
+    const line = chart.over.querySelector(".springtide-moment"), times = chart.data[0];
+    const whole = chart.scales.x.min === times[0] && chart.scales.x.max === times[times.length - 1];
+    return line && whole ? [chart.posToVal(parseFloat(line.style.left), "x")] : []; })"""
+BOXES = """() => ["#springtide-time", "#springtide-time input", "canvas[data-engine]"].map((name) => {
+    const { left, right, top, bottom } = document.querySelector(name).getBoundingClientRect();
+    return { left, right, top, bottom }; })"""
+PANEL_EDGE = """() => { const box = document.querySelector(
+    "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root)").getBoundingClientRect();
+    return [box.left, box.top]; }"""
+THUMB = 14  # [pixels] about, of a range: its middle goes from half of that to as much before the end
+
+
+def place_of(tab: Tab, moment: float) -> tuple[float, float]:
+    """Where a time [s] lies on the bar [pixels]."""
+    low, high = (float(tab.page.locator("#springtide-time input").get_attribute(end) or 0) for end in ("min", "max"))
+    box = tab.page.locator("#springtide-time input").bounding_box()
+    assert box is not None
+    part = (moment - low) / (high - low)
+    return box["x"] + THUMB / 2 + part * (box["width"] - THUMB), box["y"] + box["height"] / 2
+
+
+def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    recorder, starts = lab.panel.recorder, lab.loop.counts["starts"]
+    lab.panel.set("speed", 10.0)
+    lab.loop.commands.put(Play())
+    tab.wait(lambda: recorder.span()[1] > 24.0, 60)
+    lab.panel.set("speed", 1.0)
+    tab.page.wait_for_timeout(1000)  # the bar follows twice a second
+    high = recorder.span()[1]
+    bar, line, scene = tab.page.evaluate(BOXES)
+    # As wide as the scene, up to the panel.
+    assert (bar["left"], bar["right"]) == pytest.approx((scene["left"], tab.page.evaluate(PANEL_EDGE)[0]), abs=1)
+    assert line["right"] - line["left"] > 0.8 * (bar["right"] - bar["left"])
+    assert bar["bottom"] == pytest.approx(scene["bottom"], abs=1)
+    back = high - 20.0
+    x, y = place_of(tab, back)
+    tab.drag((line["right"] - THUMB / 2, y), (x, y), 10)
+    tab.release()
+    tab.wait(lambda: recorder.shown is not None and abs(recorder.shown.time - back) < 1.5, 20)
+    tab.wait(lambda: not lab.loop.running, 10)
+    assert tab.page.locator("#springtide-time output").is_visible()
+    tab.page.get_by_role("button", name="Continue from here").click()
+    tab.wait(lambda: lab.loop.running and recorder.shown is None, 20)
+    assert lab.loop.counts["starts"] == starts
+    assert lab.loop.scene.time < high - 10.0
+    tab.wait(lambda: recorder.span()[1] < high - 10.0, 10)
+    tab.wait(lambda: not tab.page.locator("#springtide-time output").is_visible(), 10)
+
+
+def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
+    shown: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
+) -> None:
+    """The other visitor has a phone, on which the bar stands above the panel."""
+    lab, tab = shown
+    other = open_tab(lab.port, width=390, height=844)
+    recorder = lab.panel.recorder
+    line = other.page.locator("#springtide-time input")
+    other.wait(line.is_visible, 60)
+    other.wait(lambda: len(recorder.frames) > 10, 30)
+    line.focus()
+    for key in ("ArrowLeft", "ArrowLeft", "ArrowRight"):
+        other.page.keyboard.press(key)
+        other.page.wait_for_timeout(100)
+    other.wait(lambda: recorder.position == len(recorder.frames) - 2 and not lab.loop.running, 20)
+    moment = recorder.shown
+    assert moment is not None
+    words = f"t = {moment.time:.2f} s"
+    for one in (tab, other):
+        one.wait(lambda one=one: one.page.locator("#springtide-time").inner_text().endswith(words), 20)
+    bar, _, _ = other.page.evaluate(BOXES)
+    assert 0 <= bar["left"] < 5
+    assert 385 < bar["right"] <= 390
+    assert bar["bottom"] == pytest.approx(other.page.evaluate(PANEL_EDGE)[1], abs=1)
+    buttons = other.page.locator("#springtide-time button")
+    for number in range(buttons.count()):
+        buttons.nth(number).click(trial=True, timeout=5000)
+    other.page.keyboard.press("Home")
+    other.wait(lambda: recorder.position == 0, 20)
+    other.page.get_by_role("button", name="Live", exact=True).click()
+    tab.wait(lambda: recorder.shown is None and lab.loop.running, 20)
+    tab.wait(lambda: tab.page.locator("#springtide-time").inner_text().endswith("Live"), 20)
+
+
+def test_the_plots_show_the_moment(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    lab.panel.set("plot_tip", True)
+    lab.loop.commands.put(Play())
+    tab.wait(lambda: lab.loop.scene.time > lab.panel.recorder.span()[0] + 2.0, 60)
+    lab.panel.recorder.show_time(lab.panel.recorder.span()[0] + 1.0)
+    lab.loop.commands.put(Pause())
+    shown_frame = tab.wait(lambda: lab.panel.recorder.shown, 20)
+    assert tab.wait(lambda: tab.page.evaluate(MOMENT_PLACES), 30)[0] == pytest.approx(shown_frame.time, abs=0.05)
+    lab.panel.recorder.show_present()
+    tab.wait(lambda: not tab.page.evaluate(MOMENT_PLACES), 20)
+    lab.panel.set("plot_tip", False)

@@ -216,7 +216,7 @@ def exponential(x):
 
 @kernel(inline=True)
 def sums_at(x, y, z, t, waves, amplitudes, row, responses, which, depth):
-    """`Sums` at a place at time t. It is expanded into its caller, where the compiler drops what is not read.
+    """`Sums` at a place at time t. It is expanded into its caller, where the compiler drops unread sums.
 
     z: None for the resting surface. Above that and below the bottom are the motion and the pressure there.
     waves (9, n): see `Waves.table`.

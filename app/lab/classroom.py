@@ -90,7 +90,7 @@ class Classroom:
     """All folders, and threads that look at them and check. Use it in a `with` block."""
 
     def __init__(self, folders: Sequence[Path], tasks: Sequence[Task]) -> None:
-        """Raises ValueError for what is no folder."""
+        """Raises ValueError for a path that is no folder."""
         for folder in folders:
             check_is_folder(folder)
         self.students = {folder: Student(folder) for folder in dict.fromkeys(folders)}

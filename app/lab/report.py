@@ -182,7 +182,7 @@ def program_text(entry: TaskResult) -> Html:
 
 
 def is_answered(entry: TaskResult) -> bool:
-    """True if the questions of a task have answers: what its check covers may give one away."""
+    """True if the questions of a task have answers: the text on its check may give one away."""
     return all(answer.state != "not begun" for answer in entry.answers)
 
 

@@ -59,7 +59,7 @@ class Head:
             self.actions.load(event.target.value)
 
     async def on_button(self, event: ViserEvent) -> None:
-        """Do what the label of the pressed button says."""
+        """Carry out the label of the pressed button."""
         match event.target.value:
             case "Plots":
                 self.actions.toggle_plots()

@@ -13,7 +13,7 @@ SAME_CHANGE = 1.0  # [s] within which changes of one parameter, as a slider is m
 
 
 class Settings(NamedTuple):
-    """All parameters, the preset that they come from, and what was on the screen."""
+    """All parameters, the preset that they come from, and the state of the screen."""
 
     params: BaseParams
     preset: str

@@ -48,7 +48,7 @@ class Measure(NamedTuple):
 
 
 class Advice(NamedTuple):
-    """A value of a parameter that mends what is wrong."""
+    """A value of a parameter that mends a fault."""
 
     name: str  # of the parameter
     value: float

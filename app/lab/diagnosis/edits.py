@@ -70,7 +70,7 @@ def edits_of(function: Callable[..., Any]) -> Iterator[Edit]:
 
 
 def changes_of(node: ast.AST, arguments: Sequence[str]) -> Iterator[Callable[[Any], ast.AST | None]]:
-    """What may stand in place of a node: functions of the node in a copy; None for nothing."""
+    """The nodes that may stand in place of one, as functions of it in a copy; None for nothing."""
     if isinstance(node, ast.BinOp):
         yield from (changed("op", other()) for other in OPERATORS.get(type(node.op), ()))
         yield lambda node: node.left

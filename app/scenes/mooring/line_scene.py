@@ -98,7 +98,7 @@ class LineScene(abc.ABC):
         self.last_moments.clear()
 
     def check_start(self, rest: Rest) -> None:
-        """Find what is wrong with a state to start with."""
+        """Find the faults of a state to start with."""
         spans = np.linalg.norm(np.diff(self.points_at(rest.nodes), axis=1), axis=2).sum(axis=1)
         self.rest_stretch = spans / self.lengths() - 1.0
         self.fault = self.find_fault()

@@ -121,10 +121,12 @@ def test_a_path_is_whole_and_the_text_about_it_does_not_depend_on_its_length(
 def test_the_results_of_the_lab_are_folded_and_not_cut(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    task = SimpleNamespace(item="2.10", optional=True, title="A long title of a task that goes on and on, and on")
+    task = SimpleNamespace(
+        name="long", item="2.10", optional=True, title="A long title of a task that goes on and on, and on"
+    )
     problems = ["rope.py:7 step_rk4: wrong: (x, v) is 0.1234567890123456789012345678901234567890123456789 m, not 1 m"]
     missing = ["Which of the methods takes energy from the rope, and which one adds energy to it in each step?"]
-    entry = SimpleNamespace(task=task, state="incomplete", problems=problems, missing=missing)
+    entry = SimpleNamespace(task=task, state="incomplete", problems=problems, missing=missing, program=None, answers=())
     named: Any = SimpleNamespace(
         folder=Path("a_folder_with_a_long_name_" * 4), tasks=[entry], seconds=1.0, count=lambda optional: (0, 1),
         answers=SimpleNamespace(name="Anna-" * 20, error=""),

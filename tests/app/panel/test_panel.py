@@ -110,12 +110,13 @@ def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(v
     assert (button.label, button.visible) == ("Use 84.5 m", True)
     assert panel.controls["length"].line is not None
     assert "cannot reach" in panel.controls["length"].line.content
-    posted: list[object] = []
+    posted: list[Any] = []
     panel.post = posted.append
     for callback in button._impl.update_cb:
         coroutines.run(callback(SimpleNamespace(target=button, client_id=1)))
     assert panel.params.length == 84.5
-    assert posted == [Take(panel.params), Reset()]
+    assert [type(command) for command in posted] == [Take, Reset]
+    assert posted[0].params == panel.params
     folders = [folder.order for folder, _ in panel.readings.notes.values()]
     assert list(panel.readings.notes) == ["Tensions", "Bed and slack"]
     assert panel.readings.readout.order < folders[0] < folders[1] < panel.folders["Line"].order

@@ -70,7 +70,7 @@ def test_the_sum_of_waves_has_the_height_of_the_file(table):
     assert "wind_direction" in kind.hidden(scene.params)
     assert scene.sum.significant_height == pytest.approx(HEIGHT, rel=2e-3)
     assert "Measured, buoy.csv" in str(readout_of(latest))
-    tile = scene.tile_now().sea
+    tile = scene.tile_now()
     assert tile.spectrum is scene.wave_choice.spectrum
 
 

@@ -44,6 +44,9 @@ def test_a_symbol_without_a_word_is_found() -> None:
     assert unexplained("Step: 34 % of the largest stable (hω 0.68 of 2.00)") == []
 
 
+NOT_DRAWN: Any = SimpleNamespace(tube=None, tubes=[], mesh=None, water=None)  # a view before anything is drawn
+
+
 def texts_of(name: str, changes: dict[str, Any]) -> Iterator[str]:
     """The texts that the panel shows of a scene after a few steps."""
     kind, view = scene_named(name), view_named(name)
@@ -55,7 +58,7 @@ def texts_of(name: str, changes: dict[str, Any]) -> Iterator[str]:
     snapshot = SimpleNamespace(frame=scene.frame(), readings=scene.readings(), params=scene.params)
     for read in ("figures", "readout", "marks", "notes"):
         if hasattr(view, read):
-            found = getattr(view, read)(None, snapshot)
+            found = getattr(view, read)(NOT_DRAWN, snapshot)
             yield from found.values() if isinstance(found, dict) else [found]
     if kind.live_values is not None:
         yield from (measure.meaning for measure in kind.live_values(snapshot).values())

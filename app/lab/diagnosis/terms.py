@@ -492,12 +492,10 @@ def changed_line(line: Equation, finding: Finding, term: Term) -> Equation:
     """The line of a term as the student has it."""
     change, factor = finding.change, finding.factor
     formula = change.form.formula if change.form else term.formula
-    if factor == 0.0:
-        own = "0"
-    elif factor == 1.0:
-        own = formula
+    if change.text and not change.form:
+        own = f"as below, but it {words(finding)}"
+    elif factor in (0.0, 1.0):
+        own = formula if factor else "0"
     else:
         own = f"-[{formula}]" if factor == -1.0 else f"{factor:.6g} [{formula}]"
-    if change.text and not change.form:
-        own = f"{own}, but it {change.text}"
     return Equation(line.name, (Piece(own, wrong=True),), term.formula)

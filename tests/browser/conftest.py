@@ -5,6 +5,7 @@ import os
 import shutil
 import tempfile
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -56,6 +57,7 @@ PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.came
 # What viser itself logs without harm: its drag layer at each drag of a node.
 # The notes of viser and of the lab on slow drawing, and the time line, which lie over the picture.
 NO_NOTES = "[class*=Notif], #springtide-slow, #springtide-time { display: none !important }"
+STALLED = 60.0  # [s] after which a page that gets nothing any more is loaded again, with a warning
 HARMLESS_ERRORS = ("preventDefault inside passive",)
 # The same when one scene or preset follows another: viser 1.1's client collects the updates of a frame and applies them
 # after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a
@@ -149,7 +151,14 @@ class Tab:
         """Wait until the page has all of the open scene."""
         self.followed += 1
         mark = viewer.server.gui.add_html(f'<i class="springtide-mark-{self.followed}"></i>')
-        self.wait(lambda: self.page.locator(f".springtide-mark-{self.followed}").count())
+        is_there = lambda: self.page.locator(f".springtide-mark-{self.followed}").count()  # noqa: E731
+        end = time.monotonic() + STALLED
+        while not is_there() and time.monotonic() < end:
+            self.page.wait_for_timeout(50)
+        if not is_there():
+            warnings.warn(f"a page of {len(viewer.server.get_clients())} got nothing for {STALLED} s", stacklevel=2)
+            self.page.reload()
+        self.wait(is_there)
         mark.remove()
         self.errors = [error for error in self.errors if LATE_UPDATE not in error]
 

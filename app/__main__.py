@@ -425,7 +425,7 @@ def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -
 def with_mooring(params: Any, path: Path, given: Container[str]) -> Any:
     """The parameters with the mooring of a MoorDyn file, a stable time step, and no breaking load, which no file has.
 
-    given: names of parameters that stay as they are.
+    given: names of parameters that keep their values.
     Raises ValueError for another scene or a file that cannot be read, ConvergenceError for one without a state of rest.
     """
     from sim.mooring import critical_step, read_moordyn

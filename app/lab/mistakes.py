@@ -68,6 +68,6 @@ def present_task(results: Sequence[TaskResult], at: str = "") -> TaskResult | No
 
 
 def present_mistake(results: Sequence[TaskResult], at: str = "") -> str:
-    """The first mistake of the task that a student is at, or of any; "" where there is none."""
+    """The first mistake in a student's present task, or in any task; "" if there is none."""
     present = present_task(results, at)
     return next((text for result in (*([present] if present else []), *results) for text in result.problems), "")

@@ -24,7 +24,7 @@ THUMB = 14  # [pixels] about, of a range: its middle goes from half of that to a
 
 
 def place_of(tab: Tab, moment: float) -> tuple[float, float]:
-    """Where a time [s] lies on the bar [pixels]."""
+    """The place of a time [s] on the bar [pixels]."""
     low, high = (float(tab.page.locator("#springtide-time input").get_attribute(end) or 0) for end in ("min", "max"))
     box = tab.page.locator("#springtide-time input").bounding_box()
     assert box is not None

@@ -19,7 +19,7 @@ from app.lab.diagnosis.tableau import FIRST_ACCELERATION, POWERS, StepTableau
 LARGEST_DENOMINATOR = 48
 MOST_CHANGES = 3  # of an expression, beyond which it is written in x, v and the accelerations
 MOST_VELOCITIES = 4  # of an expression of the right method
-SUPERSCRIPTS = {1: "", 2: "²", 3: "³", 4: "⁴", 5: "⁵"}
+SUPERSCRIPTS = {1: "", 2: "²", 3: "³", 4: "⁴"}
 NEW = "new"
 SAME_COEFFICIENT = 1e-6
 SINGULAR = 1e-9  # share of the largest determinant, below which terms are no basis
@@ -319,11 +319,11 @@ def step_text(power: int, denominator: int) -> str:
     over = "" if denominator == 1 else f"/{denominator}"
     if power < 0:
         return f"1/({denominator} h)" if denominator > 1 else "1/h"
-    return f"1{over}" if power == 0 else f"h{SUPERSCRIPTS[power]}{over}"
+    return f"h{SUPERSCRIPTS[power]}{over}"
 
 
 def common_denominator(group: Mapping[str, float], tolerance: float) -> int:
-    """The least number that makes all coefficients whole; 1 where there is none."""
+    """The least common denominator of coefficients; 1 if there is no small one."""
     fractions = [fraction_of(c, tolerance) for c in group.values()]
     if any(fraction is None for fraction in fractions):
         return 1

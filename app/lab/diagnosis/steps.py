@@ -22,7 +22,7 @@ KEEPS_STATE = (
 def explain_step(
     student: Callable[..., Any], methods: Sequence[Callable[..., Any]], *, with_velocity: bool
 ) -> Explanation | None:
-    """The difference of a step from its method; None where there is none, or the step is no combination.
+    """Explain how a step differs from its method; None if it does not, or if it has no tableau.
 
     methods: right solutions that differ, the usual one first. with_velocity: whether the acceleration depends on the
     velocity.

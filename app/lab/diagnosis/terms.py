@@ -355,7 +355,7 @@ def without_row(block: np.ndarray, row: int) -> np.ndarray:
 def one_change(
     y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[ChangedForm]]
 ) -> list[Finding]:
-    """The form of one unit that explains the results; an empty list where there is none."""
+    """Find the form of one unit that explains the results; an empty list if there is none."""
     best: Finding | None = None
     for unit, forms in zip(units, changes, strict=True):
         left = y - total_of(right, set(range(len(right))) - set(unit.members))
@@ -392,7 +392,7 @@ def one_more(
 def two_changes(
     y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[ChangedForm]]
 ) -> list[Finding]:
-    """The forms of two units that explain the results; an empty list where there are none."""
+    """Find the forms of two units that explain the results; an empty list if there are none."""
     best: tuple[float, list[Finding]] | None = None
     for (one, ones), (other, others) in itertools.combinations(zip(units, changes, strict=True), 2):
         if set(one.members) & set(other.members):

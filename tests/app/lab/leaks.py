@@ -35,7 +35,7 @@ class Leak(NamedTuple):
 
 
 def texts_of(task: Task) -> Iterator[tuple[str, str]]:
-    """What a student meets of a task before its questions are answered: the place, and the text."""
+    """The texts of a task that a student meets before answering its questions, each with its place."""
     yield f"{task.name}: statement", task.statement
     if task.setup is not None:
         yield f"{task.name}: look", task.setup.look

@@ -141,7 +141,9 @@ def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(fold
 
 def test_the_page_has_folders_with_the_names_typed_and_escapes_all(folders: list[Path], state_of) -> None:
     save(folders[2], "+")
-    (folders[2] / "answers.toml").write_text(f'name = "Ada <i>Lovelace"\n\n[spring_force]\npredict = "{EVIL}"\n')
+    (folders[2] / "answers.toml").write_text(
+        f'name = "Ada <i>Lovelace"\n\n[spring_force]\npredict = "{EVIL}"\n', "utf-8"
+    )
     text = page([state_of(folders[2])], 7, "word")
     assert html.escape(ODD) in text
     assert "Ada &lt;i&gt;Lovelace" in text

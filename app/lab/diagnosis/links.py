@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from app.lab.diagnosis.terms import Form, Group, Term
+
 Law = Callable[..., Any]
 
 
@@ -58,3 +60,49 @@ DAMPING_FORMS: tuple[tuple[str, str, Law], ...] = (
 def size(vectors: Any) -> Any:
     """The lengths of vectors, (..., 1)."""
     return np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def both(*arguments: Any) -> Any:
+    """The whole force of a link."""
+    return spring(*arguments) + damping(*arguments)
+
+
+def terms_of_net(of_law: Callable[..., Any], per: str = "") -> tuple[Term, ...]:
+    """The terms of a net of links: spring and damping on both ends of each.
+
+    of_law(law, first=1.0, second=-1.0): what a law gives as a function of the task's arguments, with factors of the
+    force on the two ends. per: what forces are divided by, as " / m".
+    """
+    return (
+        Term("the spring on the first end", f"{SPRING}{per}", of_law(spring, second=0.0)),
+        Term("the spring on the second end", f"-{SPRING}{per}", of_law(spring, first=0.0)),
+        Term("the damping on the first end", f"{DAMPING}{per}", of_law(damping, second=0.0)),
+        Term("the damping on the second end", f"b (v1 - v2){per}", of_law(damping, first=0.0)),
+    )
+
+
+def groups_of_net(of_law: Callable[..., Any], per: str = "", forms: tuple[Form, ...] = ()) -> tuple[Group, ...]:
+    """The terms of `terms_of_net` that one line of a program makes.
+
+    of_law: as there, with `chosen`, a slice of the links. forms: more wrong forms of the force of all links.
+    """
+    names = tuple(term.name for term in terms_of_net(of_law))
+
+    def of_kind(name: str, formula: str, members: tuple[str, ...], laws: tuple[tuple[str, str, Law], ...]) -> Group:
+        whole = f"{formula}{per} on the first end, and the opposite on the second"
+        return Group(name, whole, members, tuple(Form(text, why, of_law(law)) for text, why, law in laws))
+
+    return (
+        of_kind("the spring", SPRING, names[:2], SPRING_FORMS),
+        of_kind("the damping", DAMPING, names[2:], DAMPING_FORMS),
+        Group("the force on the first end", "added to the first point", names[::2]),
+        Group("the force on the second end", "the opposite of that on the first", names[1::2]),
+        Group(
+            "the force of the links", "the sum over all links, each once", names,
+            (
+                Form("that of all links but the last", "One link is left out.", of_law(both, chosen=slice(None, -1))),
+                Form("that of all links but the first", "One link is left out.", of_law(both, chosen=slice(1, None))),
+                *forms,
+            ),
+        ),
+    )  # fmt: skip

@@ -4,7 +4,6 @@ import numpy as np
 
 from app.lab.checking import Mistake, require
 from app.lab.diagnosis import links as laws
-from app.lab.diagnosis.terms import Form, Group, Term
 
 
 def cloth_forces(x, v, links, rest_lengths, stiffness, damping):
@@ -103,44 +102,8 @@ def of_law(law, first=1.0, second=-1.0, chosen=slice(None)):
     return function
 
 
-def both(*arguments):
-    """The whole force of a link, by its law."""
-    return laws.spring(*arguments) + laws.damping(*arguments)
-
-
-TERMS = (
-    Term("the spring on the first end", laws.SPRING, of_law(laws.spring, second=0.0)),
-    Term("the spring on the second end", f"-{laws.SPRING}", of_law(laws.spring, first=0.0)),
-    Term("the damping on the first end", laws.DAMPING, of_law(laws.damping, second=0.0)),
-    Term("the damping on the second end", "b (v1 - v2)", of_law(laws.damping, first=0.0)),
-)
-GROUPS = (
-    Group(
-        "the spring", f"{laws.SPRING} on the first end, and the opposite on the second",
-        ("the spring on the first end", "the spring on the second end"),
-        tuple(Form(text, why, of_law(law)) for text, why, law in laws.SPRING_FORMS),
-    ),
-    Group(
-        "the damping", f"{laws.DAMPING} on the first end, and the opposite on the second",
-        ("the damping on the first end", "the damping on the second end"),
-        tuple(Form(text, why, of_law(law)) for text, why, law in laws.DAMPING_FORMS),
-    ),
-    Group(
-        "the force on the first end", "added to the first point",
-        ("the spring on the first end", "the damping on the first end"),
-    ),
-    Group(
-        "the force on the second end", "the opposite of that on the first",
-        ("the spring on the second end", "the damping on the second end"),
-    ),
-    Group(
-        "the force of the links", "the sum over all links, each once", tuple(term.name for term in TERMS),
-        (
-            Form("that of all links but the last", "One link is left out.", of_law(both, chosen=slice(None, -1))),
-            Form("that of all links but the first", "One link is left out.", of_law(both, chosen=slice(1, None))),
-        ),
-    ),
-)  # fmt: skip
+TERMS = laws.terms_of_net(of_law)
+GROUPS = laws.groups_of_net(of_law)
 
 
 def behaviour(student):

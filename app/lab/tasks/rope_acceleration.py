@@ -4,7 +4,7 @@ import numpy as np
 
 from app.lab.checking import Curve, Mistake, require
 from app.lab.diagnosis import links
-from app.lab.diagnosis.terms import Form, Group, Term
+from app.lab.diagnosis.terms import Form, Term
 
 
 def rope_acceleration(x, v, mass, stiffness, damping, drag, rest_length, gravity):
@@ -121,14 +121,9 @@ def of_law(law, first=1.0, second=-1.0, chosen=slice(None)):
     return function
 
 
-def both(*arguments):
-    """The whole force of a link, by its law."""
-    return links.spring(*arguments) + links.damping(*arguments)
-
-
 def overwritten(x, v, mass, stiffness, damping, drag, rest_length, gravity):
     r = x[1:] - x[:-1]
-    force = both(r, links.size(r), v[:-1] - v[1:], stiffness, damping, rest_length) / mass
+    force = links.both(r, links.size(r), v[:-1] - v[1:], stiffness, damping, rest_length) / mass
     a = np.vstack([force, -force[-1:]])
     a[0] = 0.0
     return a
@@ -153,42 +148,11 @@ def weight(x, v, mass, stiffness, damping, drag, rest_length, gravity):
 
 
 TERMS = (
-    Term("the spring on the first end", f"{links.SPRING} / m", of_law(links.spring, second=0.0)),
-    Term("the spring on the second end", f"-{links.SPRING} / m", of_law(links.spring, first=0.0)),
-    Term("the damping on the first end", f"{links.DAMPING} / m", of_law(links.damping, second=0.0)),
-    Term("the damping on the second end", "b (v1 - v2) / m", of_law(links.damping, first=0.0)),
+    *links.terms_of_net(of_law, " / m"),
     Term("the air drag", "-c v / m", air_drag, (Form("-c |v| v / m", "The speed is squared.", squared_drag),)),
     Term("gravity", "-g in z", weight),
 )
-GROUPS = (
-    Group(
-        "the spring", f"{links.SPRING} / m on the first end, and the opposite on the second",
-        ("the spring on the first end", "the spring on the second end"),
-        tuple(Form(text, why, of_law(law)) for text, why, law in links.SPRING_FORMS),
-    ),
-    Group(
-        "the damping", f"{links.DAMPING} / m on the first end, and the opposite on the second",
-        ("the damping on the first end", "the damping on the second end"),
-        tuple(Form(text, why, of_law(law)) for text, why, law in links.DAMPING_FORMS),
-    ),
-    Group(
-        "the force on the first end", "added to the first point",
-        ("the spring on the first end", "the damping on the first end"),
-    ),
-    Group(
-        "the force on the second end", "the opposite of that on the first",
-        ("the spring on the second end", "the damping on the second end"),
-    ),
-    Group(
-        "the force of the links", "the sum over all links, each once",
-        tuple(term.name for term in TERMS[:4]),
-        (
-            Form("that of all links but the last", "One link is left out.", of_law(both, chosen=slice(None, -1))),
-            Form("that of all links but the first", "One link is left out.", of_law(both, chosen=slice(1, None))),
-            Form("that of one link at each point", "Add with +=.", overwritten),
-        ),
-    ),
-)  # fmt: skip
+GROUPS = links.groups_of_net(of_law, " / m", (Form("that of one link at each point", "Add with +=.", overwritten),))
 
 CURVE = Curve(
     "length of the last link, 0.2 m at rest [m]",

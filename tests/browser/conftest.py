@@ -156,7 +156,9 @@ class Tab:
         while not is_there() and time.monotonic() < end:
             self.page.wait_for_timeout(50)
         if not is_there():
-            warnings.warn(f"a page of {len(viewer.server.get_clients())} got nothing for {STALLED} s", stacklevel=2)
+            state = self.page.evaluate("[document.visibilityState, document.body.innerText.slice(0, 200)]")
+            clients = len(viewer.server.get_clients())
+            warnings.warn(f"a page of {clients} got nothing for {STALLED} s: {state}", stacklevel=2)
             self.page.reload()
         self.wait(is_there)
         mark.remove()

@@ -14,7 +14,7 @@ from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_st
 from sim.validation import argument_error, as_array, check_finite
 
 
-class Water(NamedTuple):
+class FluidState(NamedTuple):
     """Surface and interface for n bodies. Made by `make_water` or `still_water`."""
 
     upper: float  # [kg/m3]
@@ -48,8 +48,8 @@ def make_water(
     interface_relief: np.ndarray | None = None,
     excitation: np.ndarray | None = None,
     lead: float = 0.0,
-) -> Water:
-    """The water around a fleet from its values at the bodies' positions, of the shapes and units of `Water`.
+) -> FluidState:
+    """The water around a fleet from its values at the bodies' positions, of the shapes and units of `FluidState`.
 
     layers: one or two (density, thickness) pairs as in `equilibrium_draft`. By default the fluids are still and level,
     and the interface follows the surface at the thickness of the upper layer (its slope and rise too).
@@ -83,7 +83,7 @@ def make_water(
     many = int(fleet.vertex_start[-1])
     bumps = (0,) if relief is None else (many,)
     interface_bumps = (0,) if interface_relief is None else (many,)
-    return Water(
+    return FluidState(
         upper=float(layers[0][0]),
         lower=float(layers[-1][0]),
         at=np.ascontiguousarray(fleet.position[:, :2]).copy(),
@@ -101,7 +101,7 @@ def make_water(
     )
 
 
-def still_water(fleet: Fleet, layers: Layers = SEA_WATER, level: float = 0.0) -> Water:
+def still_water(fleet: Fleet, layers: Layers = SEA_WATER, level: float = 0.0) -> FluidState:
     """Level water at rest, its surface at `level` [m]. Raises ValueError for bad layers."""
     check_fleet(fleet)
     return make_water(fleet, layers, np.full(len(fleet.mass), check_finite("level", level, "m")))

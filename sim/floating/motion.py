@@ -5,12 +5,12 @@ Of body i, in level axes that turn with its heading:
   (M + A) dV/dt = F_p + m g + F_e - F_r - drag(V - U) + pull,    V = (v, w)
 
 F_p are the exact integrals of the hydrostatic pressure over the wet hull (hydrostatics.py) under the surface of
-`Water`: in any wave, upwards, the weight of what is displaced. A (6, 6) is the added mass at infinite frequency, F_r
-the memory of the waves that the body made (Cummins; hydrodynamics.py), F_e the wave force beyond F_p (excitation.py).
-If the sea is no sum of waves, F_e is the added mass plus the mass displaced at rest, times the fluid's acceleration at
-the surface, and F_r follows from the velocity against the fluid: so a small hull that displaces its weight moves with
-the fluid in long waves. Small motions are those of linear theory. The drag is along and about the body's own axes,
-rho S/2 (b v + C |v| v/2) with S the wetted area.
+`FluidState`: in any wave, upwards, the weight of what is displaced. A (6, 6) is the added mass at infinite frequency,
+F_r the memory of the waves that the body made (Cummins; hydrodynamics.py), F_e the wave force beyond F_p
+(excitation.py). If the sea is no sum of waves, F_e is the added mass plus the mass displaced at rest, times the
+fluid's acceleration at the surface, and F_r follows from the velocity against the fluid: so a small hull that
+displaces its weight moves with the fluid in long waves. Small motions are those of linear theory. The drag is along
+and about the body's own axes, rho S/2 (b v + C |v| v/2) with S the wetted area.
 
 **Means.** A, F_r and F_e are linear and have no mean. Second-order terms must not leave a spurious mean force. Three
 would: A dV/dt in axes that lean with the body (A differs along them, and lean and acceleration are correlated), an
@@ -44,7 +44,7 @@ import numpy as np
 
 from sim.floating.body import Fleet, check_fleet
 from sim.floating.body_collisions import collide
-from sim.floating.fluid_state import Water
+from sim.floating.fluid_state import FluidState
 from sim.floating.hydrostatics import add_pressure
 from sim.floating.rigid import (
     add_pull,
@@ -108,7 +108,7 @@ def frequency_bound(fleet: Fleet, density: float, coefficients: MotionCoefficien
 
 def step(
     fleet: Fleet,
-    water: Water,
+    water: FluidState,
     duration: float,
     coefficients: MotionCoefficients = STANDARD,
     substeps: int | None = None,
@@ -130,7 +130,7 @@ def step(
         check_within(name, getattr(coefficients, name), low, high, unit)
     duration = check_positive("duration", duration, "s")
     check_fleet(fleet)
-    check_kind("water", water, Water, "a Water, as `make_water` makes it")
+    check_kind("water", water, FluidState, "a FluidState, as `make_water` makes it")
     if len(water.height) != len(fleet.mass):
         raise argument_error("water", f"{len(water.height)} samples", f"one for each of {len(fleet.mass)} bodies")
     if not 0 < water.upper <= water.lower < math.inf:

@@ -39,7 +39,7 @@ there = kernel(lambda own: True, inline=True)
 missing = kernel(lambda own: False, inline=True)
 
 
-class Result(NamedTuple):
+class Summation(NamedTuple):
     """Sums of the results of forces in a kernel of `each`."""
 
     start: str  # its first line
@@ -48,16 +48,16 @@ class Result(NamedTuple):
     nothing: str  # what a force that a net does not have returns
 
 
-RESULTS = {
-    "none": Result("pass", "{call}", "return None", "None"),
-    "truth": Result("pass", "return True", "return False", "False"),
-    "sum": Result("total = 0.0", "total += {call}", "return total", "0.0"),
-    "stores": Result(
+SUMMATIONS = {
+    "none": Summation("pass", "{call}", "return None", "None"),
+    "truth": Summation("pass", "return True", "return False", "False"),
+    "sum": Summation("total = 0.0", "total += {call}", "return total", "0.0"),
+    "stores": Summation(
         "elastic = gravity = contact = 0.0", "{stores} += {call}", "return elastic, gravity, contact", "0.0"
     ),
-    "count": Result("total = 0", "total += {call}", "return total", "0"),
-    "placed": Result("o = 0", "{call}; o += {size}", "return None", "None"),
-    "two sums": Result(
+    "count": Summation("total = 0", "total += {call}", "return total", "0"),
+    "placed": Summation("o = 0", "{call}; o += {size}", "return None", "None"),
+    "two sums": Summation(
         "first = second = 0.0", "one, other = {call}; first += one; second += other", "return first, second", "0.0, 0.0"
     ),
 }
@@ -75,10 +75,10 @@ def each(
 ) -> Any:
     """A kernel of `parameters` that calls this facet of all forces that have it and act.
 
-    result: a key of RESULTS. turns: in the reverse order if the parameter `reverse` is True. lines: the kernel of lines
-    under water. options: of `kernel`.
+    result: a key of SUMMATIONS. turns: in the reverse order if the parameter `reverse` is True. lines: the kernel of
+    lines under water. options: of `kernel`.
     """
-    sums = RESULTS[result]
+    sums = SUMMATIONS[result]
     given = f"{parameters}, o" if result == "placed" else parameters
 
     def call(force: Force) -> str:

@@ -141,9 +141,7 @@ def test_the_wheel_reaches_the_last_control_with_large_text(one_page: tuple[View
 SAMPLE = ("rope",)  # all scenes under -m stress
 
 
-@pytest.fixture(
-    scope="module", params=[pytest.param(name, marks=[] if name in SAMPLE else pytest.mark.stress) for name in NAMES]
-)
+@pytest.fixture(params=[pytest.param(name, marks=[] if name in SAMPLE else pytest.mark.stress) for name in NAMES])
 def opened(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
     """Each scene with every folder of its panel open, paused, in a window that shows all of it."""
     viewer, tab = one_page

@@ -1,10 +1,12 @@
 """The layout of the page at several sizes, by measuring boxes; all presets under `-m stress`."""
 
+import io
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
@@ -91,6 +93,26 @@ def test_a_phone_shows_the_race_first_and_its_plots_when_asked(
     tab.wait(lambda: tab.page.evaluate(MEASURE)["picture"] > 0.45, 20)
     bar.click()
     tab.wait(lambda: tab.page.evaluate(MEASURE)["picture"] < 0.3 and not faults(tab.page), 20)
+
+
+@pytest.mark.parametrize("size", [(390, 844), (560, 340)])
+def test_a_small_window_shows_all_of_the_picture(
+    one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], size: tuple[int, int]
+) -> None:
+    """Chromium leaves out what it takes for covered: an opaque block that sticks above its list hid a band."""
+    lab, _ = one_page
+    lab.open("rope")
+    tab = open_tab(lab.port, width=size[0], height=size[1], drawn="no shader has this")  # all is drawn in one colour
+    tab.wait_for_panel(lab)
+    foot = tab.page.locator("#springtide-time")
+    foot.wait_for()
+
+    def left_column() -> np.ndarray:
+        picture = Image.open(io.BytesIO(tab.page.screenshot(timeout=120_000))).convert("RGB")
+        bottom = int(foot.bounding_box()["y"])
+        return np.asarray(picture).astype(int)[bottom // 2 : bottom - 10, 10]  # below the horizon is the ground
+
+    tab.wait(lambda: np.abs(left_column() - (76, 128, 153)).max() < 4, 30)
 
 
 def scroll_to_end(tab: Tab) -> None:

@@ -135,7 +135,7 @@ class Place(NamedTuple):
     position: Vector
 
 
-class Grab(NamedTuple):
+class GrabTo(NamedTuple):
     """Pull a particle or body, by flat index, towards a target [m]."""
 
     particle: int
@@ -149,7 +149,7 @@ class Release(NamedTuple):
     client: int = 0
 
 
-class Point(NamedTuple):
+class PointAlong(NamedTuple):
     """Point along a ray: from `origin` [m] along `direction`."""
 
     origin: Vector
@@ -183,7 +183,7 @@ class Advance(NamedTuple):
 
 
 SceneCommand = (
-    Place | Grab | Release | Point | RestartStatistics | StudentAnswer
+    Place | GrabTo | Release | PointAlong | RestartStatistics | StudentAnswer
 )  # what a scene handles; the rest is the loop's
 Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
 
@@ -210,7 +210,7 @@ class Status(NamedTuple):
     faster: str = ""  # what would make a run that is capped faster, or ""
 
 
-class Line(NamedTuple):
+class ChartLine(NamedTuple):
     """How one column of a chart is drawn."""
 
     label: str

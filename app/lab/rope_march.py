@@ -56,7 +56,7 @@ class Forces(NamedTuple):
     air_lift: float = 0.0  # [kg/m3] the same of lift
 
 
-class Sheet(NamedTuple):
+class ClothData(NamedTuple):
     """Data of a cloth in addition to `Forces`, which has the mass of a cell and the stiffness along rows and columns.
 
     Point (i, j) has the number i cols + j.
@@ -80,12 +80,12 @@ class Segment(NamedTuple):
     # rest. A rope has one, its root.
     path: np.ndarray
     since: float = 0.0  # time t [s] of the first step, for the path and the sphere
-    sheet: Sheet | None = None  # what a cloth is made of; None for a rope
+    sheet: ClothData | None = None  # what a cloth is made of; None for a rope
     end: float = 0.0  # time [s] of the scene at its end
     x: np.ndarray | None = None  # (n, 3) [m] the program's net at its end; None within a segment that was divided
 
 
-class March(NamedTuple):
+class MarchResult(NamedTuple):
     """Result of advancing."""
 
     x: np.ndarray  # (segments, n, 3) [m] at the end of each segment that was finished
@@ -348,7 +348,7 @@ class Functions:
             x[0], v[0] = 0.0, (1.0, 0.0, 0.0)
 
 
-def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Segment]) -> March:
+def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Segment]) -> MarchResult:
     """Advance a rope from positions x and velocities v, shape (n, 3), over some segments. Raises Unfit."""
     ends: list[np.ndarray] = []
     taken, last_v, left = 0, v, False
@@ -367,7 +367,7 @@ def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Seg
             ends.append(x)
             last_v = v
     seconds, effort = time.perf_counter() - began, time.thread_time() - effort
-    return March(np.array(ends).reshape(-1, *x.shape), last_v, taken, seconds, effort, left)
+    return MarchResult(np.array(ends).reshape(-1, *x.shape), last_v, taken, seconds, effort, left)
 
 
 def packed(segment: Segment) -> list[Any]:

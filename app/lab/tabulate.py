@@ -11,7 +11,7 @@ import numpy as np
 from app.lab.rope_march import Unfit, fitting, not_a_number
 
 
-class Range(NamedTuple):
+class ResultRange(NamedTuple):
     """Range of a result, ends included."""
 
     low: float
@@ -29,7 +29,7 @@ def tabulate(
     name: str,
     columns: Sequence[np.ndarray],
     shape: tuple[int, ...] | None,
-    allowed: Range,
+    allowed: ResultRange,
 ) -> np.ndarray:
     """(n, *shape) results of the function for each row of its arguments, columns of shape (n, ...).
 

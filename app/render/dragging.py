@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.messages import Command, Grab, Release, finite_vector
+from app.messages import Command, GrabTo, Release, finite_vector
 
 HELD_COLOUR = (255, 90, 60)
 
@@ -17,7 +17,7 @@ def drag(post: Callable[[Command], None], event: Any, index: int | None) -> None
     if event.phase == "end" or target is None or index is None:
         post(Release(event.client_id))
     else:
-        post(Grab(int(index), target, event.client_id))
+        post(GrabTo(int(index), target, event.client_id))
 
 
 class SurfaceDrag:

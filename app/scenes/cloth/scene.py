@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, Release, SceneCommand, StudentAnswer, Vector
+from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.live_values import live_values
@@ -174,7 +174,7 @@ class ClothScene(NetScene[Params]):
                 self.handles[1].target = position
             case Place("sphere", position):
                 self.sphere.target = position
-            case Grab(index, target, client) if 0 <= index < self.particles:
+            case GrabTo(index, target, client) if 0 <= index < self.particles:
                 x, y, z = (float(c) for c in self.state.x.reshape(3, -1)[:, index])
                 self.drag.move(client, index, (x, y, z), target)
             case Release(client):

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.lab.live_net import CLOTH, LiveNet, Marched
-from app.lab.rope_march import Segment, Sheet
+from app.lab.rope_march import ClothData, Segment
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.laws import SPRING
@@ -45,7 +45,7 @@ class StudentCloth(StudentNet):
         across, down, shear, _, bend, _ = self.net.families
         pins = tuple(i * cols + j for i, j in sorted(self.net.pinned))
         before = self.sheet
-        self.sheet = Sheet(rows, cols, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins)
+        self.sheet = ClothData(rows, cols, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins)
         method = INTEGRATORS["symplectic_euler"]
         self.longest = STEP_SHARE * method.stable_step(*gershgorin(self.net, self.net.x0))
         return before is None or (before.rows, before.cols, before.pins) != (rows, cols, pins)

@@ -12,7 +12,7 @@ from app.messages import Vector, vector_of
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.parameters import Params
 from sim import floating
-from sim.mooring import Body, Line, LineType, Point, System, moored
+from sim.mooring import Line, LineType, MooredBody, Point, System, moored
 from sim.ocean.gerstner import draw_waves, waves_under
 from sim.ocean.spectra import SPECTRA
 from sim.water import Water
@@ -169,7 +169,7 @@ def sections(params: Params) -> tuple[tuple[LineType, float, int], ...]:
     return tuple((kind, params.length * n / params.segments, n) for kind, n in zip(types, counts, strict=True))
 
 
-def body_of(params: Params, sea: Waves | None) -> Body:
+def body_of(params: Params, sea: Waves | None) -> MooredBody:
     """The body, with the forces of waves and the steady force."""
     body = floating.Body(hull_of(params), density=params.density)
     found = moored(BODY, body, 2.0 * math.pi / params.wave_period, sea, GRAVITY)
@@ -178,7 +178,7 @@ def body_of(params: Params, sea: Waves | None) -> Body:
     return found._replace(steady=(force * c, force * s, 0.0, 0.0, 0.0, 0.0))
 
 
-def build(params: Params, places: Places, body: Body, sea: Waves | None) -> System:
+def build(params: Params, places: Places, body: MooredBody, sea: Waves | None) -> System:
     """The system. Anchors are points that are moved, since a user may drag them."""
     # Drag on the body acts in the middle of its wet side.
     draft = params.density / DENSITY * HEIGHT_OVER_WIDTH * params.size

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, Release, SceneCommand, Vector, vector_of
+from app.messages import GrabTo, Place, Release, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import (
     Places,
     body_of,
@@ -102,7 +102,7 @@ class MooringScene(LineScene):
                     self.move_anchor(int(number) - 1, (x, y))
                 elif kind == "fairlead":
                     self.move_fairlead(int(number) - 1, (x, y, z))
-            case Grab(0, target, client) if self.hold is None or self.hold[0] == client:
+            case GrabTo(0, target, client) if self.hold is None or self.hold[0] == client:
                 self.hold = client, target
             case Release(client) if self.hold is not None and self.hold[0] == client:
                 self.hold = None

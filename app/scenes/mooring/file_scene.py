@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Release, SceneCommand, Vector, vector_of
+from app.messages import GrabTo, Release, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import extent, sea_of
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.from_file import FileMooring, mooring_of, slack_of
@@ -122,7 +122,7 @@ class FileScene(LineScene):
     def drag(self, command: SceneCommand) -> None:
         """Drag the vessel, or leave it where it is."""
         match command:
-            case Grab(0, target, client) if self.hold is None or self.hold[0] == client:
+            case GrabTo(0, target, client) if self.hold is None or self.hold[0] == client:
                 self.hold = client, target
                 away = np.subtract(target, self.middle)[:2]
                 away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))

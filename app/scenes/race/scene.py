@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, vector_of
+from app.messages import GrabTo, Place, PlotRow, Release, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.moments import copied, restore
@@ -123,7 +123,7 @@ class RaceScene:
         match command:
             case Place("root", position):
                 self.handles.move_root(position)
-            case Grab(index, target, client) if 0 <= index < self.params.points * self.params.ropes:
+            case GrabTo(index, target, client) if 0 <= index < self.params.points * self.params.ropes:
                 self.grab(index, target, client)
             case Release(client):
                 self.handles.drag.release(client)

@@ -55,23 +55,23 @@ class RadialFrame(NamedTuple):
     sent: SentSurface
 
 
-class PackedFrame(NamedTuple):
+class PackedRadialFrame(NamedTuple):
     """A frame as a recording keeps it."""
 
     frame: RadialFrame  # without a surface and its foam
     surface: NDArray[np.float32]
 
 
-def pack_frame(frame: RadialFrame) -> PackedFrame:
+def pack_frame(frame: RadialFrame) -> PackedRadialFrame:
     """A frame for the recording. Its Jacobian, which nothing draws, is left out."""
     surface, nothing = frame.surface, np.empty(0, np.float32)
     rest, spokes = resting_points(frame), frame.grid.spokes
     packed = pack_surface(surface.vertices, surface.slope, frame.foam, rest, spokes, frame.sent)
     empty = RadialSurface(nothing, nothing, nothing)
-    return PackedFrame(frame._replace(surface=empty, foam=nothing, sent=SentSurface()), packed)
+    return PackedRadialFrame(frame._replace(surface=empty, foam=nothing, sent=SentSurface()), packed)
 
 
-def unpack_frame(packed: PackedFrame) -> RadialFrame:
+def unpack_frame(packed: PackedRadialFrame) -> RadialFrame:
     """The frame, to draw it."""
     frame = packed.frame
     vertices, slope, foam = unpack_surface(packed.surface, resting_points(frame), (len(frame.grid),))

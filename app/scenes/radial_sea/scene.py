@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer
+from app.messages import GrabTo, Place, PlotRow, Release, SceneCommand, StudentAnswer
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -101,7 +101,7 @@ def compile_with(changes: dict[str, Value]) -> None:
     """Call the kernels of a scene with these parameters changed from their defaults."""
     scene = RadialSeaScene(check_record(Params, changes))
     if scene.params.bodies:
-        scene.handle(Grab(0, (0.0, 0.0, 0.0)))
+        scene.handle(GrabTo(0, (0.0, 0.0, 0.0)))
     for _ in range(8):
         scene.advance(1)
     if scene.params.jet:
@@ -274,7 +274,7 @@ class RadialSeaScene:
         match command:
             case StudentAnswer() if self.student is not None:
                 self.take_student(self.student)
-            case Grab(index, target, client):
+            case GrabTo(index, target, client):
                 self.bodies.hold(index, target, self.params.pull, client)
             case Release(client):
                 self.bodies.release(client)

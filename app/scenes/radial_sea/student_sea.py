@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
-from app.lab.tabulate import Range
+from app.lab.tabulate import ResultRange
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of
 from app.scenes.radial_sea.parameters import Params, column_of
 from sim.ocean.fluid_column import FluidColumn
@@ -58,7 +58,7 @@ class StudentRadialSea(TableUser):
         else:
             nu = column.surface.kinematic_viscosity
             k, one = WAVENUMBERS, np.ones(WAVENUMBERS.size)
-            calls[DECAY] = Call((one, k, nu * one, asked_time(nu)), Range(LEAST, 1.0, "m"))
+            calls[DECAY] = Call((one, k, nu * one, asked_time(nu)), ResultRange(LEAST, 1.0, "m"))
         if column.kind == "mixed":
             idle[REFLECTANCE] = idle[DRAFT] = "let the oil float as a layer"
         elif column.kind == "layer":
@@ -143,7 +143,7 @@ def interpolated_decay(over_k2: np.ndarray, k: np.ndarray) -> np.ndarray:
 
 def call_of(*arguments: float, allowed: tuple[float, float, str]) -> Call:
     """One call of a function."""
-    return Call(tuple(np.array([argument]) for argument in arguments), Range(*allowed))
+    return Call(tuple(np.array([argument]) for argument in arguments), ResultRange(*allowed))
 
 
 def asked_time(viscosity: float) -> np.ndarray:

@@ -20,7 +20,7 @@ from app.render.material import Material
 from app.render.meshes import ball, rod, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
-from app.render.water import Water
+from app.render.water import DrawnWater
 from app.scenes.contract import Pieces
 from app.scenes.contract import View as SceneView
 from app.scenes.radial_sea.bodies import BODY_KINDS
@@ -76,7 +76,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
-        self.water: Water | None = None
+        self.water: DrawnWater | None = None
         self.grid: RadialGrid | None = None
         self.sky = ""
         self.light = self.material = Material()
@@ -157,7 +157,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
             if self.water is not None:
                 self.water.remove()
             self.grid = frame.grid
-            self.water = Water(self.server, "/sea", frame.grid, material)
+            self.water = DrawnWater(self.server, "/sea", frame.grid, material)
         elif material != self.material:
             self.water.set_material(material)
         self.material = material

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, Release, SceneCommand, StudentAnswer, Vector, vector_of
+from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Vector, vector_of
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
@@ -163,9 +163,9 @@ class RopeScene(NetScene[Params]):
                 self.handles.move_root(position)
             case Place("sphere", position):
                 self.handles.sphere.target = position
-            case Grab(0, target, client) if self.handles.drag.may_move(client):
+            case GrabTo(0, target, client) if self.handles.drag.may_move(client):
                 self.handles.move_root(target)
-            case Grab(index, target, client) if 0 < index < self.params.points:
+            case GrabTo(index, target, client) if 0 < index < self.params.points:
                 self.handles.drag.move(client, index, vector_of(self.state.x[:, 0, index]), target)
             case Release(client):
                 self.handles.drag.release(client)

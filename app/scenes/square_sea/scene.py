@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, Point, SceneCommand, Snapshot, StudentAnswer
+from app.messages import PlotRow, PointAlong, SceneCommand, Snapshot, StudentAnswer
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import Awaited, FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -30,7 +30,7 @@ from app.scenes.square_sea.parameters import (
     rain_settings,
     solved_points,
 )
-from app.scenes.square_sea.rainfall import Rainfall
+from app.scenes.square_sea.rainfall import SeaRain
 from app.scenes.square_sea.statistics import INTERVAL, LiveStatistics
 from app.scenes.square_sea.tile_mesh import Fields, set_mesh_of
 from sim.ocean import Sea
@@ -208,10 +208,10 @@ class SquareSeaScene:
     def make_rainfall(self) -> None:
         """Make the rain that the parameters ask for."""
         p = self.params
-        self.rainfall: Rainfall | None = None
+        self.rainfall: SeaRain | None = None
         if p.rain > 0.0:
             highest = max(p.amplitude * self.sea.significant_height_at(self.time), 1.0)
-            self.rainfall = Rainfall(self.sea, rain_settings(p), highest, p.seed)
+            self.rainfall = SeaRain(self.sea, rain_settings(p), highest, p.seed)
 
     def clear_mesh(self) -> None:
         """Start a new drawn mesh, without foam."""
@@ -280,7 +280,7 @@ class SquareSeaScene:
         match command:
             case StudentAnswer() if self.student is not None:
                 self.take_student(self.student)
-            case Point(origin, direction):
+            case PointAlong(origin, direction):
                 at = where_hit(*self.water, origin, direction, self.params.amplitude)
                 if at is not None:
                     self.gauge.put(at)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
-from app.lab.tabulate import Range
+from app.lab.tabulate import ResultRange
 from app.scenes.sea_parameters import spectrum_values
 from app.scenes.square_sea.parameters import Params, conditions, gravity, marches
 from sim.ocean import Sea
@@ -39,7 +39,7 @@ class StudentSea(TableUser):
             return
         if p.planet == "by mass" and p.radius_rule == "same_density":
             declared = parameters_of(Params)["gravity"]
-            calls[GRAVITY] = Call((np.array([p.planet_mass]),), Range(declared.low, declared.high, declared.unit))
+            calls[GRAVITY] = Call((np.array([p.planet_mass]),), ResultRange(declared.low, declared.high, declared.unit))
         else:
             idle[GRAVITY] = "choose a planet by its mass, as dense as the Earth"
         if p.spectrum_file or p.spectrum != PHILLIPS.name:
@@ -107,7 +107,7 @@ def spectrum_call(p: Params, g: float) -> Call:
     wind = PHILLIPS.wind_speed(p.wind_speed) * np.array([math.cos(bearing), math.sin(bearing)])
     n, constant = x.size, spectrum_values(p)["phillips_constant"]
     columns = np.column_stack([x, y]), np.tile(wind, (n, 1)), np.full(n, constant), np.full(n, g)
-    return Call(columns, Range(0.0, math.inf, "m⁴"))
+    return Call(columns, ResultRange(0.0, math.inf, "m⁴"))
 
 
 def polar_grid(length: float) -> tuple[np.ndarray, np.ndarray]:
@@ -147,4 +147,4 @@ def dispersion_call(p: Params, g: float) -> Call:
     n = np.arange(int(p.size) // 2) ** 2
     k = np.sqrt(np.unique(n[:, None] + n)[1:]) * (2.0 * math.pi / p.length)
     columns = k, *(np.full(k.size, value) for value in (p.dispersion_scale, p.loop_period or ENDLESS, g))
-    return Call(columns, Range(0.0, math.inf, "rad/s"))
+    return Call(columns, ResultRange(0.0, math.inf, "rad/s"))

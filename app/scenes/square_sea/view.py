@@ -12,14 +12,14 @@ import viser
 from app.formats.formatting import number, percent
 from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
-from app.messages import Command, Point, Snapshot, Vector, finite_vector
+from app.messages import Command, PointAlong, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
-from app.render.water import Tile, Water
+from app.render.water import DrawnWater, Tile
 from app.scenes.contract import Pieces
 from app.scenes.contract import View as SceneView
 from app.scenes.measured_sea import height_and_period
@@ -91,7 +91,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
-        self.water: Water | None = None
+        self.water: DrawnWater | None = None
         self.rain: RainMesh | None = None
         self.gauge: WaveGaugeMesh | None = None
         self.mark: viser.LabelHandle | None = None
@@ -112,7 +112,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         """Report the point under the mouse to the scene."""
         origin, direction = finite_vector(event.ray_origin, MAX_CLICK_DISTANCE), finite_vector(event.ray_direction)
         if origin is not None and direction is not None:
-            self.post(Point(origin, direction))
+            self.post(PointAlong(origin, direction))
 
     def show(self, frame: SeaFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
@@ -132,7 +132,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             if self.water is not None:
                 self.water.remove()
                 self.move_cameras(self.mesh_shape[1], length)
-            self.water = Water(self.server, "/sea", Tile(n, n, length), material)
+            self.water = DrawnWater(self.server, "/sea", Tile(n, n, length), material)
             self.mesh_shape = mesh_shape
         elif material is not self.material and material != self.material:
             self.water.set_material(material)

@@ -10,7 +10,7 @@ import pytest
 
 from app.lab.session import Session
 from app.lab.task import load_tasks
-from app.messages import Grab, Place, StudentAnswer
+from app.messages import GrabTo, Place, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
 from app.scenes.cloth.parameters import Params
 from app.scenes.cloth.scene import ClothScene
@@ -101,7 +101,7 @@ def test_pins_and_mouse_move_both(right: Session) -> None:
     scene = ClothScene(dataclasses.replace(SMALL, air=0.0), right.live)
     run(scene, 2)
     scene.handle(Place("pin a", (-0.6, 0.2, 2.2)))
-    scene.handle(Grab(20, (0.2, -0.5, 1.0)))
+    scene.handle(GrabTo(20, (0.2, -0.5, 1.0)))
     run(scene, 20)
     assert scene.state.x[1, 0, 0] > 0.05
     assert right.cloth.report.difference < 1e-9

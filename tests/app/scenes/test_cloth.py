@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Place, Release
+from app.messages import GrabTo, Place, Release
 from app.panel.head import status_line
 from app.scenes.cloth.parameters import PRESETS, Params
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
@@ -58,7 +58,7 @@ def test_a_dragged_particle_follows_and_is_released():
     index = 7 * 10 + 4
     before = scene.state.x[:, 7, 4].copy()
     target = (float(before[0]), float(before[1]) - 0.4, float(before[2]))
-    scene.handle(Grab(index, target))
+    scene.handle(GrabTo(index, target))
     run(scene, 0.7)
     stiffness = min(scene.params.pull / 0.1, 0.1 * scene.net.mass / scene.step**2)
     stretch = np.linalg.norm(np.array(target) - scene.state.x[:, 7, 4])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Place, Release, vector_of
+from app.messages import GrabTo, Place, Release, vector_of
 from app.scenes import scene_named
 from app.scenes.contract import Advice
 from app.scenes.mooring.arrangement import (
@@ -157,8 +157,8 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
     scene.handle(Place("fairlead 1", vector_of(scene.body_place() + (0.0, 50.0, 0.0))))
     run(scene, 10.0)
     assert scene.places.fairleads[0] == pytest.approx((0.0, hull_of(scene.params).extents[1, 1], 0.0))
-    scene.handle(Grab(0, (0.0, 20.0, 0.0), client=1))
-    scene.handle(Grab(0, (0.0, -20.0, 0.0), client=2))  # the other browser waits
+    scene.handle(GrabTo(0, (0.0, 20.0, 0.0), client=1))
+    scene.handle(GrabTo(0, (0.0, -20.0, 0.0), client=2))  # the other browser waits
     run(scene, 2.0)
     assert scene.body_place()[1] > 1.0
     scene.handle(Release(client=2))

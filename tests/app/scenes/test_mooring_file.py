@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.__main__ import main
-from app.messages import Grab, Release
+from app.messages import GrabTo, Release
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted, recording_npz
 from app.scenes.mooring.arrangement import depth_of, extent, has_body, water_of
@@ -100,8 +100,8 @@ def test_the_vessel_moves_as_the_water_does_and_its_points_as_one():
 
 def test_the_mouse_drags_the_vessel_no_farther_than_its_lines_reach():
     scene = scene_of("chain", wave_height=0.0)
-    scene.handle(Grab(0, (-1e4, 0.0, 7.0), 1))
-    scene.handle(Grab(0, (1e4, 0.0, 7.0), 2))  # another browser, which does not hold it
+    scene.handle(GrabTo(0, (-1e4, 0.0, 7.0), 1))
+    scene.handle(GrabTo(0, (1e4, 0.0, 7.0), 2))  # another browser, which does not hold it
     for _ in range(40):
         run_for(scene, 0.5)
     away = scene.body_place() - scene.middle

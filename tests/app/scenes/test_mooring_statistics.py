@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.__main__ import with_mooring
-from app.messages import Grab, Place, Release, RestartStatistics
+from app.messages import GrabTo, Place, Release, RestartStatistics
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
 from app.scenes.mooring.measures import measures
@@ -90,7 +90,7 @@ def test_what_the_mouse_does_leaves_the_numbers_as_they_are(drag):
         scene = MooringScene(Params(**FEW))
     scene.advance(240)
     before = scene.readings()
-    scene.handle(Place("anchor 1", (-82.0, 0.0, 0.0)) if drag == "anchor" else Grab(0, (8.0, 0.0, 0.0), 1))
+    scene.handle(Place("anchor 1", (-82.0, 0.0, 0.0)) if drag == "anchor" else GrabTo(0, (8.0, 0.0, 0.0), 1))
     scene.advance(480)
     during = scene.readings()
     assert not during.counts

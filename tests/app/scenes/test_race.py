@@ -9,7 +9,7 @@ import pytest
 
 from app.commands.run import run_to_file
 from app.formats import formatting
-from app.messages import Grab, Place, Release
+from app.messages import GrabTo, Place, Release
 from app.render.html import ERROR_COLOUR
 from app.render.line_chart import line_chart
 from app.scenes.contract import FRAME_INTERVAL
@@ -291,7 +291,7 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
     scene = race(ropes=3, integrator="rk4", integrator_2="rk4", integrator_3="rk4", spacing=0.5)
     run(scene, 3.0)
     bead = scene.frame().ropes[2, 6]
-    scene.handle(Grab(2 * 10 + 6, (bead[0] + 0.6, bead[1] + 0.4, bead[2])))
+    scene.handle(GrabTo(2 * 10 + 6, (bead[0] + 0.6, bead[1] + 0.4, bead[2])))
     run(scene, 0.5)
     assert scene.frame().pull.particle == 26
     xs = [entrant.state.x for entrant in scene.race.entrants]

@@ -15,7 +15,7 @@ import trimesh
 
 from app.__main__ import main
 from app.formats.formatting import fixed
-from app.messages import Grab, Place, Release
+from app.messages import GrabTo, Place, Release
 from app.scenes.contract import AnyScene
 from app.scenes.radial_sea.bodies import BED_DEPTH, BODY_KINDS, LINE_REACH, place_of
 from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
@@ -103,7 +103,7 @@ def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
     rest = scene.bodies.fleet.position[0].copy()
     for _ in range(60):
-        scene.handle(Grab(0, (rest[0], rest[1], rest[2] - 0.8)))
+        scene.handle(GrabTo(0, (rest[0], rest[1], rest[2] - 0.8)))
         scene.advance(2)
     assert scene.bodies.fleet.position[0, 2] < rest[2] - 0.4
     assert scene.frame().pulls
@@ -125,26 +125,26 @@ def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
 
 def test_a_body_held_by_one_browser_is_not_taken_over_by_another() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
-    scene.handle(Grab(0, (1.0, 0.0, 0.0), client=1))
-    scene.handle(Grab(0, (9.0, 0.0, 0.0), client=2))
-    scene.handle(Grab(1, (2.0, 0.0, 0.0), client=2))
+    scene.handle(GrabTo(0, (1.0, 0.0, 0.0), client=1))
+    scene.handle(GrabTo(0, (9.0, 0.0, 0.0), client=2))
+    scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
     assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
-    scene.handle(Grab(0, (1.5, 0.0, 0.0), client=1))  # its own body goes on being dragged
+    scene.handle(GrabTo(0, (1.5, 0.0, 0.0), client=1))  # its own body goes on being dragged
     assert scene.frame().pulls[0][1] == (1.5, 0.0, 0.0)
 
 
 def test_a_browser_lets_go_only_of_what_it_holds() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
-    scene.handle(Grab(0, (1.0, 0.0, 0.0), client=1))
-    scene.handle(Grab(1, (2.0, 0.0, 0.0), client=2))
+    scene.handle(GrabTo(0, (1.0, 0.0, 0.0), client=1))
+    scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
     scene.handle(Release(client=2))
     assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0)]
     assert scene.bodies.fleet.pull_limit[0] > 0.0
     assert scene.bodies.fleet.pull_limit[1] == 0.0
     scene.handle(Release(client=3))
     assert len(scene.frame().pulls) == 1
-    scene.handle(Grab(1, (2.0, 0.0, 0.0), client=2))  # free again
-    scene.handle(Grab(2, (3.0, 0.0, 0.0), client=2))  # and left for another one
+    scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))  # free again
+    scene.handle(GrabTo(2, (3.0, 0.0, 0.0), client=2))  # and left for another one
     assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0), (3.0, 0.0, 0.0)]
     assert scene.bodies.fleet.pull_limit[1] == 0.0
 
@@ -184,7 +184,7 @@ def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:
     scene.bodies.fleet.position[0, 0] += 20.0
     scene.advance(2)
     assert scene.bodies.fleet.mooring[0, 0] < 0.0
-    scene.handle(Grab(1, (2.0, 0.0, 0.0), client=1))
+    scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=1))
     scene.change_forces(dataclasses.replace(scene.params, mooring=False))
     scene.advance(2)
     assert not scene.bodies.fleet.mooring.any()
@@ -243,8 +243,8 @@ def test_a_model_is_as_wide_as_the_hull_that_it_stands_for(kind) -> None:
 
 def test_a_nonsense_grab_is_no_grab() -> None:
     scene = RadialSeaScene(Params())
-    scene.handle(Grab(10**6, (0.0, 0.0, 0.0)))
-    scene.handle(Grab(-1, (0.0, 0.0, 0.0)))
+    scene.handle(GrabTo(10**6, (0.0, 0.0, 0.0)))
+    scene.handle(GrabTo(-1, (0.0, 0.0, 0.0)))
     scene.advance(2)
     assert scene.frame().pulls == ()
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Place, Release, finite_vector
+from app.messages import GrabTo, Place, Release, finite_vector
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, coloured
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.measures import measures
@@ -103,7 +103,7 @@ def test_a_reset_puts_root_and_sphere_back() -> None:
 
 def test_a_pull_is_capped() -> None:
     scene = Rope(Params(pull=50.0, gravity=0.0, drag=2.0, floor=False))
-    scene.handle(Grab(9, (-50.0, 0.0, 3.0)))
+    scene.handle(GrabTo(9, (-50.0, 0.0, 3.0)))
     for _ in range(600):
         scene.advance(1)
     # A taut rope pulled by 50 N in line with it stretches by F/k a link, root to held point.
@@ -118,7 +118,7 @@ def test_a_pull_is_capped() -> None:
 @pytest.mark.parametrize("particle", [-1, 10, 10**9])
 def test_grabbing_what_is_not_there_does_nothing(particle: int) -> None:
     scene = Rope(Params())
-    scene.handle(Grab(particle, (0.0, 0.0, 0.0)))
+    scene.handle(GrabTo(particle, (0.0, 0.0, 0.0)))
     assert scene.handles.drag.hold is None
     scene.advance(5)
 
@@ -218,7 +218,7 @@ def test_frames_come_less_often_the_slower_the_rope_is() -> None:
     assert scene.frame_interval == FRAME_INTERVAL  # how fast it will be is not known
     scene.advance(1)
     assert scene.frame_interval == 2 * FRAME_INTERVAL
-    scene.handle(Grab(5, (0.0, 0.0, 2.0)))
+    scene.handle(GrabTo(5, (0.0, 0.0, 2.0)))
     assert scene.frame_interval == FRAME_INTERVAL
     scene.handle(Release())
     scene.handle(Place("root", (0.5, 0.0, 3.0)))

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Point, Reset
+from app.messages import PointAlong, Reset
 from app.scenes.square_sea import report
 from app.scenes.square_sea import scene as square_sea
 from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, Params, conditions, rain_settings
-from app.scenes.square_sea.rainfall import RING_STEEPNESS, Rainfall
+from app.scenes.square_sea.rainfall import RING_STEEPNESS, SeaRain
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.server.loop import SimLoop
 from sim.ocean import Sea
@@ -134,7 +134,7 @@ def test_a_paused_sea_shows_its_wave_gauge_and_statistics_as_soon_as_they_are_wa
 
 def test_another_length_starts_the_sea_again_with_the_wave_gauge_where_a_new_scene_has_it():
     scene = Scene(Params(**SMALL, length=64.0))
-    scene.handle(Point((40.0, 60.0, 8.0), (0.9, 0.3, -0.12)))
+    scene.handle(PointAlong((40.0, 60.0, 8.0), (0.9, 0.3, -0.12)))
     assert scene.gauge_placed
     scene.advance(5)
     change_parameters(scene, length=128.0)
@@ -225,7 +225,7 @@ def test_rain_makes_rings_where_the_grid_can_carry_them():
 def test_a_ring_is_as_deep_as_its_blow_says():
     sea = Sea(256, 32.0, wind_speed=0.0, choppiness=0.0)
     settings = rain_settings(Params(rain=25.0, drops=100, wind_speed=0.0))
-    rainfall = Rainfall(sea, settings, 1.0, 0)
+    rainfall = SeaRain(sea, settings, 1.0, 0)
     sea.ripples.add(0.0, [[16.0, 16.0]], rainfall.ring_width, impulse=rainfall.drops_per_ring * rainfall.momentum)
     deepest = min(float(sea.surface(t).height[128, 128]) for t in np.linspace(0.0, 0.6, 61))
     assert -deepest == pytest.approx(RING_STEEPNESS * rainfall.ring_width, rel=0.03)
@@ -298,7 +298,7 @@ def test_a_click_puts_the_wave_gauge_where_the_ray_meets_the_water():
     scene.advance(60)
     scene.frame()
     origin, direction = (40.0, 60.0, 8.0), (0.9, 0.3, -0.12)
-    scene.handle(Point(origin, direction))
+    scene.handle(PointAlong(origin, direction))
     scene.advance(1)
     x, y, z = scene.frame().gauge
     height, _ = scene.sea.height_at([[x, y]], scene.time)
@@ -315,7 +315,7 @@ def test_a_click_puts_the_wave_gauge_where_the_ray_meets_the_water():
 def test_a_click_that_meets_no_water_moves_nothing(ray):
     scene = Scene(Params(**SMALL))
     at = scene.gauge.at
-    scene.handle(Point(*ray))
+    scene.handle(PointAlong(*ray))
     assert scene.gauge.at == at
     assert not scene.gauge_placed
 

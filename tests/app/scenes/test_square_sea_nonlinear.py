@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.formats.formatting import number
-from app.messages import Pause, Play, Point, Reset, RunOn
+from app.messages import Pause, Play, PointAlong, Reset, RunOn
 from app.scenes.square_sea import report
 from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import LINEAR_ONLY, PRESETS, Params, hidden, solved_points
@@ -94,7 +94,7 @@ def test_a_run_goes_on_from_a_checkpoint_as_it_did(start: str) -> None:
 def test_the_wave_gauge_reads_the_surface_and_a_click_moves_it() -> None:
     scene = Scene(Params(**STEEP))
     scene.advance(120)
-    scene.handle(Point((100.0, 120.0, 12.0), (0.9, 0.3, -0.4)))
+    scene.handle(PointAlong((100.0, 120.0, 12.0), (0.9, 0.3, -0.4)))
     x, y, z = scene.frame().gauge
     assert scene.gauge_placed
     sea: NonlinearSea = scene.marching.sea

@@ -17,7 +17,7 @@ from app.scenes.compiling import Job
 from app.scenes.contract import AnySnapshot
 from app.scenes.rope.parameters import Params
 from app.scenes.setups import Setup
-from app.server.beside import Comparison
+from app.server.beside import ComparedLabs
 from app.server.served_scene import ServedScene
 from app.server.viewer import Viewer
 
@@ -199,7 +199,7 @@ def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
     """End a comparison while the first lab's tick is at the clock that both share."""
     setup, loop = Setup("rope", Params(stiffness=2000.0), {}, ""), watched.loop
     for number in range(times):
-        comparison = Comparison(watched, lambda _: pane)
+        comparison = ComparedLabs(watched, lambda _: pane)
         comparison.begin([setup], resume=False)
         assert asked(watched, lambda: loop.seat) is comparison.seats[watched]
         with monkeypatch.context() as point:
@@ -217,7 +217,7 @@ def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
         watched.commands.put(Play())
 
 
-def held_at_the_clock(lab: Viewer, comparison: Comparison, point: pytest.MonkeyPatch, place: int) -> Held:
+def held_at_the_clock(lab: Viewer, comparison: ComparedLabs, point: pytest.MonkeyPatch, place: int) -> Held:
     """Hold the first lab's tick between the test for a seat and its use, as the clock goes on, or in a step by hand."""
     loop, clock = lab.loop, comparison.clock
     if place == 0:

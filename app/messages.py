@@ -116,7 +116,7 @@ class Take(NamedTuple):
     The scene goes on as the effect of the change asks for.
     """
 
-    params: BaseParams  # the scene's `Params`
+    params: BaseParams  # the scene's record
     start: bool = False  # begin again and run, whatever has changed, as for a preset
     state: KeptState | None = None  # go on from here and run; of a scene that had these parameters
     run: int = 0  # number of the run with these parameters; 0: that of no panel

@@ -30,7 +30,7 @@ from app.lab.process import COMPILES, FORKS, TRACE_SIGNAL
 from app.lab.rope_march import FILE as ROPE_FILE
 from app.lab.rope_march import MarchResult, Segment, packed
 from app.lab.source import decoded
-from app.lab.tabulate import ResultRange
+from app.lab.tabulate import Interval
 from app.lab.template import Forked, Template, can_fork
 from app.lab.wire import pack, receive, send, unpack
 
@@ -128,12 +128,7 @@ class Runner:
         return MarchResult(*answer)
 
     def table(
-        self,
-        file: str,
-        function: str,
-        columns: Sequence[np.ndarray],
-        shape: tuple[int, ...] | None,
-        allowed: ResultRange,
+        self, file: str, function: str, columns: Sequence[np.ndarray], shape: tuple[int, ...] | None, allowed: Interval
     ) -> np.ndarray:
         """(n, *shape) results of a function for each row of its arguments (`tabulate.py`). Raises RunError.
 

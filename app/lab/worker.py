@@ -28,7 +28,7 @@ from typing import Any, NoReturn
 from app.lab.cloth_march import ClothFunctions
 from app.lab.process import BACKGROUND_NICENESS, COMPILES, FORKS, ROPE_NICENESS, TRACE_SIGNAL, lower_priority
 from app.lab.rope_march import ClothData, Functions, Unfit, march, unpacked
-from app.lab.tabulate import ResultRange, tabulate
+from app.lab.tabulate import Interval, tabulate
 from app.lab.template import fork_on_request
 from app.lab.wire import pack, receive, send, unpack
 
@@ -131,7 +131,7 @@ class Worker:
                 return ["failed", "missing", f"there is no function {function}", file, None, False]
             if kind == "table":
                 columns, shape, allowed = unpack(arguments, self.remote)
-                return ["result", pack(tabulate(target, function, columns, shape, ResultRange(*allowed)), lambda _: 0)]
+                return ["result", pack(tabulate(target, function, columns, shape, Interval(*allowed)), lambda _: 0)]
             value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
         except Unfit as error:

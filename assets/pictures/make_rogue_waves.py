@@ -12,7 +12,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 from app.messages import Advance
-from app.scenes.square_sea.parameters import PRESETS, Params
+from app.scenes.square_sea.parameters import PRESETS, SquareSeaParams
 from app.server.viewer import Viewer
 
 MOMENTS = {"Peregrine breather": ("breather", 301.7), "Draupner": ("draupner", 58.6)}  # preset -> file, time [s]
@@ -30,7 +30,7 @@ def main() -> None:
         browser = driver.chromium.launch(executable_path=browser_path, args=FLAGS)
         page = browser.new_page(viewport=SIZE)  # type: ignore[arg-type]
         for number, (preset, (name, t)) in enumerate(MOMENTS.items()):
-            lab.open("square_sea", Params(**PRESETS[preset]), paused=True)
+            lab.open("square_sea", SquareSeaParams(**PRESETS[preset]), paused=True)
             page.goto(f"http://127.0.0.1:{lab.port}/?hideViserLogo&fixedDpr=1&picture={number}")
             page.add_style_tag(content=NO_NOTES)
             page.wait_for_timeout(1e3 * PATIENCE)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
-from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.springs.drag import PullFrame
 from sim.springs.stability import Gauge
 
@@ -14,7 +14,7 @@ from sim.springs.stability import Gauge
 class ClothFrame(NamedTuple):
     """Drawn state of a cloth."""
 
-    params: Params
+    params: ClothParams
     points: NDArray[np.float32]  # (rows, cols, 3) [m], C-contiguous
     strain: NDArray[np.float32]  # (rows, cols), largest of the structural springs at a particle
     pins: tuple[Vector, Vector] | None  # [m] where the two ends of the first row are going to

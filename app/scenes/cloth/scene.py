@@ -12,7 +12,7 @@ from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Ve
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.live_values import live_values
-from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
+from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, ClothParams, hidden
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.springs.divergence import holding_step
@@ -53,7 +53,7 @@ PLOTS = {
 }
 
 
-def gusty_wind(params: Params, t: float) -> Vector:
+def gusty_wind(params: ClothParams, t: float) -> Vector:
     """The wind at time t [m/s]: three slow waves along it, across it and upwards."""
     along = params.wind * (1.0 + params.gust * (0.3 * math.sin(1.7 * t) + 0.2 * math.sin(4.3 * t + 1.0)))
     across = params.wind * params.gust * 0.35 * math.sin(2.3 * t + 0.5)
@@ -71,18 +71,18 @@ def warm_up(law: str = SPRING) -> Pieces:
 
 def compile_gauge(law: str) -> None:
     """All but the integrators."""
-    scene = ClothScene(Params(rows=4, cols=4, law=law))
+    scene = ClothScene(ClothParams(rows=4, cols=4, law=law))
     extremes(scene.state.x, scene.state.v)
     gershgorin(cloth(4, 4, thickness=0.1, law=law), scene.state.x)
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: ClothParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     net = build(params, sphere_home(params))
     return pieces_of_law((integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE), params.law)
 
 
-class ClothScene(NetScene[Params]):
+class ClothScene(NetScene[ClothParams]):
     """The cloth on the simulation thread."""
 
     CHANGING = (
@@ -94,7 +94,7 @@ class ClothScene(NetScene[Params]):
     student: "StudentCloth | None" = None
     stability: ClothReadings
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+    def __init__(self, params: ClothParams, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any."""
         if live is not None:
             from app.scenes.cloth import student_cloth  # only `springtide lab DIR` pays for it
@@ -156,7 +156,7 @@ class ClothScene(NetScene[Params]):
         self.handles = [CriticallyDampedTracker(tuple(float(c) for c in end)) for end in self.ends]  # type: ignore[arg-type]
         self.anchors = {pin: x[:, pin[0], pin[1]].copy() for pin in self.net.pinned}
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: ClothParams) -> None:
         """Take new parameters. The motion goes on, interpolated where the grid changes."""
         old, self.params = self.params, params
         self.tuner.restart()
@@ -334,7 +334,7 @@ SCENE = SceneKind(
     name="cloth",
     title="Cloth",
     help="<b>Drag the cloth</b> to pull it, or the arrows to move its pins and the sphere.",
-    params=Params,
+    params=ClothParams,
     presets=PRESETS,
     about=ABOUT,
     make=ClothScene,

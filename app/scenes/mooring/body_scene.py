@@ -19,7 +19,7 @@ from app.scenes.mooring.arrangement import (
     sections,
 )
 from app.scenes.mooring.line_scene import LineScene, rest_or_start
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.restoring import StaticInputs, force_of_lines
 from app.scenes.mooring.start_check import Fault, fault_of
 from app.scenes.springs.tracking import CriticallyDampedTracker
@@ -65,7 +65,7 @@ class MooringScene(LineScene):
         """(lines,) [m], unstretched."""
         return np.full(self.params.lines, self.params.length)
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion goes on."""
         old, self.params = self.params, params
         self.sea = sea_of(params)

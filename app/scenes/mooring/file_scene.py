@@ -12,7 +12,7 @@ from app.scenes.mooring.arrangement import extent, sea_of
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.from_file import FileMooring, mooring_of, slack_of
 from app.scenes.mooring.line_scene import LineScene, fade_at
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.restoring import LEAST_SHARE, SHARE
 from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
@@ -102,7 +102,7 @@ class FileScene(LineScene):
         current = (p.current * math.cos(bearing), p.current * math.sin(bearing), 0.0)
         return dataclasses.replace(self.file.system, waves=self.sea, current=current)
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion goes on."""
         self.params = params
         self.sea = sea_of(params)

@@ -13,7 +13,7 @@ from app.scenes.charts import Chart
 from app.scenes.moments import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
-from app.scenes.mooring.parameters import MAX_LINES, Params
+from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.restoring import CurveInputs, RestoringCurve
 from app.scenes.mooring.start_check import Fault
 from app.scenes.mooring.tensions import Tensions
@@ -58,7 +58,7 @@ class LineScene(abc.ABC):
     def middle(self) -> Vector:
         """[m] of the body or vessel, where it rests without lines or begins."""
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: MooringParams) -> None:
         self.params = params
         self.plot_rows = PlotRows(len(SERIES))
         self.last_moments = LastMoments()
@@ -118,7 +118,7 @@ class LineScene(abc.ABC):
         """Go on with the mooring as it is arranged now."""
 
     @abc.abstractmethod
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion goes on."""
 
     @property

@@ -15,7 +15,7 @@ from app.scenes.race.entrants import Race, RaceReadings
 from app.scenes.race.live_values import live_values
 from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_labels
-from app.scenes.race.parameters import ABOUT, PRESETS, Params, hidden, method_of, offset_of
+from app.scenes.race.parameters import ABOUT, PRESETS, RaceParams, hidden, method_of, offset_of
 from app.scenes.springs.drag import PullFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.rope_handles import RopeHandles
@@ -35,7 +35,7 @@ REFERENCE = "reference run"  # name of the piece to compile
 class RaceFrame(NamedTuple):
     """Drawn state of a race."""
 
-    params: Params
+    params: RaceParams
     ropes: NDArray[np.float32]  # (ropes, points, 3) [m], C-contiguous, side by side
     references: NDArray[np.float32] | None  # the same of the reference runs, or None where there are none to show
     labels: tuple[str, ...]
@@ -65,7 +65,7 @@ def compile_reference(net: Net) -> None:
     ReferenceRun(net, 2.0, 1).advance(net, 0.0, 1e-3)
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: RaceParams) -> tuple[str, ...]:
     """Compiled pieces that a race with these parameters runs."""
     methods = {method_of(params, number) for number in range(1, params.ropes + 1)}
     return pieces_of_law((*sorted(methods), GAUGE, REFERENCE), params.law)
@@ -78,7 +78,7 @@ class RaceScene:
     faster = "fewer ropes, fewer points or longer steps"
     note = ""  # a rope with a method that cannot run stops and says so; no other method runs instead
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: RaceParams) -> None:
         self.params = params
         self.handles = RopeHandles()
         self.reset()
@@ -111,7 +111,7 @@ class RaceScene:
         restore(self, kept)
         self.handles.drag.clear()
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: RaceParams) -> None:
         """Take new parameters; the motion goes on."""
         self.params = params
         self.net = build_rope(params, self.handles.root.position)
@@ -203,7 +203,7 @@ SCENE = SceneKind(
     name="race",
     title="Race of ropes",
     help="<b>Drag a rope</b> to pull all of them alike.",
-    params=Params,
+    params=RaceParams,
     presets=PRESETS,
     about=ABOUT,
     opening="Shaken at the root",

@@ -11,7 +11,7 @@ from app.messages import Vector
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
 from app.scenes.radial_sea.bodies import BodyReading
 from app.scenes.radial_sea.cutaway import Cutaway
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.well_blowout import OilBudget, Slick
 from sim.floating import Hull
 from sim.ocean.fluid_column import FluidColumn
@@ -31,7 +31,7 @@ class JetParcels(NamedTuple):
 class RadialFrame(NamedTuple):
     """Drawn state of the sea."""
 
-    params: Params
+    params: RadialSeaParams
     time: float  # [s]
     grid: RadialGrid
     grid_middle: tuple[float, float]  # x, y [m]

@@ -21,7 +21,7 @@ from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import (
     ABOUT,
     PRESETS,
-    Params,
+    RadialSeaParams,
     column_of,
     densities_of,
     exposure_of,
@@ -84,7 +84,7 @@ def warm_up() -> Pieces:
     return {MOTION: compile_motion, **scenes}
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: RadialSeaParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     fire = (FIRE,) if params.fire or params.jet else ()
     tile = (TILE,) if params.surface == "fft" or params.compare else ()
@@ -99,7 +99,7 @@ def compile_motion() -> None:
 
 def compile_with(changes: dict[str, Value]) -> None:
     """Call the kernels of a scene with these parameters changed from their defaults."""
-    scene = RadialSeaScene(check_record(Params, changes))
+    scene = RadialSeaScene(check_record(RadialSeaParams, changes))
     if scene.params.bodies:
         scene.handle(GrabTo(0, (0.0, 0.0, 0.0)))
     for _ in range(8):
@@ -117,7 +117,7 @@ class RadialSeaScene:
     faster = "fewer bodies, fewer waves or a larger step"  # these take the time
     note = ""  # it always runs what the parameters ask for
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+    def __init__(self, params: RadialSeaParams, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any.
 
         Raises ValueError where the parameters name a hull file that is not a closed mesh.
@@ -213,7 +213,7 @@ class RadialSeaScene:
         """The surface in force."""
         return self.sum if self.params.surface == "sum" else self.tile_now()
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: RadialSeaParams) -> None:
         """Take parameters while the sea runs: only the affected parts are replaced."""
         old, self.params = self.params, params
         column, choice = self.fluids(params), wave_choice_of(params)
@@ -244,7 +244,7 @@ class RadialSeaScene:
         self.well_blowout.change(params)
         self.drawing.forget_costs()
 
-    def fluids(self, params: Params) -> FluidColumn:
+    def fluids(self, params: RadialSeaParams) -> FluidColumn:
         """The fluids that the parameters describe, by a student's functions where the sea runs by them."""
         return column_of(params) if self.student is None else self.student.column(params)
 
@@ -431,7 +431,7 @@ SCENE = SceneKind(
     name="radial_sea",
     title="Radial sea",
     help="<b>Drag a buoy</b> under the water and let go.",
-    params=Params,
+    params=RadialSeaParams,
     presets=PRESETS,
     about=ABOUT,
     make=RadialSeaScene,

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.drag import PullFrame
 from sim.springs.stability import Gauge
 
@@ -14,7 +14,7 @@ from sim.springs.stability import Gauge
 class RopeFrame(NamedTuple):
     """Drawn state of a rope: the student's if there is one, with the program's beside it."""
 
-    params: Params
+    params: RopeParams
     points: NDArray[np.float32]  # (n, 3) [m], C-contiguous
     reference: NDArray[np.float32] | None  # (n, 3) [m] the program's rope beside the student's
     tension: NDArray[np.float32]  # (n - 1,) [N]

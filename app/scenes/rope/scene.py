@@ -12,7 +12,7 @@ from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.live_values import live_values
 from app.scenes.rope.measures import measures
-from app.scenes.rope.parameters import ABOUT, PRESETS, Params, hidden
+from app.scenes.rope.parameters import ABOUT, PRESETS, RopeParams, hidden
 from app.scenes.springs.divergence import holding_step, leapfrog_alternative
 from app.scenes.springs.drag import Drag
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
@@ -45,7 +45,7 @@ PLOTS = {
 }
 
 
-def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
+def build(params: RopeParams, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
     """The net that the parameters describe, with root and sphere centre there [m]."""
     return build_rope(params, root, (*sphere, params.sphere_radius) if params.sphere else None)
 
@@ -59,12 +59,12 @@ def warm_up(law: str = SPRING) -> Pieces:
 
 def compile_gauge(law: str) -> None:
     """All but the integrators."""
-    scene = RopeScene(Params(law=law))
+    scene = RopeScene(RopeParams(law=law))
     extremes(scene.state.x, scene.state.v)
     scene.frame()
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: RopeParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     method = integrator_or_fallback(params.integrator, build(params), params.time_step)[0].name
     return pieces_of_law((method, GAUGE), params.law)
@@ -80,7 +80,7 @@ def state_of(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray(points.T[:, None])
 
 
-class RopeScene(NetScene[Params]):
+class RopeScene(NetScene[RopeParams]):
     """The rope on the simulation thread."""
 
     CHANGING = ("net", "state", "account", "handles", "corrections", "max_reach")
@@ -88,7 +88,7 @@ class RopeScene(NetScene[Params]):
     student: "StudentRope | None" = None
     stability: RopeReadings
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+    def __init__(self, params: RopeParams, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any."""
         if live is not None:
             from app.scenes.rope import student_rope  # only `springtide lab DIR` pays for it
@@ -145,7 +145,7 @@ class RopeScene(NetScene[Params]):
         self.max_reach = 4.0 + 3.0 * (self.params.length + 0.5 * sag * n * (n + 1)) + reach  # [m] from the root
         self.max_speed = np.inf  # [m/s] along an axis, of the fastest point
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: RopeParams) -> None:
         """Take new parameters. The motion goes on, interpolated where the number of points changes."""
         old, self.params = self.params, params
         self.take_net(build(params, self.handles.root.position, self.handles.sphere.position))
@@ -274,7 +274,7 @@ SCENE = SceneKind(
     name="rope",
     title="Rope",
     help="<b>Drag the rope</b> to pull it, or the arrows to move its root.",
-    params=Params,
+    params=RopeParams,
     presets=PRESETS,
     about=ABOUT,
     opening="Shaken at the root",

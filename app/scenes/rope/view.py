@@ -19,7 +19,7 @@ from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, link_and_point
 from app.scenes.springs.view import ROOT_ARROW_LENGTH, SecondNet, Sphere, SpringView, compile_tube
@@ -43,10 +43,10 @@ LOWER = 0.03  # heights of the picture from the middle of the rope down to the t
 POSITION_TOLERANCE = 2e-4  # [m] that a point may be from where it is drawn: far below a pixel
 COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn colour: less than 1/256 of it
 
-RopeSnapshot: TypeAlias = Snapshot[Params, RopeFrame, RopeReadings]
+RopeSnapshot: TypeAlias = Snapshot[RopeParams, RopeFrame, RopeReadings]
 
 
-class View(SpringView[Params, RopeFrame, RopeReadings]):
+class RopeView(SpringView[RopeParams, RopeFrame, RopeReadings]):
     """Draws `RopeFrame`s."""
 
     FIELD_OF_VIEW = 1.3  # [rad]
@@ -64,7 +64,7 @@ class View(SpringView[Params, RopeFrame, RopeReadings]):
             server, "/reference", "yours", color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY, receive_shadow=False
         )
 
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+    def first_view(self, params: RopeParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: in front of the rope as it hangs."""
         link, n = link_and_point(params), params.points - 1
         stretch = 0.5 * n * (n + 1) * link["mass"] * params.gravity / link["stiffness"]
@@ -217,3 +217,6 @@ def cost_text(cost: NumericalCost | None) -> Html:
         bold(f"{number(abs(energy))} J"),
         damping,
     )
+
+
+VIEW = RopeView

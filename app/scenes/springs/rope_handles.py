@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.springs.drag import Drag, PullFrame
-from app.scenes.springs.rope_parameters import ROOT, SPHERE, RopeParams
+from app.scenes.springs.rope_parameters import ROOT, SPHERE, SharedRopeParams
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.springs import Grab, Net
 
@@ -46,7 +46,7 @@ class RopeHandles:
         self.sphere.place_at(SPHERE)
         self.drag.clear()
 
-    def net_during(self, net: Net, t: float, duration: float, step: float, params: RopeParams) -> Net:
+    def net_during(self, net: Net, t: float, duration: float, step: float, params: SharedRopeParams) -> Net:
         """`net` with the motions of root, sphere and pull over the next `duration` [s] from time t [s].
 
         step: [s]. The same object where nothing moves, as in most frames.

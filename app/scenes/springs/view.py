@@ -14,8 +14,7 @@ from app.render.gizmo import Gizmo
 from app.render.meshes import SIDES, ball, smooth_line, sweep
 from app.render.surroundings import Surroundings, set_dark
 from app.render.viser_inside import set_arrays
-from app.scenes.contract import PostCommand
-from app.scenes.contract import View as SceneView
+from app.scenes.contract import PostCommand, SceneView
 from app.scenes.springs.drag import PullFrame
 
 ROOT_ARROW_LENGTH = 0.34  # [m]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.rainfall import RainFrame, RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
@@ -17,7 +17,7 @@ from app.scenes.square_sea.tile_mesh import Highest
 class SeaFrame(NamedTuple):
     """Drawn state of a sea."""
 
-    params: Params
+    params: SquareSeaParams
     time: float  # [s]
     vertices: NDArray[np.float32]  # (n, n, 3) [m]
     slopes: NDArray[np.float32]  # (n, n, 2)

@@ -23,7 +23,7 @@ from app.scenes.square_sea.parameters import (
     ABOUT,
     GAUGE_OFFSET_SHARE,
     PRESETS,
-    Params,
+    SquareSeaParams,
     conditions,
     hidden,
     marches,
@@ -83,8 +83,8 @@ def warm_up() -> Pieces:
 
 def compile_drawn_sea() -> None:
     """Call all kernels of a small sea with rain."""
-    small = Params(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
-    for params in (small, Params(**{**vars(small), "choppiness": 0.0})):
+    small = SquareSeaParams(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
+    for params in (small, SquareSeaParams(**{**vars(small), "choppiness": 0.0})):
         scene = SquareSeaScene(params)
         for _ in range(4):
             scene.advance(30)
@@ -93,7 +93,7 @@ def compile_drawn_sea() -> None:
 
 def compile_nonlinear_sea() -> None:
     """Call all kernels of both kinds of nonlinear sea."""
-    small = Params(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
+    small = SquareSeaParams(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
     for params in (small, dataclasses.replace(small, start="breather", spectrum="regular")):
         scene = SquareSeaScene(params)
         for _ in range(4):
@@ -106,7 +106,7 @@ def pieces_on_use() -> Pieces:
     return {NONLINEAR: compile_nonlinear_sea}
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: SquareSeaParams) -> tuple[str, ...]:
     """The pieces that these parameters run."""
     return (*warm_up(), *((NONLINEAR,) if marches(params) else ()))
 
@@ -121,7 +121,7 @@ class SquareSeaScene:
     faster = "a smaller grid"
     note = ""  # it always runs what the parameters ask for
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None, step: float = STEP) -> None:
+    def __init__(self, params: SquareSeaParams, live: "LiveCode | None" = None, step: float = STEP) -> None:
         """live: runs a student's functions, where there are any. step: of the clock [s]."""
         self.params, self.step = params, step
         self.student: StudentSea | None = None
@@ -226,7 +226,7 @@ class SquareSeaScene:
         self.statistics.earlier_height = None
         self.foam_cover, self.foam_limit = 0.0, FoamLimit()
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: SquareSeaParams) -> None:
         """Take new parameters: new weather grows out of the present sea, another grid shows the same sea."""
         old, foam_cover = self.params, self.undamped_foam_cover(self.time)
         self.params = params
@@ -423,7 +423,7 @@ SCENE = SceneKind(
     name="square_sea",
     title="Square sea",
     help="<b>Click the water</b> to place a wave gauge; drag to look around.",
-    params=Params,
+    params=SquareSeaParams,
     presets=PRESETS,
     about=ABOUT,
     make=SquareSeaScene,

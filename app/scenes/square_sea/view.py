@@ -20,8 +20,7 @@ from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
 from app.render.water import DrawnWater, Tile
-from app.scenes.contract import Pieces
-from app.scenes.contract import View as SceneView
+from app.scenes.contract import Pieces, SceneView
 from app.scenes.measured_sea import height_and_period
 from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
@@ -29,7 +28,7 @@ from app.scenes.square_sea.parameters import (
     GAUGE_OFFSET_SHARE,
     SURFACE_TENSION,
     VIEW_HEIGHTS,
-    Params,
+    SquareSeaParams,
     gravity,
     rain_settings,
 )
@@ -39,7 +38,7 @@ from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
 from sim.water import SEA_DENSITY
 
-DEFAULTS = Params()
+DEFAULTS = SquareSeaParams()
 TARGETS = {  # [m] of each view: how far ahead its target is, and the target's height
     "swimmer": (6.0, 0.5),
     "side": (60.0, 0.5),
@@ -83,7 +82,7 @@ def rain_look(rate: float, gravity: float) -> tuple[tuple[float, float, float], 
     return (ring_flux(rate, gravity), length, speed), 0.5 * rainfall(rate, gravity).extinction
 
 
-class View(SceneView[Params, SeaFrame, SeaReadings]):
+class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
     """Draws `SeaFrame`s."""
 
     FIELD_OF_VIEW = 0.65  # [rad]
@@ -104,7 +103,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         self.last: SeaFrame | None = None
         server.scene.on_click()(self.on_click)  # type: ignore[arg-type]  # it takes coroutines, as on_drag does
 
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+    def first_view(self, params: SquareSeaParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved."""
         return camera_of(params.view, params.length)
 
@@ -323,3 +322,6 @@ def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndar
     sides = np.hstack([np.concatenate([ring, ring]), heights])
     vertices = np.concatenate([sides, [[0.0, 0.0, low], [0.0, 0.0, high]]])
     return vertices, tube_faces(2, GAUGE_SIDES)
+
+
+VIEW = SquareSeaView

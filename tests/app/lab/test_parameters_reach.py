@@ -13,11 +13,11 @@ from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.messages import GrabTo, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
-from app.scenes.cloth.parameters import Params as ClothParams
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.cloth.student_cloth import unlike
-from app.scenes.rope.parameters import Params as RopeParams
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from sim.parameters import Parameter, Value, effect_of_change, in_words, parameters_of
 from sim.springs import LAWS

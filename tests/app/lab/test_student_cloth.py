@@ -12,7 +12,7 @@ from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.messages import GrabTo, Place, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
-from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from tests.app.lab.test_session import save, taken, working_in
 from tests.waiting import wait_for
@@ -20,7 +20,7 @@ from tests.waiting import wait_for
 TASKS = load_tasks()
 SOURCES = {task.name: inspect.getsource(task.function) for task in TASKS if task.file == "cloth.py"}
 RIGHT = "import numpy as np\n\n\n" + "\n\n".join(SOURCES.values())
-SMALL = Params(
+SMALL = ClothParams(
     integrator="symplectic_euler", time_step=1 / 240, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, gather=1.0
 )
 ACCIDENTS = {
@@ -108,7 +108,7 @@ def test_pins_and_mouse_move_both(right: Session) -> None:
 
 
 def test_a_large_cloth_has_a_coarser_one_beside_it(right: Session) -> None:
-    scene = ClothScene(Params(), right.live)
+    scene = ClothScene(ClothParams(), right.live)
     run(scene, 6)
     frame = scene.frame()
     assert frame.student is not None

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from app.messages import GrabTo, Pause, Place, Play, Reset, StudentAnswer, Take
-from app.scenes.cloth.parameters import Params as ClothParams
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.server.loop import PATIENCE, SimLoop
 from app.server.snapshots import MAX_BLIND_TIME
@@ -29,7 +29,7 @@ def ask(loop, **changes):
 @pytest.fixture
 def busy():
     """A loop in the middle of a step that takes long."""
-    scene = RopeScene(Params(points=4))
+    scene = RopeScene(RopeParams(points=4))
     loop = SimLoop(scene, clock=lambda: 1.0)
     loop.busy_since = loop.turn_at = 1.0 - 2.0 * PATIENCE
     loop.solving = loop.may_end = True
@@ -86,7 +86,7 @@ def test_a_turn_is_asked_for_after_a_while_and_not_of_an_idle_loop(busy):
 
 def test_one_tick_that_takes_long_makes_only_the_next_show_a_picture_more():
     now, seconds = [0.0], iter([2.0 * PATIENCE, 0.0, 0.0, 0.0])
-    scene = RopeScene(Params(points=4))
+    scene = RopeScene(RopeParams(points=4))
     loop = SimLoop(scene, clock=lambda: now[0], effort=lambda: 0.0)
     advance = scene.advance
 

@@ -30,7 +30,7 @@ from app.messages import (
     TogglePlay,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.scenes.rope.parameters import Params as RopeParams
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.server.loop import SimLoop
 from app.server.merging import merged

@@ -136,7 +136,7 @@ class Place(NamedTuple):
 
 
 class GrabTo(NamedTuple):
-    """Pull a particle or body, by flat index, towards a target [m]."""
+    """Grab a particle or body, by flat index, and pull it towards a target [m]."""
 
     particle: int
     target: Vector
@@ -144,7 +144,7 @@ class GrabTo(NamedTuple):
 
 
 class Release(NamedTuple):
-    """Release the object that a browser drags."""
+    """Release what a browser has grabbed."""
 
     client: int = 0
 

@@ -46,10 +46,10 @@ class Forces(NamedTuple):
     contact_damping: float = 5.0  # [N s/m]
     friction: float = 0.0  # Coulomb coefficient
     lab_contact: bool = False  # the lab's law of contact instead of the clipped one
-    held: int = -1  # point that the mouse pulls, -1: none
+    grabbed: int = -1  # point that the mouse pulls, -1: none
     hand: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m]
-    pull_stiffness: float = 0.0  # [N/m]
-    pull_damping: float = 0.0  # [N s/m]
+    grab_stiffness: float = 0.0  # [N/m]
+    grab_damping: float = 0.0  # [N s/m]
     max_pull: float = 1.0  # [N]
     wind: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s] at a cloth
     air_drag: float = 0.0  # [kg/m3] half the density of the air times the coefficient of drag
@@ -250,11 +250,11 @@ class Functions:
             for i in range(first, len(x)) if "sphere_force" in self.own else near:
                 mass = self.mass_of(i)
                 a[i] += self.sphere(x[i], v[i] - velocity, centre, float(distance[i]), mass) / mass
-        if f.held >= first:
-            gap = np.array(f.hand) - x[f.held]
+        if f.grabbed >= first:
+            gap = np.array(f.hand) - x[f.grabbed]
             distance = float(np.linalg.norm(gap))
-            k = f.max_pull / distance if f.pull_stiffness * distance > f.max_pull else f.pull_stiffness
-            a[f.held] += (k * gap - f.pull_damping * v[f.held]) / self.mass_of(f.held)
+            k = f.max_pull / distance if f.grab_stiffness * distance > f.max_pull else f.grab_stiffness
+            a[f.grabbed] += (k * gap - f.grab_damping * v[f.grabbed]) / self.mass_of(f.grabbed)
 
     def mass_of(self, i: int | np.intp) -> float:
         """The mass of point i [kg]."""

@@ -72,7 +72,7 @@ def test_the_number_of_ropes_changes_while_one_is_dragged(six: Hammer, tally: Ta
             # The last point of the last rope, which the next race does not have.
             six.loop.commands.put(GrabTo(ropes * points - 1, (-3.0, 5.0, 4.0)))
             six.frame(FRAMES)
-            assert six.loop.latest.frame.pull is not None
+            assert six.loop.latest.frame.grab is not None
             six.set("ropes", max(1, ropes - 1))
             six.frame(FRAMES)
             assert not six.loop.halted

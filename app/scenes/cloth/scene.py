@@ -16,15 +16,14 @@ from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS,
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.springs.divergence import holding_step
-from app.scenes.springs.drag import Drag, PullFrame
+from app.scenes.springs.grab import GrabFrame, ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from sim.springs import Air, Net, cloth
-from sim.springs import Grab as Pull
+from sim.springs import Air, Grab, Net, cloth
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
@@ -41,8 +40,8 @@ MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Ge
 MAX_SPHERE_SPEED = 3.0  # [m/s] along an axis, however fast it is dragged: faster, it would pass through the cloth
 MIN_PARTICLES_FOR_TWO_THREADS = 2000
 MAX_DISTANCE = 60.0  # [m] from the origin; farther out the run has diverged
-PULL_LENGTH = 0.1  # [m] at which a pull has its largest force, if the step allows
-MAX_PULL_STIFFNESS_STEP = 0.1  # stiffness of a pull over mass / step^2, so that the pull is stable at any step
+GRAB_LENGTH = 0.1  # [m] at which a grab has its largest force, if the step allows
+MAX_GRAB_STIFFNESS_STEP = 0.1  # stiffness of a grab over mass / step^2, so that it is stable at any step
 BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact")
 SERIES = (*ENERGY_SERIES, "dissipated", "largest strain")
@@ -101,7 +100,7 @@ class ClothScene(NetScene[ClothParams]):
 
             self.student = student_cloth.StudentCloth(live.cloth)
         self.tuner = ThreadTuner()
-        self.drag = Drag()
+        self.grab = ParticleGrab()
         super().__init__(params, len(SERIES))
 
     @property
@@ -127,7 +126,7 @@ class ClothScene(NetScene[ClothParams]):
         self.sphere = CriticallyDampedTracker(sphere_home(self.params), MAX_SPHERE_SPEED)
         self.place_at_rest(build(self.params, self.sphere.position))
         self.account_kept = self.with_account
-        self.drag.clear()
+        self.grab.clear()
         self.place_handles()
         self.assess_stability()
         if self.student is not None:
@@ -176,9 +175,9 @@ class ClothScene(NetScene[ClothParams]):
                 self.sphere.target = position
             case GrabTo(index, target, client) if 0 <= index < self.particles:
                 x, y, z = (float(c) for c in self.state.x.reshape(3, -1)[:, index])
-                self.drag.move(client, index, (x, y, z), target)
+                self.grab.move(client, index, (x, y, z), target)
             case Release(client):
-                self.drag.release(client)
+                self.grab.release(client)
             case StudentAnswer() if self.student is not None:
                 self.student.collect(MAX_DISTANCE)
             case _:
@@ -216,32 +215,32 @@ class ClothScene(NetScene[ClothParams]):
         return self.particles <= MAX_ASSESSED_PARTICLES
 
     def net_during(self, t: float, duration: float) -> Net:
-        """The net with the motions of pins, sphere and pull, and the wind, over the next `duration` [s] from time t."""
+        """The net with the motions of pins, sphere and grab, and the wind, over the next `duration` [s] from time t."""
         before = self.sphere_at(t)
         self.sphere.advance(t, duration)
         after = self.sphere_at(t + duration)
-        pull = None
-        if self.drag.hold is not None:
-            _, index, hand = self.drag.hold
+        grab = None
+        if self.grab.grabbed is not None:
+            _, index, hand = self.grab.grabbed
             hand.advance(t, duration)
             row, col = divmod(index, self.params.cols)
-            stiffness, damping = self.pull_spring(index)
-            pull = Pull(row, col, hand.position, stiffness, damping, self.params.pull)
+            stiffness, damping = self.grab_spring(index)
+            grab = Grab(row, col, hand.position, stiffness, damping, self.params.pull)
         return dataclasses.replace(
             self.net,
             pin_paths=self.pin_paths(t, duration),
             sphere=(*before, self.params.sphere_radius) if self.params.sphere else None,
             sphere_velocity=tuple((b - a) / duration for a, b in zip(before, after, strict=True)),
             epoch=t,
-            grab=pull,
+            grab=grab,
             air=Air(gusty_wind(self.params, t), self.params.air) if self.params.air > 0.0 else None,
         )
 
-    def pull_spring(self, index: int) -> tuple[float, float]:
-        """Stiffness [N/m] and damping [N s/m] of a pull on a particle."""
+    def grab_spring(self, index: int) -> tuple[float, float]:
+        """Stiffness [N/m] and damping [N s/m] of a grab of a particle."""
         mass = float(self.net.masses.flat[index])
-        stiffest = MAX_PULL_STIFFNESS_STEP * mass / self.step**2
-        stiffness = min(self.params.pull / PULL_LENGTH, stiffest)
+        stiffest = MAX_GRAB_STIFFNESS_STEP * mass / self.step**2
+        stiffness = min(self.params.pull / GRAB_LENGTH, stiffest)
         return stiffness, 0.5 * math.sqrt(stiffness * mass)
 
     def sphere_at(self, t: float) -> Vector:
@@ -303,11 +302,11 @@ class ClothScene(NetScene[ClothParams]):
     def frame(self) -> ClothFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
         params = self.params
-        pull = None
-        if self.drag.hold is not None:
-            _, index, hand = self.drag.hold
+        grab = None
+        if self.grab.grabbed is not None:
+            _, index, hand = self.grab.grabbed
             distance = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
-            pull = PullFrame(index, hand.position, min(1.0, distance * self.pull_spring(index)[0] / params.pull))
+            grab = GrabFrame(index, hand.position, min(1.0, distance * self.grab_spring(index)[0] / params.pull))
         x, student = self.state.x, None
         both = None if self.student is None else self.student.pictured(x)
         if both is not None:
@@ -319,7 +318,7 @@ class ClothScene(NetScene[ClothParams]):
             pins=None if params.pinned == "free" else (self.handles[0].target, self.handles[1].target),
             sphere=(*self.sphere_at(self.time), params.sphere_radius) if params.sphere else None,
             sphere_home=self.sphere.target,
-            pull=pull,
+            grab=grab,
             student=student,
         )
         self.last_moments.add(self.state.t, frame, frame.points)

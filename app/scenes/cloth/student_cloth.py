@@ -85,7 +85,7 @@ class StudentCloth(StudentNet):
         forces = forces_of(net, before.t)._replace(mass=self.net.mass, damping=self.net.families[0].damping)
         x, last = self.rows_of(after.x), self.rows_of(before.x)
         if not self.is_comparable:
-            forces = forces._replace(held=-1)
+            forces = forces._replace(grabbed=-1)
         pins = list(self.sheet.pins)
         path = np.zeros((len(pins), 4, 3))
         path[:, 0], path[:, 1] = last[pins], (x[pins] - last[pins]) / duration

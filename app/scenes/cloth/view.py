@@ -121,7 +121,7 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
             self.build(frame)
         assert self.mesh is not None
         self.mesh.set(self.points, self.colours(frame))
-        self.show_surroundings(p.floor, p.grid, frame.pull)
+        self.show_surroundings(p.floor, p.grid, frame.grab)
         self.sphere.show(frame.sphere, frame.sphere_home if p.handles else None)
         if frame.student is None:
             self.student.set_visible(False)

@@ -117,18 +117,18 @@ class FileScene(LineScene):
     @property
     def is_dragged(self) -> bool:
         """True while a user moves the vessel."""
-        return self.hold is not None or not self.vessel.at_rest
+        return self.grabbed is not None or not self.vessel.at_rest
 
     def drag(self, command: SceneCommand) -> None:
         """Drag the vessel, or leave it where it is."""
         match command:
-            case GrabTo(0, target, client) if self.hold is None or self.hold[0] == client:
-                self.hold = client, target
+            case GrabTo(0, target, client) if self.grabbed is None or self.grabbed[0] == client:
+                self.grabbed = client, target
                 away = np.subtract(target, self.middle)[:2]
                 away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))
                 self.vessel.target = vector_of(np.append(away, 0.0))
-            case Release(client) if self.hold is not None and self.hold[0] == client:
-                self.hold = None
+            case Release(client) if self.grabbed is not None and self.grabbed[0] == client:
+                self.grabbed = None
             case _:
                 pass
 

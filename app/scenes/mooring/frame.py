@@ -29,7 +29,7 @@ class MooringFrame(NamedTuple):
     anchors: NDArray[np.float32]  # (a, 3) [m]
     fairleads: NDArray[np.float32]  # (f, 3) [m], and other points that move
     uplift: NDArray[np.bool_]  # (a,) whether an anchor is pulled upwards
-    pull: Vector | None  # [m] where the mouse pulls the body to
+    grab: Vector | None  # [m] where the mouse pulls the body to
 
 
 class EndStatistics(NamedTuple):

@@ -82,7 +82,7 @@ class LineScene(abc.ABC):
 
     def reset(self) -> None:
         """At rest in level water, with all things in their first places."""
-        self.hold: tuple[int, Vector] | None = None
+        self.grabbed: tuple[int, Vector] | None = None
         self.arrange()
         rest, self.failure = rest_or_start(self.system)
         self.state = LineState(self.system, rest)
@@ -293,7 +293,7 @@ class LineScene(abc.ABC):
             anchors=self.points[:, 0].astype(np.float32),
             fairleads=self.points[:, -1].astype(np.float32),
             uplift=self.tensions.uplift > 0.0,
-            pull=None if self.hold is None else self.hold[1],
+            grab=None if self.grabbed is None else self.grabbed[1],
         )
         self.last_moments.add(self.time, frame, frame.points)
         return frame
@@ -315,7 +315,7 @@ class LineScene(abc.ABC):
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
-        self.hold = None
+        self.grabbed = None
         self.state.system = self.system
         self.take_step()
         self.measure()

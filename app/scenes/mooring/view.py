@@ -12,7 +12,7 @@ from app.messages import RestartStatistics, Snapshot, Vector
 from app.render.cameras import set_clipping
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
-from app.render.dragging import PullLine, drag
+from app.render.dragging import GrabLine, drag
 from app.render.gizmo import Gizmo
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import as_linear_bytes
@@ -118,7 +118,7 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.4)
         scene.configure_default_lights(enabled=True, cast_shadow=False)
-        self.pull = PullLine(server)
+        self.grab = GrabLine(server)
         self.gizmos = {
             name: Gizmo(server, post, name, 1.0, position=(0.0, 0.0, 0.0), visible=False)
             for i in range(1, MAX_LINES + 1)
@@ -244,7 +244,7 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
         )
 
     async def on_body(self, event: Any) -> None:
-        """Pull the body."""
+        """Grab the body, and pull it."""
         drag(self.post, event, 0)
 
     def surface_of(self, frame: MooringFrame) -> NDArray[np.float32]:
@@ -308,7 +308,7 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
             self.bed.cell_thickness = self.bed.section_thickness = thickness
         self.show_watch(frame)
         self.show_handles(frame)
-        self.pull.show(None if frame.pull is None else (tuple(frame.body.tolist()), frame.pull))
+        self.grab.show(None if frame.grab is None else (tuple(frame.body.tolist()), frame.grab))
 
     def show_watch(self, frame: MooringFrame) -> None:
         """The watch circle, and the path of the body."""

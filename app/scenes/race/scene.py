@@ -16,7 +16,7 @@ from app.scenes.race.live_values import live_values
 from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_labels
 from app.scenes.race.parameters import ABOUT, PRESETS, RaceParams, hidden, method_of, offset_of
-from app.scenes.springs.drag import PullFrame
+from app.scenes.springs.grab import GrabFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
@@ -41,7 +41,7 @@ class RaceFrame(NamedTuple):
     labels: tuple[str, ...]
     failed: tuple[bool, ...]
     root: Vector  # [m] where the roots are going to
-    pull: PullFrame | None
+    grab: GrabFrame | None
 
 
 def warm_up(law: str = SPRING) -> Pieces:
@@ -109,7 +109,7 @@ class RaceScene:
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
-        self.handles.drag.clear()
+        self.handles.grab.clear()
 
     def change_forces(self, params: RaceParams) -> None:
         """Take new parameters; the motion goes on."""
@@ -126,7 +126,7 @@ class RaceScene:
             case GrabTo(index, target, client) if 0 <= index < self.params.points * self.params.ropes:
                 self.grab(index, target, client)
             case Release(client):
-                self.handles.drag.release(client)
+                self.handles.grab.release(client)
             case _:
                 pass
 
@@ -137,8 +137,8 @@ class RaceScene:
         target = x, y - offset_of(self.params, number), z
         if point > 0:
             position = vector_of(self.race.entrants[number].state.x[:, 0, point])
-            self.handles.drag.move(client, index, position, target)
-        elif self.handles.drag.may_move(client):
+            self.handles.grab.move(client, index, position, target)
+        elif self.handles.grab.may_move(client):
             self.handles.move_root(target)
 
     def advance(self, steps: int) -> None:
@@ -158,7 +158,7 @@ class RaceScene:
         params, race, handles = self.params, self.race, self.handles
         offsets = np.array([(0.0, offset_of(params, i), 0.0) for i in range(len(race.entrants))])[:, None]
         references = race.reference_points() if params.show_reference else None
-        number, point = divmod(handles.drag.hold.particle if handles.drag.hold else 0, params.points)
+        number, point = divmod(handles.grab.grabbed.particle if handles.grab.grabbed else 0, params.points)
         held = race.entrants[number].state.x[:, 0, point]
         offset = offset_of(params, number)
         return RaceFrame(
@@ -168,7 +168,7 @@ class RaceScene:
             labels=rope_labels(race.entrants),
             failed=tuple(bool(entrant.failure) for entrant in race.entrants),
             root=handles.home,
-            pull=handles.pull_frame(held, offset, self.net.mass, self.step, params.pull),
+            grab=handles.grab_frame(held, offset, self.net.mass, self.step, params.pull),
         )
 
     def readings(self) -> RaceReadings:

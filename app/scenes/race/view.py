@@ -245,7 +245,7 @@ class RaceView(SpringView[RaceParams, RaceFrame, RaceReadings]):
         self.ropes.show(frame, self.label_row)
         p = frame.params
         self.root.show(frame.root if p.handles else None)
-        self.show_surroundings(p.floor, p.grid, frame.pull)
+        self.show_surroundings(p.floor, p.grid, frame.grab)
 
     def figures(self, snapshot: RaceSnapshot) -> str:
         """The ropes that are nearest to the reference and farthest from it."""

@@ -171,7 +171,7 @@ class RadialSeaScene:
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
-        for client in set(self.bodies.holders.values()):
+        for client in set(self.bodies.grabbed_by.values()):
             self.bodies.release(client)
         self.tile, self.drawing.drawn = None, ()
         self.plot_rows.resume()
@@ -275,7 +275,7 @@ class RadialSeaScene:
             case StudentAnswer() if self.student is not None:
                 self.take_student(self.student)
             case GrabTo(index, target, client):
-                self.bodies.hold(index, target, self.params.pull, client)
+                self.bodies.grab(index, target, self.params.pull, client)
             case Release(client):
                 self.bodies.release(client)
             case Place("camera", (x, y, _)):
@@ -344,7 +344,7 @@ class RadialSeaScene:
         self.set_grid()
         drawing = self.drawing
         drawing.update(self)
-        held = [(bodies.fleet.position[i].tolist(), target) for i, target in bodies.targets.items()]
+        grabbed = [(bodies.fleet.position[i].tolist(), target) for i, target in bodies.targets.items()]
         fire, jet = self.well_blowout.fire, self.well_blowout.jet
         return RadialFrame(
             params=p,
@@ -362,7 +362,7 @@ class RadialSeaScene:
             stains=bodies.stain.astype(np.float32),
             fairleads=bodies.fairleads(moored=p.mooring),
             anchors=bodies.lines.anchors,
-            pulls=tuple(((x, y, z), target) for (x, y, z), target in held),
+            grabs=tuple(((x, y, z), target) for (x, y, z), target in grabbed),
             fire=None if fire is None else parcels_of(fire),
             jet=None if jet is None else flying_parcels(jet),
             column=self.column if self.student is None else self.student.drawn(self.column),

@@ -13,7 +13,7 @@ from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector_of
 from app.render.cameras import place_cameras
-from app.render.dragging import PullLine, drag
+from app.render.dragging import GrabLine, drag
 from app.render.follow_camera import FollowCamera
 from app.render.html import bold, fill
 from app.render.material import Material
@@ -96,7 +96,7 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
         )
         self.flames: Flames | None = None
         self.walls: Walls | None = None
-        self.pull_lines: list[PullLine] = []
+        self.grab_lines: list[GrabLine] = []
         self.stains = Stains(server)
 
     def first_view(self, params: RadialSeaParams) -> tuple[Vector, Vector]:
@@ -239,11 +239,11 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
         drag(self.post, event, event.instance_index)
 
     def show_pulls(self, frame: RadialFrame) -> None:
-        """Draw a line from each held body to where it is pulled."""
-        while len(self.pull_lines) < len(frame.pulls):
-            self.pull_lines.append(PullLine(self.server, f"/pull{len(self.pull_lines)}"))
-        for i, line in enumerate(self.pull_lines):
-            line.show(frame.pulls[i] if i < len(frame.pulls) else None)
+        """Draw a line from each grabbed body to where it is pulled."""
+        while len(self.grab_lines) < len(frame.grabs):
+            self.grab_lines.append(GrabLine(self.server, f"/pull{len(self.grab_lines)}"))
+        for i, line in enumerate(self.grab_lines):
+            line.show(frame.grabs[i] if i < len(frame.grabs) else None)
 
     def show_moorings(self, frame: RadialFrame) -> None:
         """Draw the mooring lines as rods: a stroke that passes the camera would be drawn where it is not.

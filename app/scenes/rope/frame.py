@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.rope.parameters import RopeParams
-from app.scenes.springs.drag import PullFrame
+from app.scenes.springs.grab import GrabFrame
 from sim.springs.stability import Gauge
 
 
@@ -21,7 +21,7 @@ class RopeFrame(NamedTuple):
     full_scale: float  # [N] tension at the end of the colour scale
     root: Vector  # [m] where the root is going to
     sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
-    pull: PullFrame | None
+    grab: GrabFrame | None
 
 
 class NumericalCost(NamedTuple):

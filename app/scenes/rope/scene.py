@@ -14,7 +14,7 @@ from app.scenes.rope.live_values import live_values
 from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import ABOUT, PRESETS, RopeParams, hidden
 from app.scenes.springs.divergence import holding_step, leapfrog_alternative
-from app.scenes.springs.drag import Drag
+from app.scenes.springs.grab import ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.rope_handles import RopeHandles
@@ -98,9 +98,9 @@ class RopeScene(NetScene[RopeParams]):
         super().__init__(params, len(SERIES))
 
     @property
-    def drag(self) -> Drag:  # type: ignore[override]
+    def grab(self) -> ParticleGrab:  # type: ignore[override]
         """The drag of a point."""
-        return self.handles.drag
+        return self.handles.grab
 
     @property
     def frame_interval(self) -> float:
@@ -163,12 +163,12 @@ class RopeScene(NetScene[RopeParams]):
                 self.handles.move_root(position)
             case Place("sphere", position):
                 self.handles.sphere.target = position
-            case GrabTo(0, target, client) if self.handles.drag.may_move(client):
+            case GrabTo(0, target, client) if self.handles.grab.may_move(client):
                 self.handles.move_root(target)
             case GrabTo(index, target, client) if 0 < index < self.params.points:
-                self.handles.drag.move(client, index, vector_of(self.state.x[:, 0, index]), target)
+                self.handles.grab.move(client, index, vector_of(self.state.x[:, 0, index]), target)
             case Release(client):
-                self.handles.drag.release(client)
+                self.handles.grab.release(client)
             case StudentAnswer() if self.student is not None:
                 self.student.collect(self.max_reach)
             case _:
@@ -251,7 +251,7 @@ class RopeScene(NetScene[RopeParams]):
         weight = self.net.mass * abs(self.net.gravity[2]) * (params.points - 1)
         both = None if self.student is None else self.student.drawn(rows_of(self.state.x))
         x = self.state.x if both is None else state_of(both[0])
-        held = x[:, 0, handles.drag.hold.particle if handles.drag.hold else 0]
+        held = x[:, 0, handles.grab.grabbed.particle if handles.grab.grabbed else 0]
         frame = RopeFrame(
             params=params,
             points=np.ascontiguousarray(x[:, 0].T, dtype=np.float32),
@@ -260,7 +260,7 @@ class RopeScene(NetScene[RopeParams]):
             full_scale=max(1.25 * weight, 1e-3),
             root=handles.home,
             sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
-            pull=handles.pull_frame(held, 0.0, self.net.mass, self.step, params.pull),
+            grab=handles.grab_frame(held, 0.0, self.net.mass, self.step, params.pull),
         )
         self.last_moments.add(self.state.t, frame, frame.points)
         return frame

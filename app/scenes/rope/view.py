@@ -11,7 +11,7 @@ from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
-from app.render.dragging import HELD_COLOUR
+from app.render.dragging import GRAB_COLOUR
 from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
 from app.render.injection import add_contact_shadow
@@ -106,7 +106,7 @@ class RopeView(SpringView[RopeParams, RopeFrame, RopeReadings]):
         )
         self.beads.on_drag("left")(self.on_bead)
         self.tube.mesh.on_drag("left")(self.on_surface)
-        self.shown_pull = -1  # point that is drawn as held
+        self.shown_grab = -1  # point that is drawn as grabbed
         self.shown_hook: Any = None
         self.count = n
 
@@ -147,13 +147,13 @@ class RopeView(SpringView[RopeParams, RopeFrame, RopeReadings]):
         self.beads.visible = p.show_points
         if p.show_points:
             set_arrays(self.beads, batched_positions=self.points)
-        held = -1 if frame.pull is None else frame.pull.particle
-        if held != self.shown_pull:
+        grabbed = -1 if frame.grab is None else frame.grab.particle
+        if grabbed != self.shown_grab:
             colours = np.tile(np.array(BEAD_COLOUR, np.uint8), (self.count, 1))
-            if held >= 0:
-                colours[held] = HELD_COLOUR
+            if grabbed >= 0:
+                colours[grabbed] = GRAB_COLOUR
             self.beads.batched_colors = colours
-            self.shown_pull = held
+            self.shown_grab = grabbed
         root = tuple(self.points[0].tolist())
         # A slow page moves a node later than the vertices of the rope: while the root moves, the hook is not shown.
         self.hook.visible = self.shown_hook in (None, root)
@@ -162,7 +162,7 @@ class RopeView(SpringView[RopeParams, RopeFrame, RopeReadings]):
             self.hook.position = root
         self.root.show(frame.root if p.handles else None)
         self.sphere.show(frame.sphere, frame.sphere[:3] if frame.sphere and p.handles else None)
-        self.show_surroundings(p.floor, p.grid, frame.pull)
+        self.show_surroundings(p.floor, p.grid, frame.grab)
         if frame.reference is None:
             self.reference.set_visible(False)
         else:

@@ -28,7 +28,7 @@ def test_two_browsers_drag_the_same_surface_by_points_of_their_own() -> None:
         GrabTo(0, (0.1, 0.0, 0.0), 1), GrabTo(2, (1.9, 0.0, 0.0), 2), GrabTo(0, (0.0, 1.0, 0.0), 1),
         Release(2), Release(1),
     ]  # fmt: skip
-    assert surface.held == {}
+    assert surface.grabbed == {}
 
 
 def test_a_drag_to_a_place_that_is_not_finite_lets_go() -> None:

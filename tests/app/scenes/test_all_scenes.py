@@ -52,13 +52,13 @@ def test_what_one_browser_holds_no_other_takes_or_releases(name: str, values: di
         scene.handle(GrabTo(0, (1.0, 0.0, 2.0), client=2))  # the root as a bead
     scene.handle(Release(client=2))
     scene.advance(2)
-    assert scene.frame().pull.particle == held
-    assert scene.frame().pull.target[0] < 0.5
+    assert scene.frame().grab.particle == held
+    assert scene.frame().grab.target[0] < 0.5
     assert name == "cloth" or scene.handles.root.at_rest
     scene.handle(Release(client=1))
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
     scene.handle(GrabTo(other, (1.0, 0.0, 2.0), client=2))
-    assert scene.frame().pull.particle == other
+    assert scene.frame().grab.particle == other
 
 
 @pytest.mark.parametrize("name", NAMES)

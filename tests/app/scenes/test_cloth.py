@@ -62,13 +62,13 @@ def test_a_dragged_particle_follows_and_is_released():
     run(scene, 0.7)
     stiffness = min(scene.params.pull / 0.1, 0.1 * scene.net.mass / scene.step**2)
     stretch = np.linalg.norm(np.array(target) - scene.state.x[:, 7, 4])
-    pull = scene.frame().pull
+    pull = scene.frame().grab
     assert pull is not None
     assert pull.load == pytest.approx(min(1.0, stretch * stiffness / scene.params.pull), rel=1e-4)
     assert scene.state.x[1, 7, 4] < before[1] - 0.2
     scene.handle(Release())
     run(scene, 0.1)
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
 
 
 @pytest.mark.parametrize(("pin", "end"), [("pin a", 0), ("pin b", 1)])
@@ -262,7 +262,7 @@ def test_a_pull_is_as_stiff_as_the_step_allows(step):
     scene = ClothScene(dataclasses.replace(SMALL, time_step=step, pull=3.0))
     for index in (74, 0):  # inside, and at a corner
         mass = scene.net.masses.flat[index]
-        stiffness, damping = scene.pull_spring(index)
+        stiffness, damping = scene.grab_spring(index)
         assert stiffness == pytest.approx(min(3.0 / 0.1, 0.1 * mass / step**2))
         assert damping == pytest.approx(0.5 * math.sqrt(stiffness * mass))
 

@@ -57,7 +57,7 @@ def test_what_was_held_is_let_go_of() -> None:
     kept = scene.keep()
     scene.handle(Release(3))
     scene.resume(kept)
-    assert scene.handles.drag.hold is None  # type: ignore[attr-defined]
+    assert scene.handles.grab.grabbed is None  # type: ignore[attr-defined]
     run(scene, 1, 10)
     assert scene.net.grab is None  # type: ignore[attr-defined]
 

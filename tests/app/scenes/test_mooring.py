@@ -56,10 +56,10 @@ def test_a_frame_turns_the_body_as_its_state_and_draws_the_watch_circle_about_it
 def test_the_mouse_pulls_with_its_largest_force_at_most():
     scene = MooringScene(MooringParams(**SMALL, pull=0.5))
     weight = scene.params.density * hull_of(scene.params).volume * 9.81
-    scene.hold = 1, vector_of(scene.body_place() + (1e4, 0.0, 0.0))
-    np.testing.assert_allclose(scene.mouse_pull()[0, :3], [0.5 * weight, 0.0, 0.0], rtol=1e-6, atol=1e-3)
-    scene.hold = 1, vector_of(scene.body_place() + (0.01, 0.0, 0.0))
-    assert 0.0 < scene.mouse_pull()[0, 0] < 0.01 * weight
+    scene.grabbed = 1, vector_of(scene.body_place() + (1e4, 0.0, 0.0))
+    np.testing.assert_allclose(scene.grab_force()[0, :3], [0.5 * weight, 0.0, 0.0], rtol=1e-6, atol=1e-3)
+    scene.grabbed = 1, vector_of(scene.body_place() + (0.01, 0.0, 0.0))
+    assert 0.0 < scene.grab_force()[0, 0] < 0.01 * weight
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -162,9 +162,9 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
     run(scene, 2.0)
     assert scene.body_place()[1] > 1.0
     scene.handle(Release(client=2))
-    assert scene.frame().pull == (0.0, 20.0, 0.0)
+    assert scene.frame().grab == (0.0, 20.0, 0.0)
     scene.handle(Release(client=1))
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
 
 
 def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed_one():

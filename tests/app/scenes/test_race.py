@@ -293,7 +293,7 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
     bead = scene.frame().ropes[2, 6]
     scene.handle(GrabTo(2 * 10 + 6, (bead[0] + 0.6, bead[1] + 0.4, bead[2])))
     run(scene, 0.5)
-    assert scene.frame().pull.particle == 26
+    assert scene.frame().grab.particle == 26
     xs = [entrant.state.x for entrant in scene.race.entrants]
     np.testing.assert_array_equal(xs[0], xs[1])
     np.testing.assert_array_equal(xs[0], xs[2])
@@ -301,7 +301,7 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
     assert scene.frame().ropes[2, 6, 1] > bead[1] + 0.1
     assert scene.readings().results[0].error < 1e-3
     scene.handle(Release())
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
 
 
 @pytest.mark.parametrize(

@@ -106,11 +106,11 @@ def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
         scene.handle(GrabTo(0, (rest[0], rest[1], rest[2] - 0.8)))
         scene.advance(2)
     assert scene.bodies.fleet.position[0, 2] < rest[2] - 0.4
-    assert scene.frame().pulls
+    assert scene.frame().grabs
     scene.handle(Release())
     run(scene, 40.0)
     assert scene.bodies.fleet.position[0, 2] == pytest.approx(rest[2], abs=1e-3)
-    assert scene.frame().pulls == ()
+    assert scene.frame().grabs == ()
 
 
 def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
@@ -128,9 +128,9 @@ def test_a_body_held_by_one_browser_is_not_taken_over_by_another() -> None:
     scene.handle(GrabTo(0, (1.0, 0.0, 0.0), client=1))
     scene.handle(GrabTo(0, (9.0, 0.0, 0.0), client=2))
     scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
-    assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
+    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
     scene.handle(GrabTo(0, (1.5, 0.0, 0.0), client=1))  # its own body goes on being dragged
-    assert scene.frame().pulls[0][1] == (1.5, 0.0, 0.0)
+    assert scene.frame().grabs[0][1] == (1.5, 0.0, 0.0)
 
 
 def test_a_browser_lets_go_only_of_what_it_holds() -> None:
@@ -138,14 +138,14 @@ def test_a_browser_lets_go_only_of_what_it_holds() -> None:
     scene.handle(GrabTo(0, (1.0, 0.0, 0.0), client=1))
     scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
     scene.handle(Release(client=2))
-    assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0)]
+    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0)]
     assert scene.bodies.fleet.pull_limit[0] > 0.0
     assert scene.bodies.fleet.pull_limit[1] == 0.0
     scene.handle(Release(client=3))
-    assert len(scene.frame().pulls) == 1
+    assert len(scene.frame().grabs) == 1
     scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))  # free again
     scene.handle(GrabTo(2, (3.0, 0.0, 0.0), client=2))  # and left for another one
-    assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0), (3.0, 0.0, 0.0)]
+    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0), (3.0, 0.0, 0.0)]
     assert scene.bodies.fleet.pull_limit[1] == 0.0
 
 
@@ -246,7 +246,7 @@ def test_a_nonsense_grab_is_no_grab() -> None:
     scene.handle(GrabTo(10**6, (0.0, 0.0, 0.0)))
     scene.handle(GrabTo(-1, (0.0, 0.0, 0.0)))
     scene.advance(2)
-    assert scene.frame().pulls == ()
+    assert scene.frame().grabs == ()
 
 
 @pytest.mark.parametrize("name", list(PRESETS))

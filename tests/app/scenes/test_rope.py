@@ -109,17 +109,17 @@ def test_a_pull_is_capped() -> None:
     # A taut rope pulled by 50 N in line with it stretches by F/k a link, root to held point.
     stretched = np.linalg.norm(scene.state.x[:, 0, 9] - np.array(ROOT))
     assert stretched == pytest.approx(2.0 + 9 * 50.0 / 800.0, rel=1e-3)
-    assert scene.frame().pull is not None
-    assert scene.frame().pull.load == 1.0
+    assert scene.frame().grab is not None
+    assert scene.frame().grab.load == 1.0
     scene.handle(Release())
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
 
 
 @pytest.mark.parametrize("particle", [-1, 10, 10**9])
 def test_grabbing_what_is_not_there_does_nothing(particle: int) -> None:
     scene = Rope(RopeParams())
     scene.handle(GrabTo(particle, (0.0, 0.0, 0.0)))
-    assert scene.handles.drag.hold is None
+    assert scene.handles.grab.grabbed is None
     scene.advance(5)
 
 

@@ -79,13 +79,13 @@ class Client:
 def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Viewer) -> None:
     scene: Any = lab.scene
     lab.commands.put(GrabTo(5, (0.0, 0.0, 2.0), client=1))
-    wait_for(lambda: scene.handles.drag.hold is not None)
+    wait_for(lambda: scene.handles.grab.grabbed is not None)
     coroutines.run(lab.release(Client(2)))  # type: ignore[arg-type]
     ticks = lab.loop.counts["ticks"]
     wait_for(lambda: lab.loop.counts["ticks"] > ticks + 3)
-    assert scene.handles.drag.hold is not None
+    assert scene.handles.grab.grabbed is not None
     coroutines.run(lab.release(Client(1)))  # type: ignore[arg-type]
-    wait_for(lambda: scene.handles.drag.hold is None)
+    wait_for(lambda: scene.handles.grab.grabbed is None)
 
 
 def panel_text(viewer: Viewer) -> str:

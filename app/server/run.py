@@ -32,7 +32,7 @@ class Goal(NamedTuple):
     was_running: bool
 
 
-class Run(Snapshots):
+class SceneRun(Snapshots):
     """Takes a scene's steps, and begins it again."""
 
     def __init__(

@@ -13,7 +13,7 @@ from PIL import Image
 
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyScene
-from app.scenes.rope.view import View
+from app.scenes.rope.view import RopeView
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests.browser.conftest import NO_NOTES, Tab
@@ -109,7 +109,7 @@ def test_a_scene_after_another_looks_as_in_a_fresh_start(open_tab: Callable[...,
         # The measure sees a missing shadow.
         page.open("rope")
         view = page.lab.view
-        assert isinstance(view, View)
+        assert isinstance(view, RopeView)
         view.surroundings.sun.cast_shadow = False
         page.tab.wait(lambda: np.abs(page.picture() - fresh["rope"]).mean() > 2.0 * MAX_DIFFERENCE)
 

@@ -62,9 +62,12 @@ class KernelFile(IndexDataCacheFile):
 
     def load(self, key: Any) -> Any:
         try:
-            check_sum, data = super().load(key)
+            kept = super().load(key)
+            if kept is None:
+                return None
+            check_sum, data = kept
             return pickle.loads(data) if check_sum == zlib.crc32(data) else None
-        except Exception:  # whatever unpickling leads to; there is nothing to unpack if it is not there
+        except Exception:  # whatever unpickling leads to
             return None
 
     def has(self, key: Any) -> bool:

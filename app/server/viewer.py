@@ -84,8 +84,6 @@ class Viewer:
         send_at_once(self.server)
         self.transport = Transport(self.server)
         self.port = self.server.get_port()
-        self.server.on_client_connect(self.release)  # it holds nothing: the command wakes a lab that was alone
-        self.server.on_client_disconnect(self.release)
         self.changes = Changes()
         self.ended = False
         self.came = threading.Event()  # a browser is connected, or the lab has ended
@@ -98,6 +96,9 @@ class Viewer:
         gui = self.server.gui
         set_theme(gui, dark=False)
         gui.set_panel_label("Springtide")
+        # A browser may be there already. It holds nothing: the command wakes a lab that was alone.
+        self.server.on_client_connect(self.release)
+        self.server.on_client_disconnect(self.release)
 
     def open(
         self, name: str, params: BaseParams | None = None, *, paused: bool = False, first_look: bool = False

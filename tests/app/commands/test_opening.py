@@ -1,8 +1,10 @@
 """The lab is made behind a page that is served already; page and terminal say what fails there."""
 
+import asyncio
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +13,9 @@ import pytest
 
 from app.commands import serve
 from app.commands.serve import Opening
+from app.server.guard import open_server
+from app.server.viewer import Viewer
+from benchmarks.labs import connected
 
 ROOT = Path(__file__).parents[3]
 # A program whose numba cannot be imported.
@@ -111,3 +116,31 @@ def test_without_numba_the_terminal_says_so() -> None:
     assert done.returncode == 1
     assert "Springtide is on http://" in done.stdout
     assert "numba" in done.stderr.splitlines()[-1]
+
+
+def test_a_browser_that_was_there_before_the_lab_is_counted(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    opened = open_server("127.0.0.1", 0)
+    port, register = opened.server.get_port(), opened.server.on_client_connect
+
+    def slowly(callback: Any) -> None:
+        register(callback)
+        time.sleep(0.2)  # it is called for the browser meanwhile
+
+    monkeypatch.setattr(opened.server, "on_client_connect", slowly)
+
+    async def come_first() -> None:
+        async with asyncio.timeout(60.0), connected(port):
+            while not opened.server.get_clients():
+                await asyncio.sleep(0.01)
+            viewer = await asyncio.to_thread(Viewer, "", 0, opened=opened)
+            try:
+                assert viewer.port == port
+                assert await asyncio.to_thread(viewer.came.wait, 10.0)
+                assert viewer.visitors() == 1
+            finally:
+                await asyncio.to_thread(viewer.shut)
+
+    asyncio.run(come_first())
+    assert "Traceback" not in capfd.readouterr().err

@@ -30,7 +30,7 @@ FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader
 PATIENCE = 30.0  # [s] for the shaders of the page, and for its last frame
 NO_NOTES = "[class*=Notif], #springtide-slow { display: none !important }"
 FOLDER, SMALL = Path(__file__).with_name("presets"), (480, 300)  # of the gallery; [pixels]
-SETTLED = 8.0  # [s] for the page of a preset, and for its last frame
+SETTLED = 14.0  # [s] for the page of a preset, and for its last frame
 NO_PANEL = ".mantine-Paper-root, #springtide-time { display: none !important }"
 # Scene or preset -> time [s] of its picture in the gallery.
 MOMENTS = {
@@ -75,10 +75,8 @@ PICTURES = {
     "breather": Picture("square_sea", "Peregrine breather", 301.7, (1100, 620)),
     "draupner": Picture("square_sea", "Draupner", 58.6, (1100, 620)),
     "share": Picture("rope", "Over the sphere", 5.0, (1200, 760), {"plot_energy": True}, tab="Share"),
-    "lab": Picture(
-        "rope", "Lab code: 10 points", 2.0, (1100, 760), RK4, NO_DAMPING, scroll="[data-function=spring_force]"
-    ),
-    "lab_cloth": Picture("cloth", "Curtain", 4.0, (1100, 760), RK4, FEW_LINKS, scroll="[data-function=cloth_links]"),
+    "lab": Picture("rope", "Lab code: 10 points", 2.0, (1100, 760), RK4, NO_DAMPING),
+    "lab_cloth": Picture("cloth", "Curtain", 4.0, (1100, 760), RK4, FEW_LINKS),
 }
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from app.commands.checkout import ELSEWHERE, in_checkout, of_checkout
-from app.scenes import NAMES, scene_named
+from app.scenes import NAMES, check_name, scene_named
 from sim.quantities import read_number
 from sim.validation import ConvergenceError
 
@@ -271,6 +271,7 @@ def add_serving(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resume", action="store_true", help=resume)
     add_address(parser)
     add_parameters(parser)
+    parser.set_defaults(first_params=None)
 
 
 def add_address(parser: argparse.ArgumentParser) -> None:
@@ -455,17 +456,25 @@ def serve(arguments: argparse.Namespace, session: Any = None, workbook: Any = No
     return serve_lab(name, params, **common, workbook=workbook, session=session, resumes=arguments.resume)
 
 
-def opening_setup(arguments: argparse.Namespace) -> tuple[str, Any]:
-    """Name and parameters of the scene that the lab begins with."""
+def opening_setup(arguments: argparse.Namespace) -> tuple[str, Callable[[], Any] | None]:
+    """Name of the scene that the lab begins with, and a function that makes its parameters.
+
+    None for those that the scene opens with. Values that a user gives are checked here. Without any the scene is not
+    imported: numba, which it needs, takes longer than the page.
+    """
     if arguments.resume:
         from app.scenes.last_setup import read_last
 
         last = read_last()
         if last is not None:
-            return last.scene, last.params
-    name = scene_name(arguments)
+            return last.scene, lambda: last.params
+    name = check_name(scene_name(arguments))
+    check_files_named(arguments)
     files = any(getattr(arguments, option) is not None for option in SCENE_OF_FILE)
-    return name, read_params(scene_named(name), arguments, "" if files else None)
+    if files or arguments.set or arguments.preset is not None:
+        params = read_params(scene_named(name), arguments, "" if files else None)
+        return name, lambda: params
+    return name, arguments.first_params
 
 
 def scene_name(arguments: argparse.Namespace) -> str:
@@ -482,7 +491,7 @@ def serve_beside(arguments: argparse.Namespace) -> int:
     first, *others = read_comparison(arguments.setups)
     for setup in (first, *others):
         say_missing_files(setup)
-    return serve_lab(first.scene, first.params, **serving(arguments), others=others)
+    return serve_lab(first.scene, lambda: first.params, **serving(arguments), others=others)
 
 
 def serving(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -572,7 +581,7 @@ def choose_scene(arguments: argparse.Namespace, of_task: str) -> None:
         arguments.scene = of_task
     if scene_name(arguments) == DEFAULT_SCENE and arguments.preset is None and not arguments.set:
         # Of this method the program's rope and a student's right one are the same to rounding.
-        arguments.set = ["integrator=rk4"]
+        arguments.first_params = lambda: scene_named(DEFAULT_SCENE).params(integrator="rk4")
 
 
 def serve_class(arguments: argparse.Namespace) -> int:

@@ -1,12 +1,14 @@
 """Folders of what is made once: compiled kernels and plans of transforms.
 
-The user's folder comes first. Others are read and never written: those that `SPRINGTIDE_KERNELS` lists, and that of the
-installation, which `springtide warmup --into` fills. All of them look alike: `kernels/PROCESSOR` and the plans beside.
+The user's folder comes first. Others are read and never written: those that `SPRINGTIDE_KERNELS` lists, that of the
+distribution `springtide-kernels`, and that of the installation, which `springtide warmup --into` fills. All of them
+look alike: `kernels/PROCESSOR` and the plans beside.
 Kernels are made for this processor, or for a level that many processors have; see `LEVELS`. Loading one runs its code,
 so a shared folder has to belong to someone whose programs one would run.
 """
 
 import hashlib
+import importlib.util
 import os
 import platform
 import re
@@ -22,6 +24,7 @@ import platformdirs
 from sim.validation import argument_error
 
 INSTALLED = Path(sys.prefix) / "share" / "springtide"  # the folder of the installation
+PACKAGE = "springtide_kernels"  # of the distribution `springtide-kernels`, which `.ci/kernels.py` makes
 SHARED_VARIABLE = "SPRINGTIDE_KERNELS"
 # Intel's library of vector functions: kernels that call it do not load where it is absent.
 VECTOR_LIBRARY = "-svml" if getattr(numba.config, "USING_SVML", False) else ""  # type: ignore[attr-defined]
@@ -117,12 +120,21 @@ def user_folder(variable: str, folder_of: Callable[[str], str]) -> Path:
         return Path(os.devnull, "springtide")
 
 
+def packaged_folders() -> list[Path]:
+    """The folder of the distribution `springtide-kernels`, if it is installed."""
+    package = importlib.util.find_spec(PACKAGE)
+    return [Path(folder) for folder in (package and package.submodule_search_locations) or ()]
+
+
 def shared_folders() -> tuple[Path, ...]:
-    """Folders to read from: of `SPRINGTIDE_KERNELS`, then of the installation; none where the variable is empty."""
+    """Folders to read from: of `SPRINGTIDE_KERNELS`, of `springtide-kernels`, of the installation.
+
+    None if the variable is empty.
+    """
     named = os.environ.get(SHARED_VARIABLE)
     if named == "":
         return ()
-    folders = [*map(Path, filter(None, (named or "").split(os.pathsep))), INSTALLED]
+    folders = [*map(Path, filter(None, (named or "").split(os.pathsep))), *packaged_folders(), INSTALLED]
     return tuple(folder for folder in dict.fromkeys(folders) if folder != own_folder())
 
 

@@ -16,8 +16,10 @@ This file alone uses names of numba that are not public. `check` tries all of th
 import contextlib
 import functools
 import hashlib
+import pickle
 import sys
 import warnings
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import CodeType, FunctionType
@@ -26,7 +28,7 @@ from typing import Any, NamedTuple
 import llvmlite.binding as llvm
 import numba
 import numpy as np
-from numba.core import event, sigutils, types
+from numba.core import event, serialize, sigutils, types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult, Flags
@@ -51,7 +53,7 @@ class Folders(NamedTuple):
 
 
 class KernelFile(IndexDataCacheFile):
-    """numba's cache file of one kernel in one folder.
+    """numba's cache file of one kernel in one folder, with a check sum: damaged machine code would end the process.
 
     numba keeps the kernels of each checkout apart by the path and the time of the source, and those of processors by
     their names. The folder is already named by the code and by the processor, so that checkouts, environments and
@@ -60,7 +62,11 @@ class KernelFile(IndexDataCacheFile):
 
     def load(self, key: Any) -> Any:
         try:
-            return super().load(key)
+            kept = super().load(key)
+            if kept is None:
+                return None
+            check_sum, data = kept
+            return pickle.loads(data) if check_sum == zlib.crc32(data) else None
         except Exception:  # whatever unpickling leads to
             return None
 
@@ -76,6 +82,8 @@ class KernelFile(IndexDataCacheFile):
         return locked(Path(self._index_path).with_suffix(".lock"))
 
     def save(self, key: Any, data: Any) -> None:
+        data = serialize.dumps(data)
+        data = zlib.crc32(data), data
         with contextlib.suppress(OSError):  # a full disk: kept another time
             try:
                 super().save(key, data)

@@ -109,7 +109,7 @@ def modules_of(package: str) -> list[ModuleType]:
 def reachable_hash(*paths: Path) -> str:
     """Hash of these sources and of all of ours that they import, directly or not: names and code.
 
-    LLVM's version counts too, as numba's own keys hold only numba's.
+    The versions of Python (without its patch release), numba and llvmlite count too.
     """
     found, waiting = set(), list(paths)
     while waiting:
@@ -117,7 +117,8 @@ def reachable_hash(*paths: Path) -> str:
         if path not in found:
             found.add(path)
             waiting.extend(imported_files(path))
-    digest = hashlib.sha256(llvmlite.__version__.encode())
+    versions = sys.implementation.cache_tag, numba.__version__, llvmlite.__version__
+    digest = hashlib.sha256(repr(versions).encode())
     for path in sorted(found):
         digest.update(path.name.encode() if ROOT not in path.parents else path.relative_to(ROOT).as_posix().encode())
         digest.update(code_of(path).encode())
@@ -207,8 +208,7 @@ def load_compiler() -> tuple[ModuleType | None, str]:
     except (AttributeError, ImportError, TypeError) as error:
         return None, str(error)
     try:
-        works = f"compiler-{numba.__version__}-{sys.implementation.cache_tag}"
-        mark = f"{works}-{reachable_hash(Path(compiler.__file__))}"
+        mark = f"compiler-{reachable_hash(Path(compiler.__file__))}"
         if not is_kept(mark):
             with tempfile.TemporaryDirectory() as folder, kept_in(Path(folder)):
                 compiler.check(Path(folder))

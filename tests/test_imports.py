@@ -46,6 +46,22 @@ def test_kept_kernels_need_nothing_that_compiles() -> None:
     assert not set(python(code)[-1].split()) & {"numba.np.arraymath", "numba.np.linalg", "scipy.linalg"}
 
 
+LISTENING = """
+from app.commands import serve
+from app.__main__ import main
+serve.Opening.start = lambda opening: print("loaded:", *sys.modules)
+serve.wait_until = lambda *_: None
+main(["--scene", "cloth", "--no-open", "--port", "0"])
+"""
+
+
+def test_the_page_is_served_before_what_compiles_is_imported() -> None:
+    loaded = next(line.split() for line in python(LISTENING) if line.startswith("loaded:"))
+    assert "viser" in loaded
+    assert {name.split(".")[0] for name in loaded} & {"numba", "llvmlite", "trimesh", "scipy", "pyfftw"} <= {"trimesh"}
+    assert not {"sim.jit", "sim.cache", "app.server.viewer", "app.scenes.cloth.scene"} & {*loaded}
+
+
 def test_a_headless_run_imports_no_viewer(tmp_path: Path) -> None:
     """Every scene, one after the other: what one of them imported would still be there."""
     code = (

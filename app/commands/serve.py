@@ -1,4 +1,8 @@
-"""`springtide`: serve the lab until it is interrupted."""
+"""`springtide`: serve the lab until it is interrupted.
+
+The server listens, and the page has its first words, before numba is imported and tried: nothing that this module
+imports at its top needs it. `Opening` imports the rest on a thread.
+"""
 
 import contextlib
 import errno
@@ -9,21 +13,21 @@ import sys
 import threading
 import webbrowser
 from collections.abc import Callable, Generator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, LiteralString
 
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
-from app.scenes.last_setup import keep_last
-from app.scenes.setups import Setup, write_query
+from app.render.html import fill, note
 from app.server.access import KEY_VARIABLE, Access, read_base_path, read_key, read_origin
-from app.server.guard import is_loopback
-from app.server.viewer import Viewer
+from app.server.guard import Opened, is_loopback, open_server, quiet
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
     from app.lab.session import Session
+    from app.lab.workbook import Workbook
+    from app.scenes.setups import Setup
+    from app.server.viewer import Viewer
 
 LOOPBACK = "127.0.0.1"
+REASON_TIME = 3.0  # [s] for which the page still answers after a start that failed: a browser may be about to ask
 WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does not interrupt a wait
 
 
@@ -68,7 +72,7 @@ def reached_host(host: str, port: int) -> Generator[str]:
 
 def serve_lab(
     name: str,
-    params: Any,
+    params: Callable[[], Any] | None,
     host: str,
     port: int,
     *,
@@ -77,14 +81,15 @@ def serve_lab(
     plain: bool,
     base_path: str = "",
     origins: Sequence[str] = (),
-    workbook: Workbook | None = None,
+    workbook: "Workbook | None" = None,
     session: "Session | None" = None,
-    others: Sequence[Setup] = (),
+    others: "Sequence[Setup]" = (),
     resumes: bool = False,
 ) -> int:
     """Print the address that is bound, open the scene, and wait. Returns the exit status. session: a student's folder.
 
-    others: set-ups to show beside it. resumes: keep the set-up for the next start that does.
+    params: makes the parameters, on another thread; None for those that the scene opens with. others: set-ups to show
+    beside it. resumes: keep the set-up for the next start that does.
 
     The page is there before the scene is, and shows what is compiled. workbook: None for the guide of the course lab.
     base_path, origins: of a proxy; see `app/server/access.py`. The key is taken from the environment.
@@ -96,46 +101,123 @@ def serve_lab(
     key = read_key(os.environ.pop(KEY_VARIABLE, ""))
     access = Access(read_base_path(base_path), tuple(read_origin(origin) for origin in origins), key)
     try:
-        viewer = Viewer(
-            host, port, plain=plain, compile_ahead=True, say=say, session=session, access=access,
-            workbook=workbook or Workbook(load_tasks(with_checks=False)),
-        )  # fmt: skip
+        opened = open_server(host, port, access)
     except OSError as error:
         remedy = "--port 0" if port else "--host 127.0.0.1"
         print(f"springtide: cannot serve on {host}:{port}: {error.strerror or error}; try {remedy}", file=sys.stderr)
         return 1
-    done, keeper = threading.Event(), Keeper(viewer)
+
+    def make() -> "Viewer":
+        from app.lab.task import load_tasks
+        from app.lab.workbook import Workbook
+        from app.server.viewer import Viewer
+
+        tasks = workbook or Workbook(load_tasks(with_checks=False))
+        return Viewer(
+            host, port, plain=plain, compile_ahead=True, say=say, session=session, workbook=tasks, opened=opened
+        )
+
+    def show(viewer: "Viewer") -> None:
+        viewer.open(name, params and params(), paused=paused, first_look=params is None)
+        if others:
+            viewer.comparing.begin(others, False)
+
+    return show_until_ended(Opening(opened, make, show), host, access, browser=browser, resumes=resumes)
+
+
+def show_until_ended(opening: "Opening", host: str, access: Access, *, browser: bool, resumes: bool) -> int:
+    """See `serve_lab`; once the server listens."""
+    port = opening.opened.server.get_port()
     before = signal.getsignal(signal.SIGINT)
 
     def end(*_: object) -> None:
         """Raises nothing, as it may come in the middle of an import. A second Ctrl-C does."""
-        done.set()
-        viewer.stop_opening()
+        opening.stop()
         signal.signal(signal.SIGINT, before)
 
     signal.signal(signal.SIGTERM, end)
     if before is signal.default_int_handler:  # not in a background job of a shell, which ignores it
         signal.signal(signal.SIGINT, end)
+    keeper = Keeper(opening)
     try:
-        with reached_host(host, viewer.port) as reached:
-            address = f"http://{reached}:{viewer.port}{access.base_path}"
+        with reached_host(host, port) as reached:
+            address = f"http://{reached}:{port}{access.base_path}"
             say(f"Springtide is on {address}  (Ctrl-C ends it)")
             if not is_loopback(host):
-                say(f"Warning: anyone who can reach {host} on port {viewer.port} can drive this lab.")
+                say(f"Warning: anyone who can reach {host} on port {port} can drive this lab.")
+            opening.start()
             if browser:
                 webbrowser.open(address)
-            viewer.open(name, params, paused=paused)
-            if others:
-                viewer.comparing.begin(others, False)
-            wait_until(done, keeper.keep if resumes else lambda: None)
+            wait_until(opening.done, keeper.keep if resumes else lambda: None)
+            opening.check()
     except KeyboardInterrupt:
         pass
     finally:
         signal.signal(signal.SIGINT, before)
         if resumes:
             keeper.keep()
-        viewer.shut()
+        opening.shut()
     return 0
+
+
+class Opening:
+    """Makes a lab behind a server that listens, and opens its scene, on a thread: numba is imported for seconds."""
+
+    def __init__(self, opened: Opened, make: "Callable[[], Viewer]", show: "Callable[[Viewer], None]") -> None:
+        """make: the lab. show: opens its scene."""
+        self.opened, self.make, self.show = opened, make, show
+        self.viewer: Viewer | None = None
+        self.error: BaseException | None = None  # why it failed
+        self.done = threading.Event()  # the lab is to end, or could not be opened
+        self.ended = threading.Event()  # the lab is to end
+        self.thread = threading.Thread(target=self.run, name="opening", daemon=True)
+        self.cover('<span class="springtide-progress">Loading the simulations …</span>')
+
+    def cover(self, words: LiteralString, *values: object) -> None:
+        """A line of the page."""
+        self.opened.server.gui.add_html(note(fill(words, *values)))
+
+    def start(self) -> None:
+        """Begin."""
+        self.thread.start()
+
+    def run(self) -> None:
+        """Make the lab and open its scene. The page says why that failed."""
+        try:
+            viewer = self.make()
+            self.viewer = viewer
+            if self.ended.is_set():
+                viewer.stop_opening()
+            self.show(viewer)
+        except BaseException as error:
+            self.error = error
+            if self.viewer is None:  # otherwise it has said so
+                self.opened.server.gui.reset()
+                reason = f"{type(error).__name__}: {error}"
+                self.cover('<b class="springtide-panel">Springtide could not be started.</b><br>{}', reason)
+            self.done.set()
+
+    def check(self) -> None:
+        """Raise the exception with which the start failed, once browsers could read it."""
+        if self.error is not None:
+            self.ended.wait(REASON_TIME)
+            raise self.error
+
+    def stop(self) -> None:
+        """Open no more, as the lab ends; `shut` does the rest."""
+        self.ended.set()
+        self.done.set()
+        if self.viewer is not None:
+            self.viewer.stop_opening()
+
+    def shut(self) -> None:
+        """End the lab and its server."""
+        self.stop()
+        if self.viewer is not None:
+            self.viewer.shut()
+        else:
+            with quiet():
+                self.opened.server.stop()
 
 
 def say(text: str) -> None:
@@ -156,16 +238,19 @@ def wait_until(done: threading.Event, meanwhile: Callable[[], None] = lambda: No
 class Keeper:
     """Keeps the set-up of a lab as it changes: a lab that is killed loses half a second."""
 
-    def __init__(self, viewer: Viewer) -> None:
-        self.viewer = viewer
+    def __init__(self, opening: Opening) -> None:
+        self.opening = opening
         self.kept: object = None
 
     def keep(self) -> None:
         """Keep the set-up, if it is another than before and can be written."""
-        served = self.viewer.current
-        if served is None:
+        viewer = self.opening.viewer
+        if viewer is None or viewer.current is None:
             return
-        panel = served.panel
+        from app.scenes.last_setup import keep_last
+        from app.scenes.setups import write_query
+
+        panel = viewer.current.panel
         setup = panel.kind, panel.params, panel.loaded
         if setup != self.kept:
             with contextlib.suppress(OSError):

@@ -22,7 +22,7 @@ import time
 import traceback
 from collections.abc import Awaitable, Callable, Generator, Sequence
 from http import HTTPStatus
-from typing import TypeAlias, TypeGuard, cast
+from typing import NamedTuple, TypeAlias, TypeGuard, cast
 from urllib.parse import urlsplit
 
 import rich
@@ -382,18 +382,24 @@ def check_port(host: str, port: int) -> None:
         probe.bind((host, port))
 
 
-def open_server(
-    host: str, port: int, access: Access = OWN_PAGES_ONLY, panes: Panes | None = None
-) -> tuple[viser.ViserServer, Screen]:
+class Opened(NamedTuple):
+    """A server that listens."""
+
+    server: viser.ViserServer
+    screen: Screen
+    panes: Panes  # the labs that are reached through its port
+
+
+def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> Opened:
     """A viser server that only our own page may connect to, with its messages filtered by `Screen`.
 
-    access: who else may connect. panes: the labs that are reached through its port; none by default.
-    Raises OSError where the port is busy or may not be bound.
+    access: who else may connect. Raises OSError where the port is busy or may not be bound.
     """
     check_port(host, port)
     # A message that cannot be decoded ends its connection, and would print a traceback each time.
     logging.getLogger("websockets.server").setLevel(logging.CRITICAL)
-    with STARTING, checked_requests(host, access, panes or Panes()) as started, quiet():
+    panes = Panes()
+    with STARTING, checked_requests(host, access, panes) as started, quiet():
         server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
     if port not in (0, server.get_port()):
         server.stop()
@@ -404,14 +410,14 @@ def open_server(
     if not (started and screen.is_in_place) and not is_loopback(host):
         server.stop()
         raise OSError(f"with viser {viser.__version__} the lab serves loopback addresses only")
-    return server, screen
+    return Opened(server, screen, panes)
 
 
-def open_pane(panes: Panes, number: int) -> tuple[viser.ViserServer, Screen]:
+def open_pane(panes: Panes, number: int) -> Opened:
     """The same for a pane, which is reached through the port of the first lab and protected with it."""
     with STARTING, panes.making(number), quiet():
         server = viser.ViserServer(port=0, label="Springtide", verbose=False)
-    return server, guarded(server)
+    return Opened(server, guarded(server), panes)
 
 
 def guarded(server: viser.ViserServer) -> Screen:

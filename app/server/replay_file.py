@@ -78,7 +78,7 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], plotted: Plotted) -> str:
     if not frames:
         raise ValueError("nothing has been recorded yet: let the scene run first")
     chosen = thinned(frames)
-    server, _ = open_server("127.0.0.1", 0)
+    server = open_server("127.0.0.1", 0).server
     try:
         record_shaders(server)
         params = chosen[-1].params

@@ -28,7 +28,7 @@ from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
 from app.scenes.setups import make_setup
 from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.beside import ComparedLabs, Comparing
-from app.server.guard import open_pane, open_server, quiet
+from app.server.guard import Opened, open_pane, open_server, quiet
 from app.server.loop import SimLoop
 from app.server.panes import Panes
 from app.server.served_scene import MAX_JOIN_TIME, ServedScene
@@ -56,25 +56,26 @@ class Viewer:
         say: Callable[[str], None] = lambda text: None,
         access: Access = OWN_PAGES_ONLY,
         beside: "tuple[Viewer, int] | None" = None,
+        opened: Opened | None = None,
     ) -> None:
         """plain: draw by viser's public API alone.
 
         compile_ahead: while a scene runs, compile what it and the other scenes may call later. workbook: the tasks of
         the lab, which the panel of each scene shows. session: of a student's folder, with functions that the scenes
         run. say: prints a line. access: who may connect beside a browser of this machine. beside: the lab that this
-        one is a pane of, and its number from 2: it is reached through the other's port, and `host` to `access` say
-        nothing.
+        one is a pane of, and its number from 2: it is reached through the other's port. opened: the server, if it
+        listens already. With either of them `host`, `port` and `access` say nothing.
 
         Raises OSError where the port cannot be bound.
         """
         self.compiling = Compiling() if beside is None else beside[0].compiling
         self.compile_ahead, self.workbook, self.session, self.say = compile_ahead, workbook, session, say
         self.notice = ""  # what is compiled before something else can be shown
-        self.panes = Panes()
-        if beside is None:
-            self.server, self.screen = open_server(host, port, access, self.panes)
-        else:
-            self.server, self.screen = open_pane(beside[0].panes, beside[1])
+        if beside is not None:
+            opened = open_pane(beside[0].panes, beside[1])
+        opened = opened or open_server(host, port, access)
+        self.server, self.screen = opened.server, opened.screen
+        self.panes: Panes = opened.panes
         self.plain, self.pane_of = plain, beside
         self.comparison: ComparedLabs | None = None
         self.comparing = Comparing(self, self.make_pane)
@@ -83,8 +84,6 @@ class Viewer:
         send_at_once(self.server)
         self.transport = Transport(self.server)
         self.port = self.server.get_port()
-        self.server.on_client_connect(self.release)  # it holds nothing: the command wakes a lab that was alone
-        self.server.on_client_disconnect(self.release)
         self.changes = Changes()
         self.ended = False
         self.came = threading.Event()  # a browser is connected, or the lab has ended
@@ -97,6 +96,9 @@ class Viewer:
         gui = self.server.gui
         set_theme(gui, dark=False)
         gui.set_panel_label("Springtide")
+        # A browser may be there already. It holds nothing: the command wakes a lab that was alone.
+        self.server.on_client_connect(self.release)
+        self.server.on_client_disconnect(self.release)
 
     def open(
         self, name: str, params: BaseParams | None = None, *, paused: bool = False, first_look: bool = False

@@ -39,6 +39,13 @@ def measured(code: str, cache: str | None = None) -> float:
     return float(done.stdout.split()[-1])
 
 
+def viser_alone(cache: str | None) -> float:
+    """Time of a command that only imports viser [s], which the first words are compared with; nothing is compiled."""
+    start = time.perf_counter()
+    subprocess.run([sys.executable, "-c", "import viser"], env={**os.environ, **environment(cache)}, check=True)
+    return time.perf_counter() - start
+
+
 async def until_moving(port: int) -> None:
     """Wait until the lab sends pictures to a client, faster than it tells of progress."""
     times: list[float] = []
@@ -73,6 +80,7 @@ def both(name: str, timed: Any, quick: bool, repeats: int) -> dict[str, Any]:
 def rows(quick: bool = False) -> list[dict[str, Any]]:
     """Imports and first frames of the library, and the lab from the command to each scene as it moves."""
     table = [both(name, lambda cache, code=code: measured(code, cache), quick, 7) for name, code in STEPS.items()]
+    table.append(both("a command that imports viser", viser_alone, quick, 3))
     table.append(both("first words in the page", lambda cache: start_times("rope", cache)[0], quick, 3))
     for scene in NAMES:
         table.append(both(f"{scene} moving", lambda cache, scene=scene: start_times(scene, cache)[1], quick, 3))

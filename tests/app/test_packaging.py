@@ -3,12 +3,16 @@
 import ast
 import functools
 import re
+import runpy
 import shutil
 import subprocess
 import sys
 import tomllib
-from importlib.metadata import packages_distributions
+import zipfile
+from importlib.metadata import distribution, packages_distributions, version
 from pathlib import Path
+
+from packaging.utils import parse_wheel_filename
 
 from tests.fresh import noted
 
@@ -102,6 +106,46 @@ def test_the_library_reads_its_tables_without_the_rest_of_the_package(tmp_path: 
         check=True,
     )
     assert done.stdout.strip() == f"[9, 9, 9] True set() {tmp_path / 'sim'}"
+
+
+def test_the_extra_of_compiled_kernels_names_this_version():
+    (kernels,) = PROJECT["optional-dependencies"]["kernels"]
+    assert kernels == f"springtide-kernels=={PROJECT['version']}"
+
+
+def make_kernels(place: Path, *names: str) -> Path:
+    """A folder as `springtide warmup --into` makes it, with files of these names."""
+    folder = place / "made" / "kernels" / "linux-x86-64-v3"
+    (folder / "scene-0123456789abcdef").mkdir(parents=True)
+    for name in names:
+        (folder / name).write_bytes(name.encode())
+    return place / "made"
+
+
+def test_the_wheel_of_kernels_holds_what_python_calls_and_is_tagged_as_numba_s(tmp_path: Path):
+    inner = "scene-0123456789abcdef/step-01234567.cpython-311"
+    kept = [
+        f"{inner}.nbi",
+        f"{inner}.1.nbc",
+        "rope-drawn-everything-0123456789abcdef.warm",
+        "compiler-0123456789abcdef",
+    ]
+    folder = make_kernels(tmp_path, *kept, f"{inner}-part.nbi", f"{inner}-part.1.nbc", f"{inner}.lock")
+    path = runpy.run_path(str(ROOT / ".ci" / "kernels.py"))["write_wheel"](folder, tmp_path / "out")
+    with zipfile.ZipFile(path) as wheel:
+        names = wheel.namelist()
+        record = wheel.read(next(name for name in names if name.endswith("/RECORD"))).decode()
+        about = wheel.read(next(name for name in names if name.endswith("/METADATA"))).decode()
+    assert {name for name in names if "dist-info" not in name} == {
+        "springtide_kernels/__init__.py",
+        *(f"springtide_kernels/kernels/linux-x86-64-v3/{name}" for name in kept),
+    }
+    assert [line.partition(",")[0] for line in record.splitlines()] == names
+    assert f"Requires-Dist: numba=={version('numba')}\n" in about
+    tags = {str(tag) for tag in parse_wheel_filename(path.name)[3]}
+    assert tags == {
+        line.split()[1] for line in (distribution("numba").read_text("WHEEL") or "").splitlines() if "Tag:" in line
+    }
 
 
 def test_the_comparisons_are_in_the_sources_and_not_in_the_wheel():

@@ -91,6 +91,30 @@ def test_what_is_broken_in_such_a_folder_is_compiled_anew(place: Place) -> None:
     assert place.run(shared=place.shared) == COMPILED
 
 
+def test_one_changed_bit_in_machine_code_is_noticed(place: Place) -> None:
+    place.run(own=place.shared)
+    (path,) = (path for path in place.shared.rglob("*.nbc") if "-part" not in path.name)
+    content = bytearray(path.read_bytes())
+    content[content.index(b".text") - 9] ^= 1  # in the middle of the object file
+    path.write_bytes(content)
+    assert place.run(shared=place.shared) == COMPILED
+
+
+def test_kernels_of_the_distribution_are_found_where_it_is_installed(place: Place, tmp_path: Path) -> None:
+    package = tmp_path / "site" / cache.PACKAGE
+    assert place.run(own=package) == COMPILED
+    for part in package.rglob("*-part*"):
+        part.unlink()  # callers from Python need none
+    before = place.files(package)
+    paths = os.pathsep.join([str(place.module.parent), str(package.parent)])
+    surroundings = {"SPRINGTIDE_CACHE": str(place.own), "PYTHONPATH": paths}
+    assert python(TWICE, **surroundings) == LOADED
+    assert not list(place.own.rglob("*.nb?"))
+    place.module.write_text(SOURCE.format("").replace("1.0", "2.0"))
+    assert python(TWICE, **surroundings) == "0 1 5.0"
+    assert place.files(package) == before
+
+
 def test_kernels_of_another_processor_are_left_alone(place: Place) -> None:
     place.run(own=place.shared)
     (folder,) = (place.shared / "kernels").iterdir()

@@ -6,6 +6,7 @@ import textwrap
 import tokenize
 from collections import Counter
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -43,11 +44,17 @@ def test_the_hash_changes_with_any_edit_and_any_new_name(tmp_path):
     assert len({first, second, sources_hash(tmp_path)}) == 3
 
 
-def test_another_llvm_finds_no_kernels_of_this_one(monkeypatch):
+def test_another_python_numba_or_llvm_finds_no_kernels_of_this_one(monkeypatch):
     path = ROOT / "sim" / "ocean" / "evolve.py"
-    before = reachable_hash(path)
-    monkeypatch.setattr(jit.llvmlite, "__version__", "0.0.1")
-    assert reachable_hash(path) != before
+    found = {reachable_hash(path)}
+    for part in (jit.llvmlite, jit.numba):
+        monkeypatch.setattr(part, "__version__", "0.0.1")
+        found.add(reachable_hash(path))
+    monkeypatch.setattr(jit.sys, "implementation", SimpleNamespace(cache_tag="cpython-399"))
+    found.add(reachable_hash(path))
+    monkeypatch.setattr(jit.sys, "version_info", (3, 99, 9))  # a patch release alone changes nothing
+    found.add(reachable_hash(path))
+    assert len(found) == 4
 
 
 def test_other_files_do_not_change_the_hash(tmp_path):

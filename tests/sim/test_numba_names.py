@@ -18,7 +18,8 @@ PUBLIC = {"llvmlite", "llvmlite.binding", "numba", "numba.extending", "numba.typ
 NAMES = (
     "CompileResultCacheImpl", "FunctionCache", "IndexDataCacheFile", "JITCodeLibrary", "Compiler", "CompileResult",
     "Flags", "rtsys", "initialize",
-    "global_compiler_lock", "lookup_environment", "TargetOptions", "CPUDispatcher", "cpu_target", "event", "sigutils",
+    "global_compiler_lock", "lookup_environment", "TargetOptions", "CPUDispatcher", "cpu_target", "event", "serialize",
+    "sigutils",
     "_load_index", "_index_path", "flush", "_values", "_codegen", "_data_layout", "_function_pass_manager",
     "_finalized", "_optimize_final_module", "_finalize_final_module", "_finalize_specific", "_ensure_finalized",
     "_final_module", "_shared_module", "_get_module_for_linking", "_reload_init", "get_pointer_to_function",

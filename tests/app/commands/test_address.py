@@ -5,7 +5,7 @@ import errno
 import os
 import socket
 from collections.abc import Callable, Iterator
-from typing import Any
+from types import SimpleNamespace
 from urllib.parse import urlsplit
 
 import pytest
@@ -24,19 +24,19 @@ def has_ipv6() -> bool:
 needs_ipv6 = pytest.mark.skipif(not has_ipv6(), reason="this machine has no ::1")
 
 
-class FakeViewer:
-    """A lab that only listens."""
+class FakeServer:
+    """A server that only listens."""
 
-    def __init__(self, host: str, port: int, **_: Any) -> None:
+    def __init__(self, host: str, port: int) -> None:
         self.listener = socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
-        self.port: int = self.listener.getsockname()[1]
+        self.gui = SimpleNamespace(add_html=lambda text: None)
 
-    def open(self, *_: Any, **__: Any) -> None:
-        """Show a scene."""
+    def get_port(self) -> int:
+        """The port that is bound."""
+        port: int = self.listener.getsockname()[1]
+        return port
 
-    stop_opening = open
-
-    def shut(self) -> None:
+    def stop(self) -> None:
         """Listen no more."""
         self.listener.close()
 
@@ -45,7 +45,8 @@ class FakeViewer:
 def opened(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, int], str]:
     """The host of the address that the lab opens in the browser, bound to a host and port."""
     addresses: list[str] = []
-    monkeypatch.setattr(serve, "Viewer", FakeViewer)
+    monkeypatch.setattr(serve, "open_server", lambda host, port, _: SimpleNamespace(server=FakeServer(host, port)))
+    monkeypatch.setattr(serve.Opening, "start", lambda _: None)
     monkeypatch.setattr(serve, "wait_until", lambda *_: None)
     monkeypatch.setattr(serve.webbrowser, "open", addresses.append)
 

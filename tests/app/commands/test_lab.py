@@ -346,7 +346,8 @@ def test_a_lab_that_was_begun_opens_with_the_task_after_it(empty: Path, monkeypa
     begun = next(task for task in TASKS if task.setup is not None and task.setup.scene == "rope" and task.questions)
     write_answers(empty, TASKS, Answers("Bo", {(begun.name, begun.questions[0].key): "0"}))
     opened: list[tuple[str, object]] = []
-    monkeypatch.setattr("app.commands.serve.serve_lab", lambda name, params, **how: opened.append((name, params)) or 0)
+    serve = lambda name, params, **how: opened.append((name, params())) or 0  # noqa: E731
+    monkeypatch.setattr("app.commands.serve.serve_lab", serve)
     assert main(["lab", str(empty), "--no-open"]) == 0
     assert opened[0][0] == "rope"
     assert vars(opened[0][1])["integrator"] == "rk4"

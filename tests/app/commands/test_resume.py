@@ -30,16 +30,18 @@ def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def viewer_with(params: Any) -> Any:
+def lab_with(params: Any) -> Any:
     """A lab that shows a rope."""
-    return SimpleNamespace(current=SimpleNamespace(panel=SimpleNamespace(kind=ROPE, params=params, loaded="")))
+    panel = SimpleNamespace(kind=ROPE, params=params, loaded="")
+    return SimpleNamespace(viewer=SimpleNamespace(current=SimpleNamespace(panel=panel)))
 
 
 @pytest.fixture
 def opened(monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[Any, ...]]:
     """The scene and parameters with which a command line would begin."""
     served: list[tuple[Any, ...]] = []
-    monkeypatch.setattr("app.commands.serve.serve_lab", lambda *a, **k: served.append(a) or 0)
+    serve = lambda name, params, **_: served.append((name, params and params())) or 0  # noqa: E731
+    monkeypatch.setattr("app.commands.serve.serve_lab", serve)
 
     def opened_by(*words: str) -> tuple[Any, ...]:
         assert main([*words, "--no-open"]) == 0
@@ -50,7 +52,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[Any, ...]]:
 
 def test_the_next_start_has_the_setup_that_was_left(data: Path, opened: Callable[..., tuple[Any, ...]]) -> None:
     assert opened("--resume") == opened()  # nothing was left
-    lab = viewer_with(STIFF)
+    lab = lab_with(STIFF)
     keeper = Keeper(lab)
     keeper.keep()
     assert opened("--resume", "--scene", "cloth") == ("rope", STIFF)
@@ -58,7 +60,7 @@ def test_the_next_start_has_the_setup_that_was_left(data: Path, opened: Callable
     written = last_path().stat().st_mtime_ns
     keeper.keep()
     assert last_path().stat().st_mtime_ns == written  # nothing has changed
-    lab.current.panel.params = ROPE.params()
+    lab.viewer.current.panel.params = ROPE.params()
     keeper.keep()
     assert opened("--resume") == ("rope", ROPE.params())
 
@@ -72,8 +74,9 @@ def test_what_cannot_be_read_is_as_if_nothing_was_left(data: Path, text: str) ->
 def test_where_nothing_can_be_written_the_lab_goes_on(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (data / "file").write_text("")
     monkeypatch.setenv("SPRINGTIDE_DATA", str(data / "file" / "below"))
-    Keeper(viewer_with(STIFF)).keep()
-    Keeper(SimpleNamespace(current=None)).keep()  # type: ignore[arg-type]  # before a scene is open
+    Keeper(lab_with(STIFF)).keep()
+    for viewer in (None, SimpleNamespace(current=None)):  # before there is a lab, and before a scene is open
+        Keeper(SimpleNamespace(viewer=viewer)).keep()  # type: ignore[arg-type]
     assert read_last() is None
 
 

@@ -76,7 +76,7 @@ def test_a_preset_is_a_name_or_a_file(tmp_path):
 
 @pytest.mark.parametrize("host", ["", "a\0b", "no host", "\ud800", "ä" * 70])
 def test_a_host_that_is_none_is_refused(capsys, monkeypatch, host):
-    monkeypatch.setattr(serve_command, "Viewer", None)  # nothing is to be started
+    monkeypatch.setattr(serve_command, "open_server", None)  # nothing is to be started
     assert "--host" in argument_error(capsys, "--host", host, "--port", "0", "--no-open")
 
 

@@ -101,7 +101,7 @@ def test_a_lab_behind_a_proxy_of_another_name_takes_a_setting(server: Jupyter, a
     origins = tuple(origin.format(port=server.port) for origin in access.origins)
     host = f"hub.example.org:{server.port}"  # by which Jupyter names its cookie
     cookies = get(server.port, f"{server.base}api/status?token={server.token}", Host=host)[2]
-    own, _ = open_server("127.0.0.1", 0, access._replace(origins=origins))
+    own = open_server("127.0.0.1", 0, access._replace(origins=origins)).server
     try:
         path = f"{server.base}proxy/{own.get_port()}/{access.key and access.key + '/'}index.html"
         assert join(server.port, path, f"http://{host}", "hub.example.org", Cookie=cookies) == status

@@ -141,7 +141,7 @@ def answer(port: int, path: str) -> tuple[int, str]:
 
 
 def test_a_served_lab_with_path_origin_and_key() -> None:
-    server, _ = open_server("127.0.0.1", 0, Access("/lab", (HUB,), KEY))
+    server = open_server("127.0.0.1", 0, Access("/lab", (HUB,), KEY)).server
     try:
         port = server.get_port()
         assert [answer(port, path)[0] for path in ("/", "/lab", "/lab/", f"/lab/{KEY}/")] == [404, 302, 403, 200]
@@ -156,7 +156,7 @@ def test_a_served_lab_with_path_origin_and_key() -> None:
 
 
 def test_a_served_lab_with_an_origin_lets_in_that_one_only() -> None:
-    server, _ = open_server("127.0.0.1", 0, Access(origins=(HUB,)))
+    server = open_server("127.0.0.1", 0, Access(origins=(HUB,))).server
     try:
         coroutines.run(say(server.get_port(), [], HUB))
         with pytest.raises(websockets.exceptions.InvalidStatus):

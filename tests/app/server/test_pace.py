@@ -226,7 +226,7 @@ def test_nothing_goes_ahead_of_what_is_made_or_removed() -> None:
 
 def test_what_a_browser_is_sent_before_it_answers_is_bounded() -> None:
     """A browser that takes nothing for a while: then it gets the panel first, and of 40 pictures few."""
-    server, _ = open_server("127.0.0.1", 0)
+    server = open_server("127.0.0.1", 0).server
 
     async def visit() -> list[dict[str, Any]]:
         protocol = websockets.Subprotocol(f"viser-v{viser.__version__}")

@@ -60,7 +60,7 @@ async def torn_messages(port: int, ended: threading.Event) -> tuple[int, int]:
 
 
 def test_mesh_and_poses_of_a_picture_come_in_one_message() -> None:
-    server, _ = open_server("127.0.0.1", 0)
+    server = open_server("127.0.0.1", 0).server
     buffer = server._websock_server.get_message_buffer()
     buffer.window_duration_sec = 0.0
     buffer.message_from_id = SlowDict(buffer.message_from_id)  # viser makes messages of it
@@ -94,7 +94,7 @@ def test_mesh_and_poses_of_a_picture_come_in_one_message() -> None:
 
 
 def test_a_picture_is_not_waited_for_but_before_the_next_and_before_the_end() -> None:
-    server, _ = open_server("127.0.0.1", 0)
+    server = open_server("127.0.0.1", 0).server
     busy, loop, sent = threading.Event(), server.get_event_loop(), []
     try:
         transport = Transport(server)

@@ -33,7 +33,7 @@ def accelerate_rope(x, v, p, b, c, f, a):
     m = n + one
     link_forces(
         x, v, f, np.uint64(0), one, one, n - one, n, m,
-        p.law, p.links[0, 1], b * p.links[0, 2], p.links[0, 0], p.axial and b > 0,
+        p.law, p.families[0, 1], b * p.families[0, 2], p.families[0, 0], p.axial and b > 0,
     )  # fmt: skip
     set_from_differences(f, v, p.inverse_masses, a, np.uint64(0), np.uint64(0), n, p.mass * p.gx, c)
     set_from_differences(f, v, p.inverse_masses, a, n, m, n, p.mass * p.gy, c)
@@ -76,7 +76,7 @@ def accelerate_grid(x, v, p, b, c, f, a):
             ratio = p.side if di == 0 and (i == 0 or i == p.rows - 1) else 1.0
             link_forces(
                 x, v, f, ia, ib, np.uint64(0), count, n, m,
-                p.law, ratio * p.links[q, 1], ratio * b * p.links[q, 2], p.links[q, 0], p.axial and b > 0,
+                p.law, ratio * p.families[q, 1], ratio * b * p.families[q, 2], p.families[q, 0], p.axial and b > 0,
             )  # fmt: skip
             if dj == 0 and p.side != 1.0:
                 scale_ends(f, np.uint64(0), count, m, p.side)

@@ -22,7 +22,7 @@ class RopeArrays(NamedTuple):
     gy: float
     gz: float
     offsets: NDArray[np.int64]  # (families, 2)
-    links: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
+    families: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
     law: Any  # numbers of the links' law, see sim/springs/laws
     forces: Any  # `Declared`: numbers of the forces that have any, see sim/springs/forces
     damped: bool  # any link damping
@@ -73,6 +73,8 @@ class WideArrays(NamedTuple):
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # number of bands of rows; each thread computes the forces of one band
     side: float  # stiffness and damping of links along a side, over their family's
+    ends: NDArray[np.int64]  # (links, 3): both points of each, and its family
+    links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m] of each
 
 
 # A net of any families of links, and one of those of CLOTH. A kernel is compiled for each of the three classes of
@@ -97,11 +99,42 @@ mass_at = by_net(
 
 
 @kernel(inline=True)
-def placed_link(p, q, i, j):
-    on_row = p.offsets[q, 0] == 0 and (i == 0 or i == p.rows - 1)
-    on_column = p.offsets[q, 1] == 0 and (j == 0 or j == p.cols - 1)
-    return p.side if on_row or on_column else 1.0
+def next_link(p, q):
+    return q, q + 1, p.families[0, 0], p.families[0, 1], p.families[0, 2]
 
 
-# Stiffness and damping of the link of family q that begins at (i, j), over the family's.
-link_ratio = by_net(rope=kernel(lambda p, q, i, j: 1.0, inline=True), grid=placed_link)
+@kernel(inline=True)
+def listed_link(p, q):
+    return p.ends[q, 0], p.ends[q, 1], p.links[q, 0], p.links[q, 1], p.links[q, 2]
+
+
+# Number of links, and of link q both points, rest length [m], stiffness [N/m] and damping [N s/m].
+link_count = by_net(
+    rope=kernel(lambda p: p.cols - 1, inline=True), grid=kernel(lambda p: p.ends.shape[0], inline=True)
+)  # fmt: skip
+link_at = by_net(rope=next_link, grid=listed_link)
+# Damping [N s/m] of link q.
+link_damping = by_net(
+    rope=kernel(lambda p, q: p.families[0, 2], inline=True), grid=kernel(lambda p, q: p.links[q, 2], inline=True)
+)  # fmt: skip
+# Number of the family of link q.
+family_of = by_net(
+    rope=kernel(lambda p, q: 0, inline=True), grid=kernel(lambda p, q: p.ends[q, 2], inline=True)
+)  # fmt: skip
+
+
+@kernel(inline=True)
+def span(x, n, a, b):
+    """(x, y, z) from point a to point b, of positions or velocities x (3 n,)."""
+    return x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+
+
+@kernel(inline=True)
+def add_pair(out, n, a, b, fx, fy, fz):
+    """Add (fx, fy, fz) at point a and take it at point b."""
+    out[a] += fx
+    out[n + a] += fy
+    out[2 * n + a] += fz
+    out[b] -= fx
+    out[n + b] -= fy
+    out[2 * n + b] -= fz

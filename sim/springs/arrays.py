@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import chosen, kernel
-from sim.springs.lines.arrays import LineArrays
+from sim.springs.laws.curve import Curve
+from sim.springs.line_arrays import LineArrays
 
 
 class RopeArrays(NamedTuple):
@@ -92,10 +93,39 @@ def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
     return chosen(variants if lines is None else {**variants, LineArrays: lines})
 
 
+grid_mass = kernel(lambda p, j: p.mass[j], inline=True)
 # Mass of point j [kg]. A rope of equal masses has one number for all, which its kernels need not load.
-mass_at = by_net(
-    rope=kernel(lambda p, j: p.mass, inline=True), grid=kernel(lambda p, j: p.mass[j], inline=True)
-)  # fmt: skip
+mass_at = by_net(rope=kernel(lambda p, j: p.mass, inline=True), grid=grid_mass, lines=grid_mass)
+
+every_point = kernel(lambda p: p.rows * p.cols, inline=True)
+# Number of points that forces act on. Of lines two more a body follow, for its displacement and its rotation.
+point_count = by_net(rope=every_point, grid=every_point, lines=kernel(lambda p: p.nodes, inline=True))
+
+is_free = kernel(lambda p, j: p.inverse_masses[j] > 0.0, inline=True)
+# True unless the motion of point j is prescribed.
+is_moving = by_net(rope=is_free, grid=is_free, lines=kernel(lambda p, j: p.moving[j], inline=True))
+
+
+@kernel(inline=True)
+def push_mass(p, a, j, fx, fy, fz):
+    n, j = np.uint64(p.rows * p.cols), np.uint64(j)
+    w = p.inverse_masses[j]
+    a[j] += w * fx
+    a[n + j] += w * fy
+    a[n + n + j] += w * fz
+
+
+@kernel(inline=True)
+def push_node(p, a, j, fx, fy, fz):
+    n, j = np.uint64(p.cols), np.uint64(j)
+    a[j] += fx
+    a[n + j] += fy
+    a[n + n + j] += fz
+
+
+# Add a force [N] on point j to what `accelerate` sums in a: accelerations, but of lines, whose masses in water are
+# matrices, forces.
+push = by_net(rope=push_mass, grid=push_mass, lines=push_node)
 
 
 @kernel(inline=True)
@@ -109,10 +139,13 @@ def listed_link(p, q):
 
 
 # Number of links, and of link q both points, rest length [m], stiffness [N/m] and damping [N s/m].
-link_count = by_net(
-    rope=kernel(lambda p: p.cols - 1, inline=True), grid=kernel(lambda p: p.ends.shape[0], inline=True)
-)  # fmt: skip
-link_at = by_net(rope=next_link, grid=listed_link)
+listed = kernel(lambda p: p.ends.shape[0], inline=True)
+link_count = by_net(rope=kernel(lambda p: p.cols - 1, inline=True), grid=listed, lines=listed)
+link_at = by_net(rope=next_link, grid=listed_link, lines=listed_link)
+law_of_net = kernel(lambda p, q: p.law, inline=True)
+law_of_line = kernel(lambda p, q: Curve(p.curves, p.links[q, 3], p.links[q, 4], p.slack_damping), inline=True)
+# Numbers of its law.
+law_at = by_net(rope=law_of_net, grid=law_of_net, lines=law_of_line)
 # Damping [N s/m] of link q.
 link_damping = by_net(
     rope=kernel(lambda p, q: p.families[0, 2], inline=True), grid=kernel(lambda p, q: p.links[q, 2], inline=True)
@@ -126,15 +159,17 @@ family_of = by_net(
 @kernel(inline=True)
 def span(x, n, a, b):
     """(x, y, z) from point a to point b, of positions or velocities x (3 n,)."""
-    return x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+    n, a, b = np.uint64(n), np.uint64(a), np.uint64(b)  # unsigned, as in `sim.springs.acceleration`
+    return x[b] - x[a], x[n + b] - x[n + a], x[n + n + b] - x[n + n + a]
 
 
 @kernel(inline=True)
 def add_pair(out, n, a, b, fx, fy, fz):
     """Add (fx, fy, fz) at point a and take it at point b."""
+    n, a, b = np.uint64(n), np.uint64(a), np.uint64(b)
     out[a] += fx
     out[n + a] += fy
-    out[2 * n + a] += fz
+    out[n + n + a] += fz
     out[b] -= fx
     out[n + b] -= fy
-    out[2 * n + b] -= fz
+    out[n + n + b] -= fz

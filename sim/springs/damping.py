@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 from sim.springs.arrays import by_net, family_of, link_at, link_count, span
-from sim.springs.forces import SEPARATE, each
+from sim.springs.forces import each
 from sim.springs.forces.links import TINY
 from sim.springs.laws import by_damping, damps
-from sim.springs.lines.damping import damp_lines, make_lines_decay
+from sim.springs.line_points import set_inverse_masses
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
 
@@ -192,8 +192,9 @@ def choose_shares(law, x, decay, p):
 
 set_shares = by_damping(always=kernel(lambda law, x, decay, p: None, inline=True), at_some_lengths=choose_shares)
 
-# Factors of `damp` for a time s [s].
-make_decay = by_net(rope=make_net_decay, grid=make_net_decay, lines=make_lines_decay)
+make_no_decay = kernel(lambda p, s: np.empty((0, 0)))
+# Factors of `damp` for a time s [s]. Of lines nothing is known: masses in water change with the tangents.
+make_decay = by_net(rope=make_net_decay, grid=make_net_decay, lines=make_no_decay)
 
 
 @kernel(noalias=True, inline=True)
@@ -239,7 +240,7 @@ def damp_motion(x, v, decay, p, reverse):
 
 
 never = kernel(lambda p: False, inline=True)
-other_acts = each("acts", "p", "truth", SEPARATE, inline=True)
+other_acts = each("acts", "p", "truth", having="accelerate", inline=True)
 damp_others = each("damp", "x, v, t, s, p, reverse", "sum", turns=True, allocates=False)
 
 
@@ -266,6 +267,13 @@ def damp_inline(x, v, t, s, decay, p, reverse):
 def damp_wide(x, v, t, s, decay, p, reverse):
     """`damp` of any other net, compiled once for all places of a kernel that call it."""
     return damp_inline(x, v, t, s, decay, p, reverse)
+
+
+@kernel(allocates=False)
+def damp_lines(x, v, t, s, decay, p, reverse):
+    """`damp` of lines, with the inverse masses at the place where the step is."""
+    set_inverse_masses(x, p)
+    return damp_others(x, v, t, s, p, reverse)
 
 
 # All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards. Returns the work [J]

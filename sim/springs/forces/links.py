@@ -5,11 +5,22 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import add_pair, link_at, link_count, link_damping, span
+from sim.springs.arrays import (
+    add_pair,
+    by_net,
+    is_moving,
+    law_at,
+    link_at,
+    link_count,
+    link_damping,
+    push,
+    span,
+)
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
-from sim.springs.forces.record import Force
-from sim.springs.laws import damps, force_density, stiffness
+from sim.springs.forces.record import Force, of_nets
+from sim.springs.laws import damps, force_density, stiffness, tension
 from sim.springs.laws import energy as link_energy
+from sim.springs.line_points import kick, mobility
 
 TINY = 1e-300  # [m^2] under the root: coincident points get no spring force instead of 0/0
 
@@ -69,14 +80,74 @@ def scale_ends(f, of, n, M, s):
         f[np.uint64(e) * M + last] *= s
 
 
+@kernel(inline=True)
+def lengthening(x, v, p, n, q):
+    """Length [m] of link q, the rate [m/s] at which it grows, and its damping [N s/m] if it acts."""
+    (a, b, rest, _, c), law = link_at(p, q), law_at(p, q)
+    rx, ry, rz = span(x, n, a, b)
+    du, dv, dw = span(v, n, a, b)
+    length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+    return length, (du * rx + dv * ry + dw * rz) / length, c if damps(law, rest, length) else 0.0
+
+
+@kernel(allocates=False)
+def set_tensions(x, v, p, out):
+    """Set the tension (links,) [N] of every link, negative where it is pressed, with its damping along it."""
+    n = p.rows * p.cols
+    for q in range(link_count(p)):
+        _, _, rest, k, _ = link_at(p, q)
+        length, rate, damping = lengthening(x, v, p, n, q)
+        out[q] = tension(law_at(p, q), k, rest, length) + damping * rate
+
+
+@kernel(noalias=True, allocates=False)
+def accelerate(x, v, t, p, with_damping, f, a):
+    """Of lines; those of nets are in `sim.springs.acceleration`."""
+    n = p.cols
+    for q in range(link_count(p)):
+        i, j, rest, k, _ = link_at(p, q)
+        rx, ry, rz = span(x, n, i, j)
+        length, rate, damping = lengthening(x, v, p, n, q)
+        s = force_density(law_at(p, q), k, rest, length)
+        if with_damping:
+            s += damping * rate / length
+        push(p, a, i, s * rx, s * ry, s * rz)
+        push(p, a, j, -s * rx, -s * ry, -s * rz)
+
+
+@kernel(allocates=False)
+def damp_link(x, v, s, p, q):
+    """The damping of link q of a line for a time s [s]: its nodes' closing speed decays exponentially."""
+    n = p.cols
+    a, b, _, _, _ = link_at(p, q)
+    rx, ry, rz = span(x, n, a, b)
+    length, rate, damping = lengthening(x, v, p, n, q)
+    rx, ry, rz = rx / length, ry / length, rz / length
+    both = mobility(p, a, rx, ry, rz) + mobility(p, b, rx, ry, rz)
+    if both == 0.0 or damping == 0.0:
+        return
+    impulse = -math.expm1(-damping * both * s) / both * rate
+    kick(p, v, a, impulse * rx, impulse * ry, impulse * rz)
+    kick(p, v, b, -impulse * rx, -impulse * ry, -impulse * rz)
+
+
+@kernel(allocates=False)
+def damp(x, v, t, s, p, reverse):
+    """Of lines, one link after the other; that of nets is in `sim.springs.damping`."""
+    count = link_count(p)
+    for turn in range(count):
+        damp_link(x, v, s, p, count - 1 - turn if reverse else turn)
+    return 0.0
+
+
 @kernel(allocates=False)
 def energy(x, t, p):
     """Of the links [J]."""
     total, n = 0.0, p.rows * p.cols
     for q in range(link_count(p)):
-        a, b, rest, k, _ = link_at(p, q)
+        (a, b, rest, k, _), law = link_at(p, q), law_at(p, q)
         rx, ry, rz = span(x, n, a, b)
-        total += link_energy(p.law, k, rest, math.sqrt(rx * rx + ry * ry + rz * rz))
+        total += link_energy(law, k, rest, math.sqrt(rx * rx + ry * ry + rz * rz))
     return total
 
 
@@ -97,18 +168,18 @@ def moving_pins_power(x, v, p, elastic, damping):
     if p.pins.shape[0] == 0:
         return work
     for q in range(link_count(p)):
-        a, b, rest, k, c = link_at(p, q)
-        if p.inverse_masses[a] > 0.0 and p.inverse_masses[b] > 0.0:
+        (a, b, rest, k, c), law = link_at(p, q), law_at(p, q)
+        if is_moving(p, a) and is_moving(p, b):
             continue
         rx, ry, rz = span(x, n, a, b)
         length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        s = force_density(p.law, elastic * k, rest, length)
-        d = damping * c if damps(p.law, rest, length) else 0.0
+        s = force_density(law, elastic * k, rest, length)
+        d = damping * c if damps(law, rest, length) else 0.0
         fx, fy, fz = damping_force(v, p, n, a, b, d, rx, ry, rz)
         fx, fy, fz = fx + s * rx, fy + s * ry, fz + s * rz
-        if p.inverse_masses[a] == 0.0:
+        if not is_moving(p, a):
             work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
-        if p.inverse_masses[b] == 0.0:
+        if not is_moving(p, b):
             work += fx * v[b] + fy * v[n + b] + fz * v[2 * n + b]
     return work
 
@@ -136,8 +207,7 @@ def row_damping_power(x, v, p, a, b, count, n, first, rest):
 
 
 @kernel(allocates=False)
-def damping_power(x, v, p):
-    """Power [W] that the links' damping takes, row by row."""
+def damping_power_by_rows(x, v, p):
     total, first, n = 0.0, np.uint64(0), np.uint64(p.rows * p.cols)
     for q in range(p.offsets.shape[0]):
         di, dj = p.offsets[q, 0], p.offsets[q, 1]
@@ -147,6 +217,19 @@ def damping_power(x, v, p):
             total += row_damping_power(x, v, p, a, b, count, n, first, p.families[q, 0])
             first += count
     return total
+
+
+@kernel(allocates=False)
+def damping_power_by_links(x, v, p):
+    total, n = 0.0, p.rows * p.cols
+    for q in range(link_count(p)):
+        _, rate, c = lengthening(x, v, p, n, q)
+        total += c * rate * rate
+    return total
+
+
+# Power [W] that the links' damping takes.
+damping_power = by_net(rope=damping_power_by_rows, grid=damping_power_by_rows, lines=damping_power_by_links)
 
 
 @kernel(allocates=False)
@@ -169,19 +252,19 @@ def tangent(x, u, t, p, part, longest, out):
     """
     n = p.rows * p.cols
     for q in range(link_count(p) if part != FRICTION else 0):
-        a, b, rest, k, c = link_at(p, q)
+        (a, b, rest, k, c), law = link_at(p, q), law_at(p, q)
         rx, ry, rz = span(x, n, a, b)
         du, dv, dw = span(u, n, a, b)
         rr = rx * rx + ry * ry + rz * rz
         length = math.sqrt(rr)
-        along, across = linearised(p.law, k, rest, length)
+        along, across = linearised(law, k, rest, length)
         # Of a link that is pressed further only this counts: it buckles, which no step can mend.
         across = max(across, -along) if rr > 0.0 else -along
         if part == DAMPING:
-            along = c if damps(p.law, rest, length) else 0.0
+            along = c if damps(law, rest, length) else 0.0
             across = 0.0 if p.axial else along
         elif part == STIFFEST:
-            along = max(along, stiffness(p.law, k, rest, (1.0 + longest) * rest))
+            along = max(along, stiffness(law, k, rest, (1.0 + longest) * rest))
         elif part == TRANSVERSE:
             along = 0.0
         s = (along - across) * (rx * du + ry * dv + rz * dw) / rr if rr > 0.0 else 0.0
@@ -189,6 +272,7 @@ def tangent(x, u, t, p, part, longest, out):
 
 
 FORCE = Force(
-    "links", rank=10, energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="elastic",
+    "links", rank=10, accelerate=of_nets(lines=accelerate), damp=of_nets(lines=damp),
+    energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="elastic",
     is_smooth=True,
 )  # fmt: skip

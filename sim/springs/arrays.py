@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import chosen, kernel
-from sim.springs.laws.curve import Curve
+from sim.springs.laws.curve import TensionCurve
 from sim.springs.line_arrays import LineArrays
 
 
@@ -143,7 +143,7 @@ listed = kernel(lambda p: p.ends.shape[0], inline=True)
 link_count = by_net(rope=kernel(lambda p: p.cols - 1, inline=True), grid=listed, lines=listed)
 link_at = by_net(rope=next_link, grid=listed_link, lines=listed_link)
 law_of_net = kernel(lambda p, q: p.law, inline=True)
-law_of_line = kernel(lambda p, q: Curve(p.curves, p.links[q, 3], p.links[q, 4], p.slack_damping), inline=True)
+law_of_line = kernel(lambda p, q: TensionCurve(p.curves, p.links[q, 3], p.links[q, 4], p.slack_damping), inline=True)
 # Numbers of its law.
 law_at = by_net(rope=law_of_net, grid=law_of_net, lines=law_of_line)
 # Damping [N s/m] of link q.

@@ -15,7 +15,7 @@ from sim.springs.laws import slack
 from sim.springs.laws.record import Law
 
 
-class Curve(NamedTuple):
+class TensionCurve(NamedTuple):
     """Its numbers, of a link of its own."""
 
     table: NDArray[np.float64]  # (rows, 3) of all links: strain, tension [N], energy per length [N]
@@ -64,6 +64,6 @@ def damps(law, rest, length):
 
 
 OF_LINES = Law(
-    "curve", "Link of a line under water", Curve(np.zeros((0, 3)), 0.0, 0.0, False), force_density, stiffness, energy,
-    slack.length, damps,
+    "curve", "Link of a line under water", TensionCurve(np.zeros((0, 3)), 0.0, 0.0, False), force_density, stiffness,
+    energy, slack.length, damps,
 )  # fmt: skip

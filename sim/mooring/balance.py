@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from sim.mooring.chains import Chains
 from sim.mooring.elastic import Elastic
-from sim.mooring.tangent import forces_on_free, links_at, moved, moves_on_free, six_of
-from sim.springs.lines.arrays import BED_AREA, DISPLACED, HEIGHT, STIFFNESS, LineArrays
-from sim.springs.lines.bending import BEND_STIFFNESS
-from sim.springs.lines.forces import set_rest_forces
+from sim.mooring.tangent import declared_stiffness, forces_on_free, links_at, moved, moves_on_free, six_of
+from sim.springs.acceleration import set_rest_forces
+from sim.springs.forces.bending import BEND_STIFFNESS
+from sim.springs.line_arrays import BED_AREA, DISPLACED, HEIGHT, STIFFNESS, LineArrays
 
 Array = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class Laws:
     def __init__(self, p: LineArrays) -> None:
         self.p, self.elastic = p, Elastic(p)
         self.node, self.height = p.places[:, 0], p.parts[:, HEIGHT]
-        self.bed, self.lift = p.parts[:, BED_AREA] * p.bed_stiffness, p.parts[:, DISPLACED] * p.gravity
+        self.bed, self.lift = p.parts[:, BED_AREA] * p.bed_stiffness, p.parts[:, DISPLACED] * -p.gz
 
     def upward(self, z: Array, on: Pieces) -> Array:
         """Forces (parts,) [N] of bed and buoyancy at heights z, each on its piece wherever that ends."""
@@ -72,7 +72,7 @@ def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) 
     """Positions (3, n) and tensions (links,) [N] after one correction, with parts on the pieces `on`."""
     p = laws.p
     a, b = p.ends.T
-    length, pulls = links_at(x, p)[:2]
+    length, pulls = links_at(x, p)
     rest, (chord, stiffness) = p.links[:, 0], laws.elastic.tension(length)
     unit = ((x[:, b] - x[:, a]) / np.maximum(length, 1e-12)).T
     taut = (tension > 0.0) | (length > rest)
@@ -81,7 +81,7 @@ def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) 
     across = np.where(taut, tension / np.maximum(length, 1e-12), 0.0) + hold
     # A taut link that is shorter by round-off pushes, for this correction.
     pushes = (np.where(taut, chord, 0.0) - pulls)[:, None] * unit
-    more, upright = np.zeros((p.nodes, 3)), np.zeros((p.nodes, 3, 3))
+    more, upright = np.zeros((p.nodes, 3)), declared_stiffness(x, p)
     np.add.at(more, a, pushes)
     np.add.at(more, b, -pushes)
     outer = unit[:, :, None] * unit[:, None]
@@ -98,9 +98,9 @@ def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) 
 
 def pull(x: Array, p: LineArrays) -> tuple[Array, float]:
     """Forces [N] on the free coordinates at rest, and the largest on any node."""
-    f = np.zeros(9 * p.cols)
+    f = np.zeros(3 * p.cols)
     set_rest_forces(np.ascontiguousarray(x).reshape(-1), p, f)
-    forces = f[: 3 * p.cols].reshape(3, p.cols)[:, : p.nodes]
+    forces = f.reshape(3, p.cols)[:, : p.nodes]
     return forces_on_free(forces, x, p), float(np.abs(forces).max())
 
 

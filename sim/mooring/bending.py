@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.springs.lines.arrays import LineArrays
-from sim.springs.lines.bending import BEND_STIFFNESS, LINKS, NODES, OFFSET, WEIGHTS
+from sim.springs.forces.bending import BEND_STIFFNESS, LINKS, NODES, OFFSET, WEIGHTS
+from sim.springs.line_arrays import LineArrays
 
 if TYPE_CHECKING:
     from sim.mooring.system import System

@@ -13,8 +13,8 @@ from sim.mooring.statics import Rest, at_rest
 from sim.mooring.system import System
 from sim.mooring.tangent import damping_matrix, stiffness_matrix
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.lines.arrays import INVERSE_MASS, LineArrays
-from sim.springs.lines.forces import inverse_mass_matrices
+from sim.springs.line_arrays import INVERSE_MASS, LineArrays
+from sim.springs.line_points import inverse_mass_matrices
 from sim.springs.stability import Mode, step_limit
 
 
@@ -23,7 +23,7 @@ def inverse_root_masses(x: NDArray[np.float64], p: LineArrays) -> NDArray[np.flo
     nodes = np.flatnonzero(p.inverse_masses[: p.nodes] > 0.0)
     count, first = len(nodes), 3 * len(nodes)
     root = np.zeros((first + 6 * len(p.bodies),) * 2)
-    rows = inverse_mass_matrices(np.ascontiguousarray(x).reshape(-1), p)[3 * p.cols :].reshape(6, p.cols)[:, nodes]
+    rows = inverse_mass_matrices(np.ascontiguousarray(x).reshape(-1), p).reshape(6, p.cols)[:, nodes]
     halves = root_of(rows[[0, 1, 2, 1, 3, 4, 2, 4, 5]].T.reshape(-1, 3, 3))
     for d in range(3):
         for e in range(3):

@@ -31,9 +31,9 @@ from sim.mooring.cones import (
     quotient,
 )
 from sim.mooring.elastic import Elastic
-from sim.mooring.tangent import forces_on_free, moved, moves_on_free
-from sim.springs.lines.arrays import BED_AREA, DISPLACED, HEIGHT, MASS, STIFFNESS, LineArrays
-from sim.springs.lines.forces import set_rest_forces
+from sim.mooring.tangent import forces_on_free, is_declared, moved, moves_on_free, others
+from sim.springs.acceleration import set_rest_forces
+from sim.springs.line_arrays import BED_AREA, DISPLACED, HEIGHT, MASS, STIFFNESS, LineArrays
 
 Array = NDArray[np.float64]
 
@@ -87,25 +87,14 @@ class Pairs:
         self.p = p
         self.start, self.end = p.ends.T
         self.rest, self.stiffness = p.links[:, 0], p.links[:, 1]
-        node, self.weight = p.places[:, 0], p.parts[:, MASS] * p.gravity
-        bed, lift = p.parts[:, BED_AREA] * p.bed_stiffness, p.parts[:, DISPLACED] * p.gravity
+        node, self.weight = p.places[:, 0], p.parts[:, MASS] * -p.gz
+        bed, lift = p.parts[:, BED_AREA] * p.bed_stiffness, p.parts[:, DISPLACED] * -p.gz
         self.has_bed, self.has_lift = bed > 0.0, lift > 0.0
         self.node, self.on_bed, self.afloat = node, node[bed > 0.0], node[lift > 0.0]
         self.bed, self.whole, self.height = bed[bed > 0.0], lift[lift > 0.0], p.parts[lift > 0.0, HEIGHT]
         self.count = len(self.rest) + len(self.bed) + 2 * len(self.whole)
         self.load = float(np.abs(lift - self.weight).sum() + np.abs(p.loads).sum())  # [N]
-        # What is left of the forces of the water: the drag of a current.
-        none, no_bends = p.links * [1.0, 0.0, 0.0, 0.0, 0.0], p.bends[:0]
-        self.elastic = Elastic(p)
-        self.current_only = p._replace(
-            links=none,
-            bends=no_bends,
-            loads=0.0 * p.loads,
-            bed_stiffness=0.0,
-            bed_damping=0.0,
-            friction=0.0,
-            gravity=0.0,
-        )
+        self.elastic, self.others = Elastic(p), others(p)
 
     def span(self, x: Array) -> Array:
         """Vectors (links, 3) from start to end of every link."""
@@ -132,12 +121,14 @@ class Pairs:
     def forces(self, x: Array, state: InteriorState) -> Array:
         """Forces (nodes, 3) [N] of a state on every node."""
         p, found = self.p, np.zeros((self.p.nodes, 3))
-        if p.current.any():
-            drag = np.zeros(9 * p.cols)
-            set_rest_forces(np.ascontiguousarray(x).reshape(-1), self.current_only, drag)
-            found += drag[: 3 * p.cols].reshape(3, p.cols)[:, : p.nodes].T
+        if p.current.any() or is_declared(p):
+            more = np.zeros(3 * p.cols)
+            set_rest_forces(np.ascontiguousarray(x).reshape(-1), self.others, more)
+            found += more.reshape(3, p.cols)[:, : p.nodes].T
         np.add.at(found[:, 2], self.node, -self.weight)
-        found += p.loads[: p.nodes] + bending_forces(x, p)
+        found += bending_forces(x, p)
+        if len(p.loads):
+            found += p.loads[: p.nodes]
         return found + self.forces_of(state.pull[:, 1:], state.press, state.lift)
 
     def forces_of(self, pull: Array, press: Array, lift: Array) -> Array:

@@ -16,9 +16,9 @@ from sim.springs import INTEGRATORS
 from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import EnergyHistory, energy_history
+from sim.springs.forces.bending import set_line_tensions
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.lines.arrays import LineArrays
-from sim.springs.lines.energy import set_tensions
+from sim.springs.line_arrays import LineArrays
 from sim.validation import argument_error, check_number, check_vector, is_whole_number
 
 SAFETY = 0.5  # of the critical step at rest
@@ -210,7 +210,7 @@ def run_of(
                 break
         x, v = state.x.reshape(-1), state.velocities(p, 0.0)
         xs[frame] = state.x
-        set_tensions(x, v, p, tensions[frame])
+        set_line_tensions(x, v, p, tensions[frame])
         ledger[frame] = *energies(x, v, state.t, p), *state.ledger
         if progress:
             progress(frame + 1, len(t))

@@ -14,8 +14,8 @@ from sim.mooring.balance import balanced, pieces_at
 from sim.mooring.chains import Chains
 from sim.mooring.interior import along_central_path
 from sim.mooring.tangent import six_of
-from sim.springs.lines.arrays import LineArrays
-from sim.springs.lines.energy import set_tensions
+from sim.springs.forces.bending import set_line_tensions
+from sim.springs.line_arrays import LineArrays
 from sim.validation import ConvergenceError
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = No
 def rest_of(system: "System", x: NDArray[np.float64], p: LineArrays) -> Rest:
     """The named parts of positions (3, n)."""
     tension, flat = np.empty(len(p.ends)), np.ascontiguousarray(x).reshape(-1)
-    set_tensions(flat, np.zeros_like(flat), p, tension)
+    set_line_tensions(flat, np.zeros_like(flat), p, tension)
     xs = {one: np.ascontiguousarray(x[:, nodes].T) for one, nodes in system.nodes_of.items()}
     tensions = {one: tension[links] for one, links in system.links_of.items()}
     return Rest(xs, tensions, {body.id: six_of(x, p, b) for b, body in enumerate(system.bodies)}, x)

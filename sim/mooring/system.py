@@ -19,8 +19,8 @@ from sim.mooring.bending import bends_of
 from sim.mooring.elastic import Curves
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
-from sim.springs.laws import LAWS
-from sim.springs.lines.arrays import (
+from sim.springs.forces import check_forces, declared
+from sim.springs.line_arrays import (
     BODY_MASS,
     DAMPING,
     DECAY_PARTS,
@@ -127,6 +127,7 @@ class System:
     slack_damping: bool = False  # internal damping acts in slack links too, as in MoorDyn
     current: Vector = (0.0, 0.0, 0.0)  # [m/s]; it pushes lines and points, but no body
     waves: Waves | None = None  # on the same water; None: still water
+    forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces that have any, one of each
 
     def __post_init__(self) -> None:
         """Raises ValueError with the name of the value that cannot be: kernels check no index."""
@@ -146,6 +147,7 @@ class System:
             check_number(name, getattr(self, name), 0, math.inf, unit)
         check_kind("slack_damping", self.slack_damping, bool, "True or False")
         check_vector("current", self.current, "m/s")
+        check_forces(self.forces)
         self.check_waves()
         check_ids("bodies", self.bodies)
         for body in self.bodies:
@@ -250,8 +252,9 @@ class System:
         return len(self.points) + sum(line.segments - 1 for line in self.lines)
 
     def kernel_view(self, h: float) -> LineArrays:
-        """The kernels' view for steps of h [s]."""
-        return self._unit_step_view._replace(stop_rate=1.0 / h, stop=stop_request())
+        """The kernels' view for steps of h [s]. Its arrays are shared, but for the one that kernels fill."""
+        view = self._unit_step_view
+        return view._replace(stop_rate=1.0 / h, stop=stop_request(), inertia=np.zeros_like(view.inertia))
 
     @functools.cached_property
     def _unit_step_view(self) -> LineArrays:
@@ -286,9 +289,7 @@ class System:
                 added, drag = point.added_mass, 0.5 * self.density * point.drag_area
                 height = volume_height(point.volume, math.pi / 4.0 * (6.0 * point.volume / math.pi) ** (2 / 3))
                 parts.append((point.mass, self.density * point.volume, added, added, drag, 0.0, 0.0, height))
-        free = np.array([point.kind == "free" for point in self.points] + [True] * (nodes - len(self.points)))
-        inverse = np.zeros(n)
-        inverse[:nodes][free] = 1.0 / np.maximum(mass[:nodes][free], 1e-12)
+        inverse = self.inverse_masses(mass)
         moved = [i for i, point in enumerate(self.points) if point.kind == "coupled"]
         paths = np.zeros((len(moved), 5, 3))
         for q, i in enumerate(moved):
@@ -301,8 +302,14 @@ class System:
             nodes=nodes,
             inverse_masses=inverse,
             mass=mass,
-            gravity=float(self.gravity),
-            law=LAWS["slack"].numbers,
+            moving=(inverse > 0.0) | np.isin(np.arange(n), carried[:, 0]),
+            inertia=np.zeros(6 * n),
+            gx=0.0,
+            gy=0.0,
+            gz=-float(self.gravity),
+            forces=declared(self.forces),
+            damped=True,
+            axial=True,
             slack_damping=bool(self.slack_damping),
             loads=self.loads(n),
             bends=bends_of(self),
@@ -329,9 +336,20 @@ class System:
             stop=stop_request(),
         )
 
+    def inverse_masses(self, mass: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n,) [1/kg] of the kernels' points of these masses (n,); 0 where prescribed or carried by a body."""
+        free = np.zeros(len(mass), dtype=bool)
+        free[: self.node_count] = True
+        free[: len(self.points)] = [point.kind == "free" for point in self.points]
+        found = np.zeros(len(mass))
+        found[free] = 1.0 / np.maximum(mass[free], 1e-12)
+        return found
+
     def loads(self, n: int) -> NDArray[np.float64]:
-        """Steady force (n, 3) [N] on each of the kernels' points."""
-        found = np.zeros((n, 3))
+        """Steady force (n, 3) [N] on each of the kernels' points; (0, 3) without any."""
+        found = np.zeros((n if any(any(point.force) for point in self.points) else 0, 3))
+        if not len(found):
+            return found
         for i, point in enumerate(self.points):
             found[i] = point.force
         return found

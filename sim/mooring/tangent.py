@@ -5,9 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.mooring.bending import bending_entries
-from sim.springs.lines.arrays import BED_AREA, DAMPING, DISPLACED, HEIGHT, STIFFNESS, LineArrays
-from sim.springs.lines.forces import link_state
+from sim.jit import kernel
+from sim.springs.forces import Absent
+from sim.springs.forces.links import set_tensions
+from sim.springs.forces.matrices import DAMPING, STIFFNESS
+from sim.springs.integrators.implicit.tangent import add_tangents
+from sim.springs.laws import TAUT
+from sim.springs.line_arrays import STIFFNESS as OF_BODY
+from sim.springs.line_arrays import LineArrays
 
 Array = NDArray[np.float64]
 
@@ -33,77 +38,75 @@ def carried_coordinates(p: LineArrays) -> tuple[NDArray[np.int64], Array]:
     return at, moves.reshape(3 * len(p.carried), 6 * len(p.bodies))
 
 
-def links_at(x: Array, p: LineArrays) -> Array:
-    """Length [m], tension [N], its derivative [N/m] and the damping [N s/m] of every link (4, links) at x (3, n)."""
-    return link_state(np.ascontiguousarray(x).reshape(-1), p).T
+def links_at(x: Array, p: LineArrays) -> tuple[Array, Array]:
+    """Length [m] and tension [N] of every link at x (3, n)."""
+    flat, tension = np.ascontiguousarray(x).reshape(-1), np.empty(len(p.ends))
+    set_tensions(flat, np.zeros_like(flat), p, tension)
+    return np.linalg.norm(x[:, p.ends[:, 1]] - x[:, p.ends[:, 0]], axis=0), tension
 
 
-def links_matrix(x: Array, p: LineArrays, along: Array, across: Array) -> Array:
-    """The matrix (3 nodes, 3 nodes) of links that resist by `along` and `across` (links,) about x (3, n)."""
-    m = p.nodes
-    found = np.zeros(9 * m * m)
-    a, b = p.ends.T
-    r = x[:, b] - x[:, a]
-    unit = r / np.maximum(np.linalg.norm(r, axis=0), 1e-12)
-    for d in range(3):
-        for e in range(3):
-            block = (along - across) * unit[d] * unit[e] + (across if d == e else 0.0)
-            for i, j, sign in ((a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)):
-                np.add.at(found, (d * m + i) * 3 * m + e * m + j, sign * block)
-    return found.reshape(3 * m, 3 * m)
+@kernel
+def set_tangents(x, units, p, part, out):
+    """Set `part` of the tangent of all forces about x (3 n,) times each row of `units` (m, 3 n), as kernels have it."""
+    for i in range(units.shape[0]):
+        for j in range(x.shape[0]):
+            out[i, j] = 0.0
+        add_tangents(x, units[i], 0.0, p, part, TAUT, out[i])
 
 
-def on_bed(x: Array, p: LineArrays) -> Array:
-    """Plan area (nodes,) [m^2] of each node that lies on the bed, else 0."""
-    node, found = p.places[:, 0], np.zeros(p.nodes)
-    np.add.at(found, node, np.where(x[2, node] <= p.bed, p.parts[:, BED_AREA], 0.0))
-    return found
-
-
-def upright_stiffness(x: Array, p: LineArrays) -> Array:
-    """Vertical stiffness (nodes,) [N/m] of each node: the bed's, and that of buoyancy at the surface of still water."""
-    node, height = p.places[:, 0], p.parts[:, HEIGHT]
-    found = p.bed_stiffness * on_bed(x, p)
-    lift = p.gravity * p.parts[:, DISPLACED] / height
-    np.add.at(found, node, np.where(np.abs(x[2, node]) < 0.5 * height, lift, 0.0))
-    return found
-
-
-def add_upright(matrix: Array, p: LineArrays, resistance: Array) -> None:
-    """Add a vertical resistance (nodes,) to `matrix` (3 nodes, 3 nodes)."""
-    upwards = np.arange(2 * p.nodes, 3 * p.nodes)
-    matrix[upwards, upwards] += resistance
-
-
-def with_bodies(matrix: Array, p: LineArrays, start: int) -> Array:
-    """`matrix` (3 nodes, 3 nodes) in free coordinates, plus the bodies' own from column `start` of their rows."""
+def tangent_matrix(x: Array, p: LineArrays, part: int) -> Array:
+    """A part of the tangent of all forces about x (3, n), in free coordinates; see `sim.springs.forces.matrices`."""
     free = free_coordinates(p)
-    if not len(p.bodies):
-        return matrix[np.ix_(free, free)]
     carried, moves = carried_coordinates(p)
-    beside = matrix[np.ix_(free, carried)] @ moves
-    own = moves.T @ matrix[np.ix_(carried, carried)] @ moves
-    for b, row in enumerate(p.bodies):
-        own[6 * b : 6 * b + 6, 6 * b : 6 * b + 6] += row[start : start + 36].reshape(6, 6)
-    return np.block([[matrix[np.ix_(free, free)], beside], [beside.T, own]])
+    count, bodies = len(free), 2 * len(p.bodies)
+    nodes = np.zeros((count + 3 * bodies, 3 * p.nodes))  # unit motions
+    nodes[np.arange(count), free] = 1.0
+    nodes[count:, carried] = moves.T
+    units = np.zeros((len(nodes), 3, p.cols))
+    units[:, :, : p.nodes] = nodes.reshape(len(nodes), 3, p.nodes)
+    # Of a body's two points the first is its displacement, the second its rotation.
+    units[count:, :, p.nodes :] = np.eye(3 * bodies).reshape(3 * bodies, bodies, 3).swapaxes(1, 2)
+    found = np.empty_like(units)
+    set_tangents(
+        np.ascontiguousarray(x).reshape(-1), units.reshape(len(units), -1), p, part, found.reshape(len(units), -1)
+    )
+    nodes = found[:, :, : p.nodes].reshape(len(units), -1)
+    six = nodes[:, carried] @ moves + found[:, :, p.nodes :].swapaxes(1, 2).reshape(len(units), -1)
+    return np.concatenate((nodes[:, free], six), axis=1)
+
+
+def others(p: LineArrays) -> LineArrays:
+    """The mooring without what the statics knows by laws of its own: the drag of a current and declared forces act."""
+    none, no_bends = p.links * [1.0, 0.0, 0.0, 0.0, 0.0], p.bends[:0]
+    return p._replace(
+        links=none, bends=no_bends, loads=0.0 * p.loads, bed_stiffness=0.0, bed_damping=0.0, friction=0.0, gz=0.0
+    )
+
+
+def is_declared(p: LineArrays) -> bool:
+    """True if a force of `System.forces` acts."""
+    return not all(isinstance(one, Absent) for one in p.forces)
+
+
+def declared_stiffness(x: Array, p: LineArrays) -> Array:
+    """Stiffness (nodes, 3, 3) [N/m] of the declared forces at each node about x (3, n)."""
+    if not is_declared(p):
+        return np.zeros((p.nodes, 3, 3))
+    units = np.zeros((3, 3, p.cols))
+    units[np.arange(3), np.arange(3), : p.nodes] = 1.0
+    found = np.empty_like(units)
+    set_tangents(np.ascontiguousarray(x).reshape(-1), units.reshape(3, -1), others(p), STIFFNESS, found.reshape(3, -1))
+    return np.ascontiguousarray(found[:, :, : p.nodes].T)
 
 
 def stiffness_matrix(x: Array, p: LineArrays) -> Array:
-    """The matrix K [N/m] of links, bends, bed, surface and bodies about x (3, n), in free coordinates."""
-    length, tension, slope, _ = links_at(x, p)
-    found = links_matrix(x, p, slope, tension / length)
-    rows, columns, values = bending_entries(p)
-    for e in range(3):
-        np.add.at(found, (e * p.nodes + rows, e * p.nodes + columns), values)
-    add_upright(found, p, upright_stiffness(x, p))
-    return with_bodies(found, p, STIFFNESS)
+    """The matrix K [N/m] about x (3, n), in free coordinates."""
+    return tangent_matrix(x, p, STIFFNESS)
 
 
 def damping_matrix(x: Array, p: LineArrays) -> Array:
-    """The matrix D [N s/m] of links, bed and bodies about x (3, n), in free coordinates; drag is none at rest."""
-    found = links_matrix(x, p, links_at(x, p)[3], np.zeros(len(p.links)))
-    add_upright(found, p, p.bed_damping * on_bed(x, p))
-    return with_bodies(found, p, DAMPING)
+    """The matrix D [N s/m] about x (3, n), in free coordinates; drag is none at rest."""
+    return tangent_matrix(x, p, DAMPING)
 
 
 def moves_on_free(forces: Array, p: LineArrays) -> Array:
@@ -118,7 +121,7 @@ def forces_on_free(forces: Array, x: Array, p: LineArrays) -> Array:
     found = moves_on_free(forces, p)
     six = found[len(found) - 6 * len(p.bodies) :]
     for b, row in enumerate(p.bodies):
-        six[6 * b : 6 * b + 6] += p.steady[b] - row[STIFFNESS : STIFFNESS + 36].reshape(6, 6) @ six_of(x, p, b)
+        six[6 * b : 6 * b + 6] += p.steady[b] - row[OF_BODY : OF_BODY + 36].reshape(6, 6) @ six_of(x, p, b)
     return found
 
 
@@ -129,7 +132,6 @@ def moved(x: Array, step: Array, p: LineArrays) -> Array:
     nodes, six = x[:, : p.nodes].reshape(-1).copy(), step[len(free) :]
     nodes[free] += step[: len(free)]
     nodes[carried] += moves @ six
-    # Of a body's two points the first is its displacement, the second its rotation.
     bodies = x[:, p.nodes :] + six.reshape(-1, 3).T
     return np.concatenate((nodes.reshape(3, -1), bodies), axis=1)
 

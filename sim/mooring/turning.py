@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring.statics import Rest
-from sim.springs.lines.forces import set_rest_forces
+from sim.springs.acceleration import set_rest_forces
 
 if TYPE_CHECKING:
     from sim.mooring.system import System
@@ -32,9 +32,9 @@ def with_turning(system: "System", rest: Rest) -> "System":
     Where a body would fall over by it, it gets none in that direction: `MooredBody` allows no negative stiffness.
     """
     p = system.kernel_view(1.0)
-    f = np.zeros(9 * p.cols)
+    f = np.zeros(3 * p.cols)
     set_rest_forces(np.ascontiguousarray(rest.nodes).reshape(-1), p, f)
-    forces = f[: 3 * p.cols].reshape(3, p.cols)
+    forces = f.reshape(3, p.cols)
     bodies = []
     for b, body in enumerate(system.bodies):
         stiffness = np.array(body.stiffness, dtype=np.float64)

@@ -14,7 +14,7 @@ from sim.springs.forces import each
 from sim.springs.forces.air import wind_scratch_size
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 from sim.springs.forces.links import link_forces, scale_ends
-from sim.springs.lines.forces import accelerate_lines, lines_scratch_size, set_line_pins
+from sim.springs.line_points import accelerate_masses, set_inverse_masses, set_line_pins
 from sim.springs.pins import set_paths
 
 
@@ -33,7 +33,7 @@ def accelerate_rope(x, v, p, b, c, f, a):
     m = n + one
     link_forces(
         x, v, f, np.uint64(0), one, one, n - one, n, m,
-        p.law, p.links[0, 1], b * p.links[0, 2], p.links[0, 0], p.axial and b > 0,
+        p.law, p.families[0, 1], b * p.families[0, 2], p.families[0, 0], p.axial and b > 0,
     )  # fmt: skip
     set_from_differences(f, v, p.inverse_masses, a, np.uint64(0), np.uint64(0), n, p.mass * p.gx, c)
     set_from_differences(f, v, p.inverse_masses, a, n, m, n, p.mass * p.gy, c)
@@ -76,7 +76,7 @@ def accelerate_grid(x, v, p, b, c, f, a):
             ratio = p.side if di == 0 and (i == 0 or i == p.rows - 1) else 1.0
             link_forces(
                 x, v, f, ia, ib, np.uint64(0), count, n, m,
-                p.law, ratio * p.links[q, 1], ratio * b * p.links[q, 2], p.links[q, 0], p.axial and b > 0,
+                p.law, ratio * p.families[q, 1], ratio * b * p.families[q, 2], p.families[q, 0], p.axial and b > 0,
             )  # fmt: skip
             if dj == 0 and p.side != 1.0:
                 scale_ends(f, np.uint64(0), count, m, p.side)
@@ -109,6 +109,21 @@ def accelerate_wide(x, v, t, p, with_damping, f, a):
     accelerate_inline(x, v, t, p, with_damping, f, a)
 
 
+@kernel(noalias=True, inline=True)
+def set_forces(x, v, t, p, with_damping, f, a):
+    """Set the forces a (3 n,) [N] on every node and body of lines, prescribed ones too."""
+    for j in range(a.shape[0]):
+        a[j] = 0.0
+    add_others(x, v, t, p, with_damping, f, a)
+
+
+@kernel(noalias=True, allocates=False)
+def accelerate_lines(x, v, t, p, with_damping, f, a):
+    set_inverse_masses(x, p)
+    set_forces(x, v, t, p, with_damping, f, a)
+    accelerate_masses(p, a)
+
+
 # Acceleration a of every particle at time t, 0 where pinned. with_damping False leaves out every force that depends on
 # v, for integrators that treat damping apart. f: scratch of `make_scratch`.
 accelerate = by_net(rope=accelerate_inline, grid=accelerate_wide, lines=accelerate_lines)
@@ -118,7 +133,7 @@ scratch_size = by_net(
     rope=kernel(lambda p: 3 * (p.cols + 1), inline=True),
     grid=kernel(lambda p: 3 * (p.cols + 1) + wind_scratch_size(p), inline=True),
     cloth=kernel(lambda p: p.bands * cloth_scratch_size(p.cols) + wind_scratch_size(p), inline=True),
-    lines=lines_scratch_size,
+    lines=kernel(lambda p: 0, inline=True),
 )
 
 
@@ -135,3 +150,9 @@ set_pins = by_net(rope=set_paths, grid=set_paths, lines=set_line_pins)
 def set_acceleration(x, v, t, p, a):
     """`accelerate` with every force, for callers outside the kernels."""
     accelerate(x, v, t, p, True, make_scratch(p), a)
+
+
+@kernel
+def set_rest_forces(x, p, out):
+    """Set the forces (3 n,) [N] on every node and body of lines that do not move, in still or steadily moving water."""
+    set_forces(x, np.zeros(x.shape[0]), 0.0, p, True, make_scratch(p), out)

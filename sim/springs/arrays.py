@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import chosen, kernel
-from sim.springs.lines.arrays import LineArrays
+from sim.springs.laws.curve import TensionCurve
+from sim.springs.line_arrays import LineArrays
 
 
 class RopeArrays(NamedTuple):
@@ -22,7 +23,7 @@ class RopeArrays(NamedTuple):
     gy: float
     gz: float
     offsets: NDArray[np.int64]  # (families, 2)
-    links: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
+    families: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
     law: Any  # numbers of the links' law, see sim/springs/laws
     forces: Any  # `Declared`: numbers of the forces that have any, see sim/springs/forces
     damped: bool  # any link damping
@@ -73,6 +74,8 @@ class WideArrays(NamedTuple):
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # number of bands of rows; each thread computes the forces of one band
     side: float  # stiffness and damping of links along a side, over their family's
+    ends: NDArray[np.int64]  # (links, 3): both points of each, and its family
+    links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m] of each
 
 
 # A net of any families of links, and one of those of CLOTH. A kernel is compiled for each of the three classes of
@@ -90,18 +93,83 @@ def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
     return chosen(variants if lines is None else {**variants, LineArrays: lines})
 
 
+grid_mass = kernel(lambda p, j: p.mass[j], inline=True)
 # Mass of point j [kg]. A rope of equal masses has one number for all, which its kernels need not load.
-mass_at = by_net(
-    rope=kernel(lambda p, j: p.mass, inline=True), grid=kernel(lambda p, j: p.mass[j], inline=True)
+mass_at = by_net(rope=kernel(lambda p, j: p.mass, inline=True), grid=grid_mass, lines=grid_mass)
+
+every_point = kernel(lambda p: p.rows * p.cols, inline=True)
+# Number of points that forces act on. Of lines two more a body follow, for its displacement and its rotation.
+point_count = by_net(rope=every_point, grid=every_point, lines=kernel(lambda p: p.nodes, inline=True))
+
+is_free = kernel(lambda p, j: p.inverse_masses[j] > 0.0, inline=True)
+# True unless the motion of point j is prescribed.
+is_moving = by_net(rope=is_free, grid=is_free, lines=kernel(lambda p, j: p.moving[j], inline=True))
+
+
+@kernel(inline=True)
+def push_mass(p, a, j, fx, fy, fz):
+    n, j = np.uint64(p.rows * p.cols), np.uint64(j)
+    w = p.inverse_masses[j]
+    a[j] += w * fx
+    a[n + j] += w * fy
+    a[n + n + j] += w * fz
+
+
+@kernel(inline=True)
+def push_node(p, a, j, fx, fy, fz):
+    n, j = np.uint64(p.cols), np.uint64(j)
+    a[j] += fx
+    a[n + j] += fy
+    a[n + n + j] += fz
+
+
+# Add a force [N] on point j to what `accelerate` sums in a: accelerations, but of lines, whose masses in water are
+# matrices, forces.
+push = by_net(rope=push_mass, grid=push_mass, lines=push_node)
+
+
+@kernel(inline=True)
+def next_link(p, q):
+    return q, q + 1, p.families[0, 0], p.families[0, 1], p.families[0, 2]
+
+
+@kernel(inline=True)
+def listed_link(p, q):
+    return p.ends[q, 0], p.ends[q, 1], p.links[q, 0], p.links[q, 1], p.links[q, 2]
+
+
+# Number of links, and of link q both points, rest length [m], stiffness [N/m] and damping [N s/m].
+listed = kernel(lambda p: p.ends.shape[0], inline=True)
+link_count = by_net(rope=kernel(lambda p: p.cols - 1, inline=True), grid=listed, lines=listed)
+link_at = by_net(rope=next_link, grid=listed_link, lines=listed_link)
+law_of_net = kernel(lambda p, q: p.law, inline=True)
+law_of_line = kernel(lambda p, q: TensionCurve(p.curves, p.links[q, 3], p.links[q, 4], p.slack_damping), inline=True)
+# Numbers of its law.
+law_at = by_net(rope=law_of_net, grid=law_of_net, lines=law_of_line)
+# Damping [N s/m] of link q.
+link_damping = by_net(
+    rope=kernel(lambda p, q: p.families[0, 2], inline=True), grid=kernel(lambda p, q: p.links[q, 2], inline=True)
+)  # fmt: skip
+# Number of the family of link q.
+family_of = by_net(
+    rope=kernel(lambda p, q: 0, inline=True), grid=kernel(lambda p, q: p.ends[q, 2], inline=True)
 )  # fmt: skip
 
 
 @kernel(inline=True)
-def placed_link(p, q, i, j):
-    on_row = p.offsets[q, 0] == 0 and (i == 0 or i == p.rows - 1)
-    on_column = p.offsets[q, 1] == 0 and (j == 0 or j == p.cols - 1)
-    return p.side if on_row or on_column else 1.0
+def span(x, n, a, b):
+    """(x, y, z) from point a to point b, of positions or velocities x (3 n,)."""
+    n, a, b = np.uint64(n), np.uint64(a), np.uint64(b)  # unsigned, as in `sim.springs.acceleration`
+    return x[b] - x[a], x[n + b] - x[n + a], x[n + n + b] - x[n + n + a]
 
 
-# Stiffness and damping of the link of family q that begins at (i, j), over the family's.
-link_ratio = by_net(rope=kernel(lambda p, q, i, j: 1.0, inline=True), grid=placed_link)
+@kernel(inline=True)
+def add_pair(out, n, a, b, fx, fy, fz):
+    """Add (fx, fy, fz) at point a and take it at point b."""
+    n, a, b = np.uint64(n), np.uint64(a), np.uint64(b)
+    out[a] += fx
+    out[n + a] += fy
+    out[n + n + a] += fz
+    out[b] -= fx
+    out[n + b] -= fy
+    out[n + n + b] -= fz

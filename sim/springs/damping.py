@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net, link_ratio
-from sim.springs.forces import SEPARATE, each
+from sim.springs.arrays import by_net, family_of, link_at, link_count, span
+from sim.springs.forces import each
 from sim.springs.forces.links import TINY
 from sim.springs.laws import by_damping, damps
-from sim.springs.lines.damping import damp_lines, make_lines_decay
+from sim.springs.line_points import set_inverse_masses
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
 
@@ -114,7 +114,7 @@ def damp_links(x, v, decay, p, reverse):
     families = p.offsets.shape[0]
     for step in range(families):
         q = families - 1 - step if reverse else step
-        di, dj, b = p.offsets[q, 0], p.offsets[q, 1], p.links[q, 2]
+        di, dj, b = p.offsets[q, 0], p.offsets[q, 1], p.families[q, 2]
         if b == 0.0:
             continue
         share = decay[q]
@@ -153,18 +153,14 @@ def make_net_decay(p, s):
     """
     families, n, w = p.offsets.shape[0], p.rows * p.cols, p.inverse_masses
     decay = np.zeros((kept_shares(p.law, families) + families + 1, n))
-    for q in range(families):
-        di, dj, b = p.offsets[q, 0], p.offsets[q, 1], p.links[q, 2]
-        last, before, share = 0.0, 0.0, 0.0
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                both = w[a] + w[a + di * p.cols + dj]
-                ratio = link_ratio(p, q, i, j)
-                if both != last or ratio != before:  # nearly all links are equal
-                    last, before = both, ratio
-                    share = -math.expm1(-ratio * b * both * s) / both if both > 0.0 else 0.0
-                decay[q, a] = share
+    last, before, share = 0.0, 0.0, 0.0
+    for q in range(link_count(p)):
+        a, b, _, _, c = link_at(p, q)
+        both = w[a] + w[b]
+        if both != last or c != before:  # nearly all links are equal
+            last, before = both, c
+            share = -math.expm1(-c * both * s) / both if both > 0.0 else 0.0
+        decay[family_of(p, q), a] = share
     last, keep = 0.0, 1.0
     for j in range(n):
         if w[j] != last:
@@ -187,21 +183,18 @@ kept_shares = by_damping(
 def choose_shares(law, x, decay, p):
     """Shares of 0 for the links whose damping does not act at positions x, and their own for the others."""
     n, families = p.rows * p.cols, p.offsets.shape[0]
-    for q in range(families):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                b = a + di * p.cols + dj
-                rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-                acts = damps(law, p.links[q, 0], math.sqrt(rx * rx + ry * ry + rz * rz))
-                decay[q, a] = decay[families + 1 + q, a] if acts else 0.0
+    for q in range(link_count(p)):
+        a, b, rest, _, _ = link_at(p, q)
+        rx, ry, rz = span(x, n, a, b)
+        acts, family = damps(law, rest, math.sqrt(rx * rx + ry * ry + rz * rz)), family_of(p, q)
+        decay[family, a] = decay[families + 1 + family, a] if acts else 0.0
 
 
 set_shares = by_damping(always=kernel(lambda law, x, decay, p: None, inline=True), at_some_lengths=choose_shares)
 
-# Factors of `damp` for a time s [s].
-make_decay = by_net(rope=make_net_decay, grid=make_net_decay, lines=make_lines_decay)
+make_no_decay = kernel(lambda p, s: np.empty((0, 0)))
+# Factors of `damp` for a time s [s]. Of lines nothing is known: masses in water change with the tangents.
+make_decay = by_net(rope=make_net_decay, grid=make_net_decay, lines=make_no_decay)
 
 
 @kernel(noalias=True, inline=True)
@@ -247,7 +240,7 @@ def damp_motion(x, v, decay, p, reverse):
 
 
 never = kernel(lambda p: False, inline=True)
-other_acts = each("acts", "p", "truth", SEPARATE, inline=True)
+other_acts = each("acts", "p", "truth", having="accelerate", inline=True)
 damp_others = each("damp", "x, v, t, s, p, reverse", "sum", turns=True, allocates=False)
 
 
@@ -274,6 +267,13 @@ def damp_inline(x, v, t, s, decay, p, reverse):
 def damp_wide(x, v, t, s, decay, p, reverse):
     """`damp` of any other net, compiled once for all places of a kernel that call it."""
     return damp_inline(x, v, t, s, decay, p, reverse)
+
+
+@kernel(allocates=False)
+def damp_lines(x, v, t, s, decay, p, reverse):
+    """`damp` of lines, with the inverse masses at the place where the step is."""
+    set_inverse_masses(x, p)
+    return damp_others(x, v, t, s, p, reverse)
 
 
 # All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards. Returns the work [J]

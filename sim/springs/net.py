@@ -201,13 +201,7 @@ class Net:
 
     def link_ratios(self, di: int, dj: int) -> NDArray[np.float64]:
         """Stiffness and damping over the family's of the links to (di, dj) further, (rows - di, cols - |dj|)."""
-        rows, cols = self.shape
-        ratios = np.ones((max(0, rows - di), max(0, cols - abs(dj))))
-        if di == 0:
-            ratios[[0, -1]] = self.side_ratio
-        if dj == 0 and ratios.size:
-            ratios[:, [0, -1]] = self.side_ratio
-        return ratios
+        return link_ratios(self.shape, di, dj, self.side_ratio)
 
     def spacing(self, di: int, dj: int) -> float:
         """Rest length [m] of the links from (i, j) to (i + di, j + dj), FARTHEST where there are none."""
@@ -256,7 +250,7 @@ class Net:
             gy=float(self.gravity[1]),
             gz=float(self.gravity[2]),
             offsets=np.array([f[:2] for f in self.families], dtype=np.int64).reshape(-1, 2),
-            links=np.array([f[2:] for f in self.families], dtype=np.float64).reshape(-1, 3),
+            families=np.array([f[2:] for f in self.families], dtype=np.float64).reshape(-1, 3),
             law=self.law,
             forces=declared(self.forces),
             damped=any(f.damping > 0 for f in self.families),
@@ -291,7 +285,7 @@ class Net:
         if self.is_rope and self.air is None and self.thickness == 0.0 and self.mass_ratios is None:
             return view
         view = view._replace(mass=self.masses.ravel())
-        air = self.air or Air()
+        air, (ends, links) = self.air or Air(), link_table(self.shape, self.families, float(self.side_ratio))
         wide = WideArrays(
             has_air=self.air is not None,
             wind_x=float(air.wind[0]),
@@ -306,8 +300,36 @@ class Net:
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             bands=self.bands,
             side=float(self.side_ratio),
+            ends=ends,
+            links=links,
         )
         return (ClothArrays if [f[:2] for f in self.families] == CLOTH else GridArrays)(*view, *wide)
+
+
+def link_ratios(shape: tuple[int, int], di: int, dj: int, side: float) -> NDArray[np.float64]:
+    """`Net.link_ratios` of a net of this shape and `side_ratio`."""
+    rows, cols = shape
+    ratios = np.ones((max(0, rows - di), max(0, cols - abs(dj))))
+    if di == 0:
+        ratios[[0, -1]] = side
+    if dj == 0 and ratios.size:
+        ratios[:, [0, -1]] = side
+    return ratios
+
+
+@functools.lru_cache(maxsize=4)
+def link_table(
+    shape: tuple[int, int], families: tuple[Family, ...], side: float
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """`ends` and `links` of the kernels' record. Kept, as a net that is dragged is another in every frame."""
+    points = np.arange(shape[0] * shape[1]).reshape(shape)
+    ends, links = [np.zeros((0, 3), np.int64)], [np.zeros((0, 3))]
+    for family, (di, dj, rest, stiffness, damping) in enumerate(families):
+        ratios = link_ratios(shape, di, dj, side).ravel()
+        near = points[: max(0, shape[0] - di), max(0, -dj) : max(0, shape[1] - max(0, dj))].ravel()
+        ends.append(np.column_stack([near, near + di * shape[1] + dj, np.full_like(near, family)]))
+        links.append(np.column_stack([np.full_like(ratios, rest), ratios * stiffness, ratios * damping]))
+    return np.concatenate(ends), np.concatenate(links)
 
 
 def start_positions(x0: Any) -> NDArray[np.float64]:

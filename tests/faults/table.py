@@ -7,7 +7,7 @@ from tests.faults.running import key_of_fault, read_results
 
 RESULTS = ("found", "not found", "open", "untried")
 # Deeper than packages, and counted in them too.
-PARTS = ("app/scenes/mooring", "sim/springs/lines")
+PARTS = ("app/scenes/mooring",)
 
 
 def rows_of(module: str) -> list[str]:

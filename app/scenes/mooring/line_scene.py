@@ -25,7 +25,7 @@ from sim.mooring.gauge import modes
 from sim.mooring.simulate import LineState
 from sim.mooring.statics import Rest, rest_of, straight
 from sim.springs import INTEGRATORS
-from sim.springs.lines.energy import set_tensions
+from sim.springs.forces.bending import set_line_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of
 from sim.validation import ConvergenceError, DivergenceError
 from sim.waves import AMPLITUDE, Waves
@@ -238,7 +238,7 @@ class LineScene(abc.ABC):
         p, state = self.system.kernel_view(self.step), self.state
         tension = np.empty(len(p.ends))
         v = state.velocities(p, 0.0)
-        set_tensions(state.x.reshape(-1), v, p, tension)
+        set_line_tensions(state.x.reshape(-1), v, p, tension)
         self.tension, self.points = tension[self.links], self.points_at(state.x)
         if self.is_dragged:
             self.tensions.leave_out(state.t, self.params.wave_period)

@@ -6,10 +6,15 @@ Potential of gravity and kinetic energy are those of the free particles; pins tr
 
 from typing import NamedTuple
 
+import numpy as np
+
 from sim.jit import kernel
-from sim.springs.arrays import by_net, mass_at
+from sim.springs.acceleration import accelerate, make_scratch
+from sim.springs.arrays import by_net, mass_at, point_count
 from sim.springs.forces import each
-from sim.springs.lines.energy import lines_energies, lines_kinetic_energy, lines_pins_damping_power, lines_power
+from sim.springs.forces.water import inertia_power
+from sim.springs.line_arrays import BODY_MASS
+from sim.springs.line_points import half_form, six
 
 
 class Energy(NamedTuple):
@@ -30,18 +35,39 @@ def net_kinetic_energy(v, p):
     """1/2 m v^2 over the free particles."""
     total = 0.0
     n = p.rows * p.cols
-    for j in range(n):
+    for j in range(point_count(p)):
         if p.inverse_masses[j] > 0.0:
             total += mass_at(p, j) * (v[j] ** 2 + v[n + j] ** 2 + v[2 * n + j] ** 2)
     return 0.5 * total
+
+
+@kernel(allocates=False)
+def lines_kinetic_energy(v, p):
+    """With that of the bodies, which have the masses of the nodes that they carry; the water's belongs to the water."""
+    total = net_kinetic_energy(v, p)
+    for b in range(p.bodies.shape[0]):
+        total += half_form(p, b, BODY_MASS, six(v, p.cols, p.nodes + 2 * b))
+    return total
 
 
 # Kinetic energy [J].
 kinetic_energy = by_net(rope=net_kinetic_energy, grid=net_kinetic_energy, lines=lines_kinetic_energy)
 
 
+power_of_forces = each("power", "x, v, t, p, with_damping", "two sums")
+net_power = kernel(lambda x, v, t, p, with_damping: power_of_forces(x, v, t, p, with_damping), inline=True)
+
+
+@kernel
+def lines_power(x, v, t, p, with_damping):
+    a = np.empty(v.shape[0])
+    accelerate(x, v, t, p, with_damping, make_scratch(p), a)
+    lost, work = power_of_forces(x, v, t, p, with_damping)
+    return lost, work - inertia_power(x, v, a, p)
+
+
 # (dissipated, put in) [W]. with_damping False: without every force that depends on v.
-power = each("power", "x, v, t, p, with_damping", "two sums", lines=lines_power)
+power = by_net(rope=net_power, grid=net_power, lines=lines_power)
 
 
 @kernel(allocates=False)
@@ -53,7 +79,7 @@ def add_power(x, v, t, p, with_damping, weight, ledger):
 
 
 # What moving pins put in [W] through all damping.
-pins_damping_power = each("pins_power", "x, v, p", "sum", lines=lines_pins_damping_power)
+pins_damping_power = each("pins_power", "x, v, p", "sum")
 
 
 @kernel(inline=True)
@@ -91,10 +117,7 @@ stored_energies = each("energy", "x, t, p", "stores", allocates=False)
 
 
 @kernel(allocates=False)
-def net_energies(x, v, t, p):
+def energies(x, v, t, p):
+    """(kinetic, elastic, gravity, contact) [J]."""
     elastic, gravity, contact = stored_energies(x, t, p)
     return kinetic_energy(v, p), elastic, gravity, contact
-
-
-# (kinetic, elastic, gravity, contact) [J].
-energies = by_net(rope=net_energies, grid=net_energies, lines=lines_energies)

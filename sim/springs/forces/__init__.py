@@ -10,8 +10,9 @@ To add a force, write a module in this folder with
 2. kernels for its facets, as `Force` lists them; none for a facet that it does not have.
 3. `FORCE = Force(...)`.
 
-The forces without numbers of their own read those of the net's record. Links, gravity and drag accelerate in the loops
-over links of `sim/springs/acceleration.py`, which are written by hand for ropes, cloths and other nets.
+The forces without numbers of their own read those of the net's record. Of ropes, cloths and other nets links, gravity
+and drag accelerate in the loops over links of `sim/springs/acceleration.py`, which are written by hand. Lines under
+water are nets with more forces: water, bed, bending, steady loads and the bodies that they hold.
 """
 
 import math
@@ -22,6 +23,7 @@ from typing import Any, NamedTuple
 from sim.jit import chosen, generated, kernel, modules_of
 from sim.springs.arrays import GridArrays, RopeArrays, by_net
 from sim.springs.forces.record import Absent, Force
+from sim.springs.line_arrays import LineArrays
 from sim.validation import argument_error, check_number
 
 FORCES: tuple[Force, ...] = tuple(
@@ -30,8 +32,6 @@ FORCES: tuple[Force, ...] = tuple(
         key=lambda force: (force.rank, force.name),
     )
 )
-# Those that are not in the loops over the links.
-SEPARATE = tuple(force for force in FORCES if force.accelerate is not None)
 # Those with numbers of their own. A net has a record of these, so that its kernels hold only the forces that it has.
 OWN = {force.numbers: force for force in FORCES if force.numbers is not None}
 Declared = namedtuple("Declared", [force.name for force in OWN.values()], module=__name__)
@@ -69,14 +69,13 @@ def each(
     result: str,
     forces: Sequence[Force] = FORCES,
     *,
+    having: str = "",
     turns: bool = False,
-    lines: Any = None,
     **options: Any,
 ) -> Any:
-    """A kernel of `parameters` that calls this facet of all forces that have it and act.
+    """A kernel of `parameters` that calls this facet of all forces that have it, or the facet `having`, and act.
 
-    result: a key of SUMMATIONS. turns: in the reverse order if the parameter `reverse` is True. lines: the kernel of
-    lines under water. options: of `kernel`.
+    result: a key of SUMMATIONS. turns: in the reverse order if the parameter `reverse` is True. options: of `kernel`.
     """
     sums = SUMMATIONS[result]
     given = f"{parameters}, o" if result == "placed" else parameters
@@ -88,9 +87,9 @@ def each(
         done = sums.call.format(call=f"{force.name}_{facet}({own}{given})", size=size, stores=force.stores)
         return done if acts == "True" else f"if {acts}: {done}"
 
-    def kernels(force: Force) -> dict[str, Any]:
+    def kernels(force: Force, net: type) -> dict[str, Any]:
         """Kernels by their names in `call`; of a force with numbers, the choice between it and nothing."""
-        found = {name: getattr(force, name) for name in {facet, "coupled_size"} - {"acts"}}
+        found = {name: force.facet(name, net) for name in {facet, "coupled_size"} - {"acts"}}
         if force.numbers:
             for name, one in found.items():
                 all_given, nothing = (given, sums.nothing) if name == facet else ("p", "0")
@@ -101,19 +100,19 @@ def each(
         return {f"{force.name}_{name}": one for name, one in found.items()}
 
     def of(net: type, name: str) -> Any:
-        having = [one for one in forces if (facet == "acts" or getattr(one, facet) is not None) and net in one.nets]
-        if len(having) == 1 and having[0].acts == "True" and not having[0].numbers:
-            return getattr(having[0], facet)
-        calls = list(map(call, having))
+        acting = [one for one in forces if one.facet(having or facet, net) is not None]
+        if len(acting) == 1 and acting[0].acts == "True" and not acting[0].numbers:
+            return acting[0].facet(facet, net)
+        calls = list(map(call, acting))
         if turns:
             order = [f"({len(calls) - 1 - at} if reverse else {at})" for at in range(len(calls))]
             calls = [f"    if turn == {at}:\n            {one}" for at, one in zip(order, calls, strict=True)]
-            calls.insert(0, f"for turn in range({len(having)}):")
-        head = f"def {'_'.join((name, facet, *(force.name for force in having)))}({parameters}):"
-        names = {name: one for force in having for name, one in kernels(force).items()}
+            calls.insert(0, f"for turn in range({len(acting)}):")
+        head = f"def {'_'.join((name, facet, *(force.name for force in acting)))}({parameters}):"
+        names = {name: one for force in acting for name, one in kernels(force, net).items()}
         return generated("\n    ".join([head, sums.start, *calls, sums.end]), names, __name__, **options)
 
-    return by_net(rope=of(RopeArrays, "rope"), grid=of(GridArrays, "wide"), lines=lines)
+    return by_net(rope=of(RopeArrays, "rope"), grid=of(GridArrays, "wide"), lines=of(LineArrays, "lines"))
 
 
 def check_forces(forces: Any) -> tuple[Any, ...]:

@@ -52,7 +52,7 @@ class Sheet(NamedTuple):
     rows: int
     cols: int
     offsets: NDArray[np.int64]
-    links: NDArray[np.float64]
+    families: NDArray[np.float64]
     inverse_masses: NDArray[np.float64]
     mass: NDArray[np.float64]
     gx: float
@@ -65,7 +65,7 @@ class Sheet(NamedTuple):
 @kernel(inline=True)
 def sheet_of(p):
     return Sheet(
-        p.rows, p.cols, p.offsets, p.links, p.inverse_masses, p.mass, p.gx, p.gy, p.gz, p.side, p.axial
+        p.rows, p.cols, p.offsets, p.families, p.inverse_masses, p.mass, p.gx, p.gy, p.gz, p.side, p.axial
     )  # fmt: skip
 
 
@@ -98,7 +98,7 @@ def accelerate_rows(x, v, p, law, b, c, f, o, a, start, stop):
                 ratio = p.side if di == 0 and (i == 0 or i == p.rows - 1) else 1.0
                 link_forces(
                     x, v, f, ia, ib, of + np.uint64(first), count, n, m,
-                    law, ratio * p.links[q, 1], ratio * b * p.links[q, 2], p.links[q, 0], axial,
+                    law, ratio * p.families[q, 1], ratio * b * p.families[q, 2], p.families[q, 0], axial,
                 )  # fmt: skip
                 if dj == 0 and p.side != 1.0:
                     scale_ends(f, of, count, m, p.side)

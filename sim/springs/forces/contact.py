@@ -10,10 +10,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import mass_at
+from sim.springs.arrays import mass_at, push
 from sim.springs.forces.links import TINY
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block, add_product
-from sim.springs.forces.record import Force
+from sim.springs.forces.record import SPRING_NETS, Force
 
 
 @kernel(inline=True)
@@ -104,10 +104,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
             if depth > 0.0:
                 ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
                 fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, mass_at(p, j), p, on_sphere, with_damping)
-                w = p.inverse_masses[j]
-                a[j] += w * fx
-                a[n + j] += w * fy
-                a[2 * n + j] += w * fz
+                push(p, a, j, fx, fy, fz)
 
 
 @kernel(allocates=False)
@@ -259,6 +256,6 @@ def blocks(x, v, t, g, p, points):
 
 
 FORCE = Force(
-    "contact", rank=40, acts="p.has_floor or p.has_sphere", accelerate=accelerate, damp=damp, energy=energy,
-    power=power, tangent=tangent, blocks=blocks, stores="contact",
+    "contact", rank=40, nets=SPRING_NETS, acts="p.has_floor or p.has_sphere", accelerate=accelerate, damp=damp,
+    energy=energy, power=power, tangent=tangent, blocks=blocks, stores="contact",
 )  # fmt: skip

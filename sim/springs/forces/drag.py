@@ -2,7 +2,7 @@
 
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING
-from sim.springs.forces.record import Force
+from sim.springs.forces.record import SPRING_NETS, Force
 
 
 @kernel(allocates=False)
@@ -34,4 +34,6 @@ def blocks(x, v, t, g, p, points):
             points[j + e * n] += g * p.drag
 
 
-FORCE = Force("drag", rank=5, acts="p.drag > 0.0", power=power, tangent=tangent, blocks=blocks, is_smooth=True)
+FORCE = Force(
+    "drag", rank=5, nets=SPRING_NETS, acts="p.drag > 0.0", power=power, tangent=tangent, blocks=blocks, is_smooth=True,
+)  # fmt: skip

@@ -3,9 +3,10 @@
 import math
 
 from sim.jit import kernel
+from sim.springs.arrays import push
 from sim.springs.forces.links import TINY
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
-from sim.springs.forces.record import Force
+from sim.springs.forces.record import SPRING_NETS, Force
 
 
 @kernel(inline=True)
@@ -22,10 +23,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
     b = p.grab_b if with_damping else 0.0
     dx, dy, dz = p.grab_x - x[g], p.grab_y - x[n + g], p.grab_z - x[2 * n + g]
     s = secant(dx, dy, dz, p.grab_k, p.grab_max)
-    w = p.inverse_masses[g]
-    a[g] += w * (s * dx - b * v[g])
-    a[n + g] += w * (s * dy - b * v[n + g])
-    a[2 * n + g] += w * (s * dz - b * v[2 * n + g])
+    push(p, a, g, s * dx - b * v[g], s * dy - b * v[n + g], s * dz - b * v[2 * n + g])
 
 
 @kernel(inline=True)
@@ -80,6 +78,6 @@ def blocks(x, v, t, g, p, points):
 
 
 FORCE = Force(
-    "grab", rank=50, acts="p.grabbed >= 0", accelerate=accelerate, damp=damp, power=power, tangent=tangent,
-    blocks=blocks,
+    "grab", rank=50, nets=SPRING_NETS, acts="p.grabbed >= 0", accelerate=accelerate, damp=damp, power=power,
+    tangent=tangent, blocks=blocks,
 )  # fmt: skip

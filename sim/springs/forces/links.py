@@ -5,11 +5,22 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import link_ratio
+from sim.springs.arrays import (
+    add_pair,
+    by_net,
+    is_moving,
+    law_at,
+    link_at,
+    link_count,
+    link_damping,
+    push,
+    span,
+)
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
-from sim.springs.forces.record import Force
-from sim.springs.laws import damps, force_density, stiffness
+from sim.springs.forces.record import Force, of_nets
+from sim.springs.laws import damps, force_density, stiffness, tension
 from sim.springs.laws import energy as link_energy
+from sim.springs.line_points import kick, mobility
 
 TINY = 1e-300  # [m^2] under the root: coincident points get no spring force instead of 0/0
 
@@ -69,105 +80,163 @@ def scale_ends(f, of, n, M, s):
         f[np.uint64(e) * M + last] *= s
 
 
+@kernel(inline=True)
+def lengthening(x, v, p, n, q):
+    """Length [m] of link q, the rate [m/s] at which it grows, and its damping [N s/m] if it acts."""
+    (a, b, rest, _, c), law = link_at(p, q), law_at(p, q)
+    rx, ry, rz = span(x, n, a, b)
+    du, dv, dw = span(v, n, a, b)
+    length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+    return length, (du * rx + dv * ry + dw * rz) / length, c if damps(law, rest, length) else 0.0
+
+
+@kernel(allocates=False)
+def set_tensions(x, v, p, out):
+    """Set the tension (links,) [N] of every link, negative where it is pressed, with its damping along it."""
+    n = p.rows * p.cols
+    for q in range(link_count(p)):
+        _, _, rest, k, _ = link_at(p, q)
+        length, rate, damping = lengthening(x, v, p, n, q)
+        out[q] = tension(law_at(p, q), k, rest, length) + damping * rate
+
+
+@kernel(noalias=True, allocates=False)
+def accelerate(x, v, t, p, with_damping, f, a):
+    """Of lines; those of nets are in `sim.springs.acceleration`."""
+    n = p.cols
+    for q in range(link_count(p)):
+        i, j, rest, k, _ = link_at(p, q)
+        rx, ry, rz = span(x, n, i, j)
+        length, rate, damping = lengthening(x, v, p, n, q)
+        s = force_density(law_at(p, q), k, rest, length)
+        if with_damping:
+            s += damping * rate / length
+        push(p, a, i, s * rx, s * ry, s * rz)
+        push(p, a, j, -s * rx, -s * ry, -s * rz)
+
+
+@kernel(allocates=False)
+def damp_link(x, v, s, p, q):
+    """The damping of link q of a line for a time s [s]: its nodes' closing speed decays exponentially."""
+    n = p.cols
+    a, b, _, _, _ = link_at(p, q)
+    rx, ry, rz = span(x, n, a, b)
+    length, rate, damping = lengthening(x, v, p, n, q)
+    rx, ry, rz = rx / length, ry / length, rz / length
+    both = mobility(p, a, rx, ry, rz) + mobility(p, b, rx, ry, rz)
+    if both == 0.0 or damping == 0.0:
+        return
+    impulse = -math.expm1(-damping * both * s) / both * rate
+    kick(p, v, a, impulse * rx, impulse * ry, impulse * rz)
+    kick(p, v, b, -impulse * rx, -impulse * ry, -impulse * rz)
+
+
+@kernel(allocates=False)
+def damp(x, v, t, s, p, reverse):
+    """Of lines, one link after the other; that of nets is in `sim.springs.damping`."""
+    count = link_count(p)
+    for turn in range(count):
+        damp_link(x, v, s, p, count - 1 - turn if reverse else turn)
+    return 0.0
+
+
 @kernel(allocates=False)
 def energy(x, t, p):
     """Of the links [J]."""
-    total = 0.0
-    n = p.rows * p.cols
-    for q in range(p.offsets.shape[0]):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest, k = p.links[q, 0], p.links[q, 1]
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                b = a + di * p.cols + dj
-                rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-                own = link_ratio(p, q, i, j) * k
-                total += link_energy(p.law, own, rest, math.sqrt(rx * rx + ry * ry + rz * rz))
+    total, n = 0.0, p.rows * p.cols
+    for q in range(link_count(p)):
+        (a, b, rest, k, _), law = link_at(p, q), law_at(p, q)
+        rx, ry, rz = span(x, n, a, b)
+        total += link_energy(law, k, rest, math.sqrt(rx * rx + ry * ry + rz * rz))
     return total
 
 
-@kernel(noalias=True, inline=True)
-def row_damping_power(x, v, a, b, count, n, law, rest, axial):
-    """Power lost to damping of 1 N s/m [W] in the links (a, b), (a + 1, b + 1), ..."""
-    total = 0.0
-    if axial:
-        for j in range(count):
-            p, q = a + j, b + j
-            rx, ry, rz = x[q] - x[p], x[n + q] - x[n + p], x[n + n + q] - x[n + n + p]
-            du, dv, dw = v[q] - v[p], v[n + q] - v[n + p], v[n + n + q] - v[n + n + p]
-            closing, rr = du * rx + dv * ry + dw * rz, rx * rx + ry * ry + rz * rz + TINY
-            total += closing * closing / rr if damps(law, rest, math.sqrt(rr)) else 0.0
-    else:
-        for j in range(count):
-            p, q = a + j, b + j
-            rx, ry, rz = x[q] - x[p], x[n + q] - x[n + p], x[n + n + q] - x[n + n + p]
-            du, dv, dw = v[q] - v[p], v[n + q] - v[n + p], v[n + n + q] - v[n + n + p]
-            acts = damps(law, rest, math.sqrt(rx * rx + ry * ry + rz * rz))
-            total += du * du + dv * dv + dw * dw if acts else 0.0
-    return total
+@kernel(inline=True)
+def damping_force(v, p, n, a, b, c, rx, ry, rz):
+    """Force [N] on point a of a link's damping c [N s/m] that acts, along (rx, ry, rz) if it is axial."""
+    du, dv, dw = span(v, n, a, b)
+    if p.axial:
+        s = c * (du * rx + dv * ry + dw * rz) / (rx * rx + ry * ry + rz * rz + TINY)
+        return s * rx, s * ry, s * rz
+    return c * du, c * dv, c * dw
 
 
 @kernel(allocates=False)
 def moving_pins_power(x, v, p, elastic, damping):
     """Power of moving pins [W] through the links' elastic forces, their damping, or both: 1.0 counts it, 0.0 not."""
-    work = 0.0
-    n = p.rows * p.cols
+    work, n = 0.0, p.rows * p.cols
     if p.pins.shape[0] == 0:
         return work
+    for q in range(link_count(p)):
+        (a, b, rest, k, c), law = link_at(p, q), law_at(p, q)
+        if is_moving(p, a) and is_moving(p, b):
+            continue
+        rx, ry, rz = span(x, n, a, b)
+        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+        s = force_density(law, elastic * k, rest, length)
+        d = damping * c if damps(law, rest, length) else 0.0
+        fx, fy, fz = damping_force(v, p, n, a, b, d, rx, ry, rz)
+        fx, fy, fz = fx + s * rx, fy + s * ry, fz + s * rz
+        if not is_moving(p, a):
+            work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
+        if not is_moving(p, b):
+            work += fx * v[b] + fy * v[n + b] + fz * v[2 * n + b]
+    return work
+
+
+@kernel(noalias=True, inline=True)
+def row_damping_power(x, v, p, a, b, count, n, first, rest):
+    """Power [W] that damping takes in the links (a, b), (a + 1, b + 1), ..., of numbers `first` on: they vectorise."""
+    total = 0.0
+    if p.axial:
+        for j in range(count):
+            c, d = a + j, b + j
+            rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[n + n + d] - x[n + n + c]
+            du, dv, dw = v[d] - v[c], v[n + d] - v[n + c], v[n + n + d] - v[n + n + c]
+            closing, rr = du * rx + dv * ry + dw * rz, rx * rx + ry * ry + rz * rz + TINY
+            power = closing * closing / rr * link_damping(p, first + j)
+            total += power if damps(p.law, rest, math.sqrt(rr)) else 0.0
+    else:
+        for j in range(count):
+            c, d = a + j, b + j
+            rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[n + n + d] - x[n + n + c]
+            du, dv, dw = v[d] - v[c], v[n + d] - v[n + c], v[n + n + d] - v[n + n + c]
+            power = (du * du + dv * dv + dw * dw) * link_damping(p, first + j)
+            total += power if damps(p.law, rest, math.sqrt(rx * rx + ry * ry + rz * rz)) else 0.0
+    return total
+
+
+@kernel(allocates=False)
+def damping_power_by_rows(x, v, p):
+    total, first, n = 0.0, np.uint64(0), np.uint64(p.rows * p.cols)
     for q in range(p.offsets.shape[0]):
         di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest, k, c = p.links[q, 0], elastic * p.links[q, 1], damping * p.links[q, 2]
+        begin, count = max(0, -dj), np.uint64(max(0, p.cols - abs(dj)))
         for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                b = a + di * p.cols + dj
-                if p.inverse_masses[a] > 0.0 and p.inverse_masses[b] > 0.0:
-                    continue
-                rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
-                du, dv, dw = v[b] - v[a], v[n + b] - v[n + a], v[2 * n + b] - v[2 * n + a]
-                rr = rx * rx + ry * ry + rz * rz + TINY
-                if p.axial:
-                    along = (du * rx + dv * ry + dw * rz) / rr
-                    du, dv, dw = along * rx, along * ry, along * rz
-                ratio = link_ratio(p, q, i, j)
-                length = math.sqrt(rr)
-                s = force_density(p.law, ratio * k, rest, length)
-                d = ratio * c if damps(p.law, rest, length) else 0.0
-                fx, fy, fz = s * rx + d * du, s * ry + d * dv, s * rz + d * dw
-                if p.inverse_masses[a] == 0.0:
-                    work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
-                if p.inverse_masses[b] == 0.0:
-                    work += fx * v[b] + fy * v[n + b] + fz * v[2 * n + b]
-    return work
+            a, b = np.uint64(i * p.cols + begin), np.uint64((i + di) * p.cols + begin + dj)
+            total += row_damping_power(x, v, p, a, b, count, n, first, p.families[q, 0])
+            first += count
+    return total
+
+
+@kernel(allocates=False)
+def damping_power_by_links(x, v, p):
+    total, n = 0.0, p.rows * p.cols
+    for q in range(link_count(p)):
+        _, rate, c = lengthening(x, v, p, n, q)
+        total += c * rate * rate
+    return total
+
+
+# Power [W] that the links' damping takes.
+damping_power = by_net(rope=damping_power_by_rows, grid=damping_power_by_rows, lines=damping_power_by_links)
 
 
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
     """The damping takes, and moving pins put in."""
-    total, work = 0.0, moving_pins_power(x, v, p, 1.0, 1.0 if with_damping else 0.0)
-    if not with_damping:
-        return total, work
-    n = np.uint64(p.rows * p.cols)
-    for q in range(p.offsets.shape[0]):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest, c = p.links[q, 0], p.links[q, 2]
-        first = max(0, -dj)
-        count = max(0, p.cols - abs(dj))
-        if c == 0.0 or count == 0:
-            continue
-        for i in range(p.rows - di):
-            a = np.uint64(i * p.cols + first)
-            b = np.uint64((i + di) * p.cols + first + dj)
-            ratio = link_ratio(p, q, i, 1)
-            total += ratio * c * row_damping_power(x, v, a, b, np.uint64(count), n, p.law, rest, p.axial)
-            more = link_ratio(p, q, i, 0) - ratio  # of the links in the first and the last column
-            if dj == 0 and more != 0.0:
-                for j in (0, count - 1):
-                    o = np.uint64(j)
-                    lost = row_damping_power(x, v, a + o, b + o, np.uint64(1), n, p.law, rest, p.axial)
-                    total += more * c * lost
-    return total, work
+    work = moving_pins_power(x, v, p, 1.0, 1.0 if with_damping else 0.0)
+    return damping_power(x, v, p) if with_damping and p.damped else 0.0, work
 
 
 @kernel(inline=True)
@@ -181,43 +250,29 @@ def tangent(x, u, t, p, part, longest, out):
 
     longest: strain of part STIFFEST, see `longest_strain`.
     """
-    if part == FRICTION:
-        return
     n = p.rows * p.cols
-    for q in range(p.offsets.shape[0]):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest = p.links[q, 0]
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                c = a + di * p.cols + dj
-                rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
-                du, dv, dw = u[c] - u[a], u[n + c] - u[n + a], u[2 * n + c] - u[2 * n + a]
-                rr = rx * rx + ry * ry + rz * rz
-                ratio = link_ratio(p, q, i, j)
-                k, b = ratio * p.links[q, 1], ratio * p.links[q, 2]
-                length = math.sqrt(rr)
-                along, across = linearised(p.law, k, rest, length)
-                # Of a link that is pressed further only this counts: it buckles, which no step can mend.
-                across = max(across, -along) if rr > 0.0 else -along
-                if part == DAMPING:
-                    along = b if damps(p.law, rest, length) else 0.0
-                    across = 0.0 if p.axial else along
-                elif part == STIFFEST:
-                    along = max(along, stiffness(p.law, k, rest, (1.0 + longest) * rest))
-                elif part == TRANSVERSE:
-                    along = 0.0
-                s = (along - across) * (rx * du + ry * dv + rz * dw) / rr if rr > 0.0 else 0.0
-                fx, fy, fz = across * du + s * rx, across * dv + s * ry, across * dw + s * rz
-                out[a] -= fx
-                out[n + a] -= fy
-                out[2 * n + a] -= fz
-                out[c] += fx
-                out[n + c] += fy
-                out[2 * n + c] += fz
+    for q in range(link_count(p) if part != FRICTION else 0):
+        (a, b, rest, k, c), law = link_at(p, q), law_at(p, q)
+        rx, ry, rz = span(x, n, a, b)
+        du, dv, dw = span(u, n, a, b)
+        rr = rx * rx + ry * ry + rz * rz
+        length = math.sqrt(rr)
+        along, across = linearised(law, k, rest, length)
+        # Of a link that is pressed further only this counts: it buckles, which no step can mend.
+        across = max(across, -along) if rr > 0.0 else -along
+        if part == DAMPING:
+            along = c if damps(law, rest, length) else 0.0
+            across = 0.0 if p.axial else along
+        elif part == STIFFEST:
+            along = max(along, stiffness(law, k, rest, (1.0 + longest) * rest))
+        elif part == TRANSVERSE:
+            along = 0.0
+        s = (along - across) * (rx * du + ry * dv + rz * dw) / rr if rr > 0.0 else 0.0
+        add_pair(out, n, b, a, across * du + s * rx, across * dv + s * ry, across * dw + s * rz)
 
 
 FORCE = Force(
-    "links", rank=10, energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="elastic",
+    "links", rank=10, accelerate=of_nets(lines=accelerate), damp=of_nets(lines=damp),
+    energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="elastic",
     is_smooth=True,
 )  # fmt: skip

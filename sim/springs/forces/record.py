@@ -4,9 +4,17 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays
+from sim.springs.line_arrays import LineArrays
 
-NETS = (RopeArrays, GridArrays, ClothArrays)  # ropes, and nets of several rows
-WIDE_NETS = (GridArrays, ClothArrays)
+WIDE_NETS = (GridArrays, ClothArrays)  # nets of several rows
+SPRING_NETS = (RopeArrays, *WIDE_NETS)
+LINES = (LineArrays,)  # lines under water
+NETS = (*SPRING_NETS, *LINES)
+
+
+def of_nets(springs: Any = None, lines: Any = None) -> dict[type, Any]:
+    """A facet that is another kernel, or none, for lines under water than for ropes, cloths and other nets."""
+    return {**dict.fromkeys(SPRING_NETS, springs), **dict.fromkeys(LINES, lines)}
 
 
 def no_bound(numbers: Any) -> tuple[float, float]:
@@ -22,18 +30,20 @@ class Force(NamedTuple):
     """A force on the points of a net. Facets are kernels; None: the force has none.
 
     x, v: positions [m] and velocities [m/s], flat (3 rows cols,), at the time t [s]; p: the net's record, see
-    `sim.springs.arrays`. Points whose p.inverse_masses is 0 are pinned. The facets of a force with numbers of its own
-    take these before all else; `Net.forces` has them.
+    `sim.springs.arrays`, which has `point_count`, `is_moving` and `push` for points of every net. The facets of a force
+    with numbers of its own take these before all else; `Net.forces` and `System.forces` have them.
     """
 
     name: str
     rank: int = 100  # forces act in the order of their ranks; those of one rank by name
     numbers: type | None = None  # NamedTuple of floats, with their defaults
     acts: str = "True"  # condition on p: no facet is called otherwise. Of a force with numbers: that a net has them
-    # (x, v, t, p, with_damping, f, a): adds to the accelerations a; f: scratch of `make_scratch`. None: it is in the
-    # loops over the links.
+    # (x, v, t, p, with_damping, f, a): adds to a by `push`; f: scratch of `make_scratch`. None: it is in the loops over
+    # the links.
     accelerate: Any = None
-    damp: Any = None  # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] of what moves it
+    # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] of what moves it; of lines by the masses
+    # and impulses of `sim.springs.line_points`
+    damp: Any = None
     energy: Any = None  # (x, t, p) -> stored energy [J]
     power: Any = None  # (x, v, t, p, with_damping) -> (dissipated, put in) [W]
     pins_power: Any = None  # (x, v, p) -> what moving pins put in through its damping [W]
@@ -50,3 +60,8 @@ class Force(NamedTuple):
     stores: str = "gravity"  # field of `Energy` that its energy counts in
     is_smooth: bool = False  # its derivatives are continuous
     nets: tuple[type, ...] = NETS  # records of the nets that it acts on
+
+    def facet(self, name: str, net: type) -> Any:
+        """The kernel of a facet for a net's record; None if it has none."""
+        found = getattr(self, name)
+        return None if net not in self.nets else found.get(net) if isinstance(found, dict) else found

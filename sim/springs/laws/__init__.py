@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from sim.jit import chosen, kernel, modules_of
+from sim.springs.laws.curve import OF_LINES
 from sim.springs.laws.record import Law, at_any_length
 from sim.validation import check_choice, check_number
 
@@ -29,11 +30,13 @@ LAWS: dict[str, Law] = {
     )
 }
 BY_NUMBERS: dict[type, Law] = {type(law.numbers): law for law in LAWS.values()}
+# Those that kernels take: a link of a line under water has one of its own, which no net has.
+OF_LINKS: dict[type, Law] = {**BY_NUMBERS, type(OF_LINES.numbers): OF_LINES}
 
 
 def by_law(name: str) -> Any:
     """The kernel that stands for a function of the laws, by the class of its argument `law`."""
-    return chosen({numbers: getattr(law, name) for numbers, law in BY_NUMBERS.items()})
+    return chosen({numbers: getattr(law, name) for numbers, law in OF_LINKS.items()})
 
 
 force_density = by_law("force_density")
@@ -74,13 +77,13 @@ def general_over_step(law, k, rest, before, after):
 
 # Of a link that goes from one length to another: the mean of its tension over the mean length [N/m], and twice the
 # derivative of that by the second length [N/m^2].
-over_step = chosen({numbers: law.over_step or general_over_step for numbers, law in BY_NUMBERS.items()})
+over_step = chosen({numbers: law.over_step or general_over_step for numbers, law in OF_LINKS.items()})
 
 
 def by_damping(always: Any, at_some_lengths: Any) -> Any:
     """A kernel that stands for one of these, by whether damping acts at any length by its argument `law`."""
     return chosen(
-        {numbers: always if law.damps is at_any_length else at_some_lengths for numbers, law in BY_NUMBERS.items()}
+        {numbers: always if law.damps is at_any_length else at_some_lengths for numbers, law in OF_LINKS.items()}
     )
 
 

@@ -10,9 +10,9 @@ import pytest
 from sim.mooring import Line, LineType, Point, System, critical_step, read_moordyn, simulate
 from sim.mooring.gauge import modes
 from sim.mooring.tangent import stiffness_matrix
+from sim.springs.acceleration import set_rest_forces
 from sim.springs.analysis.energy import energies
-from sim.springs.lines.bending import bending_energy
-from sim.springs.lines.forces import set_rest_forces
+from sim.springs.forces.bending import energy
 from tests.refusals import assert_refused
 from tests.sim.mooring.systems import chain_on_bed
 
@@ -103,13 +103,13 @@ def test_force_and_tangent_of_bending_are_derivatives_of_its_energy():
     system = cantilever(6, 50.0, 3.0)
     x, _ = bent(system)
     p = system.kernel_view(1.0)
-    only = p._replace(links=p.links * [1.0, 0.0, 0.0, 0.0, 0.0], loads=0.0 * p.loads, gravity=0.0)
-    f = np.zeros(9 * p.cols)
+    only = p._replace(links=p.links * [1.0, 0.0, 0.0, 0.0, 0.0], loads=0.0 * p.loads, gz=0.0)
+    f = np.zeros(3 * p.cols)
     set_rest_forces(x.reshape(-1), only, f)
     step, flat = 1e-4, x.reshape(-1)
     slopes = np.array(
         [
-            (bending_energy(flat + step * one, only) - bending_energy(flat - step * one, only)) / (2.0 * step)
+            (energy(flat + step * one, 0.0, only) - energy(flat - step * one, 0.0, only)) / (2.0 * step)
             for one in np.eye(flat.size)
         ]
     )
@@ -118,11 +118,11 @@ def test_force_and_tangent_of_bending_are_derivatives_of_its_energy():
     u = np.random.default_rng(5).normal(size=len(matrix))
     moved = x.copy()
     moved[:, 1:] += 1e-3 * u.reshape(3, -1)
-    g = np.zeros(9 * p.cols)
+    g = np.zeros(3 * p.cols)
     set_rest_forces(moved.reshape(-1), only, g)
     change = (g - f)[: flat.size].reshape(3, -1)[:, 1:].reshape(-1)
     assert change == pytest.approx(-1e-3 * matrix @ u, rel=1e-6, abs=1e-9 * np.abs(change).max())
-    assert energies(x.reshape(-1), 0.0 * flat, 0.0, only)[1] == pytest.approx(bending_energy(flat, only))
+    assert energies(x.reshape(-1), 0.0 * flat, 0.0, only)[1] == pytest.approx(energy(flat, 0.0, only))
 
 
 def test_the_account_of_a_stiff_line_with_a_table_and_slack_damping_balances():
@@ -140,13 +140,13 @@ def test_slack_links_are_damped_on_demand_only():
     kind = LineType("rope", 0.05, 5.0, 2e6, 500.0)
     points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "fixed", (8.0, 0.0, -5.0)))
     system = System((Line(1, kind, 1, 2, 10.0, 2),), points, 30.0, gravity=0.0, **DRY)
-    from sim.springs.lines.energy import set_tensions
+    from sim.springs.forces.bending import set_line_tensions
 
     x, v, out = np.array([0.0, 8.0, 4.0, 0.0, 0.0, 0.0, -5.0, -5.0, -5.0]), np.zeros(9), np.empty(2)
     v[2] = 0.3
-    set_tensions(x, v, system.kernel_view(1.0), out)
+    set_line_tensions(x, v, system.kernel_view(1.0), out)
     assert out == pytest.approx([0.0, 0.0])
-    set_tensions(x, v, dataclasses.replace(system, slack_damping=True).kernel_view(1.0), out)
+    set_line_tensions(x, v, dataclasses.replace(system, slack_damping=True).kernel_view(1.0), out)
     assert out == pytest.approx([0.3 * 100.0, -0.3 * 100.0])
 
 

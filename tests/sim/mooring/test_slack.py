@@ -9,8 +9,8 @@ from sim.mooring import Line, LineType, Point, System
 from sim.mooring.balance import pull, what_is_left
 from sim.mooring.chains import Chains
 from sim.mooring.statics import MAX_CORRECTIONS, at_rest
-from sim.mooring.tangent import links_matrix, with_bodies
-from sim.springs.lines.arrays import STIFFNESS
+from sim.mooring.tangent import carried_coordinates, free_coordinates
+from sim.springs.line_arrays import STIFFNESS, LineArrays
 from sim.validation import ConvergenceError
 from tests.sim.mooring.systems import floating_body
 
@@ -21,6 +21,34 @@ WEIGHT = (40.0 - 1025.0 * math.pi / 4.0 * 0.2**2) * 9.81  # [N/m] in water
 def hanging(length: float, segments: int, anchor: float = -200.0) -> System:
     points = (Point(1, "fixed", (0.0, 0.0, anchor)), Point(2, "coupled", (50.0, 0.0, 0.0)))
     return System((Line(1, ROPE, 1, 2, length, segments),), points, 200.0)
+
+
+def links_matrix(x: np.ndarray, p: LineArrays, along: np.ndarray, across: np.ndarray) -> np.ndarray:
+    """The matrix (3 nodes, 3 nodes) of links that resist by `along` and `across` (links,) about x (3, n)."""
+    m = p.nodes
+    found = np.zeros(9 * m * m)
+    a, b = p.ends.T
+    r = x[:, b] - x[:, a]
+    unit = r / np.maximum(np.linalg.norm(r, axis=0), 1e-12)
+    for d in range(3):
+        for e in range(3):
+            block = (along - across) * unit[d] * unit[e] + (across if d == e else 0.0)
+            for i, j, sign in ((a, a, 1.0), (b, b, 1.0), (a, b, -1.0), (b, a, -1.0)):
+                np.add.at(found, (d * m + i) * 3 * m + e * m + j, sign * block)
+    return found.reshape(3 * m, 3 * m)
+
+
+def with_bodies(matrix: np.ndarray, p: LineArrays, start: int) -> np.ndarray:
+    """`matrix` (3 nodes, 3 nodes) in free coordinates, plus the bodies' own from column `start` of their rows."""
+    free = free_coordinates(p)
+    if not len(p.bodies):
+        return matrix[np.ix_(free, free)]
+    carried, moves = carried_coordinates(p)
+    beside = matrix[np.ix_(free, carried)] @ moves
+    own = moves.T @ matrix[np.ix_(carried, carried)] @ moves
+    for b, row in enumerate(p.bodies):
+        own[6 * b : 6 * b + 6, 6 * b : 6 * b + 6] += row[start : start + 36].reshape(6, 6)
+    return np.block([[matrix[np.ix_(free, free)], beside], [beside.T, own]])
 
 
 @pytest.mark.parametrize("ratio", [1.0, 1.004, 1.2, 2.0, 3.0])

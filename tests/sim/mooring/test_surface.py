@@ -9,10 +9,11 @@ import pytest
 from sim.mooring import Line, LineType, Point, System, simulate
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
-from sim.mooring.tangent import stiffness_matrix, upright_stiffness
+from sim.mooring.tangent import stiffness_matrix
 from sim.springs import INTEGRATORS
 from sim.springs.acceleration import set_acceleration
-from sim.springs.lines.energy import lines_energies, lines_power
+from sim.springs.analysis.energy import energies as energies_of
+from sim.springs.analysis.energy import power
 from sim.water import Water
 from sim.waves import Waves
 
@@ -67,11 +68,10 @@ def test_force_energy_and_tangent_of_a_float_agree(z):
     force = np.array([-drag * 0.3, 0.0, -drag * 0.4 + 9.81 * (share * 1025.0 * 0.6 - 300.0)])
     assert a[1::2] == pytest.approx(force / (300.0 + 0.5 * 1025.0 * 0.6), rel=1e-6, abs=1e-9)
     h = 1e-4
-    energies = [lines_energies(x + (0.0, 0.0, 0.0, 0.0, 0.0, d), v, 0.0, p)[2] for d in (h, -h)]
+    energies = [energies_of(x + (0.0, 0.0, 0.0, 0.0, 0.0, d), v, 0.0, p)[2] for d in (h, -h)]
     assert (energies[1] - energies[0]) / (2.0 * h) == pytest.approx(9.81 * (share * 1025.0 * 0.6 - 300.0), rel=1e-5)
-    assert lines_power(x, v, 0.0, p, True)[0] == pytest.approx(drag * 0.5**2, rel=1e-6)
+    assert power(x, v, 0.0, p, True)[0] == pytest.approx(drag * 0.5**2, rel=1e-6)
     slope = 9.81 * 1025.0 * 0.6 / HEIGHT if 0.0 < share < 1.0 else 0.0
-    assert upright_stiffness(x.reshape(3, 2), p)[1] == pytest.approx(slope)
     assert stiffness_matrix(x.reshape(3, 2), p)[2, 2] == pytest.approx(slope, rel=1e-6, abs=0.1)
 
 
@@ -79,7 +79,7 @@ def test_energy_of_buoyancy_ends_above_the_water():
     (low, _), (high, x) = one_float(-9.0), one_float(3.0)
     v = np.zeros(6)
     energies = [
-        lines_energies(one_float(z)[1], v, 0.0, low.kernel_view(1.0))[2] - 300.0 * 9.81 * z for z in (-9.0, 3.0, 4.0)
+        energies_of(one_float(z)[1], v, 0.0, low.kernel_view(1.0))[2] - 300.0 * 9.81 * z for z in (-9.0, 3.0, 4.0)
     ]
     assert energies == pytest.approx([9.0 * 1025.0 * 0.6 * 9.81, 0.0, 0.0], abs=1e-3)
     assert high.kernel_view(1.0).parts[:, -1] == pytest.approx([0.0, 0.0, HEIGHT], abs=1e-8)

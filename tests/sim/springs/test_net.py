@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -69,3 +71,19 @@ def test_material_units_stretch_as_the_continuum_but_for_the_end_point_s_surplus
 def test_points_of_a_size_touch_floor_and_sphere_with_their_surface():
     view = rope(4, floor=-2.0, sphere=(0.1, 0.2, -1.0, 0.5), radius=0.1).kernel_view(1e-3)
     assert (view.floor, view.sx, view.sy, view.sz, view.sr) == pytest.approx((-1.9, 0.1, 0.2, -1.0, 0.6))
+
+
+def test_the_table_of_links_has_each_link_of_each_family_in_the_order_of_rows_and_columns():
+    net = dataclasses.replace(cloth(3, 4), side_ratio=0.5)
+    rows, cols = net.shape
+    ends, links = [], []
+    for number, f in enumerate(net.families):
+        for i in range(rows - f.di):
+            for j in range(max(0, -f.dj), cols - max(0, f.dj)):
+                on_side = (f.di == 0 and i in (0, rows - 1)) or (f.dj == 0 and j in (0, cols - 1))
+                ratio = 0.5 if on_side else 1.0
+                ends.append((i * cols + j, (i + f.di) * cols + j + f.dj, number))
+                links.append((f.rest, ratio * f.stiffness, ratio * f.damping))
+    view = net.kernel_view(1.0)
+    assert np.array_equal(view.ends, ends)
+    assert np.array_equal(view.links, links)

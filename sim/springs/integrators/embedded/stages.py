@@ -205,7 +205,7 @@ def accelerate_span(xs, vs, p, f, first, n, M, inner, count, k, o, N):
     zero, one = np.uint64(0), np.uint64(1)
     F = M + one
     link_forces(
-        xs, vs, f, zero, one, one, n - one, M, F, p.law, p.links[0, 1], p.links[0, 2], p.links[0, 0], p.axial
+        xs, vs, f, zero, one, one, n - one, M, F, p.law, p.families[0, 1], p.families[0, 2], p.families[0, 0], p.axial
     )  # fmt: skip
     for e in range(3):
         b, of = np.uint64(e) * M + inner, np.uint64(e) * F

@@ -9,7 +9,7 @@ Gershgorin's discs, so that Newton's method is exact for short steps, and cut of
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import link_ratio, mass_at
+from sim.springs.arrays import family_of, link_at, link_count, mass_at, span
 from sim.springs.forces import each
 from sim.springs.forces.links import TINY, linearised
 from sim.springs.laws import damps
@@ -30,26 +30,18 @@ def least_across(p, a, b):
 def set_link_blocks(x, g, p, links):
     """H = g b (I or n n^T) + g^2 [T' n n^T + T/l (I - n n^T)] of every link, at its first end."""
     n = p.rows * p.cols
-    for j in range(links.shape[0]):
-        links[j] = 0.0
-    for r in range(p.offsets.shape[0]):
-        di, dj = p.offsets[r, 0], p.offsets[r, 1]
-        rest = p.links[r, 0]
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                c = a + di * p.cols + dj
-                rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
-                length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-                ratio = link_ratio(p, r, i, j)
-                b = ratio * p.links[r, 2] if damps(p.law, rest, length) else 0.0
-                along, turning = linearised(p.law, ratio * p.links[r, 1], rest, length)
-                across = max(g * g * turning, least_across(p, a, c))
-                if not p.axial:
-                    across += g * b
-                s = math.sqrt(max(0.0, g * g * along + g * b - across)) / length
-                at = SYMMETRIC * n * r + a
-                links[at], links[at + n], links[at + 2 * n], links[at + 3 * n] = across, s * rx, s * ry, s * rz
+    for q in range(link_count(p)):
+        a, b, rest, k, c = link_at(p, q)
+        rx, ry, rz = span(x, n, a, b)
+        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+        damping = c if damps(p.law, rest, length) else 0.0
+        along, turning = linearised(p.law, k, rest, length)
+        across = max(g * g * turning, least_across(p, a, b))
+        if not p.axial:
+            across += g * damping
+        s = math.sqrt(max(0.0, g * g * along + g * damping - across)) / length
+        at = SYMMETRIC * n * family_of(p, q) + a
+        links[at], links[at + n], links[at + 2 * n], links[at + 3 * n] = across, s * rx, s * ry, s * rz
 
 
 coupled_size = each("coupled_size", "p", "count", inline=True)
@@ -75,20 +67,16 @@ def set_point_blocks(x, v, t, g, p, points):
 def add_links_to_points(p, links, points):
     """Each link's block onto the blocks of both its ends: the matrix's own diagonal, of a net."""
     n = p.rows * p.cols
-    for r in range(p.offsets.shape[0]):
-        di, dj = p.offsets[r, 0], p.offsets[r, 1]
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                c = a + di * p.cols + dj
-                at = SYMMETRIC * n * r + a
-                qx, qy, qz = links[at + n], links[at + 2 * n], links[at + 3 * n]
-                xx, yy, zz = links[at] + qx * qx, links[at] + qy * qy, links[at] + qz * qz
-                xy, xz, yz = qx * qy, qx * qz, qy * qz
-                for m in (a, c):
-                    points[m] += xx
-                    points[n + m] += xy
-                    points[2 * n + m] += xz
-                    points[3 * n + m] += yy
-                    points[4 * n + m] += yz
-                    points[5 * n + m] += zz
+    for q in range(link_count(p)):
+        a, b, _, _, _ = link_at(p, q)
+        at = SYMMETRIC * n * family_of(p, q) + a
+        qx, qy, qz = links[at + n], links[at + 2 * n], links[at + 3 * n]
+        xx, yy, zz = links[at] + qx * qx, links[at] + qy * qy, links[at] + qz * qz
+        xy, xz, yz = qx * qy, qx * qz, qy * qz
+        for m in (a, b):
+            points[m] += xx
+            points[n + m] += xy
+            points[2 * n + m] += xz
+            points[3 * n + m] += yy
+            points[4 * n + m] += yz
+            points[5 * n + m] += zz

@@ -13,7 +13,7 @@ spring the first factor is the tension at l, and where it does not turn F is the
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net, link_ratio
+from sim.springs.arrays import by_net, link_at, link_count, span
 from sim.springs.forces.links import TINY
 from sim.springs.integrators.implicit.blocks import least_across, set_link_blocks
 from sim.springs.laws import damps, force_density, over_step
@@ -22,8 +22,8 @@ from sim.springs.laws import damps, force_density, over_step
 @kernel(inline=True)
 def lengths(x0, x, n, a, c):
     """Of the link from a to c, from its start x0 and its middle x: r, its length, n1, its lengths before and after."""
-    rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
-    sx, sy, sz = x0[c] - x0[a], x0[n + c] - x0[n + a], x0[2 * n + c] - x0[2 * n + a]
+    rx, ry, rz = span(x, n, a, c)
+    sx, sy, sz = span(x0, n, a, c)
     ex, ey, ez = 2.0 * rx - sx, 2.0 * ry - sy, 2.0 * rz - sz
     end = math.sqrt(ex * ex + ey * ey + ez * ez + TINY)
     start = math.sqrt(sx * sx + sy * sy + sz * sz + TINY)
@@ -34,31 +34,25 @@ def lengths(x0, x, n, a, c):
 def add_mean_lengths(x0, x, p, a):
     """a += change of the accelerations by the mean lengths at the midpoint x of a step from x0."""
     n = p.rows * p.cols
-    for r in range(p.offsets.shape[0]):
-        di, dj = p.offsets[r, 0], p.offsets[r, 1]
-        rest, k = p.links[r, 0], p.links[r, 1]
-        for i in range(p.rows - di):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                b = i * p.cols + j
-                c = b + di * p.cols + dj
-                rx, ry, rz, length, _, _, _, before, after = lengths(x0, x, n, b, c)
-                own = link_ratio(p, r, i, j) * k
-                s = over_step(p.law, own, rest, before, after)[0] - force_density(p.law, own, rest, length)
-                wb, wc = s * p.inverse_masses[b], s * p.inverse_masses[c]
-                a[b] += wb * rx
-                a[n + b] += wb * ry
-                a[2 * n + b] += wb * rz
-                a[c] -= wc * rx
-                a[n + c] -= wc * ry
-                a[2 * n + c] -= wc * rz
+    for q in range(link_count(p)):
+        b, c, rest, k, _ = link_at(p, q)
+        rx, ry, rz, length, _, _, _, before, after = lengths(x0, x, n, b, c)
+        s = over_step(p.law, k, rest, before, after)[0] - force_density(p.law, k, rest, length)
+        wb, wc = s * p.inverse_masses[b], s * p.inverse_masses[c]
+        a[b] += wb * rx
+        a[n + b] += wb * ry
+        a[2 * n + b] += wb * rz
+        a[c] -= wc * rx
+        a[n + c] -= wc * ry
+        a[2 * n + c] -= wc * rz
 
 
 @kernel(noalias=True, allocates=False)
 def set_rope_mean_blocks(x0, x, g, p, links):
     """H = g b (I or n n^T) + g^2 [S I + 2 dS/dl1 r_m n1^T] of every link, F = S r_m and n1 its direction at the end."""
     n = p.cols
-    for j in range(n - 1):
-        rest, k, b = p.links[0, 0], p.links[0, 1], p.links[0, 2]
+    for j in range(link_count(p)):
+        _, _, rest, k, b = link_at(p, j)
         rx, ry, rz, length, ex, ey, ez, before, after = lengths(x0, x, n, j, j + 1)
         rx, ry, rz = rx / length, ry / length, rz / length
         pull, rise = over_step(p.law, k, rest, before, after)

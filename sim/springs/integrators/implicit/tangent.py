@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from sim.jit import kernel
+from sim.springs.arrays import link_at, link_count, span
 from sim.springs.forces import each
 from sim.springs.forces.links import tangent as add_link_tangent
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST
@@ -19,17 +20,12 @@ from sim.springs.laws import TAUT
 @kernel(allocates=False)
 def longest_strain(x, p):
     """Largest l/l0 - 1 of any link, at least that of a link which is just taut: what another may soon come to."""
-    n = p.rows * p.cols
-    longest = TAUT
-    for q in range(p.offsets.shape[0]):
-        di, dj = p.offsets[q, 0], p.offsets[q, 1]
-        rest = p.links[q, 0]
-        for i in range(p.rows - di if rest > 0.0 else 0):
-            for j in range(max(0, -dj), p.cols - max(0, dj)):
-                a = i * p.cols + j
-                c = a + di * p.cols + dj
-                rx, ry, rz = x[c] - x[a], x[n + c] - x[n + a], x[2 * n + c] - x[2 * n + a]
-                longest = max(longest, math.sqrt(rx * rx + ry * ry + rz * rz) / rest - 1.0)
+    n, longest = p.rows * p.cols, TAUT
+    for q in range(link_count(p)):
+        a, b, rest, _, _ = link_at(p, q)
+        if rest > 0.0:
+            rx, ry, rz = span(x, n, a, b)
+            longest = max(longest, math.sqrt(rx * rx + ry * ry + rz * rz) / rest - 1.0)
     return longest
 
 

@@ -19,6 +19,10 @@ angle a between two segments.
 import math
 
 from sim.jit import kernel
+from sim.springs.arrays import is_moving, push, span
+from sim.springs.forces.links import set_tensions
+from sim.springs.forces.matrices import STIFFEST, STIFFNESS
+from sim.springs.forces.record import LINES, Force
 
 NODES, WEIGHTS, BEND_STIFFNESS, OFFSET, LINKS = 0, 3, 6, 7, 10  # columns
 
@@ -35,17 +39,19 @@ def bend_at(x, p, i):
     )
 
 
+@kernel(inline=True)
+def push_bend(p, out, i, s, dx, dy, dz):
+    """Add s times the stiffness and the vector d of bend i to its three nodes, by their weights."""
+    for e in range(3):
+        w = s * p.bends[i, WEIGHTS + e] * p.bends[i, BEND_STIFFNESS]
+        push(p, out, int(p.bends[i, e]), w * dx, w * dy, w * dz)
+
+
 @kernel(noalias=True, allocates=False)
-def add_bending(x, p, f):
-    """Add the forces [N] of all bends."""
-    n = p.cols
+def accelerate(x, v, t, p, with_damping, f, a):
     for i in range(p.bends.shape[0]):
         dx, dy, dz = bend_at(x, p, i)
-        for e in range(3):
-            j, s = int(p.bends[i, e]), p.bends[i, 3 + e] * p.bends[i, 6]
-            f[j] -= s * dx
-            f[n + j] -= s * dy
-            f[2 * n + j] -= s * dz
+        push_bend(p, a, i, -1.0, dx, dy, dz)
 
 
 @kernel(noalias=True, allocates=False)
@@ -55,32 +61,52 @@ def add_bending_tension(x, p, out):
     for i in range(p.bends.shape[0]):
         dx, dy, dz = bend_at(x, p, i)
         for e in range(2):
-            q = int(p.bends[i, 10 + e])
+            q = int(p.bends[i, LINKS + e])
             if q >= 0:
-                a, b = p.ends[q, 0], p.ends[q, 1]
-                rx, ry, rz = x[b] - x[a], x[n + b] - x[n + a], x[2 * n + b] - x[2 * n + a]
+                rx, ry, rz = span(x, n, p.ends[q, 0], p.ends[q, 1])
                 length = math.sqrt(rx * rx + ry * ry + rz * rz)
                 along = (dx * rx + dy * ry + dz * rz) / max(length, 1e-12)
-                out[q] += p.bends[i, 6] * (along if e == 1 else -along)
+                out[q] += p.bends[i, BEND_STIFFNESS] * (along if e == 1 else -along)
+
+
+@kernel
+def set_line_tensions(x, v, p, out):
+    """Set the tension (links,) [N] of every link of lines, with its damping and what bending adds."""
+    set_tensions(x, v, p, out)
+    add_bending_tension(x, p, out)
 
 
 @kernel(allocates=False)
-def bending_energy(x, p):
-    """Energy [J] of all bends."""
+def energy(x, t, p):
     total = 0.0
     for i in range(p.bends.shape[0]):
         dx, dy, dz = bend_at(x, p, i)
-        total += 0.5 * p.bends[i, 6] * (dx * dx + dy * dy + dz * dz)
+        total += 0.5 * p.bends[i, BEND_STIFFNESS] * (dx * dx + dy * dy + dz * dz)
     return total
 
 
 @kernel(allocates=False)
-def bending_rate(x, v, p):
-    """Rate [W] of the energy of all bends at velocities v (3 n,)."""
-    n, rate = p.cols, 0.0
+def power(x, v, t, p, with_damping):
+    """Prescribed nodes put in."""
+    n, work = p.cols, 0.0
     for i in range(p.bends.shape[0]):
         dx, dy, dz = bend_at(x, p, i)
         for e in range(3):
-            j, s = int(p.bends[i, e]), p.bends[i, 3 + e] * p.bends[i, 6]
-            rate += s * (dx * v[j] + dy * v[n + j] + dz * v[2 * n + j])
-    return rate
+            j, s = int(p.bends[i, e]), p.bends[i, WEIGHTS + e] * p.bends[i, BEND_STIFFNESS]
+            if not is_moving(p, j):
+                work += s * (dx * v[j] + dy * v[n + j] + dz * v[2 * n + j])
+    return 0.0, work
+
+
+@kernel(noalias=True, allocates=False)
+def tangent(x, u, t, p, part, longest, out):
+    """The constant K of all bends."""
+    for i in range(p.bends.shape[0] if part in (STIFFNESS, STIFFEST) else 0):
+        dx, dy, dz = bend_at(u, p, i)
+        push_bend(p, out, i, 1.0, dx - p.bends[i, OFFSET], dy - p.bends[i, OFFSET + 1], dz - p.bends[i, OFFSET + 2])
+
+
+FORCE = Force(
+    "bending", rank=5, nets=LINES, accelerate=accelerate, energy=energy, power=power, tangent=tangent,
+    stores="elastic", is_smooth=True,
+)  # fmt: skip

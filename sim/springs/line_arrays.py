@@ -27,15 +27,21 @@ class LineArrays(NamedTuple):
     nodes: int  # points that are nodes
     inverse_masses: NDArray[np.float64]  # (n,) [1/kg] without the water's; 0 where prescribed or carried by a body
     mass: NDArray[np.float64]  # (n,) [kg] without the water's
-    gravity: float  # [m/s^2], downwards
-    law: Any  # numbers of the law of the links, see sim/springs/laws
-    slack_damping: bool  # damping acts in slack links, too
+    moving: NDArray[np.bool_]  # (n,) nodes that are free or carried by a body
+    inertia: NDArray[np.float64]  # (6 n,) of `set_inverse_masses`: xx, xy, xz, yy, yz, zz of each node's matrix [1/kg]
+    gx: float  # gravity [m/s^2]
+    gy: float
+    gz: float
+    forces: Any  # `Declared`: numbers of the forces that have any, see sim/springs/forces
+    damped: bool  # any damping of links
+    axial: bool  # True: it acts along them
+    slack_damping: bool  # it acts in slack links, too
     ends: NDArray[np.int64]  # (links, 2) nodes
     # (links, 5): rest length [m], stiffness [N/m], damping [N s/m], first row and number of rows in `curves`, or 0
     links: NDArray[np.float64]
-    curves: NDArray[np.float64]  # (rows, 3): strain, tension [N], energy per length [N], see `sim.springs.lines.curves`
-    bends: NDArray[np.float64]  # (bends, 12): see `sim.springs.lines.bending`
-    loads: NDArray[np.float64]  # (n, 3) [N] steady forces on nodes
+    curves: NDArray[np.float64]  # (rows, 3): strain, tension [N], energy per length [N], see `sim.springs.laws.curve`
+    bends: NDArray[np.float64]  # (bends, 12): see `sim.springs.forces.bending`
+    loads: NDArray[np.float64]  # (n, 3) [N] steady forces on nodes, or (0, 3) without any
     places: NDArray[np.int64]  # (parts, 3): node, and the nodes before and after it along the line
     # (parts, 8): mass, displaced mass [kg], added masses and drags over speed, bed area, height [m] of its volume
     parts: NDArray[np.float64]
@@ -54,5 +60,6 @@ class LineArrays(NamedTuple):
     # (bodies, 225): inverse mass, mass, stiffness and damping matrix; place at rest [m]; how damping decays
     bodies: NDArray[np.float64]
     steady: NDArray[np.float64]  # (bodies, 6) [N, N m] steady forces on bodies
-    excitation: NDArray[np.float64]  # (bodies, 12, waves) [N/m, N]: real, then imaginary part of X, see `wave_force`
+    # (bodies, 12, waves) [N/m, N]: real, then imaginary part of X, see `sim.springs.forces.bodies`
+    excitation: NDArray[np.float64]
     stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption

@@ -127,13 +127,13 @@ def serve_lab(
             viewer.open(name, params, paused=paused)
             if others:
                 viewer.comparing.begin(others, False)
-            wait_until(done, keeper.keep if resumes else lambda: None)
+            wait_until(done, keeper.store if resumes else lambda: None)
     except KeyboardInterrupt:
         pass
     finally:
         signal.signal(signal.SIGINT, before)
         if resumes:
-            keeper.keep()
+            keeper.store()
         viewer.shut()
     return 0
 
@@ -160,7 +160,7 @@ class Keeper:
         self.viewer = viewer
         self.kept: object = None
 
-    def keep(self) -> None:
+    def store(self) -> None:
         """Keep the set-up, if it is another than before and can be written."""
         served = self.viewer.current
         if served is None:

@@ -268,7 +268,7 @@ class SceneRun(Snapshots):
         if number == self.number:  # the one that would have followed has not begun
             self.take(params)
             return
-        self.number, left = number, self.left.take(number)
+        self.number, left = number, self.left.pop(number)
         self.begin_with(params, left)
         if left is None:
             self.restarted_until = self.wall + RESTARTED_SHOWN

@@ -112,8 +112,9 @@ class Recorder:
             if status.starts != self.starts:
                 self.starts = status.starts
                 self.clear()
-            while self.position is None and self.frames and self.frames[-1].time > status.time:
-                self.forget(self.frames.pop())  # the run has gone on from an earlier moment
+            while self.frames and self.frames[-1].time > status.time:  # it has gone on from an earlier moment
+                self.forget(self.frames.pop())
+                self.position, self.playing = None, False
 
     def note(self, snapshot: AnySnapshot, wall: float) -> None:
         """Record a snapshot of a running scene; best once it is drawn, as its packed form can be kept.

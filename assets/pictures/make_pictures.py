@@ -75,10 +75,8 @@ PICTURES = {
     "breather": Picture("square_sea", "Peregrine breather", 301.7, (1100, 620)),
     "draupner": Picture("square_sea", "Draupner", 58.6, (1100, 620)),
     "share": Picture("rope", "Over the sphere", 5.0, (1200, 760), {"plot_energy": True}, tab="Share"),
-    "lab": Picture(
-        "rope", "Lab code: 10 points", 2.0, (1100, 760), RK4, NO_DAMPING, scroll="[data-function=spring_force]"
-    ),
-    "lab_cloth": Picture("cloth", "Curtain", 4.0, (1100, 760), RK4, FEW_LINKS, scroll="[data-function=cloth_links]"),
+    "lab": Picture("rope", "Lab code: 10 points", 2.0, (1100, 760), RK4, NO_DAMPING),
+    "lab_cloth": Picture("cloth", "Curtain", 4.0, (1100, 760), RK4, FEW_LINKS),
 }
 
 

@@ -14,7 +14,7 @@ from app.server.left_runs import LeftRun, LeftRuns
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from app.server.snapshots import Clock, Snapshots
+from app.server.snapshots import Clock, Snapshots, Work
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
@@ -164,25 +164,23 @@ class SceneRun(Snapshots):
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
         start = self.effort()
-        self.solving = True
-        try:
-            self.guarded(lambda: self.scene.advance(n))
-        finally:
-            self.solving = False
+        self.guarded(lambda: self.scene.advance(n), Work(steps=True, may_end=True))
         seconds = self.effort() - start
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
 
-    def guarded(self, action: Callable[[], None], *, again: bool = False, else_anew: bool = False) -> None:
+    def guarded(
+        self, action: Callable[[], None], work: Work | None = None, *, again: bool = False, else_anew: bool = False
+    ) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
         again: a beginning, to be done once more where it is ended early; where it fails there is no scene to run.
         else_anew: where it is ended early the scene begins anew.
         """
-        self.may_end, self.may_begin = self.solving, again or else_anew
         try:
-            action()
+            with self.working(work or Work(may_begin=again or else_anew)):
+                action()
         except InterruptionError:
             self.counts["solves ended early"] += 1
             if again or else_anew or self.request[STOP] == ABANDON:
@@ -196,8 +194,6 @@ class SceneRun(Snapshots):
         except Exception as error:
             self.unmade = again
             self.halt(failure_words(error, begins=again))
-        finally:
-            self.may_end = self.may_begin = False
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
         """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""

@@ -1,10 +1,11 @@
 """A scene on the simulation thread, and the snapshot of it that the viewer shows."""
 
 import collections
+import contextlib
 import threading
 import traceback
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Generator
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -25,6 +26,14 @@ MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond
 Clock: TypeAlias = Callable[[], float]  # [s]
 
 
+class Work(NamedTuple):
+    """What the simulation thread is doing, and what may cancel it."""
+
+    steps: bool = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
+    may_end: bool = False  # cancelled by all that asks for another solve: steps, or a frame
+    may_begin: bool = False  # cancelled where the scene begins anew after it
+
+
 class Snapshots:
     """Owns a scene, its clock and the latest snapshot of it."""
 
@@ -34,9 +43,7 @@ class Snapshots:
         """The arguments are those of `SimLoop`."""
         self.scene, self.audience, self.clock, self.effort = scene, audience, clock, effort
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
-        self.solving = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
-        self.may_end = False  # what runs may be ended early: steps, or a picture
-        self.may_begin = False  # what runs may be ended early where the scene begins anew after it
+        self.work = Work()
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.unmade = False  # the scene could not begin: it waits for other values
         self.running = not paused
@@ -57,6 +64,15 @@ class Snapshots:
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: AnySnapshot = self.snapshot()
 
+    @contextlib.contextmanager
+    def working(self, work: Work) -> Generator[None, None, None]:
+        """Inside, this is what the thread does."""
+        before, self.work = self.work, work
+        try:
+            yield
+        finally:
+            self.work = before
+
     @property
     def frame_interval(self) -> float:
         """Time [s] between pictures: a scene may ask for fewer."""
@@ -76,7 +92,7 @@ class Snapshots:
 
     def keep_state(self) -> KeptState | None:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""
-        if not self.running or self.solving or self.replay is not None:
+        if not self.running or self.work.steps or self.replay is not None:
             return None
         if self.wall < self.keep_at or not self.audience():
             return None
@@ -97,13 +113,13 @@ class Snapshots:
         self.counts["snapshots"] += 1
         serial, params = self.counts["snapshots"], self.scene.params
         last: AnySnapshot | None = getattr(self, "latest", None)
-        self.may_begin = last is not None
-        self.may_end = self.may_begin and self.clock() - self.whole_at < MAX_BLIND_TIME
+        may_end = last is not None and self.clock() - self.whole_at < MAX_BLIND_TIME
         try:
             if last is not None and (self.unfinished is not None or self.unmade):
                 self.is_shown = True  # all that there is of a scene that is not made
                 return self.without_frame(last)
-            found = self.collect(serial)
+            with self.working(Work(may_end=may_end, may_begin=last is not None)):
+                found = self.collect(serial)
             self.is_shown, self.whole_at = self.scene.params is params, self.clock()
             return found._replace(serial=self.counts["snapshots"])  # controls may have been answered with others
         except InterruptionError:
@@ -119,8 +135,6 @@ class Snapshots:
                 error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
             self.halt(str(error))
             return self.without_frame(last)
-        finally:
-            self.may_end = self.may_begin = False
 
     def without_frame(self, last: AnySnapshot) -> AnySnapshot:
         """The last snapshot with parameters and clock as they are now."""

@@ -14,7 +14,7 @@ from app.server.left_runs import LeftRun, LeftRuns
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from app.server.snapshots import Clock, Snapshots, Work
+from app.server.snapshots import Activity, Clock, Snapshots
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
@@ -164,14 +164,19 @@ class SceneRun(Snapshots):
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
         start = self.effort()
-        self.guarded(lambda: self.scene.advance(n), Work(steps=True, may_end=True))
+        self.guarded(lambda: self.scene.advance(n), Activity(steps=True, may_end=True))
         seconds = self.effort() - start
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
 
     def guarded(
-        self, action: Callable[[], None], work: Work | None = None, *, again: bool = False, else_anew: bool = False
+        self,
+        action: Callable[[], None],
+        activity: Activity | None = None,
+        *,
+        again: bool = False,
+        else_anew: bool = False,
     ) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
@@ -179,7 +184,7 @@ class SceneRun(Snapshots):
         else_anew: where it is ended early the scene begins anew.
         """
         try:
-            with self.working(work or Work(may_begin=again or else_anew)):
+            with self.doing(activity or Activity(may_begin=again or else_anew)):
                 action()
         except InterruptionError:
             self.counts["solves ended early"] += 1

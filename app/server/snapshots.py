@@ -26,7 +26,7 @@ MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond
 Clock: TypeAlias = Callable[[], float]  # [s]
 
 
-class Work(NamedTuple):
+class Activity(NamedTuple):
     """What the simulation thread is doing, and what may cancel it."""
 
     steps: bool = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
@@ -43,7 +43,7 @@ class Snapshots:
         """The arguments are those of `SimLoop`."""
         self.scene, self.audience, self.clock, self.effort = scene, audience, clock, effort
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
-        self.work = Work()
+        self.activity = Activity()
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.unmade = False  # the scene could not begin: it waits for other values
         self.running = not paused
@@ -65,13 +65,13 @@ class Snapshots:
         self.latest: AnySnapshot = self.snapshot()
 
     @contextlib.contextmanager
-    def working(self, work: Work) -> Generator[None, None, None]:
+    def doing(self, activity: Activity) -> Generator[None, None, None]:
         """Inside, this is what the thread does."""
-        before, self.work = self.work, work
+        before, self.activity = self.activity, activity
         try:
             yield
         finally:
-            self.work = before
+            self.activity = before
 
     @property
     def frame_interval(self) -> float:
@@ -92,7 +92,7 @@ class Snapshots:
 
     def keep_state(self) -> KeptState | None:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""
-        if not self.running or self.work.steps or self.replay is not None:
+        if not self.running or self.activity.steps or self.replay is not None:
             return None
         if self.wall < self.keep_at or not self.audience():
             return None
@@ -118,7 +118,7 @@ class Snapshots:
             if last is not None and (self.unfinished is not None or self.unmade):
                 self.is_shown = True  # all that there is of a scene that is not made
                 return self.without_frame(last)
-            with self.working(Work(may_end=may_end, may_begin=last is not None)):
+            with self.doing(Activity(may_end=may_end, may_begin=last is not None)):
                 found = self.collect(serial)
             self.is_shown, self.whole_at = self.scene.params is params, self.clock()
             return found._replace(serial=self.counts["snapshots"])  # controls may have been answered with others

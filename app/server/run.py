@@ -14,7 +14,7 @@ from app.server.left_runs import LeftRun, LeftRuns
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from app.server.snapshots import Activity, Clock, Snapshots
+from app.server.snapshots import BEGINNING, NOTHING, STEPS, Activity, Clock, Snapshots
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
@@ -164,7 +164,7 @@ class SceneRun(Snapshots):
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
         start = self.effort()
-        self.guarded(lambda: self.scene.advance(n), Activity(steps=True, may_end=True))
+        self.guarded(lambda: self.scene.advance(n), STEPS)
         seconds = self.effort() - start
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
@@ -173,7 +173,7 @@ class SceneRun(Snapshots):
     def guarded(
         self,
         action: Callable[[], None],
-        activity: Activity | None = None,
+        activity: Activity = NOTHING,
         *,
         again: bool = False,
         else_anew: bool = False,
@@ -183,9 +183,9 @@ class SceneRun(Snapshots):
         again: a beginning, to be done once more where it is ended early; where it fails there is no scene to run.
         else_anew: where it is ended early the scene begins anew.
         """
+        self.activity = BEGINNING if again or else_anew else activity
         try:
-            with self.doing(activity or Activity(may_begin=again or else_anew)):
-                action()
+            action()
         except InterruptionError:
             self.counts["solves ended early"] += 1
             if again or else_anew or self.request[STOP] == ABANDON:
@@ -199,6 +199,8 @@ class SceneRun(Snapshots):
         except Exception as error:
             self.unmade = again
             self.halt(failure_words(error, begins=again))
+        finally:
+            self.activity = NOTHING
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
         """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""

@@ -1,10 +1,9 @@
 """A scene on the simulation thread, and the snapshot of it that the viewer shows."""
 
 import collections
-import contextlib
 import threading
 import traceback
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -27,11 +26,16 @@ Clock: TypeAlias = Callable[[], float]  # [s]
 
 
 class Activity(NamedTuple):
-    """What the simulation thread is doing, and what may cancel it."""
+    """The solve of the simulation thread, and what may cancel it."""
 
     steps: bool = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
     may_end: bool = False  # cancelled by all that asks for another solve: steps, or a frame
     may_begin: bool = False  # cancelled where the scene begins anew after it
+
+
+NOTHING = Activity()
+STEPS = Activity(steps=True, may_end=True)
+BEGINNING = Activity(may_begin=True)
 
 
 class Snapshots:
@@ -43,7 +47,7 @@ class Snapshots:
         """The arguments are those of `SimLoop`."""
         self.scene, self.audience, self.clock, self.effort = scene, audience, clock, effort
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
-        self.activity = Activity()
+        self.activity = NOTHING
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.unmade = False  # the scene could not begin: it waits for other values
         self.running = not paused
@@ -63,15 +67,6 @@ class Snapshots:
         self.whole_at = 0.0  # [s] of the clock, when one was
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: AnySnapshot = self.snapshot()
-
-    @contextlib.contextmanager
-    def doing(self, activity: Activity) -> Generator[None, None, None]:
-        """Inside, this is what the thread does."""
-        before, self.activity = self.activity, activity
-        try:
-            yield
-        finally:
-            self.activity = before
 
     @property
     def frame_interval(self) -> float:
@@ -113,13 +108,13 @@ class Snapshots:
         self.counts["snapshots"] += 1
         serial, params = self.counts["snapshots"], self.scene.params
         last: AnySnapshot | None = getattr(self, "latest", None)
-        may_end = last is not None and self.clock() - self.whole_at < MAX_BLIND_TIME
+        if last is not None:
+            self.activity = Activity(may_end=self.clock() - self.whole_at < MAX_BLIND_TIME, may_begin=True)
         try:
             if last is not None and (self.unfinished is not None or self.unmade):
                 self.is_shown = True  # all that there is of a scene that is not made
                 return self.without_frame(last)
-            with self.doing(Activity(may_end=may_end, may_begin=last is not None)):
-                found = self.collect(serial)
+            found = self.collect(serial)
             self.is_shown, self.whole_at = self.scene.params is params, self.clock()
             return found._replace(serial=self.counts["snapshots"])  # controls may have been answered with others
         except InterruptionError:
@@ -135,6 +130,8 @@ class Snapshots:
                 error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
             self.halt(str(error))
             return self.without_frame(last)
+        finally:
+            self.activity = NOTHING
 
     def without_frame(self, last: AnySnapshot) -> AnySnapshot:
         """The last snapshot with parameters and clock as they are now."""

@@ -30,7 +30,7 @@ FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader
 PATIENCE = 30.0  # [s] for the shaders of the page, and for its last frame
 NO_NOTES = "[class*=Notif], #springtide-slow { display: none !important }"
 FOLDER, SMALL = Path(__file__).with_name("presets"), (480, 300)  # of the gallery; [pixels]
-SETTLED = 8.0  # [s] for the page of a preset, and for its last frame
+SETTLED = 14.0  # [s] for the page of a preset, and for its last frame
 NO_PANEL = ".mantine-Paper-root, #springtide-time { display: none !important }"
 # Scene or preset -> time [s] of its picture in the gallery.
 MOMENTS = {

@@ -29,7 +29,7 @@ def site(tmp_path: Path) -> Iterator[str]:
     copytree(ROOT / "docs" / "static", tmp_path / "static")
 
     class Handler(SimpleHTTPRequestHandler):
-        def log_message(self, *_: Any) -> None:
+        def log_message(self, format: str, *args: Any) -> None:
             pass
 
     with ThreadingHTTPServer(("127.0.0.1", 0), partial(Handler, directory=str(tmp_path))) as server:

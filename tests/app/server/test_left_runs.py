@@ -119,7 +119,8 @@ def test_undo_gives_back_the_screen(lab: Viewer, change: Callable[[Viewer], None
     lab.panel.post(StepOnce())
     wait_for(lambda: lab.loop.counts["starts"] > starts and not lab.loop.running)
     lab.panel.undo()
-    wait_for(lambda: lab.loop.scene.time == time)
+    # Its snapshot comes once the whole run is back.
+    wait_for(lambda: (status := lab.loop.latest.status).starts == starts + 2 and status.time == time)
     check_same(lab.loop, before)
     assert not lab.loop.running
     assert lab.panel.head.preset.value == "Over the sphere"

@@ -624,10 +624,10 @@ def run_hydrodynamics(arguments: argparse.Namespace) -> int:
 
 def show_hull(arguments: argparse.Namespace) -> int:
     """`springtide hull`."""
-    from app.commands.hull import show
+    from app.commands.hull import print_facts
 
     with naming_extra("meshes", arguments.hull):
-        return show(arguments.hull, mesh_reading(arguments), arguments.density, arguments.kg)
+        return print_facts(arguments.hull, mesh_reading(arguments), arguments.density, arguments.kg)
 
 
 def run_warmup(arguments: argparse.Namespace) -> int:

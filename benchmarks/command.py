@@ -52,9 +52,11 @@ def run(
         if hasattr(case, "findings"):
             found[f"{name}_findings"] = case.findings(found[name])
         for title, rows in found.items():
-            text_tables.show(title, rows)
+            text_tables.print_table(title, rows)
         if out is not None:
-            tables.keep(found, functools.partial(case.figures, found[name]) if hasattr(case, "figures") else dict, out)
+            tables.write_results(
+                found, functools.partial(case.figures, found[name]) if hasattr(case, "figures") else dict, out
+            )
     if peers is not None:
         measure_peers(names, quick, peers, out)
     if out is not None:

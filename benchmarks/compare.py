@@ -158,7 +158,7 @@ def compare(
     rows = ratios(runs)
     if not rows:
         raise ValueError(f"--compare: both commits have no time in common in {' '.join(names)}")
-    text_tables.show(f"A {hashes[0][:8]}, B {hashes[1][:8]}", [shown(row) for row in rows])
+    text_tables.print_table(f"A {hashes[0][:8]}, B {hashes[1][:8]}", [shown(row) for row in rows])
     if out is not None:
         kept = {"machine": tables.machine(), "names": names, "commits": hashes, "repeats": REPEATS, "rows": rows}
         with replacing(out / "compare.json") as draft:

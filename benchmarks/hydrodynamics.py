@@ -66,7 +66,7 @@ def compare() -> int:
             draft = equilibrium_draft(hull, COMPARED_DENSITY, SEA_WATER)
             table = make_table(hull, [draft], lambda: progress.advance(task), panels_of_shape)
             rows += compared(name, hull, Hull.of(dataclasses.replace(hull.shape, table=table), hull))
-    text_tables.show("", [shown(row) for row in rows])
+    text_tables.print_table("", [shown(row) for row in rows])
     print("Periods: of small motions, undamped.")
     print("Decay: ratio of two extremes, a period apart, as simulated.")
     print("Response: height of heave over that of the wave; left out below 0.05.")

@@ -8,15 +8,43 @@ MAX_FUNCTION, MAX_CLASS = 80, 300  # lines
 # What is longer today. An entry goes as soon as it is cut, and none is added.
 LONG_FUNCTIONS = {"sim/springs/integrators/embedded/march.py: march"}
 LONG_CLASSES: set[str] = set()
+MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; attributes that these assign to self
+LARGE_OBJECTS = {"ClothScene", "FileScene", "MooringScene", "SceneRun", "SimLoop"}
+MANY_ATTRIBUTES = {
+    "FileScene", "FloatingBodies", "GuideTab", "LineScene", "MooringScene", "MooringView", "NonlinearSea", "Panel",
+    "RadialSea", "RadialSeaView", "RopeView", "SceneRun", "Sea", "SimLoop", "Snapshots", "SquareSeaScene",
+    "StudentCloth", "Viewer",
+}  # fmt: skip
+
+
+def classes_below(*tops: str) -> list[tuple[Path, ast.ClassDef]]:
+    """All classes, with their files."""
+    paths = (path for top in tops for path in sorted((ROOT / top).rglob("*.py")))
+    trees = ((path, ast.walk(ast.parse(path.read_text("utf-8")))) for path in paths)
+    return [(path, node) for path, nodes in trees for node in nodes if isinstance(node, ast.ClassDef)]
+
+
+def assigned(node: ast.ClassDef) -> set[str]:
+    """Names of the attributes that a class assigns to self."""
+    return {
+        one.attr
+        for one in ast.walk(node)
+        if isinstance(one, ast.Attribute) and isinstance(one.ctx, ast.Store)
+        if isinstance(one.value, ast.Name) and one.value.id == "self"
+    }
+
+
+def base_names(node: ast.ClassDef) -> list[str]:
+    """Names of the direct bases, those of generic ones without their arguments."""
+    bases = (base.value if isinstance(base, ast.Subscript) else base for base in node.bases)
+    return [base.id for base in bases if isinstance(base, ast.Name)]
 
 
 def test_a_name_of_a_class_means_one_class() -> None:
     """In the program and the library together, also for a class within another or within a function."""
     places: dict[str, list[str]] = {}
-    for path in (path for top in ("app", "sim") for path in (ROOT / top).rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            if isinstance(node, ast.ClassDef):
-                places.setdefault(node.name, []).append(f"{path.relative_to(ROOT).as_posix()}:{node.lineno}")
+    for path, node in classes_below("app", "sim"):
+        places.setdefault(node.name, []).append(f"{path.relative_to(ROOT).as_posix()}:{node.lineno}")
     assert {name: where for name, where in places.items() if len(where) > 1} == {}
 
 
@@ -33,3 +61,17 @@ def test_none_is_longer_but_those_that_are_known() -> None:
                     functions.add(name)
     assert functions == LONG_FUNCTIONS
     assert classes == LONG_CLASSES
+
+
+def test_no_object_is_larger_but_those_that_are_known() -> None:
+    """An object is cut by holding others; cut into bases it is as large as before."""
+    classes = {node.name: node for _, node in classes_below("app", "sim")}
+
+    def with_bases(name: str) -> set[str]:
+        return {name}.union(*(with_bases(base) for base in base_names(classes[name]) if base in classes))
+
+    nodes = {name: [classes[part] for part in with_bases(name)] for name in classes}
+    lines = {name: sum((one.end_lineno or 0) - one.lineno + 1 for one in parts) for name, parts in nodes.items()}
+    attributes = {name: len(set().union(*map(assigned, parts))) for name, parts in nodes.items()}
+    assert {name for name, count in lines.items() if count > MAX_OBJECT} == LARGE_OBJECTS
+    assert {name for name, count in attributes.items() if count > MAX_ATTRIBUTES} == MANY_ATTRIBUTES

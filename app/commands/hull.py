@@ -41,7 +41,7 @@ def size_warning(name: str, size: np.ndarray, reading: MeshReading) -> str:
     return f"Warning: {name} is {longest:.4g} m long, read in {unit}; --hull-unit takes m, cm, mm or ft"
 
 
-def show(path: Path, reading: MeshReading, density: float, keel_to_gravity: float | None) -> int:
+def print_facts(path: Path, reading: MeshReading, density: float, keel_to_gravity: float | None) -> int:
     """Print size, volume, draft, GM and GZ of the hull in a file, or where it is open; returns the exit status.
 
     density [kg/m3] of the whole hull; keel_to_gravity [m]: height of the centre of gravity over the lowest point, None:

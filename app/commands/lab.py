@@ -82,7 +82,7 @@ def print_results(results: Sequence[FolderResult], *, everything: bool = False) 
     """
     if len(results) > 1:
         names = folder_names(result.folder for result in results)
-        text_tables.show("", [class_row(result, names[result.folder]) for result in results])
+        text_tables.print_table("", [class_row(result, names[result.folder]) for result in results])
         print_frequent((names[result.folder], result.tasks) for result in results)
         return
     result, console = results[0], get_console()

@@ -148,14 +148,14 @@ def show_until_ended(opening: "Opening", host: str, access: Access, *, browser: 
             opening.start()
             if browser:
                 webbrowser.open(address)
-            wait_until(opening.done, keeper.keep if resumes else lambda: None)
+            wait_until(opening.done, keeper.store if resumes else lambda: None)
             opening.check()
     except KeyboardInterrupt:
         pass
     finally:
         signal.signal(signal.SIGINT, before)
         if resumes:
-            keeper.keep()
+            keeper.store()
         opening.shut()
     return 0
 
@@ -242,7 +242,7 @@ class Keeper:
         self.opening = opening
         self.kept: object = None
 
-    def keep(self) -> None:
+    def store(self) -> None:
         """Keep the set-up, if it is another than before and can be written."""
         viewer = self.opening.viewer
         if viewer is None or viewer.current is None:

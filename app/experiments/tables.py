@@ -54,7 +54,7 @@ def save_figures(figures: dict[str, Any], folder: Path) -> list[Path]:
     return paths
 
 
-def keep(found: dict[str, Rows], figures: Callable[[], dict[str, Any]], out: Path) -> None:
+def write_results(found: dict[str, Rows], figures: Callable[[], dict[str, Any]], out: Path) -> None:
     """Write tables and their figures to a folder; figures only if matplotlib is installed."""
     for title, rows in found.items():
         save_table(rows, out / f"{title}.csv")

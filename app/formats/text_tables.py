@@ -24,7 +24,7 @@ def written(value: Any) -> str:
     return str(value)
 
 
-def show(title: str, rows: Rows) -> None:
+def print_table(title: str, rows: Rows) -> None:
     """Print a table; one that is too wide for the terminal as lines "name: value unit", so that no digit is cut."""
     from rich.console import Console
     from rich.markup import escape

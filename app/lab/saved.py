@@ -42,7 +42,7 @@ def read_files(folder: Path) -> dict[str, bytes]:
     return texts
 
 
-def keep(texts: Mapping[str, bytes], folder: Path, number: int, tasks: Iterable[Task]) -> Saved:
+def store(texts: Mapping[str, bytes], folder: Path, number: int, tasks: Iterable[Task]) -> Saved:
     """Write the files into a folder of their own. Raises OSError where that cannot be done."""
     for name, text in texts.items():
         (folder / name).write_bytes(text)

@@ -20,7 +20,7 @@ from typing import Generic, NamedTuple, TypeAlias, TypeVar
 
 from app.lab.program_check import Verdict
 from app.lab.runner import BUSY, TIME_LIMIT, RunError, Runner, unexpected
-from app.lab.saved import Saved, keep, read_files
+from app.lab.saved import Saved, read_files, store
 from app.lab.task import Task
 
 LOOK_INTERVAL = 0.5  # [s] between two looks
@@ -151,7 +151,7 @@ class Versions:
         folder = self.copies / str(number)
         try:
             folder.mkdir(exist_ok=True)
-            saved = keep(texts, folder, number, self.tasks)
+            saved = store(texts, folder, number, self.tasks)
         except OSError:
             self.files.forget()
             raise

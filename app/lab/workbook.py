@@ -144,7 +144,7 @@ class Workbook:
         """
         if question.key == PREDICTION and self.is_shown(task):
             raise ValueError("The answer has been shown: the prediction stays as it is.")
-        self.keep(task.name, question.key, answer_of(question, text))
+        self.store(task.name, question.key, answer_of(question, text))
 
     def rename(self, text: str) -> None:
         """Keep the student's name. Raises ValueError for one that is not allowed, OSError as `answer` does."""
@@ -164,7 +164,7 @@ class Workbook:
             raise ValueError(f"{found.error}. Nothing is written until this is repaired.")
         return found
 
-    def keep(self, task: str, key: str, value: Value) -> None:
+    def store(self, task: str, key: str, value: Value) -> None:
         """Change one value of answers.toml. Raises ValueError where the file cannot be read, OSError for writing."""
         if self.folder is None:
             return
@@ -204,7 +204,7 @@ class Workbook:
         if self.folder is None or number is None:
             return
         if all(condition.holds(values) for condition in task.steps[number - 1].when):
-            self.keep(task.name, DONE, " ".join(str(i) for i in sorted(done | {number})))
+            self.store(task.name, DONE, " ".join(str(i) for i in sorted(done | {number})))
 
     def is_shown(self, task: Task) -> bool:
         """True if the answer has been shown."""
@@ -221,7 +221,7 @@ class Workbook:
         if first is not None and self.verdict(task, first).state != "given":
             raise ValueError("Write your prediction first: it is kept, and is neither right nor wrong.")
         if not self.is_shown(task):
-            self.keep(task.name, SHOWN, "yes")
+            self.store(task.name, SHOWN, "yes")
 
 
 def check_laws(task: Task) -> None:

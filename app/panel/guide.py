@@ -91,15 +91,15 @@ class QuestionWidgets:
         if self.question.kind == "text":
             self.typed = text, time.monotonic()
         else:
-            self.keep("" if text == UNANSWERED else text)
+            self.store("" if text == UNANSWERED else text)
 
     async def on_read_off(self, event: ViserEvent) -> None:
         """Take the live value."""
         text = read_off(self.question, self.guide.values)
         if event.client_id is not None and text:
-            self.keep(text)
+            self.store(text)
 
-    def keep(self, text: str) -> None:
+    def store(self, text: str) -> None:
         """Keep an answer, or remember why it was refused."""
         self.refusal = self.guide.attempt(lambda: self.workbook.answer(self.task, self.question, text))
         if not self.refusal:
@@ -111,7 +111,7 @@ class QuestionWidgets:
         typed = self.typed  # a browser may type on meanwhile
         if typed is not self.flushed and now - typed[1] >= TYPING_PAUSE:
             self.flushed = typed
-            self.keep(typed[0])
+            self.store(typed[0])
 
     def show(self) -> None:
         """Show the stored answer and its check; a text that is being typed is left alone."""

@@ -110,7 +110,7 @@ class Compiling:
                 self.threads[number] = thread
                 thread.start()
 
-    def take(self, number: int) -> Job | None:
+    def pop(self, number: int) -> Job | None:
         """The next job of a worker; None at the end."""
         with self.changed:
             self.changed.wait_for(lambda: self.ended or (self.rest if number == AHEAD else self.urgent))
@@ -122,7 +122,7 @@ class Compiling:
 
     def work(self, number: int) -> None:
         """Hand job after job to a process."""
-        while (job := self.take(number)) is not None:
+        while (job := self.pop(number)) is not None:
             problem = self.ask(number, job)
             with self.changed:
                 del self.running[number]

@@ -298,7 +298,7 @@ class Intake:
         self.turned_at = -math.inf  # [s] when a message was last handled
         self.counted = False  # whether viser has had a camera message
 
-    def take(self, client: ClientId, message: ViserMessage) -> None:
+    def queue(self, client: ClientId, message: ViserMessage) -> None:
         """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
         if kind_of(message) not in ALLOWED:
             self.screen(message)  # refused and counted
@@ -353,7 +353,7 @@ def put_intakes(server: viser.ViserServer, screen: Screen) -> bool:
 
     def join(client: ClientId, handlers: list[Handler]) -> Taker:
         intakes[client] = intake = Intake(screen, handlers)
-        return intake.take
+        return intake.queue
 
     def leave(client: ClientId) -> None:
         intakes.pop(client).close()

@@ -38,7 +38,7 @@ class LeftRuns:
         while self.memory.bytes > MAX_BYTES:
             self.memory.remove(self.runs.popleft().arrays)
 
-    def take(self, number: int) -> LeftRun | None:
+    def pop(self, number: int) -> LeftRun | None:
         """The run of that number, which is no longer kept then; None if it is not kept."""
         for place in reversed(range(len(self.runs))):
             if self.runs[place].number == number:

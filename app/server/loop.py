@@ -189,25 +189,25 @@ class SimLoop(SceneRun):
         try:
             self.take_in()
             params, effect = effect_of_takes(self.scene.params, self.waiting)
-            whole = is_kept_whole()
+            activity, whole = self.activity, is_kept_whole()
             anew = any(map(begins_anew, self.waiting)) or effect == "start"
             asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
-            if anew and (self.solving or self.may_begin):
+            if anew and (activity.steps or activity.may_begin):
                 self.request[STOP] = ABANDON if whole else 1
                 return
-            if asked and self.may_end and not whole:
+            if asked and activity.may_end and not whole:
                 self.request[STOP] = 1
                 return
             if effect == "look" and not (asked or self.taking):
                 self.scene.params = params
                 self.waiting = [command for command in self.waiting if not isinstance(command, Take)]
-            within_steps = self.solving and not whole
+            within_steps = activity.steps and not whole
             drags = self.drags_waiting() if within_steps else []
             for command in drags:
                 self.scene.handle(command)
             is_begun = self.latest.status.starts == self.counts["starts"]
             if drags or self.latest.params != params or not is_begun:
-                self.capped = self.solving
+                self.capped = activity.steps
                 self.publish_in_solve(params, with_frame=within_steps)
         except Exception:  # the solve knows nothing of it
             traceback.print_exc()

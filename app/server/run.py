@@ -14,7 +14,7 @@ from app.server.left_runs import LeftRun, LeftRuns
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from app.server.snapshots import Clock, Snapshots
+from app.server.snapshots import BEGINNING, NOTHING, STEPS, Activity, Clock, Snapshots
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
@@ -164,23 +164,26 @@ class SceneRun(Snapshots):
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
         start = self.effort()
-        self.solving = True
-        try:
-            self.guarded(lambda: self.scene.advance(n))
-        finally:
-            self.solving = False
+        self.guarded(lambda: self.scene.advance(n), STEPS)
         seconds = self.effort() - start
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
 
-    def guarded(self, action: Callable[[], None], *, again: bool = False, else_anew: bool = False) -> None:
+    def guarded(
+        self,
+        action: Callable[[], None],
+        activity: Activity = NOTHING,
+        *,
+        again: bool = False,
+        else_anew: bool = False,
+    ) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
         again: a beginning, to be done once more where it is ended early; where it fails there is no scene to run.
         else_anew: where it is ended early the scene begins anew.
         """
-        self.may_end, self.may_begin = self.solving, again or else_anew
+        self.activity = BEGINNING if again or else_anew else activity
         try:
             action()
         except InterruptionError:
@@ -197,7 +200,7 @@ class SceneRun(Snapshots):
             self.unmade = again
             self.halt(failure_words(error, begins=again))
         finally:
-            self.may_end = self.may_begin = False
+            self.activity = NOTHING
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
         """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
@@ -268,7 +271,7 @@ class SceneRun(Snapshots):
         if number == self.number:  # the one that would have followed has not begun
             self.take(params)
             return
-        self.number, left = number, self.left.take(number)
+        self.number, left = number, self.left.pop(number)
         self.begin_with(params, left)
         if left is None:
             self.restarted_until = self.wall + RESTARTED_SHOWN

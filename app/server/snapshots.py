@@ -4,7 +4,7 @@ import collections
 import threading
 import traceback
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -25,6 +25,19 @@ MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond
 Clock: TypeAlias = Callable[[], float]  # [s]
 
 
+class Activity(NamedTuple):
+    """The solve of the simulation thread, and what may cancel it."""
+
+    steps: bool = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
+    may_end: bool = False  # cancelled by all that asks for another solve: steps, or a frame
+    may_begin: bool = False  # cancelled where the scene begins anew after it
+
+
+NOTHING = Activity()
+STEPS = Activity(steps=True, may_end=True)
+BEGINNING = Activity(may_begin=True)
+
+
 class Snapshots:
     """Owns a scene, its clock and the latest snapshot of it."""
 
@@ -34,9 +47,7 @@ class Snapshots:
         """The arguments are those of `SimLoop`."""
         self.scene, self.audience, self.clock, self.effort = scene, audience, clock, effort
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
-        self.solving = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
-        self.may_end = False  # what runs may be ended early: steps, or a picture
-        self.may_begin = False  # what runs may be ended early where the scene begins anew after it
+        self.activity = NOTHING
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.unmade = False  # the scene could not begin: it waits for other values
         self.running = not paused
@@ -76,7 +87,7 @@ class Snapshots:
 
     def keep_state(self) -> KeptState | None:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""
-        if not self.running or self.solving or self.replay is not None:
+        if not self.running or self.activity.steps or self.replay is not None:
             return None
         if self.wall < self.keep_at or not self.audience():
             return None
@@ -97,8 +108,8 @@ class Snapshots:
         self.counts["snapshots"] += 1
         serial, params = self.counts["snapshots"], self.scene.params
         last: AnySnapshot | None = getattr(self, "latest", None)
-        self.may_begin = last is not None
-        self.may_end = self.may_begin and self.clock() - self.whole_at < MAX_BLIND_TIME
+        if last is not None:
+            self.activity = Activity(may_end=self.clock() - self.whole_at < MAX_BLIND_TIME, may_begin=True)
         try:
             if last is not None and (self.unfinished is not None or self.unmade):
                 self.is_shown = True  # all that there is of a scene that is not made
@@ -120,7 +131,7 @@ class Snapshots:
             self.halt(str(error))
             return self.without_frame(last)
         finally:
-            self.may_end = self.may_begin = False
+            self.activity = NOTHING
 
     def without_frame(self, last: AnySnapshot) -> AnySnapshot:
         """The last snapshot with parameters and clock as they are now."""

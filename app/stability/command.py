@@ -30,11 +30,11 @@ def run(quick: bool = False, out: Path | None = None, workers: int = 0) -> int:
     for name, title, part, details, figure in PARTS:
         found = part.measure(quick=quick, workers=workers)
         table = part.rows(found)
-        text_tables.show(title, table)
+        text_tables.print_table(title, table)
         if out is None:
             continue
         kept = {name: table, f"{name}_curves": details(found)}
-        tables.keep(kept, functools.partial(named_figure, name, figure, found), out)
+        tables.write_results(kept, functools.partial(named_figure, name, figure, found), out)
     if out is not None:
         tables.keep_machine(out)
     return 0

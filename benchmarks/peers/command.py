@@ -28,10 +28,10 @@ def measure_peers(names: Sequence[str], quick: bool, words: Sequence[str], out: 
         if out is not None:
             rows = ladder.merged(out / f"{name}_peers.csv", rows)
         summary = ladder.summary(rows)
-        text_tables.show(f"{name}_peers", ladder.shown(rows))
-        text_tables.show(f"{name}_peers_summary", summary)
+        text_tables.print_table(f"{name}_peers", ladder.shown(rows))
+        text_tables.print_table(f"{name}_peers_summary", summary)
         if out is not None:
             found = {f"{name}_peers": rows, f"{name}_peers_summary": summary}
-            tables.keep(found, functools.partial(ladder.figures, f"{name}_peers", rows), out)
+            tables.write_results(found, functools.partial(ladder.figures, f"{name}_peers", rows), out)
     if words and not measured:
         raise argument_error("--peers", " ".join(words), "words of a task or peer, as 'R(16)' or 'scipy'")

@@ -62,7 +62,7 @@ while True:
     number += 1
     book.answer(task, measure, str(number))
     book.answer(task, explain, f"Sentence {number}.\\n" * 100)
-    book.keep(task.name, "done", str(number))
+    book.store(task.name, "done", str(number))
     print(number, flush=True)
 """
 

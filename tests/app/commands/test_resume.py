@@ -54,14 +54,14 @@ def test_the_next_start_has_the_setup_that_was_left(data: Path, opened: Callable
     assert opened("--resume") == opened()  # nothing was left
     lab = lab_with(STIFF)
     keeper = Keeper(lab)
-    keeper.keep()
+    keeper.store()
     assert opened("--resume", "--scene", "cloth") == ("rope", STIFF)
     assert opened() != ("rope", STIFF)
     written = last_path().stat().st_mtime_ns
-    keeper.keep()
+    keeper.store()
     assert last_path().stat().st_mtime_ns == written  # nothing has changed
     lab.viewer.current.panel.params = ROPE.params()
-    keeper.keep()
+    keeper.store()
     assert opened("--resume") == ("rope", ROPE.params())
 
 
@@ -74,9 +74,9 @@ def test_what_cannot_be_read_is_as_if_nothing_was_left(data: Path, text: str) ->
 def test_where_nothing_can_be_written_the_lab_goes_on(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (data / "file").write_text("")
     monkeypatch.setenv("SPRINGTIDE_DATA", str(data / "file" / "below"))
-    Keeper(lab_with(STIFF)).keep()
+    Keeper(lab_with(STIFF)).store()
     for viewer in (None, SimpleNamespace(current=None)):  # before there is a lab, and before a scene is open
-        Keeper(SimpleNamespace(viewer=viewer)).keep()  # type: ignore[arg-type]
+        Keeper(SimpleNamespace(viewer=viewer)).store()  # type: ignore[arg-type]
     assert read_last() is None
 
 

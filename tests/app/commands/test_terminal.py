@@ -128,7 +128,7 @@ def test_no_digit_of_a_result_is_cut(path: Path, capsys: pytest.CaptureFixture[s
     with path.open(encoding="utf-8", newline="") as file:
         rows = [{name: number_or_text(cell) for name, cell in row.items()} for row in csv.DictReader(file)]
     rows = sorted(rows, key=lambda row: -sum(len(text_tables.written(value)) for value in row.values()))[:20]
-    text_tables.show(path.stem, rows)
+    text_tables.print_table(path.stem, rows)
     check_whole(capsys.readouterr().out, *(text_tables.written(value) for row in rows for value in row.values()))
 
 

@@ -71,7 +71,7 @@ def test_every_value_is_whole_in_a_narrow_terminal(
 ) -> None:
     monkeypatch.setenv("COLUMNS", str(WIDTH))
     rows = PRINTERS[name]()
-    text_tables.show(name, rows)
+    text_tables.print_table(name, rows)
     said = capsys.readouterr().out
     assert "…" not in said
     check_whole(said, rows)
@@ -86,7 +86,7 @@ def test_a_table_that_does_not_fit_is_printed_as_lines(
     assert text_tables.lines_of(row) == ["method: rk4", "  error: 1.25e-09 m", "  least: 3 ms", "  of [many] kinds: 7"]
     for width, is_table in ((100, True), (30, False)):
         monkeypatch.setenv("COLUMNS", str(width))
-        text_tables.show("Title", [row])
+        text_tables.print_table("Title", [row])
         said = capsys.readouterr().out
         assert ("│" in said) == is_table
         assert "Title" in said

@@ -28,7 +28,7 @@ from app.lab.program_check import Verdict, not_checked
 from app.lab.rope_picture import RopePicture, rope_picture, svg
 from app.lab.runner import Runner
 from app.lab.runners import Runners
-from app.lab.saved import Saved, keep, read_files
+from app.lab.saved import Saved, read_files, store
 from app.lab.task import Task, load_tasks
 from app.lab.versions import Versions, stamps
 from tests.waiting import wait_for
@@ -91,7 +91,7 @@ def save(folder: Path, sign: str, more: str = "") -> None:
 def test_a_rope_is_drawn_as_far_as_it_gets(code: str, text: str, poses: int | None, tmp_path: Path) -> None:
     (tmp_path / "rope.py").write_text(code)
     with Runner(tmp_path) as runner:
-        picture = rope_picture(runner, keep(read_files(tmp_path), tmp_path, 1, TASKS))
+        picture = rope_picture(runner, store(read_files(tmp_path), tmp_path, 1, TASKS))
     assert text in picture.text
     assert (picture.text == "") == (text == "")
     assert len(picture.own) == poses if poses is not None else 0 < len(picture.own) < 5
@@ -102,7 +102,7 @@ def test_a_rope_is_drawn_as_far_as_it_gets(code: str, text: str, poses: int | No
 def test_a_rope_falls_from_the_level_and_hangs_in_the_end(tmp_path: Path) -> None:
     (tmp_path / "rope.py").write_text(FORCE.format("-"))
     with Runner(tmp_path) as runner:
-        picture = rope_picture(runner, keep(read_files(tmp_path), tmp_path, 1, TASKS))
+        picture = rope_picture(runner, store(read_files(tmp_path), tmp_path, 1, TASKS))
     tips = picture.own[:, -1, 2]
     assert tips[0] > 1.7
     assert tips[-1] < 0.3

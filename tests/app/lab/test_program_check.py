@@ -18,7 +18,7 @@ from msgspec.structs import replace
 from app.lab.folder import stub
 from app.lab.program_check import SAMPLES, SEED, StudentFunction, Verdict, call, check_program, same, special_case
 from app.lab.runner import RunError, Runner
-from app.lab.saved import keep
+from app.lab.saved import store
 from app.lab.source import read_source
 from app.lab.task import Task, load_tasks
 from tests.app.lab.right_solutions import RIGHT
@@ -207,7 +207,7 @@ def test_of_a_file_that_cannot_be_parsed_each_function_is_read_alone(tmp_path: P
     names = ("spring_force", "rope_acceleration", "step_leapfrog", "step_rk4")
     assert [source.is_begun(name) for name in names] == [True, True, False, False]
     assert [source.name_at(line) for line in (4, 6, 10, 16, 1)] == [*names[:1], *names[:3], ""]
-    saved = keep({"rope.py": BROKEN.encode()}, tmp_path, 1, TASKS.values())
+    saved = store({"rope.py": BROKEN.encode()}, tmp_path, 1, TASKS.values())
     assert saved.begun == {"spring_force", "rope_acceleration"}
     # With nothing else to blame, every function shows that the file does not run.
     assert read_source(b"import numpy as\n").is_begun("spring_force")
@@ -326,7 +326,7 @@ def test_a_file_that_nests_too_deeply_has_failed(desk: Desk, deep: str) -> None:
 
 def test_a_change_affects_its_file_and_one_that_no_task_names_all_files(tmp_path: Path) -> None:
     first, second, third, fourth = (
-        keep(texts, tmp_path, 1, ())
+        store(texts, tmp_path, 1, ())
         for texts in ({"rope.py": b""}, {"rope.py": b"#"}, {"rope.py": b"#", "mine.py": b""}, {"mine.py": b""})
     )
     tasks = list(TASKS.values())

@@ -154,7 +154,7 @@ def test_a_new_value_stands_above_the_heading_of_the_next_task(folder: Path) -> 
     book = Workbook(TASKS, folder)
     book.answer(DRAFT, EXPLAIN, "One line.\n# no comment")
     before = (folder / FILE).read_text()
-    book.keep(DRAFT.name, "done", "1")
+    book.store(DRAFT.name, "done", "1")
     assert (folder / FILE).read_text() == before.replace('# no comment"""\n', '# no comment"""\ndone = "1"\n')
 
 
@@ -166,7 +166,7 @@ def test_only_one_value_changes_and_comments_and_edits_stay(folder: Path) -> Non
     book.answer(DRAFT, MEASURE, "0.03")
     book.answer(DRAFT, EXPLAIN, "One line.\n# no comment\nmeasure = 4")
     book.answer(DRAFT, MEASURE, "0.031")
-    book.keep("extra_draft", DONE, "1")
+    book.store("extra_draft", DONE, "1")
     now = path.read_text()
     assert "# my own note\n[extra_draft]" in now
     assert 'name = "Ada"  # mine' in now
@@ -216,7 +216,7 @@ def test_a_file_that_was_removed_is_made_again_and_a_folder_that_is_gone_is_an_e
 
 def test_changes_from_two_threads_are_both_kept(folder: Path) -> None:
     book = Workbook(TASKS, folder)
-    ticking = threading.Thread(target=lambda: [book.keep("extra_draft", DONE, str(i)) for i in range(10)])
+    ticking = threading.Thread(target=lambda: [book.store("extra_draft", DONE, str(i)) for i in range(10)])
     ticking.start()
     for i in range(10):
         book.answer(DRAFT, EXPLAIN, f"Sentence number {i}.")

@@ -202,7 +202,7 @@ def test_a_callback_that_fails_is_reported_and_loses_no_other_message(capsys: py
         intake = Intake(lambda message: message, [on_server, on_client])
         intake.counted = True
         for uuid in ("a", "bad", "b", "c"):
-            intake.take(1, vm.GuiUpdateMessage(uuid, {"value": 1.0}))
+            intake.queue(1, vm.GuiUpdateMessage(uuid, {"value": 1.0}))
         assert intake.turn is not None
         await intake.turn
 

@@ -89,11 +89,11 @@ def test_memory_is_bounded_and_the_oldest_go_first(monkeypatch: pytest.MonkeyPat
         loop.handle(Reset(number))
         assert loop.left.memory.bytes <= 3.5 * size
     assert loop.left.runs[-1].number == 28
-    assert loop.left.take(1) is None
+    assert loop.left.pop(1) is None
     kept = [run.number for run in loop.left.runs]
     assert kept == list(range(kept[0], 29))
     for number in kept:
-        assert loop.left.take(number) is not None
+        assert loop.left.pop(number) is not None
     assert loop.left.memory.bytes == 0
 
 

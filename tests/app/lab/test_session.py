@@ -248,6 +248,7 @@ def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Ses
     def refuse(*_: object, **__: object) -> None:
         raise OSError(11, "Resource temporarily unavailable")
 
+    wait_for(lambda: right.versions.spare is not None)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.lab.runner.Runner._started", refuse)
         process(right).close()  # as after an error

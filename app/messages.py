@@ -116,7 +116,7 @@ class Take(NamedTuple):
     The scene goes on as the effect of the change asks for.
     """
 
-    params: BaseParams  # the scene's `Params`
+    params: BaseParams  # the scene's record
     start: bool = False  # begin again and run, whatever has changed, as for a preset
     state: KeptState | None = None  # go on from here and run; of a scene that had these parameters
     run: int = 0  # number of the run with these parameters; 0: that of no panel
@@ -135,8 +135,8 @@ class Place(NamedTuple):
     position: Vector
 
 
-class Grab(NamedTuple):
-    """Pull a particle or body, by flat index, towards a target [m]."""
+class GrabTo(NamedTuple):
+    """Grab a particle or body, by flat index, and pull it towards a target [m]."""
 
     particle: int
     target: Vector
@@ -144,12 +144,12 @@ class Grab(NamedTuple):
 
 
 class Release(NamedTuple):
-    """Release the object that a browser drags."""
+    """Release what a browser has grabbed."""
 
     client: int = 0
 
 
-class Point(NamedTuple):
+class PointAlong(NamedTuple):
     """Point along a ray: from `origin` [m] along `direction`."""
 
     origin: Vector
@@ -183,7 +183,7 @@ class Advance(NamedTuple):
 
 
 SceneCommand = (
-    Place | Grab | Release | Point | RestartStatistics | StudentAnswer
+    Place | GrabTo | Release | PointAlong | RestartStatistics | StudentAnswer
 )  # what a scene handles; the rest is the loop's
 Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
 
@@ -210,7 +210,7 @@ class Status(NamedTuple):
     faster: str = ""  # what would make a run that is capped faster, or ""
 
 
-class Line(NamedTuple):
+class ChartLine(NamedTuple):
     """How one column of a chart is drawn."""
 
     label: str

@@ -22,7 +22,7 @@ SHOWN = """
 import time
 from app.scenes import NAMES
 from app.scenes.radial_sea.measures import measures
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.report import readout_of
 from app.server.viewer import Viewer
 
@@ -37,7 +37,7 @@ assert viewer.loop.latest.frame.bob[2] < 0.0
 assert set(viewer.panel.controls) == {"length", "gravity", "angle", "speed", "grid", "plot_swing"}
 assert not viewer.loop.halted
 
-viewer.open("radial_sea", Params(bodies=5))
+viewer.open("radial_sea", RadialSeaParams(bodies=5))
 while not viewer.view.bodies and time.monotonic() < end:
     time.sleep(0.05)
 assert "cone" in viewer.view.bodies

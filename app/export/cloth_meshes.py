@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.export.sequence import file_name
-from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.stepping import steps_to
 from sim.validation import argument_error
@@ -24,7 +24,7 @@ class ClothMeshes:
 
     passes = 1
 
-    def __init__(self, params: Params, interval: float, form: str) -> None:
+    def __init__(self, params: ClothParams, interval: float, form: str) -> None:
         """interval: [s] between two frames; steps are shortened equally where the step does not divide it.
 
         Raises ValueError for an integrator that cannot step this cloth.

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.export.sequence import file_name
-from app.scenes.square_sea.parameters import Params, solved_points
+from app.scenes.square_sea.parameters import SquareSeaParams, solved_points
 from app.scenes.square_sea.scene import SquareSeaScene
 
 FORMATS = ("exr", "exr16", "png")
@@ -32,7 +32,7 @@ def picture(field: NDArray[Any]) -> NDArray[Any]:
 class SeaPictures:
     """One run of the square sea; see `app.export.sequence.Sequence`."""
 
-    def __init__(self, params: Params, interval: float, form: str) -> None:
+    def __init__(self, params: SquareSeaParams, interval: float, form: str) -> None:
         """interval: [s] between two frames. form: one of FORMATS."""
         self.form = form
         self.steps = math.ceil(interval / MAX_FOAM_INTERVAL * (1.0 - 1e-9))  # between two frames

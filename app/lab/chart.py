@@ -3,11 +3,11 @@
 import numpy as np
 
 from app.lab.program_check import Points
-from app.messages import Line
+from app.messages import ChartLine
 from app.render.html import Html, fill
 from app.render.line_chart import line_chart
 
-LINES = (Line("Reference", "#1c6aa8"), Line("Your function", "#c2410c", dots=True))
+LINES = (ChartLine("Reference", "#1c6aa8"), ChartLine("Your function", "#c2410c", dots=True))
 
 
 def chart(points: Points) -> Html:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.rope_march import Functions, Sheet, Unfit, fitting, not_a_number
+from app.lab.rope_march import ClothData, Functions, Unfit, fitting, not_a_number
 from app.lab.tasks.cloth_forces import cloth_forces
 from app.lab.tasks.cloth_links import cloth_links
 from app.lab.tasks.step_euler import step_euler
@@ -37,7 +37,7 @@ class ClothFunctions(Functions):
     })  # fmt: skip
     roots = 0
 
-    def __init__(self, module: ModuleType, own: Collection[str], step: str, sheet: Sheet) -> None:
+    def __init__(self, module: ModuleType, own: Collection[str], step: str, sheet: ClothData) -> None:
         """own, step: as of `Functions`. Raises Unfit for links that no cloth of this size has."""
         super().__init__(module, own, step, {})
         self.sheet, self.pins = sheet, np.array(sheet.pins, int)

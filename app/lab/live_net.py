@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from app.lab.cloth_march import FILE as CLOTH_FILE
 from app.lab.process import ON_HUB
 from app.lab.rope_march import FILE as ROPE_FILE
-from app.lab.rope_march import Forces, March, Segment, Sheet
+from app.lab.rope_march import ClothData, Forces, MarchResult, Segment
 from app.lab.runner import RunError, Runner
 from app.lab.saved import Saved
 from app.lab.service import Service
@@ -28,7 +28,7 @@ COMPILE_AFTER = 3.0  # [s] of processor time in plain Python: about what compili
 # Containers get equal parts of a busy processor, and a lab that always wants more than its part answers late.
 REST_RATIO, MAX_REST = 16.0, 0.5  # [s]
 TRIAL_STEPS = 3, 1 / 480  # that a new version is tried with, and their length [s]
-Marched: TypeAlias = Done[March] | None  # None: no version works, and nothing was computed
+Marched: TypeAlias = Done[MarchResult] | None  # None: no version works, and nothing was computed
 
 
 class StudentReport(NamedTuple):
@@ -51,7 +51,7 @@ class StudentReport(NamedTuple):
     differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]
 
 
-class Material(NamedTuple):
+class NetKind(NamedTuple):
     """Differences between a rope and a cloth."""
 
     use: Use
@@ -96,12 +96,12 @@ def stretched_cloth(sphere: bool) -> tuple[np.ndarray, np.ndarray, Segment]:
     rows, cols, spacing = 4, 5, 0.1
     j, i = np.meshgrid(1.1 * spacing * np.arange(cols), 1.2 * spacing * np.arange(rows))
     x = np.stack([j, i, 2.0 + 0.1 * np.sin(3.0 * i + j)], axis=-1).reshape(-1, 3)
-    sheet = Sheet(rows, cols, (spacing, spacing), 100.0, 3.0, (0, cols - 1))
+    sheet = ClothData(rows, cols, (spacing, spacing), 100.0, 3.0, (0, cols - 1))
     forces = Forces(0.05, 200.0, 0.1, 0.0, spacing, 9.81)
     return x, 0.1 * x, Segment(*TRIAL_STEPS, forces, np.zeros((0, 4, 3)), sheet=sheet)
 
 
-ROPE = Material(
+ROPE = NetKind(
     Use("rope", "rope", ROPE_FILE, goes_on=True),
     frozenset({"explicit_euler", "rk4"}),
     {
@@ -115,7 +115,7 @@ ROPE = Material(
     bent_rope,
 )
 # A cloth's step is the program's: by the method of the scene where that is cheap enough for plain Python.
-CLOTH = Material(
+CLOTH = NetKind(
     Use("cloth", "cloth", CLOTH_FILE, goes_on=True),
     frozenset({"explicit_euler", "rk4", "symplectic_euler"}),
     {"explicit_euler": "step_euler", "rk4": "step_rk4"},
@@ -128,7 +128,7 @@ CLOTH = Material(
 class LiveNet(Service):
     """Has steps taken in a thread. `march` is for the simulation thread, `attempt` for the one that looks at files."""
 
-    def __init__(self, material: Material, versions: Versions, compile_it: Callable[[], None] = lambda: None) -> None:
+    def __init__(self, material: NetKind, versions: Versions, compile_it: Callable[[], None] = lambda: None) -> None:
         """compile_it: called once the newest version has taken `COMPILE_AFTER` in plain Python."""
         self.material, self.versions, self.compile_it = material, versions, compile_it
         self.connect(lambda: None, lambda: None)
@@ -156,7 +156,7 @@ class LiveNet(Service):
         """Try the newest version in a few steps as the last ones were; if it works, the scene begins again with it."""
         method, sphere = self.method, self.sphere
 
-        def job(runner: Runner, own: frozenset[str]) -> March:
+        def job(runner: Runner, own: frozenset[str]) -> MarchResult:
             x, v, segment = self.material.trial(sphere)
             return runner.march(own, self.material.step_of(method), x, v, [segment])
 
@@ -172,7 +172,7 @@ class LiveNet(Service):
         self.method, self.sphere = method, any(segment.forces.radius > 0.0 for segment in segments)
         own = functools.partial(self.material.own_of, method=method, sphere=self.sphere)
 
-        def job(runner: Runner, own: frozenset[str]) -> March:
+        def job(runner: Runner, own: frozenset[str]) -> MarchResult:
             return runner.march(own, self.material.step_of(method), x, v, segments)
 
         done, waited = None, MAX_REST
@@ -188,7 +188,7 @@ class LiveNet(Service):
             self.count(done, waited)
         time.sleep(min(REST_RATIO * waited, MAX_REST))
 
-    def count(self, done: Done[March], waited: float) -> None:
+    def count(self, done: Done[MarchResult], waited: float) -> None:
         """Count the effort of the newest version. waited: [s] for which other labs kept it from the processor."""
         if done.compiled or done.saved is not self.versions.of(self.material.use.file):
             return

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from app.lab.runner import RunError
 from app.lab.saved import Saved
 from app.lab.service import Service
-from app.lab.tabulate import Range
+from app.lab.tabulate import Interval
 from app.lab.task import Task
 from app.lab.versions import Use, Versions
 
@@ -27,7 +27,7 @@ class Call(NamedTuple):
     """A function at some arguments."""
 
     columns: tuple[NDArray[np.float64], ...]  # (n, ...) each: row i holds the arguments of call i
-    allowed: Range  # what the function may return
+    allowed: Interval  # what the function may return
     shape: tuple[int, ...] | None = ()  # of what it returns; None: its number of entries counts
     program: float = math.nan  # the program's own result, where there is one call
 

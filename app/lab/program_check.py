@@ -79,7 +79,7 @@ class Points:
     student: np.ndarray | None
 
 
-class Student:
+class StudentFunction:
     """A student's function, called with the types of the reference solution."""
 
     def __init__(self, runner: Runner, task: Task) -> None:
@@ -216,7 +216,7 @@ def not_checked(why: str) -> Verdict:
 
 def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
     """As `check_program`, of a function that is begun, once. line: on which it begins."""
-    student = Student(runner, task)
+    student = StudentFunction(runner, task)
     try:
         compare(student)
         behave(student)
@@ -244,7 +244,7 @@ def draw(runner: Runner, task: Task) -> Points | None:
     x = np.asarray(curve.x, np.float64)
     reference = np.asarray(curve.values(task.function, x), np.float64)
     try:
-        found = np.asarray(curve.values(Student(runner, task), x), np.float64)
+        found = np.asarray(curve.values(StudentFunction(runner, task), x), np.float64)
     except (RunError, Wrong, ValueError, IndexError):  # its message stands above the curve
         found = None
     if found is not None and found.shape != x.shape:
@@ -252,7 +252,7 @@ def draw(runner: Runner, task: Task) -> Points | None:
     return Points(curve.x_label, curve.y_label, x, reference, found)
 
 
-def behave(student: Student) -> None:
+def behave(student: StudentFunction) -> None:
     """Check the behaviour, where the task has such a check. Raises RunError or Wrong."""
     behaviour = getattr(student.task.check, "behaviour", None)
     if behaviour is None:
@@ -265,7 +265,7 @@ def behave(student: Student) -> None:
         ) from None
 
 
-def compare(student: Student) -> None:
+def compare(student: StudentFunction) -> None:
     """Compare with the reference at random inputs. Raises RunError or Wrong."""
     task = student.task
     rng = np.random.default_rng(SEED)
@@ -313,13 +313,13 @@ def compare(student: Student) -> None:
     )
 
 
-def check_exactly(student: Student) -> None:
+def check_exactly(student: StudentFunction) -> None:
     """Raises Wrong for a step whose coefficients differ by less than the results may."""
     if hasattr(student.task.check, "METHOD") and (why := explain(student)) is not None:
         raise Wrong(why.text, why.mistake, why.equations)
 
 
-def explain(student: Student) -> Explanation | None:
+def explain(student: StudentFunction) -> Explanation | None:
     """The difference of a function from the reference; None where its structure does not tell."""
     check = student.task.check
     try:
@@ -338,14 +338,14 @@ def explain(student: Student) -> Explanation | None:
         return None
 
 
-def name_unused_arguments(student: Student, samples: list[Any], found: list[Any]) -> None:
+def name_unused_arguments(student: StudentFunction, samples: list[Any], found: list[Any]) -> None:
     """Raises Wrong for a function that leaves an argument unused."""
     unused = [name for i, name in enumerate(student.task.arguments) if ignores(student, samples, found, i)]
     if unused:
         raise Wrong(f"the result does not change with {' and '.join(unused)}", f"{unused[0]} not used")
 
 
-def ignores(student: Student, samples: list[Any], found: list[Any], i: int) -> bool:
+def ignores(student: StudentFunction, samples: list[Any], found: list[Any], i: int) -> bool:
     """True if the student's result never depends on argument `i`, though the reference does.
 
     found: the student's results. Each pair of samples is tried, as a force may be 0 at many of them; False for a

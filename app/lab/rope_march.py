@@ -46,17 +46,17 @@ class Forces(NamedTuple):
     contact_damping: float = 5.0  # [N s/m]
     friction: float = 0.0  # Coulomb coefficient
     lab_contact: bool = False  # the lab's law of contact instead of the clipped one
-    held: int = -1  # point that the mouse pulls, -1: none
+    grabbed: int = -1  # point that the mouse pulls, -1: none
     hand: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m]
-    pull_stiffness: float = 0.0  # [N/m]
-    pull_damping: float = 0.0  # [N s/m]
+    grab_stiffness: float = 0.0  # [N/m]
+    grab_damping: float = 0.0  # [N s/m]
     max_pull: float = 1.0  # [N]
     wind: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s] at a cloth
     air_drag: float = 0.0  # [kg/m3] half the density of the air times the coefficient of drag
     air_lift: float = 0.0  # [kg/m3] the same of lift
 
 
-class Sheet(NamedTuple):
+class ClothData(NamedTuple):
     """Data of a cloth in addition to `Forces`, which has the mass of a cell and the stiffness along rows and columns.
 
     Point (i, j) has the number i cols + j.
@@ -80,12 +80,12 @@ class Segment(NamedTuple):
     # rest. A rope has one, its root.
     path: np.ndarray
     since: float = 0.0  # time t [s] of the first step, for the path and the sphere
-    sheet: Sheet | None = None  # what a cloth is made of; None for a rope
+    sheet: ClothData | None = None  # what a cloth is made of; None for a rope
     end: float = 0.0  # time [s] of the scene at its end
     x: np.ndarray | None = None  # (n, 3) [m] the program's net at its end; None within a segment that was divided
 
 
-class March(NamedTuple):
+class MarchResult(NamedTuple):
     """Result of advancing."""
 
     x: np.ndarray  # (segments, n, 3) [m] at the end of each segment that was finished
@@ -250,11 +250,11 @@ class Functions:
             for i in range(first, len(x)) if "sphere_force" in self.own else near:
                 mass = self.mass_of(i)
                 a[i] += self.sphere(x[i], v[i] - velocity, centre, float(distance[i]), mass) / mass
-        if f.held >= first:
-            gap = np.array(f.hand) - x[f.held]
+        if f.grabbed >= first:
+            gap = np.array(f.hand) - x[f.grabbed]
             distance = float(np.linalg.norm(gap))
-            k = f.max_pull / distance if f.pull_stiffness * distance > f.max_pull else f.pull_stiffness
-            a[f.held] += (k * gap - f.pull_damping * v[f.held]) / self.mass_of(f.held)
+            k = f.max_pull / distance if f.grab_stiffness * distance > f.max_pull else f.grab_stiffness
+            a[f.grabbed] += (k * gap - f.grab_damping * v[f.grabbed]) / self.mass_of(f.grabbed)
 
     def mass_of(self, i: int | np.intp) -> float:
         """The mass of point i [kg]."""
@@ -348,7 +348,7 @@ class Functions:
             x[0], v[0] = 0.0, (1.0, 0.0, 0.0)
 
 
-def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Segment]) -> March:
+def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Segment]) -> MarchResult:
     """Advance a rope from positions x and velocities v, shape (n, 3), over some segments. Raises Unfit."""
     ends: list[np.ndarray] = []
     taken, last_v, left = 0, v, False
@@ -367,7 +367,7 @@ def march(functions: Functions, x: np.ndarray, v: np.ndarray, segments: list[Seg
             ends.append(x)
             last_v = v
     seconds, effort = time.perf_counter() - began, time.thread_time() - effort
-    return March(np.array(ends).reshape(-1, *x.shape), last_v, taken, seconds, effort, left)
+    return MarchResult(np.array(ends).reshape(-1, *x.shape), last_v, taken, seconds, effort, left)
 
 
 def packed(segment: Segment) -> list[Any]:

@@ -28,9 +28,9 @@ from app.lab.cloth_march import FILE as CLOTH_FILE
 from app.lab.job import end_with_this_program, kill_with_children
 from app.lab.process import COMPILES, FORKS, TRACE_SIGNAL
 from app.lab.rope_march import FILE as ROPE_FILE
-from app.lab.rope_march import March, Segment, packed
+from app.lab.rope_march import MarchResult, Segment, packed
 from app.lab.source import decoded
-from app.lab.tabulate import Range
+from app.lab.tabulate import Interval
 from app.lab.template import Forked, Template, can_fork
 from app.lab.wire import pack, receive, send, unpack
 
@@ -114,7 +114,7 @@ class Runner:
 
     def march(
         self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
-    ) -> March:
+    ) -> MarchResult:
         """Advance a rope (`rope_march.py`), or a cloth (`cloth_march.py`), by the student's functions.
 
         own: names of the functions that the student has begun. step: name of the method's function. x, v: (n, 3).
@@ -127,10 +127,10 @@ class Runner:
         if not is_march(answer, x.shape):
             self.close()
             raise RunError("ended", f"{step} wrote into the pipe of the lab", file)
-        return March(*answer)
+        return MarchResult(*answer)
 
     def table(
-        self, file: str, function: str, columns: Sequence[np.ndarray], shape: tuple[int, ...] | None, allowed: Range
+        self, file: str, function: str, columns: Sequence[np.ndarray], shape: tuple[int, ...] | None, allowed: Interval
     ) -> np.ndarray:
         """(n, *shape) results of a function for each row of its arguments (`tabulate.py`). Raises RunError.
 
@@ -473,8 +473,8 @@ def unexpected(error: Exception, file: str) -> RunError:
 
 
 def is_march(answer: Any, shape: tuple[int, ...]) -> bool:
-    """True if an answer holds what a `March` of points (n, 3) does: a student's function may have forged it."""
-    if not isinstance(answer, tuple) or len(answer) != len(March._fields):
+    """True if an answer holds what a `MarchResult` of points (n, 3) does: a student's function may have forged it."""
+    if not isinstance(answer, tuple) or len(answer) != len(MarchResult._fields):
         return False
     x, v, steps, seconds, effort, left = answer
     arrays = all(isinstance(array, np.ndarray) and array.dtype == np.float64 for array in (x, v))

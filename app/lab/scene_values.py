@@ -12,13 +12,13 @@ import numpy as np
 
 from app.lab.live_tables import Call
 from app.lab.live_values import LiveNumber, LiveValues
-from app.lab.tabulate import Range
+from app.lab.tabulate import Interval
 from sim.ocean.spectra import phillips
 
 EARTH_GRAVITY = 9.81  # [m/s2] of the radial sea
 WAVE = 2.0 * math.pi  # [rad/m] wavenumber of the wave of 1 m that the radial sea tells the lifetime of
 DECAY_TIME = 10.0  # [s]
-ANY = Range(-math.inf, math.inf, "")
+ANY = Interval(-math.inf, math.inf, "")
 HEAVY = 100.0  # [Earth masses]
 
 Argument = float | tuple[float, ...]  # a number or a vector

@@ -11,8 +11,8 @@ import numpy as np
 from app.lab.rope_march import Unfit, fitting, not_a_number
 
 
-class Range(NamedTuple):
-    """Range of a result, ends included."""
+class Interval(NamedTuple):
+    """Values that a result may have, ends included."""
 
     low: float
     high: float
@@ -29,7 +29,7 @@ def tabulate(
     name: str,
     columns: Sequence[np.ndarray],
     shape: tuple[int, ...] | None,
-    allowed: Range,
+    allowed: Interval,
 ) -> np.ndarray:
     """(n, *shape) results of the function for each row of its arguments, columns of shape (n, ...).
 

@@ -26,18 +26,18 @@ LISTS = ("law", "show", "hide")  # keys of lists, which may be one text
 PREDICTION = "predict"  # key of the question that is answered before
 
 
-class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class TomlTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A table of a task's TOML file; another entry than its fields is an error."""
 
 
-class TypicalError(Table, frozen=True):
+class TypicalError(TomlTable, frozen=True):
     """A wrong answer that shows a typical misunderstanding."""
 
     answer: str | float
     text: str
 
 
-class Question(Table, frozen=True):
+class Question(TomlTable, frozen=True):
     """One question. A prediction is kept, and is neither right nor wrong; a text is for the teacher to judge."""
 
     key: str
@@ -77,7 +77,7 @@ class Question(Table, frozen=True):
         return abs(answer - value) <= self.tolerance * abs(value)
 
 
-class Setup(Table, frozen=True):
+class TaskSetup(TomlTable, frozen=True):
     """Set-up of Springtide that shows the task."""
 
     scene: str
@@ -89,14 +89,14 @@ class Setup(Table, frozen=True):
     hide: tuple[str, ...] = ()
 
 
-class Step(Table, frozen=True):
+class Step(TomlTable, frozen=True):
     """Something to do in the scene. The workbook ticks it off once all conditions hold at the same moment."""
 
     text: str
     when: Annotated[tuple[Condition, ...], msgspec.Meta(min_length=1)]
 
 
-class Guide(Table, frozen=True):
+class Guide(TomlTable, frozen=True):
     """An item of the course lab for those who look only: its question and its answer."""
 
     question: str  # in our own words
@@ -112,7 +112,7 @@ class Guide(Table, frozen=True):
             raise argument_error("answer", self.answer, f"names in braces ({error})") from None
 
 
-class TaskFile(Table, frozen=True):
+class TaskFile(TomlTable, frozen=True):
     """The TOML file of a task."""
 
     item: str  # of the course lab: its section, a hyphen, its number
@@ -121,7 +121,7 @@ class TaskFile(Table, frozen=True):
     optional: bool = False
     file: str = ""  # the student's file of a programming task
     order: int = 0  # among the tasks of one item
-    setup: Setup | None = None
+    setup: TaskSetup | None = None
     guide: Guide | None = None  # of the first task of an item
     steps: tuple[Step, ...] = msgspec.field(name="do", default=())
     questions: tuple[Question, ...] = msgspec.field(name="question", default=())
@@ -197,7 +197,7 @@ def read_task(path: Path, *, with_checks: bool = True) -> Task:
 
 
 def prepared(key: str, value: Any) -> Any:
-    """An entry of a TOML file as a `Table` has it: texts without blanks at their ends, lists, and conditions."""
+    """An entry of a TOML file as a `TomlTable` has it: texts without blanks at their ends, lists, and conditions."""
     if key in CONDITIONS:
         if not isinstance(value, dict):
             raise argument_error(key, value, "a table")

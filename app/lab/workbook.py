@@ -15,7 +15,7 @@ from app.lab.answer_check import AnswerVerdict, check_answer
 from app.lab.answers import DONE, FILE, SHOWN, Answers, Value, change_answer, change_name, read_answers
 from app.lab.folder import MAX_PICTURES, PICTURES
 from app.lab.live_values import LiveNumber, LiveValues
-from app.lab.task import PREDICTION, Question, Setup, Task
+from app.lab.task import PREDICTION, Question, Task, TaskSetup
 from app.render.formula import formula
 from sim.files import replacing
 from sim.parameters import choice_error
@@ -88,11 +88,11 @@ class Workbook:
         own = (i for i, task in enumerate(self.tasks) if self.set_up_of(task).scene == scene)
         self.index = next(own, self.index)
 
-    def set_up_of(self, task: Task) -> Setup:
+    def set_up_of(self, task: Task) -> TaskSetup:
         """Set-up of the task, or of another task of its item."""
         others = (other.setup for other in self.all_tasks if other.item == task.item and other.setup is not None)
         setup = task.setup or next(others, None)
-        return Setup("", "") if setup is None else setup
+        return TaskSetup("", "") if setup is None else setup
 
     # ----- answers
 

@@ -28,8 +28,8 @@ from typing import Any, NoReturn
 
 from app.lab.cloth_march import ClothFunctions
 from app.lab.process import BACKGROUND_NICENESS, COMPILES, FORKS, ROPE_NICENESS, TRACE_SIGNAL, lower_priority
-from app.lab.rope_march import Functions, Sheet, Unfit, march, unpacked
-from app.lab.tabulate import Range, tabulate
+from app.lab.rope_march import ClothData, Functions, Unfit, march, unpacked
+from app.lab.tabulate import Interval, tabulate
 from app.lab.template import fork_on_request
 from app.lab.wire import pack, receive, send, unpack
 
@@ -148,7 +148,7 @@ class Worker:
                 if sheet is None:
                     functions = Functions(module, own, step, self.compiled)
                 else:
-                    functions = ClothFunctions(module, own, step, Sheet(*sheet))
+                    functions = ClothFunctions(module, own, step, ClothData(*sheet))
                 done = march(functions, x, v, [unpacked(segment) for segment in segments])
                 return ["result", pack(tuple(done), lambda _: 0)]
             target = getattr(module, function, None)
@@ -156,7 +156,7 @@ class Worker:
                 return ["failed", "missing", f"there is no function {function}", file, None, False]
             if kind == "table":
                 columns, shape, allowed = unpack(arguments, self.remote)
-                return ["result", pack(tabulate(target, function, columns, shape, Range(*allowed)), lambda _: 0)]
+                return ["result", pack(tabulate(target, function, columns, shape, Interval(*allowed)), lambda _: 0)]
             value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
         except Unfit as error:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 import viser
 
 from app.lab.live_values import LiveNumber, LiveValues, fill_in
-from app.lab.task import PREDICTION, Question, Setup, Task
+from app.lab.task import PREDICTION, Question, Task, TaskSetup
 from app.lab.workbook import Workbook, read_off
 from app.panel.controls import Controls
 from app.panel.picture import take_picture
@@ -52,7 +52,7 @@ def live_values(kind: AnyKind, snapshot: AnySnapshot) -> LiveValues:
 class QuestionWidgets:
     """One question of the workbook: its text, the field of its answer, and the result of the check."""
 
-    def __init__(self, guide: "Guide", task: Task, question: Question) -> None:
+    def __init__(self, guide: "GuideTab", task: Task, question: Question) -> None:
         self.guide, self.task, self.question = guide, task, question
         self.workbook = guide.workbook
         self.refusal = ""
@@ -150,7 +150,7 @@ class QuestionWidgets:
             widget.remove()
 
 
-class Guide:
+class GuideTab:
     """The tab of the panel."""
 
     def __init__(
@@ -158,7 +158,7 @@ class Guide:
         gui: viser.GuiApi,
         kind: AnyKind,
         workbook: Workbook,
-        set_up: Callable[[Setup], None],
+        set_up: Callable[[TaskSetup], None],
         tab: viser.GuiTabHandle,
         controls: Controls,
     ) -> None:

@@ -19,7 +19,7 @@ from app.panel.compare import Beside, Compare
 from app.panel.controls import Controls
 from app.panel.display import Display, add_switches
 from app.panel.files import MakeReplay
-from app.panel.guide import Guide
+from app.panel.guide import GuideTab
 from app.panel.head import Actions, Head
 from app.panel.history import History, Settings
 from app.panel.keys import KEYS, add_keys
@@ -103,7 +103,7 @@ class Panel:
         self.recorder = Recorder(kind.packing)
         self.timeline = Timeline(self, wake)
         self.share = Share(self, wake, make_replay, changes)
-        self.guide: Guide | None = None
+        self.guide: GuideTab | None = None
         self.code: CodePanel | None = None
         self.map: StabilityMapPanel | None = None
         self.compare = (
@@ -123,7 +123,7 @@ class Panel:
         with tabs[CONTROLS]:
             self.add_controls(tabs[CONTROLS])
         if workbook is not None:
-            self.guide = Guide(self.gui, self.kind, workbook, self.set_up, tabs[LAB], self.shown)
+            self.guide = GuideTab(self.gui, self.kind, workbook, self.set_up, tabs[LAB], self.shown)
             if session is not None:
                 from app.panel import code_panel  # only `springtide lab DIR` pays for it
 
@@ -219,7 +219,7 @@ class Panel:
         """Every parameter as the preset has it, and the scene from its start: one command."""
         self.load_params(self.params_of(preset), preset)
 
-    def set_up(self, setup: task.Setup) -> None:
+    def set_up(self, setup: task.TaskSetup) -> None:
         """Show the set-up of a task. Raises ValueError if there is no such scene, preset or parameter."""
         self.show_setup(setup_of_task(setup), None)
 

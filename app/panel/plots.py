@@ -14,7 +14,7 @@ import viser
 from numpy.typing import NDArray
 from viser import uplot
 
-from app.messages import Line, PlotRow
+from app.messages import ChartLine, PlotRow
 from app.panel.round_step import round_step
 from app.render.viser_types import GuiHandle
 from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
@@ -35,7 +35,7 @@ KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a 
 CROSS_CLASS = "springtide-cross"  # of lines that are crosses
 EMPTY = np.array([0.0, 1.0])  # the times of a chart without rows
 
-Look: TypeAlias = tuple[str, tuple[Line, ...], float | None, "Scale | None"]
+Look: TypeAlias = tuple[str, tuple[ChartLine, ...], float | None, "Scale | None"]
 
 
 class Scale(NamedTuple):
@@ -297,9 +297,9 @@ def at_times(times: NDArray[np.float64], rows: NDArray[np.float64], column: int)
     return np.interp(times, rows[:, 0], rows[:, column], math.nan, math.nan)
 
 
-def kept_line(line: Line) -> Line:
+def kept_line(line: ChartLine) -> ChartLine:
     """How a line of an earlier run is drawn."""
-    return Line(f"{line.label}, kept", line.colour + KEPT_OPACITY, 1.5, KEPT_DASH)
+    return ChartLine(f"{line.label}, kept", line.colour + KEPT_OPACITY, 1.5, KEPT_DASH)
 
 
 def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None) -> tuple[uplot.Axis, ...]:
@@ -311,7 +311,7 @@ def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | Non
     return uplot.Axis(size=FIRST_AXIS_HEIGHT, gap=2), uplot.Axis(splits=ticks, values=words, size=size)
 
 
-def series_of(first: str, lines: Sequence[Line]) -> tuple[uplot.Series, ...]:
+def series_of(first: str, lines: Sequence[ChartLine]) -> tuple[uplot.Series, ...]:
     """viser's names of a chart's columns: the abscissa, then a line each."""
     series = [uplot.Series(label=first)]
     for line in lines:

@@ -53,7 +53,7 @@ def arrays_of_frame(frame: object) -> dict[int, int]:
     return found
 
 
-class Memory:
+class FrameMemory:
     """The bytes of arrays, of each once, however many frames share it."""
 
     def __init__(self) -> None:
@@ -90,7 +90,7 @@ class Recorder:
         self.packing = packing
         self.lock = threading.Lock()
         self.frames: collections.deque[Kept] = collections.deque()
-        self.memory = Memory()
+        self.memory = FrameMemory()
         self.spacing = 0.0  # time between frames over their age when frames were taken out last
         self.noted_at = 0.0  # [s] of the clock, of the last frame
         self.starts = -1
@@ -112,8 +112,9 @@ class Recorder:
             if status.starts != self.starts:
                 self.starts = status.starts
                 self.clear()
-            while self.position is None and self.frames and self.frames[-1].time > status.time:
-                self.forget(self.frames.pop())  # the run has gone on from an earlier moment
+            while self.frames and self.frames[-1].time > status.time:  # it has gone on from an earlier moment
+                self.forget(self.frames.pop())
+                self.position, self.playing = None, False
 
     def note(self, snapshot: AnySnapshot, wall: float) -> None:
         """Record a snapshot of a running scene; best once it is drawn, as its packed form can be kept.
@@ -171,7 +172,7 @@ class Recorder:
     def clear(self) -> None:
         """Forget all frames, and show the present."""
         self.frames.clear()
-        self.memory, self.spacing = Memory(), 0.0
+        self.memory, self.spacing = FrameMemory(), 0.0
         self.position, self.playing = None, False
 
     def span(self) -> tuple[float, float]:

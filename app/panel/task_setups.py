@@ -7,7 +7,7 @@ from app.scenes.setups import Setup, make_setup, read_query, split_task
 from sim.validation import argument_error
 
 
-def setup_of_task(own: task.Setup) -> Setup:
+def setup_of_task(own: task.TaskSetup) -> Setup:
     """The set-up of a task of the lab. Raises ValueError if the scene, the preset or a parameter does not exist."""
     kind = scene_named(own.scene)
     return make_setup(kind, own.preset or next(iter(kind.presets)), own.parameters)

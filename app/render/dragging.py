@@ -1,4 +1,4 @@
-"""Dragging with the mouse: commands to the simulation, and the line from the held point to the mouse."""
+"""Dragging with the mouse: commands to the simulation, and the line from what is grabbed to the mouse."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.messages import Command, Grab, Release, finite_vector
+from app.messages import Command, GrabTo, Release, finite_vector
 
-HELD_COLOUR = (255, 90, 60)
+GRAB_COLOUR = (255, 90, 60)
 
 
 def drag(post: Callable[[Command], None], event: Any, index: int | None) -> None:
@@ -17,7 +17,7 @@ def drag(post: Callable[[Command], None], event: Any, index: int | None) -> None
     if event.phase == "end" or target is None or index is None:
         post(Release(event.client_id))
     else:
-        post(Grab(int(index), target, event.client_id))
+        post(GrabTo(int(index), target, event.client_id))
 
 
 class SurfaceDrag:
@@ -25,32 +25,32 @@ class SurfaceDrag:
 
     def __init__(self, post: Callable[[Command], None]) -> None:
         self.post = post
-        self.held: dict[int, int] = {}  # client -> point
+        self.grabbed: dict[int, int] = {}  # client -> point
 
     def handle(self, event: Any, points: np.ndarray) -> None:
         """Post the command of viser's drag event. points: (n, 3) as drawn [m]."""
         if event.phase == "start":
-            self.held[event.client_id] = int(np.argmin(np.linalg.norm(points - event.start_position, axis=1)))
-        drag(self.post, event, self.held.get(event.client_id))
+            self.grabbed[event.client_id] = int(np.argmin(np.linalg.norm(points - event.start_position, axis=1)))
+        drag(self.post, event, self.grabbed.get(event.client_id))
         if event.phase == "end":
-            self.held.pop(event.client_id, None)
+            self.grabbed.pop(event.client_id, None)
 
 
-class PullLine:
-    """A line that is drawn while something is held."""
+class GrabLine:
+    """A line that is drawn while something is grabbed."""
 
     def __init__(self, server: viser.ViserServer, name: str = "/pull") -> None:
         self.line = server.scene.add_line_segments(
             name,
             np.zeros((1, 2, 3), np.float32),
-            colors=HELD_COLOUR,
+            colors=GRAB_COLOUR,
             thickness=4.0,
             thickness_units="screen",
             visible=False,
         )
 
     def show(self, ends: Any, load: float = 0.4) -> None:
-        """ends: (2, 3) [m], None while nothing is held. load: share of the largest force of the mouse, 0 to 1."""
+        """ends: (2, 3) [m], None while nothing is grabbed. load: share of the largest force of the grab, 0 to 1."""
         self.line.visible = ends is not None
         if ends is not None:
             self.line.points = np.array([ends], np.float32)

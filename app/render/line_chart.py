@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Line
+from app.messages import ChartLine
 from app.render.html import Html, fill, join
 
 WIDTH, PLOT_HEIGHT = 560, 208  # [px] of the chart, and of it without its key
@@ -54,7 +54,7 @@ def ticks(low: float, high: float) -> Sequence[float]:
 def line_chart(
     title: str,
     first: str,
-    lines: Sequence[Line],
+    lines: Sequence[ChartLine],
     columns: Sequence[NDArray[np.floating]],
     end: float | None = None,
     scale: Sequence[tuple[float, str]] = (),
@@ -97,7 +97,7 @@ def line_chart(
     return Drawing(svg, height)
 
 
-def draw_line(line: Line, places: NDArray[np.float64], values: NDArray[np.float64], x: Axis, y: Axis) -> Html:
+def draw_line(line: ChartLine, places: NDArray[np.float64], values: NDArray[np.float64], x: Axis, y: Axis) -> Html:
     """One line, and the area below it if it has one; or dots, or crosses at the top edge."""
     if line.cross:
         at = (x.at(place) for place in places[np.isfinite(values)].tolist())
@@ -125,7 +125,7 @@ def draw_line(line: Line, places: NDArray[np.float64], values: NDArray[np.float6
     return join((below, stroke))
 
 
-def dashes(line: Line) -> str:
+def dashes(line: ChartLine) -> str:
     """The dashes of a line as SVG has them."""
     return " ".join(f"{length:g}" for length in line.dash) or "none"
 
@@ -147,7 +147,7 @@ def draw_axes(x: Axis, y: Axis, marks: Sequence[tuple[float, str]]) -> Html:
     return join((up, across, lines))
 
 
-def draw_key(lines: Sequence[Line]) -> tuple[Html, int]:
+def draw_key(lines: Sequence[ChartLine]) -> tuple[Html, int]:
     """The names of the lines below the chart, and the number of rows that they take."""
     names: list[Html] = []
     place, row = float(LEFT), 1

@@ -40,7 +40,7 @@ class Tile(NamedTuple):
     length: float  # [m] of a side
 
 
-class Water:
+class DrawnWater:
     """A sea that changes every frame, simulated on the points of `shape`; the browser draws it up to the horizon.
 
     The points of a tile are (rows, cols): [i, j] rests at x = i length/rows, y = j length/cols. The tile is periodic;

@@ -35,4 +35,4 @@ def scene_named(name: str) -> "AnyKind":
 
 def view_named(name: str) -> "type[AnyView]":
     """The class that draws a scene; imports viser."""
-    return importlib.import_module(f"{__name__}.{check_name(name)}.view").View
+    return importlib.import_module(f"{__name__}.{check_name(name)}.view").VIEW

@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Line
+from app.messages import ChartLine
 
 # Colours that can be told apart with any colour vision (Okabe and Ito, 2008); black and yellow last.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
@@ -28,7 +28,7 @@ class PlotAxes(NamedTuple):
     dashed: bool = False  # lines that may cover one another
 
     @property
-    def lines(self) -> tuple[Line, ...]:
+    def lines(self) -> tuple[ChartLine, ...]:
         """How its series are drawn."""
         lines = lines_of(self.series)
         return dashed(lines) if self.dashed else lines
@@ -59,7 +59,7 @@ class Chart(NamedTuple):
     """Columns with lines that are known only as the scene runs."""
 
     first: str  # label of the first column
-    lines: tuple[Line, ...]
+    lines: tuple[ChartLine, ...]
     columns: Columns  # the first, then one a line
     end: float | None = None  # of the first column's scale, from 0; None to fit it to the data; a change should be rare
     # Numbers of each line for files, if what is drawn is stacked or clipped; None for a line that is only a mark.
@@ -74,19 +74,21 @@ class Numbers(NamedTuple):
     values: Column
 
 
-def lines_of(names: Sequence[str]) -> tuple[Line, ...]:
+def lines_of(names: Sequence[str]) -> tuple[ChartLine, ...]:
     """The lines of a chart that has them from the start; the sum of the others is drawn the widest."""
     return tuple(
-        Line(name, colour, 3.0 if name == "total" else 2.0) for name, colour in zip(names, COLOURS, strict=False)
+        ChartLine(name, colour, 3.0 if name == "total" else 2.0) for name, colour in zip(names, COLOURS, strict=False)
     )
 
 
-def dashed(lines: Sequence[Line]) -> tuple[Line, ...]:
+def dashed(lines: Sequence[ChartLine]) -> tuple[ChartLine, ...]:
     """The lines with unlike dashes."""
     return tuple(line._replace(dash=dash) for line, dash in zip(lines, itertools.cycle(DASHES)))
 
 
-def with_numbers(lines: Sequence[Line], columns: Sequence[Column]) -> tuple[tuple[Line, ...], tuple[Column, ...]]:
+def with_numbers(
+    lines: Sequence[ChartLine], columns: Sequence[Column]
+) -> tuple[tuple[ChartLine, ...], tuple[Column, ...]]:
     """The lines that have a number, and their columns, such as those of the moorings there are; all if none has one."""
     there = [bool(np.isfinite(column).any()) for column in columns]
     chosen = [i for i, has in enumerate(there) if has or not any(there)]

@@ -2,11 +2,12 @@
 
 To add a scene, add one folder here, named as the scene is on the command line:
 
-1. `parameters.py`: `Params`, a frozen dataclass of parameters (`sim/parameters.py`) with at least `speed` and `grid`,
-   each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults; the first
-   preset is the defaults. `ABOUT` holds a sentence on each: what it shows and what to try.
+1. `parameters.py`: a frozen dataclass of parameters (`sim/parameters.py`), such as `RopeParams`, with at least `speed`
+   and `grid`, each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults;
+   the first preset is the defaults. `ABOUT` holds a sentence on each: what it shows and what to try.
 2. `scene.py`: the simulation, a class that satisfies `Scene`, and `SCENE = SceneKind(...)`. It imports no viewer.
-3. `view.py`: the drawing, a class `View` derived from `View` below. Only it and `*_view.py` beside it import viser.
+3. `view.py`: the drawing, a class derived from `SceneView`, and `VIEW`, that class. Only it and `*_view.py` beside it
+   import viser.
 
 The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
 """
@@ -141,7 +142,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
 
-class View(Protocol[P, F, R]):
+class SceneView(Protocol[P, F, R]):
     """The drawing of a scene, used on the viewer's thread only.
 
     FIELD_OF_VIEW: of a new camera, vertical [rad]. CAMERA: position and target [m] of a camera that has not been moved.
@@ -281,6 +282,6 @@ class SceneKind(Generic[P, F, R]):
 PostCommand: TypeAlias = Callable[[Command], None]  # takes a command for the simulation
 # What the server and the panel work with: a scene of whatever parameters, frames and readings.
 AnyScene: TypeAlias = Scene[BaseParams, object, object]
-AnyView: TypeAlias = View[BaseParams, object, object]
+AnyView: TypeAlias = SceneView[BaseParams, object, object]
 AnyKind: TypeAlias = SceneKind[BaseParams, object, object]
 AnySnapshot: TypeAlias = Snapshot[BaseParams, object, object]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 KEEP_TIMEOUT = 5.0  # [s] for the first lab to hand over its state, to go on from when it is alone again
 
 
-class Comparison:
+class ComparedLabs:
     """The labs of a comparison: the first one stays unchanged, the others end with the comparison."""
 
     def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
@@ -138,7 +138,7 @@ class Comparing:
     def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
         self.first, self.make_pane = first, make_pane
         self.lock = threading.Lock()
-        self.latest: Comparison | None = None  # the one that was made last, also while it is being opened
+        self.latest: ComparedLabs | None = None  # the one that was made last, also while it is being opened
 
     def begin(self, setups: Sequence[Setup], with_first: bool) -> None:
         """Show set-ups beside the first lab; with_first: the first of them in the first lab.
@@ -153,7 +153,7 @@ class Comparing:
                 self.first.comparison.end()
             if with_first:
                 self.first.open(setups[0].scene, setups[0].params)
-            self.latest = Comparison(self.first, self.make_pane)
+            self.latest = ComparedLabs(self.first, self.make_pane)
             self.latest.begin(setups[1:] if with_first else setups, resume=not with_first)
 
     def want(self, setups: Sequence[Setup], with_first: bool) -> None:

@@ -4,7 +4,7 @@ import collections
 from typing import NamedTuple
 
 from app.messages import KeptState, PlotRow
-from app.panel.recorder import Memory
+from app.panel.recorder import FrameMemory
 
 MAX_BYTES = 100e6  # of all that is kept; beyond that the oldest are dropped
 ROW_BYTES = 32  # of a number in a plot row, with its place in the tuple
@@ -29,7 +29,7 @@ class LeftRuns:
 
     def __init__(self) -> None:
         self.runs: collections.deque[LeftRun] = collections.deque()
-        self.memory = Memory()
+        self.memory = FrameMemory()
 
     def add(self, run: LeftRun) -> None:
         """Keep a run."""

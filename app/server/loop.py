@@ -18,7 +18,7 @@ from app.messages import (
     Ask,
     BaseParams,
     Command,
-    Grab,
+    GrabTo,
     Halt,
     Pause,
     Place,
@@ -35,7 +35,7 @@ from app.messages import (
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.stepping import steps_to
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
-from app.server.run import Goal, Run
+from app.server.run import Goal, SceneRun
 from app.server.shared_clock import Seat
 from app.server.snapshots import Clock
 from app.server.timer import TIMER_STEP, effort_clock, fine_timer
@@ -52,7 +52,7 @@ LATENESS_WEIGHT = 0.1  # of the last sleep in the mean
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
 
-class SimLoop(Run):
+class SimLoop(SceneRun):
     """Runs a scene on a thread, by commands that come from others."""
 
     def __init__(
@@ -214,10 +214,10 @@ class SimLoop(Run):
         finally:
             self.in_turn = False
 
-    def drags_waiting(self) -> list[Grab | Place | Release]:
+    def drags_waiting(self) -> list[GrabTo | Place | Release]:
         """The drags among the waiting commands; the others go on waiting for the next tick."""
-        drags = [command for command in self.waiting if isinstance(command, Grab | Place | Release)]
-        self.waiting = [command for command in self.waiting if not isinstance(command, Grab | Place | Release)]
+        drags = [command for command in self.waiting if isinstance(command, GrabTo | Place | Release)]
+        self.waiting = [command for command in self.waiting if not isinstance(command, GrabTo | Place | Release)]
         return drags
 
     def publish_in_solve(self, params: BaseParams, *, with_frame: bool) -> None:

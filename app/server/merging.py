@@ -8,7 +8,7 @@ from app.messages import (
     Ask,
     BaseParams,
     Command,
-    Grab,
+    GrabTo,
     Halt,
     Pause,
     Place,
@@ -55,7 +55,7 @@ def repeats(earlier: Command, later: Command) -> bool:
     match earlier, later:
         case (Place(thing), Place(other)):
             return thing == other
-        case (Grab(particle, _, client), Grab(other, _, by)):
+        case (GrabTo(particle, _, client), GrabTo(other, _, by)):
             return (particle, client) == (other, by)
         case (Release(client), Release(by)):
             return client == by

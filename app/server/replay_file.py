@@ -39,6 +39,7 @@ STYLE = (
     "#springtide-about td{padding:0 10px 0 0}"
     f"canvas[data-engine]{{background:{LIGHT_SKY.css}}}"
     "#springtide-slow{bottom:92px!important}"  # above the time line
+    "#webgl-software-rendering{display:none!important}"  # the line on slow drawing says it
 )
 
 

@@ -32,7 +32,7 @@ class Goal(NamedTuple):
     was_running: bool
 
 
-class Run(Snapshots):
+class SceneRun(Snapshots):
     """Takes a scene's steps, and begins it again."""
 
     def __init__(
@@ -105,8 +105,9 @@ class Run(Snapshots):
         arrived = steps_to(self.scene, goal.until) == 0
         if not (arrived or reason or goal.answer.cancelled()):
             return
-        if not reason:
-            self.running = goal.was_running
+        if not reason and not goal.was_running:
+            self.running = False
+            self.publish()  # the page says that it stands still
         self.goal = None
         if not goal.answer.set_running_or_notify_cancel():
             return

@@ -27,7 +27,7 @@ from app.scenes.compiling import Compiling
 from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
 from app.scenes.setups import make_setup
 from app.server.access import OWN_PAGES_ONLY, Access
-from app.server.beside import Comparing, Comparison
+from app.server.beside import ComparedLabs, Comparing
 from app.server.guard import open_pane, open_server, quiet
 from app.server.loop import SimLoop
 from app.server.panes import Panes
@@ -76,7 +76,7 @@ class Viewer:
         else:
             self.server, self.screen = open_pane(beside[0].panes, beside[1])
         self.plain, self.pane_of = plain, beside
-        self.comparison: Comparison | None = None
+        self.comparison: ComparedLabs | None = None
         self.comparing = Comparing(self, self.make_pane)
         if plain:
             disable_shaders(self.server)

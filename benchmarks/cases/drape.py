@@ -4,7 +4,7 @@ import statistics
 import time
 from typing import Any
 
-from app.scenes.cloth.parameters import PRESETS, Params
+from app.scenes.cloth.parameters import PRESETS, ClothParams
 from app.scenes.cloth.scene import ClothScene
 from sim.parameters import check_record
 
@@ -13,7 +13,7 @@ FRAME_INTERVAL = 1 / 60  # [s]
 
 def row(preset: str, frames: int) -> dict[str, Any]:
     """Frames of 1/60 s on one thread, in processor time, which other programs on the machine do not lengthen."""
-    scene = ClothScene(check_record(Params, PRESETS[preset]))
+    scene = ClothScene(check_record(ClothParams, PRESETS[preset]))
     scene.tuner.count = 1
     steps = round(FRAME_INTERVAL / scene.step)
     times = []

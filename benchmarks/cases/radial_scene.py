@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from app.scenes.radial_sea.bodies import place_of
-from app.scenes.radial_sea.parameters import PRESETS, Params
+from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams
 from app.scenes.radial_sea.scene import RadialSeaScene
 from benchmarks.cases.radial import default_sea
 from benchmarks.timing import processor_time
@@ -50,7 +50,7 @@ def scene_rows(repeats: int) -> list[dict[str, Any]]:
     """The scene without the server, by preset: two steps and a frame every 1/30 s."""
     found = []
     for preset, changes in PRESETS.items():
-        scene = RadialSeaScene(check_record(Params, changes))
+        scene = RadialSeaScene(check_record(RadialSeaParams, changes))
 
         def frame(scene: RadialSeaScene = scene) -> None:
             scene.advance(2)

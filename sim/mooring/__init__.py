@@ -10,9 +10,20 @@ from sim.mooring.moordyn import read_moordyn, write_moordyn
 from sim.mooring.moored import moored
 from sim.mooring.simulate import MooringRun, simulate
 from sim.mooring.statics import Rest, at_rest
-from sim.mooring.system import Body, Line, LineType, Point, System
+from sim.mooring.system import Line, LineType, MooredBody, Point, System
 
 __all__ = [
-    "Body", "Line", "LineType", "MooringRun", "Point", "Rest", "System", "at_rest", "critical_step",
-    "moored", "read_moordyn", "simulate", "write_moordyn",
+    "Line",
+    "LineType",
+    "MooredBody",
+    "MooringRun",
+    "Point",
+    "Rest",
+    "System",
+    "at_rest",
+    "critical_step",
+    "moored",
+    "read_moordyn",
+    "simulate",
+    "write_moordyn",
 ]  # fmt: skip

@@ -27,7 +27,7 @@ RISE = 1e6  # of the largest force left by the first correction, above which the
 HOLD = 1e-8  # of slack links, over what taut ones have: no place of what lies slack is better than another
 
 
-class Balance(NamedTuple):
+class BalanceResult(NamedTuple):
     """A state as the corrections left it."""
 
     x: Array  # (3, n) [m]
@@ -104,7 +104,7 @@ def pull(x: Array, p: LineArrays) -> tuple[Array, float]:
     return forces_on_free(forces, x, p), float(np.abs(forces).max())
 
 
-def balanced(p: LineArrays, chains: Chains, x: Array, tension: Array, on: Pieces, corrections: int) -> Balance:
+def balanced(p: LineArrays, chains: Chains, x: Array, tension: Array, on: Pieces, corrections: int) -> BalanceResult:
     """The state of rest near positions x (3, n) and tensions (links,) [N], after `corrections` at most.
 
     on: pieces of the laws there, for the first correction.
@@ -114,12 +114,12 @@ def balanced(p: LineArrays, chains: Chains, x: Array, tension: Array, on: Pieces
     most = RISE * left  # a stiff line may be stretched by the first correction, which the second takes back
     for done in range(corrections):
         if is_settled or not left <= most:
-            return Balance(x, left, is_settled, done)
+            return BalanceResult(x, left, is_settled, done)
         most = 0.5 * left if done else most
         x, tension = corrected(laws, chains, x, tension, on)
         on = pieces_at(x, p)
         left, is_settled = what_is_left(x, p)
-    return Balance(x, left, is_settled, corrections)
+    return BalanceResult(x, left, is_settled, corrections)
 
 
 def what_is_left(x: Array, p: LineArrays) -> tuple[float, bool]:

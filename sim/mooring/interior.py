@@ -43,7 +43,7 @@ TAUT = 1e-3  # slack of a link that seems taut, over its length
 WIDE = 1.5  # slack at the start, over the longer of a link's rest length and its span
 
 
-class State(NamedTuple):
+class InteriorState(NamedTuple):
     """Numbers that the laws keep positive or inside cones, or a step of them."""
 
     slack: Array  # (links, 4) [m]: stretched length, span
@@ -55,11 +55,11 @@ class State(NamedTuple):
     above: Array  # (k,) [m] beyond the height at which buoyancy ends
     below: Array  # (k,) [m] beyond the depth at which it is whole
 
-    def plus(self, step: "State", fraction: float) -> "State":
+    def plus(self, step: "InteriorState", fraction: float) -> "InteriorState":
         """The state after a fraction of a step."""
-        return State(*(value + fraction * change for value, change in zip(self, step, strict=True)))
+        return InteriorState(*(value + fraction * change for value, change in zip(self, step, strict=True)))
 
-    def longest(self, step: "State") -> float:
+    def longest(self, step: "InteriorState") -> float:
         """Largest multiple of a step, 1 at most, that leaves no bound."""
         cones = (longest_in_cones(u, d) for u, d in zip(self[:2], step[:2], strict=True))
         rays = (longest_above_zero(u, d) for u, d in zip(self[2:], step[2:], strict=True))
@@ -111,7 +111,7 @@ class Pairs:
         """Vectors (links, 3) from start to end of every link."""
         return (x[:, self.end] - x[:, self.start]).T
 
-    def first(self, x: Array) -> State:
+    def first(self, x: Array) -> InteriorState:
         """A state inside all bounds with equal products, by the forces to be expected."""
         p, span = self.p, self.span(x)
         length = np.sqrt(dot(span, span))
@@ -127,9 +127,9 @@ class Pairs:
         pull = each * MIRROR * slack / determinant(slack)[:, None]
         press = np.full(len(self.bed), load / max(len(self.bed), 1))
         lift = 0.5 * self.whole
-        return State(slack, pull, press, each / press, lift, lift.copy(), each / lift, each / lift)
+        return InteriorState(slack, pull, press, each / press, lift, lift.copy(), each / lift, each / lift)
 
-    def forces(self, x: Array, state: State) -> Array:
+    def forces(self, x: Array, state: InteriorState) -> Array:
         """Forces (nodes, 3) [N] of a state on every node."""
         p, found = self.p, np.zeros((self.p.nodes, 3))
         if p.current.any():
@@ -149,7 +149,7 @@ class Pairs:
         np.add.at(found[:, 2], self.afloat, lift)
         return found
 
-    def pieces(self, state: State) -> Pieces:
+    def pieces(self, state: InteriorState) -> Pieces:
         """The pieces on which parts seem to be: forces against lengths, over the stiffness of the lines there."""
         stiffness = np.full(self.p.nodes, self.load / self.count / float(self.rest.mean()))
         for ends in (self.start, self.end):
@@ -161,17 +161,17 @@ class Pairs:
         in_surface[self.has_lift] = is_wet & (state.spare > stiffness[self.afloat] * state.below)
         return Pieces(lies, wet, in_surface)
 
-    def mean(self, state: State) -> float:
+    def mean(self, state: InteriorState) -> float:
         """Mean product [J] of the pairs of a state."""
         links, bed = dot(state.slack, state.pull).sum(), state.press @ state.gap
         return float(links + bed + state.lift @ state.above + state.spare @ state.below) / self.count
 
-    def gap(self, state: State) -> float:
+    def gap(self, state: InteriorState) -> float:
         """The same over the largest energy of a link, which has `load` at least."""
         energy = max(self.load * float(self.rest.mean()), float((state.slack[:, 0] * state.pull[:, 0]).max()))
         return self.mean(state) / max(energy, 1e-300)
 
-    def errors(self, x: Array, state: State) -> tuple[Array, Array, Array]:
+    def errors(self, x: Array, state: InteriorState) -> tuple[Array, Array, Array]:
         """Lengths [m] by which slack (links, 4), gaps (m,) and heights (k,) of a state differ from those at x."""
         length, _ = self.elastic.length(state.pull[:, 0])
         slack = np.concatenate((length[:, None], self.span(x)), axis=1) - state.slack
@@ -183,7 +183,7 @@ class Pairs:
 class Tangent:
     """The laws linearised about a state, to which the steps of one correction are solved."""
 
-    def __init__(self, pairs: Pairs, chains: Chains, x: Array, state: State) -> None:
+    def __init__(self, pairs: Pairs, chains: Chains, x: Array, state: InteriorState) -> None:
         self.pairs, self.x, self.state = pairs, x, state
         p = pairs.p
         self.force = forces_on_free(np.ascontiguousarray(pairs.forces(x, state).T), x, p)
@@ -206,7 +206,7 @@ class Tangent:
         np.add.at(upright[:, 2, 2], pairs.afloat, 1.0 / self.rises)
         self.matrix = Eliminated(chains, self.blocks, upright)
 
-    def solve(self, change: Products) -> tuple[Array, State]:
+    def solve(self, change: Products) -> tuple[Array, InteriorState]:
         """The step of the free coordinates, and of the state, that balances forces and changes the products."""
         pairs, state, (slack, gap, height) = self.pairs, self.state, self.errors
         p, first, rest, ratio = pairs.p, self.first, self.rest, self.ratio
@@ -224,7 +224,7 @@ class Tangent:
         stretch = ((2.0 * first**2 - 1.0) * one + 2.0 * first * dot(rest, three - span)) / self.divisor
         press = press - state.press / self.yields * down
         lift = lift - up / self.rises
-        return step, State(
+        return step, InteriorState(
             np.concatenate((stretch[:, None], span), axis=1) + slack,
             np.concatenate(((self.stiffness * stretch)[:, None], pull), axis=1),
             press,
@@ -235,7 +235,7 @@ class Tangent:
             (change.wet + state.below * lift) / state.spare,
         )
 
-    def step(self) -> tuple[Array, State]:
+    def step(self) -> tuple[Array, InteriorState]:
         """Predictor and corrector step (Mehrotra)."""
         state, scaled = self.state, self.scaling.times(self.state.pull)
         bed, dry, wet = -state.press * state.gap, -state.lift * state.above, -state.spare * state.below
@@ -274,7 +274,7 @@ class Near(NamedTuple):
         return [one] if is_same else [one, other]
 
 
-def corrected(pairs: Pairs, chains: Chains, x: Array, state: State) -> tuple[Array, State] | None:
+def corrected(pairs: Pairs, chains: Chains, x: Array, state: InteriorState) -> tuple[Array, InteriorState] | None:
     """Positions and state after one correction; None if round-off leaves no step inside the bounds."""
     try:
         step, change = Tangent(pairs, chains, x, state).step()

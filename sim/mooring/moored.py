@@ -1,4 +1,4 @@
-"""A hull as a `Body` of a mooring, by linear theory: added mass and damping of one frequency, waves by the table."""
+"""A hull as a `MooredBody`, by linear theory: added mass and damping of one frequency, waves by the table."""
 
 import math
 from typing import TYPE_CHECKING
@@ -8,7 +8,7 @@ import numpy as np
 from sim import floating
 from sim.floating.hydrodynamics import check_water_depth, not_negative
 from sim.floating.response import linear_forces
-from sim.mooring.system import Body
+from sim.mooring.system import MooredBody
 from sim.validation import argument_error
 from sim.water import SAME_WATER
 
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 HELD = 1e-6  # of the stiffness of heave, for surge and sway, and of roll, for yaw: statics need a place without lines
 
 
-def moored(id: int, body: floating.Body, frequency: float, waves: "Waves | None" = None, gravity: float = 9.81) -> Body:
+def moored(
+    id: int, body: floating.Body, frequency: float, waves: "Waves | None" = None, gravity: float = 9.81
+) -> MooredBody:
     """The body at its place of rest without lines, upright in sea water, its axes along x and y.
 
     frequency: [rad/s] of the added mass and the radiation damping, which are taken as constant; that of the highest
@@ -40,7 +42,7 @@ def moored(id: int, body: floating.Body, frequency: float, waves: "Waves | None"
         C[e, e] += HELD * C[of, of]
     X = None if waves is None else excitation(body, waves, gravity)
     A, B = 0.5 * (own.added[0] + own.added[0].T), not_negative(own.damping)[0]
-    return Body(id, own.centre, own.mass + A, 0.5 * (C + C.T), B, X)
+    return MooredBody(id, own.centre, own.mass + A, 0.5 * (C + C.T), B, X)
 
 
 def excitation(body: floating.Body, waves: "Waves", gravity: float) -> np.ndarray:

@@ -95,7 +95,7 @@ class Line(NamedTuple):
     clamp_at_end: Vector | None = None
 
 
-class Body(NamedTuple):
+class MooredBody(NamedTuple):
     """A floating body of linear theory about its place of rest without lines: M q'' + B q' + C q = forces.
 
     q: displacement [m] and small rotation [rad] about `place`. mass holds the added mass. `moored` makes it of a hull.
@@ -118,7 +118,7 @@ class System:
     lines: tuple[Line, ...]
     points: tuple[Point, ...]
     depth: float  # [m]
-    bodies: tuple[Body, ...] = ()
+    bodies: tuple[MooredBody, ...] = ()
     gravity: float = 9.81  # [m/s^2]
     density: float = 1025.0  # [kg/m^3]; 0: no water
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
@@ -421,7 +421,7 @@ def check_curve(name: str, curve: Sequence[tuple[float, float]]) -> None:
             raise argument_error(name, (before, after), allowed)
 
 
-def check_body(body: Body, waves: int) -> None:
+def check_body(body: MooredBody, waves: int) -> None:
     """Raises ValueError for matrices that no body has, and forces that are not those of so many waves."""
     check_vector(f"body {body.id}: place", body.place, "m")
     for field in ("mass", "stiffness", "damping"):

@@ -1,7 +1,7 @@
 """The stiffness of rotation that a body has from the forces on it, as the arms of these forces turn with it.
 
-A `Body` moves by linear theory: a force F at an arm a has the moment a x F, whatever the body's rotation theta. To
-first order the moment changes by (theta x a) x F. The symmetric part of that is a stiffness,
+A `MooredBody` moves by linear theory: a force F at an arm a has the moment a x F, whatever the body's rotation theta.
+To first order the moment changes by (theta x a) x F. The symmetric part of that is a stiffness,
 (F . a) - (a F^T + F a^T)/2.
 """
 
@@ -29,7 +29,7 @@ def stiffness_of_turning(arm: Array, force: Array) -> Array:
 def with_turning(system: "System", rest: Rest) -> "System":
     """The system with the stiffness that the bodies have from their lines in a state of rest.
 
-    Where a body would fall over by it, it gets none in that direction: `Body` allows no negative stiffness.
+    Where a body would fall over by it, it gets none in that direction: `MooredBody` allows no negative stiffness.
     """
     p = system.kernel_view(1.0)
     f = np.zeros(9 * p.cols)

@@ -49,12 +49,12 @@ def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0] - 80, start[1] - 30))
-    tab.wait(lambda: lab.scene.drag.hold is not None, 20)
-    row, col = divmod(lab.scene.drag.hold.particle, 32)
+    tab.wait(lambda: lab.scene.grab.grabbed is not None, 20)
+    row, col = divmod(lab.scene.grab.grabbed.particle, 32)
     assert np.linalg.norm(lab.scene.state.x[:, row, col] - here) < 1.0
-    tab.wait(lambda: lab.loop.latest.frame.pull is not None, 20)
+    tab.wait(lambda: lab.loop.latest.frame.grab is not None, 20)
     tab.release()
-    tab.wait(lambda: lab.scene.drag.hold is None, 20)
+    tab.wait(lambda: lab.scene.grab.grabbed is None, 20)
     assert tab.errors == []
 
 

@@ -11,7 +11,7 @@ from PIL import Image
 from app.messages import Pause
 from app.panel.picture import take_picture
 from app.render.cameras import place_cameras
-from app.scenes.race.parameters import PRESETS, Params
+from app.scenes.race.parameters import PRESETS, RaceParams
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests.browser.conftest import NO_NOTES, new_page
@@ -29,7 +29,7 @@ def race(chromium: Any) -> Iterator[tuple[Viewer, Any]]:
     """A paused race of five ropes, and a page with the shaders of labels only."""
     viewer = Viewer("127.0.0.1", 0)
     without_charts = {"plot_errors": False, "plot_energies": False}
-    viewer.open("race", check_record(Params, {**PRESETS["Undamped until chaos"], **without_charts}), paused=True)
+    viewer.open("race", check_record(RaceParams, {**PRESETS["Undamped until chaos"], **without_charts}), paused=True)
     page = new_page(chromium, 640, 420, drawn="vAlpha")
     page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo")
     page.get_by_role("tab", name="View", exact=True).click(timeout=60_000)

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from app.scenes import NAMES, scene_named
+from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
 from tests.browser.boxes import MEASURE, SIZES, faults, faults_after_change
 from tests.browser.conftest import NO_NOTES, Tab, new_page
@@ -84,8 +85,7 @@ def test_a_phone_shows_the_race_first_and_its_plots_when_asked(
     lab, _ = one_page
     tab = open_tab(lab.port, width=390, height=844)
     tab.page.add_style_tag(content=NO_NOTES)
-    tab.follow(lab, "race")
-    lab.panel.load(next(iter(lab.panel.kind.presets)))  # another test may have left its plots closed
+    tab.follow(lab, "race", make_setup(scene_named("race")).params)  # other tests leave theirs without plots
     tab.wait(lambda: lab.panel.plots.open)
     bar = tab.page.get_by_role("button", name="Expand panel Plots")
     tab.wait(bar.is_visible, 20)

@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image
 
 from app.messages import Pause
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from app.server.viewer import Viewer
 from tests.browser.conftest import LATE_UPDATE, NO_NOTES, Tab
 from tests.browser.test_water import PANEL_HIDDEN
@@ -42,7 +42,7 @@ def test_open_water_lies_around_the_mooring(open_tab: Callable[..., Tab]) -> Non
 def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Callable[..., Tab]) -> None:
     lab = Viewer("127.0.0.1", 0)
     try:
-        lab.open("mooring", Params(moordyn_file=str(FILES / "shared_line.txt"), wave_height=0.0, time_step=4e-3))
+        lab.open("mooring", MooringParams(moordyn_file=str(FILES / "shared_line.txt"), wave_height=0.0, time_step=4e-3))
         tab = open_tab(lab.port)
         tab.wait(lambda: lab.view.built and len(tab.vertices("/line_3")) > 0)
         assert len(lab.view.tubes) == 3
@@ -65,13 +65,13 @@ def test_files_without_a_vessel_or_without_anchors_are_drawn(tmp_path: Path, ope
     path.write_text(text.replace("Coupled", "Fixed"), encoding="utf-8")
     lab = Viewer("127.0.0.1", 0)
     try:
-        lab.open("mooring", Params(moordyn_file=str(path), time_step=2e-4))
+        lab.open("mooring", MooringParams(moordyn_file=str(path), time_step=2e-4))
         tab = open_tab(lab.port)
         tab.wait(lambda: lab.view.built and len(tab.vertices("/line_1")) > 0)
         assert not lab.view.body.visible
         tab.wait(lambda: lab.loop.scene.time > 0.1)
         assert lab.loop.scene.readings().most_offset == 0.0
-        lab.open("mooring", Params(moordyn_file=str(FILES / "hanging_body.txt"), time_step=5e-4))
+        lab.open("mooring", MooringParams(moordyn_file=str(FILES / "hanging_body.txt"), time_step=5e-4))
         tab.wait(lambda: lab.view.built and len(tab.vertices("/line_2")) > 0)
         assert lab.view.body.visible
         assert len(lab.view.fairleads.batched_positions) == 4  # two on the vessel, and the body's with that of its drag

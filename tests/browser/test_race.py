@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.scenes.race.parameters import PRESETS, Params
+from app.scenes.race.parameters import PRESETS, RaceParams
 from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
 from sim.parameters import check_record
@@ -26,7 +26,7 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(
     lab, tab = shown
     for preset in presets:
         lab.panel.load(preset)
-        params = check_record(Params, PRESETS[preset])
+        params = check_record(RaceParams, PRESETS[preset])
         ropes = params.ropes
         tab.wait(lambda params=params: lab.loop.latest.params == params)
 
@@ -61,7 +61,7 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(
 def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     without_charts = {"plot_errors": False, "plot_energies": False, "speed": 4.0}
-    tab.follow(lab, SCENE, check_record(Params, {**PRESETS["Leapfrog read literally"], **without_charts}))
+    tab.follow(lab, SCENE, check_record(RaceParams, {**PRESETS["Leapfrog read literally"], **without_charts}))
     tab.wait(lambda: lab.scene.time > 5)
     lab.panel.set("speed", 1.0)
     tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)
@@ -70,12 +70,12 @@ def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer
         start = tab.pixel(lab.scene.frame().ropes[0, 7])
         tab.drag(start, (start[0] - 60, start[1] - 40))
         tab.page.wait_for_timeout(500)
-        held = lab.scene.handles.drag.hold is not None
+        held = lab.scene.handles.grab.grabbed is not None
         tab.release()
         return held
 
     tab.wait(dragged)  # again where a slow page had not yet noticed what the mouse was over
-    tab.wait(lambda: lab.scene.handles.drag.hold is None, 30)
+    tab.wait(lambda: lab.scene.handles.grab.grabbed is None, 30)
     tab.page.keyboard.press("1")
     tab.wait(lambda: len(tab.vertices("/race/rope_3")) > 0 and len(tab.vertices("/race/rope_4")) == 0)
     assert len(lab.scene.race.entrants) == 3
@@ -88,7 +88,7 @@ def test_labels_are_dark_in_dark_mode_and_light_again(
     lab, _ = one_page
     tab = open_tab(lab.port, drawn="vAlpha")  # of the shaders of labels
     tab.page.add_style_tag(content=NO_NOTES)
-    tab.follow(lab, SCENE, check_record(Params, {"plot_errors": False, "plot_energies": False}))
+    tab.follow(lab, SCENE, check_record(RaceParams, {"plot_errors": False, "plot_energies": False}))
 
     def brightness() -> float:
         """Of the last label and its text [0..255], to the right of its pole and above it; that of the sky is 115."""
@@ -128,7 +128,7 @@ def test_the_error_of_a_rope_that_has_diverged_ends_in_a_cross_and_is_not_drawn_
     shown: tuple[Viewer, Tab],
 ) -> None:
     lab, tab = shown
-    tab.follow(lab, SCENE, check_record(Params, {**PRESETS["Shaken at the root"], "time_step": 1 / 60}))
+    tab.follow(lab, SCENE, check_record(RaceParams, {**PRESETS["Shaken at the root"], "time_step": 1 / 60}))
     tab.wait(lambda: lab.scene.race.entrants[0].failure and lab.scene.race.entrants[1].failure)
     tab.wait(lambda: (found := tab.page.evaluate(DRAWN)) and len(found["crosses"]) == 2)
     found = tab.page.evaluate(DRAWN)

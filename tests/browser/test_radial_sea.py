@@ -110,10 +110,10 @@ def test_a_buoy_dragged_under_bobs_back(shown: tuple[Viewer, Tab]) -> None:
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0], start[1] + 110), pause=100)
-    tab.wait(lambda: bool(lab.scene.bodies.holders))
+    tab.wait(lambda: bool(lab.scene.bodies.grabbed_by))
     tab.wait(lambda: lab.scene.bodies.fleet.position[0, 2] < rest[2] - 0.15)
     tab.release()
-    tab.wait(lambda: not lab.scene.bodies.holders)
+    tab.wait(lambda: not lab.scene.bodies.grabbed_by)
     tab.wait(lambda: abs(lab.scene.bodies.fleet.position[0, 2] - rest[2]) < 0.02)
     assert tab.errors == []
 

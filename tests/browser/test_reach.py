@@ -62,9 +62,9 @@ def test_a_press_where_the_tip_was_a_moment_before_takes_it(lab: Viewer, open_ta
     tab.wait(lambda: np.linalg.norm(drawn(tab, "/rope") - (x, y), axis=1).min() > MISSED, 20)
     before = tab.page.evaluate(CAMERA)
     press(tab, (x, y))
-    tab.wait(lambda: lab.scene.handles.drag.hold is not None, 10)
+    tab.wait(lambda: lab.scene.handles.grab.grabbed is not None, 10)
     assert tab.page.evaluate(CAMERA) == before
-    assert lab.scene.handles.drag.hold.particle >= lab.scene.params.points - 2
+    assert lab.scene.handles.grab.grabbed.particle >= lab.scene.params.points - 2
     tab.release()
     assert tab.errors == []
 
@@ -84,7 +84,7 @@ def test_the_reach_is_marked_and_ends(shown: tuple[Viewer, Tab], scene: str) -> 
     ring = tab.page.locator("#springtide-ring")
 
     def held() -> bool:
-        return lab.loop.latest.frame.pull is not None
+        return lab.loop.latest.frame.grab is not None
 
     def lowest() -> tuple[float, float] | None:
         """The lowest point on the page; None while the camera moves."""

@@ -62,13 +62,13 @@ def test_dragging_a_bead_pulls_it_and_lets_go(shown: tuple[Viewer, Tab]) -> None
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0] + 70, start[1] - 40))
-    tab.wait(lambda: lab.scene.handles.drag.hold is not None)
-    held = lab.scene.handles.drag.hold.particle
+    tab.wait(lambda: lab.scene.handles.grab.grabbed is not None)
+    held = lab.scene.handles.grab.grabbed.particle
     assert abs(held - particle) <= 1
     tab.wait(lambda: np.linalg.norm(lab.scene.state.x[:, 0, held] - bead) > 0.15)
-    assert lab.loop.latest.frame.pull is not None
+    assert lab.loop.latest.frame.grab is not None
     tab.release()
-    tab.wait(lambda: lab.scene.handles.drag.hold is None)
+    tab.wait(lambda: lab.scene.handles.grab.grabbed is None)
     assert tab.errors == []
 
 

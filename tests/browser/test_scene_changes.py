@@ -3,6 +3,7 @@
 import contextlib
 import io
 import itertools
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -11,7 +12,8 @@ import pytest
 from PIL import Image
 
 from app.scenes import NAMES, scene_named
-from app.scenes.rope.view import View
+from app.scenes.contract import AnyScene
+from app.scenes.rope.view import RopeView
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests.browser.conftest import NO_NOTES, Tab
@@ -107,26 +109,36 @@ def test_a_scene_after_another_looks_as_in_a_fresh_start(open_tab: Callable[...,
         # The measure sees a missing shadow.
         page.open("rope")
         view = page.lab.view
-        assert isinstance(view, View)
+        assert isinstance(view, RopeView)
         view.surroundings.sun.cast_shadow = False
         page.tab.wait(lambda: np.abs(page.picture() - fresh["rope"]).mean() > 2.0 * MAX_DIFFERENCE)
 
 
-def test_the_page_says_what_is_opened_and_not_that_it_connects(open_tab: Callable[..., Tab]) -> None:
+def test_the_page_says_what_is_opened_and_not_that_it_connects(
+    open_tab: Callable[..., Tab], monkeypatch: pytest.MonkeyPatch
+) -> None:
     lab = Viewer("127.0.0.1", 0)
     try:
         lab.open("rope")
         tab = open_tab(lab.port)
         tab.wait(lambda: lab.served.shown > 5 and tab.page.locator(".springtide-panel").count())
         tab.page.evaluate(COVERS)
+        is_said, make_scene = threading.Event(), lab.make_scene
+
+        def make_scene_later(*arguments: Any) -> AnyScene:
+            is_said.wait(60)  # else a scene that opens at once leaves a slow page nothing to say
+            is_said.clear()
+            return make_scene(*arguments)
+
+        monkeypatch.setattr(lab, "make_scene", make_scene_later)
         for name in (*NAMES, NAMES[0]):
             kind = scene_named(name)
             lab.want(name, check_record(kind.params, SMALL.get(name, {})))
+            tab.wait(lambda kind=kind: f"Opening {kind.title} …" in tab.page.evaluate("covers"))
+            is_said.set()
             tab.wait(lambda name=name: lab.is_open and lab.panel.kind.name == name and lab.served.shown > 5)
             tab.wait(lambda: tab.page.locator(".springtide-panel").count())
             tab.page.wait_for_timeout(500)
         assert not any("Connecting" in words for words in tab.page.evaluate("covers"))
-        for name in NAMES:
-            assert f"Opening {scene_named(name).title} …" in tab.page.evaluate("covers")
     finally:
         lab.shut()

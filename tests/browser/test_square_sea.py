@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.scenes.square_sea.scene import Params
+from app.scenes.square_sea.scene import SquareSeaParams
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 SCENE = "square_sea"
-PARAMS = Params(size="64", mesh="32", length=64.0)  # a small sea, in place of the scene's own
+PARAMS = SquareSeaParams(size="64", mesh="32", length=64.0)  # a small sea, in place of the scene's own
 
 
 def set_parameters(viewer: Viewer, **values: Any) -> None:

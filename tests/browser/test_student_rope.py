@@ -13,7 +13,7 @@ from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
 from app.messages import Pause, Play
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.server.viewer import Viewer
 
 RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
@@ -27,7 +27,7 @@ def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
     session = Session(folder, tasks)
     viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
     try:
-        viewer.open("rope", Params(integrator="rk4"))
+        viewer.open("rope", RopeParams(integrator="rk4"))
         tab = open_tab(viewer.port)
         tab.wait(lambda: len(tab.vertices("/rope")) > 0)
         assert len(tab.vertices("/reference")) == 0

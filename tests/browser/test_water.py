@@ -15,7 +15,7 @@ from PIL import Image
 
 from app.render.injection import disable_shaders, injector_of
 from app.render.skies import set_sky
-from app.render.water import Tile, Water
+from app.render.water import DrawnWater, Tile
 from sim.ocean.radial_grid import RadialGrid
 from tests.browser.conftest import NO_NOTES, new_page, vertices_of
 
@@ -82,9 +82,9 @@ def surface(phase: float = 0.0, foam: float = 0.0) -> tuple[np.ndarray, np.ndarr
     return vertices, slopes, np.full((SIZE, SIZE), foam)
 
 
-def make_water(server: viser.ViserServer) -> Water:
+def make_water(server: viser.ViserServer) -> DrawnWater:
     material = dataclasses.replace(set_sky(server, "park"), draw_sky=False)
-    water = Water(server, "/sea", Tile(SIZE, SIZE, LENGTH), material)
+    water = DrawnWater(server, "/sea", Tile(SIZE, SIZE, LENGTH), material)
     water.set_surface(*surface())
     return water
 
@@ -157,7 +157,7 @@ def test_sizes_change_live_and_nothing_is_left_behind(chromium, server):
 
     empty: dict[str, int] | None = None
     for size in (64, 16, 64, 16):
-        water = Water(server, "/sea", Tile(size, size, LENGTH), material)
+        water = DrawnWater(server, "/sea", Tile(size, size, LENGTH), material)
         x = np.arange(size) * LENGTH / size
         x, y = np.meshgrid(x, x, indexing="ij")
         water.set_surface(np.stack([x, y, 0 * x], -1), np.zeros((size, size, 2)), np.zeros((size, size)))
@@ -178,7 +178,7 @@ def test_sizes_change_live_and_nothing_is_left_behind(chromium, server):
 
 def test_a_sea_of_rings_is_water_too(chromium, server):
     grid = RadialGrid(rings=8, spokes=24, inner=1.0, radius=60.0)
-    water = Water(server, "/disc", grid, set_sky(server, "park"))
+    water = DrawnWater(server, "/disc", grid, set_sky(server, "park"))
     vertices = np.column_stack([grid.x, grid.y, 0.0 * grid.x])[None]
     water.set_surface(vertices, np.zeros((1, len(grid), 2)), np.ones((1, len(grid))))
     page, errors = visit(chromium, server, drawn=False)

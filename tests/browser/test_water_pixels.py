@@ -17,7 +17,7 @@ from PIL import Image
 from app.render.coloured_mesh import ColouredMesh
 from app.render.material import Material
 from app.render.skies import set_sky
-from app.render.water import Tile, Water
+from app.render.water import DrawnWater, Tile
 from tests.browser.conftest import NO_NOTES, new_page
 from tests.browser.test_water import PANEL_HIDDEN, wait
 
@@ -68,7 +68,7 @@ class Picture:
 
     def put_sea(self, seed: int = 1) -> None:
         """Draw the waves of this seed."""
-        self.water = Water(self.server, "/sea", Tile(N, N, LENGTH), self.material)
+        self.water = DrawnWater(self.server, "/sea", Tile(N, N, LENGTH), self.material)
         self.water.set_surface(*waves(seed), TIME)
 
     def from_height(self, height: float) -> np.ndarray:
@@ -184,7 +184,7 @@ def test_foam_another_material_and_another_size_reach_the_pixels(picture: Pictur
 
     with server.atomic():  # viser may keep the material for the new geometry, and with it the uniforms
         water.remove()
-        water = Water(server, "/sea", Tile(N // 2, N // 2, LENGTH), RED)
+        water = DrawnWater(server, "/sea", Tile(N // 2, N // 2, LENGTH), RED)
         water.set_surface(*(field[::2, ::2] for field in (vertices, slopes, foam)), TIME)
     server.flush()
     assert wait(page, lambda: picture.redness() > 20.0)

@@ -10,7 +10,7 @@ from app.__main__ import main
 from app.lab.live_values import LiveNumber, fill_in
 from app.lab.task import QUESTION_KINDS, load_tasks
 from app.render.formula import formula
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from sim.parameters import parameters_of
 from tests.docs.pages import ROOT, text_of
 
@@ -51,7 +51,7 @@ def test_the_teacher_s_example_works(teacher: Path) -> None:
     task = next(task for task in load_tasks(teacher / "my_tasks") if task.name == "pendulum_period")
     assert task.guide is not None
     assert "<mfrac>" in formula(task.guide.law[0])
-    scene = {name: LiveNumber(1.0, p.unit, name) for name, p in parameters_of(Params()).items()}
+    scene = {name: LiveNumber(1.0, p.unit, name) for name, p in parameters_of(RopeParams()).items()}
     assert "On a thread of 1 m, under 1 m/s²" in fill_in(task.guide.answer, scene).replace("\xa0", " ")
     assert "np.sqrt" not in stub
     assert main(check) == 1

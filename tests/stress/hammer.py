@@ -15,7 +15,7 @@ import numpy as np
 
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.messages import Grab, Pause, Place, Play, Point, Release, Reset, StepOnce
+from app.messages import GrabTo, Pause, Place, Play, PointAlong, Release, Reset, StepOnce
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.warmup import prepare
 from app.server.viewer import Viewer
@@ -167,8 +167,8 @@ def some_command(rng: random.Random) -> Any:
     aim = rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0)
     return rng.choice(
         [
-            Grab(rng.randrange(0, 12), place), Grab(rng.randrange(-5, 2000), place), Release(),
-            Place(rng.choice(["root", "sphere", "camera", "nothing"]), place), Point(place, aim),
-            Point(place, (0.0, 0.0, 0.0)), StepOnce(), Pause(), Play(), Reset(),
+            GrabTo(rng.randrange(0, 12), place), GrabTo(rng.randrange(-5, 2000), place), Release(),
+            Place(rng.choice(["root", "sphere", "camera", "nothing"]), place), PointAlong(place, aim),
+            PointAlong(place, (0.0, 0.0, 0.0)), StepOnce(), Pause(), Play(), Reset(),
         ]
     )  # fmt: skip

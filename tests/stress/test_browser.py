@@ -49,12 +49,12 @@ def test_a_chromium_killed_while_it_drags(lab: Viewer, process: tuple[subprocess
             tab.release()
             tab.drag(start, (start[0] + 60, start[1] - 30))
             tab.page.wait_for_timeout(3000)
-            return lab.scene.handles.drag.hold is not None
+            return lab.scene.handles.grab.grabbed is not None
 
         tab.wait(grab)
         chromium.kill()
         until(lambda: lab.audience() == 0, "it is gone")
-        until(lambda: lab.scene.handles.drag.hold is None, "what it held is let go")
+        until(lambda: lab.scene.handles.grab.grabbed is None, "what it held is let go")
         assert all(thread.is_alive() for thread in lab.served.threads)
         with contextlib.suppress(Exception):
             browser.close()

@@ -85,7 +85,7 @@ def test_a_client_that_stops_reading_holds_up_nobody(viewer: Viewer, clients: Cl
 def is_pulled(viewer: Viewer) -> bool:
     """Whether something is drawn as pulled: one thing, or in the radial sea any number of bodies."""
     frame: Any = viewer.loop.latest.frame
-    return bool(frame.pulls) if viewer.panel.kind.name == "radial_sea" else frame.pull is not None
+    return bool(frame.grabs) if viewer.panel.kind.name == "radial_sea" else frame.grab is not None
 
 
 def test_a_browser_killed_in_mid_drag_lets_go(viewer: Viewer, clients: Clients, tally: Tally) -> None:

@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from app.messages import Grab, Release, Reset
+from app.messages import GrabTo, Release, Reset
 from app.scenes.race.entrants import RaceReadings
 from app.scenes.race.parameters import MAX_ROPES, STEP_RULES
 from sim.springs import INTEGRATORS
@@ -70,9 +70,9 @@ def test_the_number_of_ropes_changes_while_one_is_dragged(six: Hammer, tally: Ta
     with tally.fault("rope removed while it is dragged", MAX_ROPES):
         for ropes in range(MAX_ROPES, 0, -1):
             # The last point of the last rope, which the next race does not have.
-            six.loop.commands.put(Grab(ropes * points - 1, (-3.0, 5.0, 4.0)))
+            six.loop.commands.put(GrabTo(ropes * points - 1, (-3.0, 5.0, 4.0)))
             six.frame(FRAMES)
-            assert six.loop.latest.frame.pull is not None
+            assert six.loop.latest.frame.grab is not None
             six.set("ropes", max(1, ropes - 1))
             six.frame(FRAMES)
             assert not six.loop.halted

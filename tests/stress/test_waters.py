@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.messages import Reset, where_not_finite
-from app.scenes.radial_sea.scene import Params, RadialSeaScene
+from app.scenes.radial_sea.scene import RadialSeaParams, RadialSeaScene
 from app.server.loop import FRAME_INTERVAL, SimLoop
 from sim.ocean import Sea
 from sim.ocean.dispersion import omega
@@ -98,7 +98,9 @@ def float_for(scene: RadialSeaScene, seconds: float) -> None:
 @pytest.mark.parametrize("wind", [0.5, 25.0])
 @pytest.mark.parametrize("spill", ["none", "layer", "mixed"])
 def test_hulls_in_places_where_no_hull_belongs(wind: float, spill: str, tally: Tally) -> None:
-    scene = RadialSeaScene(Params(bodies=4, wind_speed=wind, spill=spill, size=1.0, wave_count=24, rings=16, spokes=16))
+    scene = RadialSeaScene(
+        RadialSeaParams(bodies=4, wind_speed=wind, spill=spill, size=1.0, wave_count=24, rings=16, spokes=16)
+    )
     fleet = scene.bodies.fleet
     home = fleet.position.copy()
 
@@ -139,5 +141,7 @@ def test_hulls_in_places_where_no_hull_belongs(wind: float, spill: str, tally: T
 def test_hulls_at_every_step_and_density(tally: Tally) -> None:
     for step, density, size in itertools.product((1 / 500, 1 / 20), (50.0, 1020.0), (0.3, 4.0)):
         with tally.fault("hull of an odd size or density"):
-            params = Params(bodies=6, wind_speed=25.0, size=size, density=density, time_step=step, wave_count=16)
+            params = RadialSeaParams(
+                bodies=6, wind_speed=25.0, size=size, density=density, time_step=step, wave_count=16
+            )
             float_for(RadialSeaScene(dataclasses.replace(params, rings=16, spokes=16)), 5.0)

@@ -6,21 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
-from app.scenes.cloth.parameters import Params
-from app.scenes.springs.drag import PullFrame
+from app.scenes.cloth.parameters import ClothParams
+from app.scenes.springs.grab import GrabFrame
 from sim.springs.stability import Gauge
 
 
 class ClothFrame(NamedTuple):
     """Drawn state of a cloth."""
 
-    params: Params
+    params: ClothParams
     points: NDArray[np.float32]  # (rows, cols, 3) [m], C-contiguous
     strain: NDArray[np.float32]  # (rows, cols), largest of the structural springs at a particle
     pins: tuple[Vector, Vector] | None  # [m] where the two ends of the first row are going to
     sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
     sphere_home: Vector  # [m] where the sphere's arrows are
-    pull: PullFrame | None
+    grab: GrabFrame | None
     student: NDArray[np.float32] | None  # (r, c, 3) [m] the student's cloth beside the program's
 
 

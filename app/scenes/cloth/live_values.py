@@ -2,14 +2,14 @@
 
 from app.messages import Snapshot
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
-from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.contract import Measure
 from app.scenes.springs.live_values import stability_values
 
 
 def live_values(snapshot: Snapshot) -> dict[str, Measure]:
     """The numbers of a snapshot."""
-    p: Params = snapshot.params
+    p: ClothParams = snapshot.params
     frame: ClothFrame = snapshot.frame
     readings: ClothReadings = snapshot.readings
     rows, cols = frame.strain.shape

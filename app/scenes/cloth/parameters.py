@@ -17,7 +17,7 @@ in_cloth = functools.partial(parameter, group="Cloth")
 
 
 @dataclasses.dataclass(frozen=True)
-class Params:
+class ClothParams:
     """The cloth's parameters."""
 
     integrator: str = in_main("leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", title="Method")
@@ -127,7 +127,7 @@ ABOUT = {  # preset -> what it shows and what to try
 }
 
 
-def hidden(params: Params) -> set[str]:
+def hidden(params: ClothParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names: set[str] = set()
     if params.start != "hanging":

@@ -8,23 +8,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, Release, SceneCommand, StudentAnswer, Vector
+from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.live_values import live_values
-from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, Params, hidden
+from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, ClothParams, hidden
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.springs.divergence import holding_step
-from app.scenes.springs.drag import Drag, PullFrame
+from app.scenes.springs.grab import GrabFrame, ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from sim.springs import Air, Net, cloth
-from sim.springs import Grab as Pull
+from sim.springs import Air, Grab, Net, cloth
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
@@ -41,8 +40,8 @@ MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Ge
 MAX_SPHERE_SPEED = 3.0  # [m/s] along an axis, however fast it is dragged: faster, it would pass through the cloth
 MIN_PARTICLES_FOR_TWO_THREADS = 2000
 MAX_DISTANCE = 60.0  # [m] from the origin; farther out the run has diverged
-PULL_LENGTH = 0.1  # [m] at which a pull has its largest force, if the step allows
-MAX_PULL_STIFFNESS_STEP = 0.1  # stiffness of a pull over mass / step^2, so that the pull is stable at any step
+GRAB_LENGTH = 0.1  # [m] at which a grab has its largest force, if the step allows
+MAX_GRAB_STIFFNESS_STEP = 0.1  # stiffness of a grab over mass / step^2, so that it is stable at any step
 BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
 ENERGY_SERIES = ("total", "kinetic", "elastic", "gravity", "contact")
 SERIES = (*ENERGY_SERIES, "dissipated", "largest strain")
@@ -53,7 +52,7 @@ PLOTS = {
 }
 
 
-def gusty_wind(params: Params, t: float) -> Vector:
+def gusty_wind(params: ClothParams, t: float) -> Vector:
     """The wind at time t [m/s]: three slow waves along it, across it and upwards."""
     along = params.wind * (1.0 + params.gust * (0.3 * math.sin(1.7 * t) + 0.2 * math.sin(4.3 * t + 1.0)))
     across = params.wind * params.gust * 0.35 * math.sin(2.3 * t + 0.5)
@@ -71,18 +70,18 @@ def warm_up(law: str = SPRING) -> Pieces:
 
 def compile_gauge(law: str) -> None:
     """All but the integrators."""
-    scene = ClothScene(Params(rows=4, cols=4, law=law))
+    scene = ClothScene(ClothParams(rows=4, cols=4, law=law))
     extremes(scene.state.x, scene.state.v)
     gershgorin(cloth(4, 4, thickness=0.1, law=law), scene.state.x)
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: ClothParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     net = build(params, sphere_home(params))
     return pieces_of_law((integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE), params.law)
 
 
-class ClothScene(NetScene[Params]):
+class ClothScene(NetScene[ClothParams]):
     """The cloth on the simulation thread."""
 
     CHANGING = (
@@ -94,14 +93,14 @@ class ClothScene(NetScene[Params]):
     student: "StudentCloth | None" = None
     stability: ClothReadings
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+    def __init__(self, params: ClothParams, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any."""
         if live is not None:
             from app.scenes.cloth import student_cloth  # only `springtide lab DIR` pays for it
 
             self.student = student_cloth.StudentCloth(live.cloth)
         self.tuner = ThreadTuner()
-        self.drag = Drag()
+        self.grab = ParticleGrab()
         super().__init__(params, len(SERIES))
 
     @property
@@ -127,7 +126,7 @@ class ClothScene(NetScene[Params]):
         self.sphere = CriticallyDampedTracker(sphere_home(self.params), MAX_SPHERE_SPEED)
         self.place_at_rest(build(self.params, self.sphere.position))
         self.account_kept = self.with_account
-        self.drag.clear()
+        self.grab.clear()
         self.place_handles()
         self.assess_stability()
         if self.student is not None:
@@ -156,7 +155,7 @@ class ClothScene(NetScene[Params]):
         self.handles = [CriticallyDampedTracker(tuple(float(c) for c in end)) for end in self.ends]  # type: ignore[arg-type]
         self.anchors = {pin: x[:, pin[0], pin[1]].copy() for pin in self.net.pinned}
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: ClothParams) -> None:
         """Take new parameters. The motion goes on, interpolated where the grid changes."""
         old, self.params = self.params, params
         self.tuner.restart()
@@ -174,11 +173,11 @@ class ClothScene(NetScene[Params]):
                 self.handles[1].target = position
             case Place("sphere", position):
                 self.sphere.target = position
-            case Grab(index, target, client) if 0 <= index < self.particles:
+            case GrabTo(index, target, client) if 0 <= index < self.particles:
                 x, y, z = (float(c) for c in self.state.x.reshape(3, -1)[:, index])
-                self.drag.move(client, index, (x, y, z), target)
+                self.grab.move(client, index, (x, y, z), target)
             case Release(client):
-                self.drag.release(client)
+                self.grab.release(client)
             case StudentAnswer() if self.student is not None:
                 self.student.collect(MAX_DISTANCE)
             case _:
@@ -216,32 +215,32 @@ class ClothScene(NetScene[Params]):
         return self.particles <= MAX_ASSESSED_PARTICLES
 
     def net_during(self, t: float, duration: float) -> Net:
-        """The net with the motions of pins, sphere and pull, and the wind, over the next `duration` [s] from time t."""
+        """The net with the motions of pins, sphere and grab, and the wind, over the next `duration` [s] from time t."""
         before = self.sphere_at(t)
         self.sphere.advance(t, duration)
         after = self.sphere_at(t + duration)
-        pull = None
-        if self.drag.hold is not None:
-            _, index, hand = self.drag.hold
+        grab = None
+        if self.grab.grabbed is not None:
+            _, index, hand = self.grab.grabbed
             hand.advance(t, duration)
             row, col = divmod(index, self.params.cols)
-            stiffness, damping = self.pull_spring(index)
-            pull = Pull(row, col, hand.position, stiffness, damping, self.params.pull)
+            stiffness, damping = self.grab_spring(index)
+            grab = Grab(row, col, hand.position, stiffness, damping, self.params.pull)
         return dataclasses.replace(
             self.net,
             pin_paths=self.pin_paths(t, duration),
             sphere=(*before, self.params.sphere_radius) if self.params.sphere else None,
             sphere_velocity=tuple((b - a) / duration for a, b in zip(before, after, strict=True)),
             epoch=t,
-            grab=pull,
+            grab=grab,
             air=Air(gusty_wind(self.params, t), self.params.air) if self.params.air > 0.0 else None,
         )
 
-    def pull_spring(self, index: int) -> tuple[float, float]:
-        """Stiffness [N/m] and damping [N s/m] of a pull on a particle."""
+    def grab_spring(self, index: int) -> tuple[float, float]:
+        """Stiffness [N/m] and damping [N s/m] of a grab of a particle."""
         mass = float(self.net.masses.flat[index])
-        stiffest = MAX_PULL_STIFFNESS_STEP * mass / self.step**2
-        stiffness = min(self.params.pull / PULL_LENGTH, stiffest)
+        stiffest = MAX_GRAB_STIFFNESS_STEP * mass / self.step**2
+        stiffness = min(self.params.pull / GRAB_LENGTH, stiffest)
         return stiffness, 0.5 * math.sqrt(stiffness * mass)
 
     def sphere_at(self, t: float) -> Vector:
@@ -303,11 +302,11 @@ class ClothScene(NetScene[Params]):
     def frame(self) -> ClothFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
         params = self.params
-        pull = None
-        if self.drag.hold is not None:
-            _, index, hand = self.drag.hold
+        grab = None
+        if self.grab.grabbed is not None:
+            _, index, hand = self.grab.grabbed
             distance = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
-            pull = PullFrame(index, hand.position, min(1.0, distance * self.pull_spring(index)[0] / params.pull))
+            grab = GrabFrame(index, hand.position, min(1.0, distance * self.grab_spring(index)[0] / params.pull))
         x, student = self.state.x, None
         both = None if self.student is None else self.student.pictured(x)
         if both is not None:
@@ -319,7 +318,7 @@ class ClothScene(NetScene[Params]):
             pins=None if params.pinned == "free" else (self.handles[0].target, self.handles[1].target),
             sphere=(*self.sphere_at(self.time), params.sphere_radius) if params.sphere else None,
             sphere_home=self.sphere.target,
-            pull=pull,
+            grab=grab,
             student=student,
         )
         self.last_moments.add(self.state.t, frame, frame.points)
@@ -334,7 +333,7 @@ SCENE = SceneKind(
     name="cloth",
     title="Cloth",
     help="<b>Drag the cloth</b> to pull it, or the arrows to move its pins and the sphere.",
-    params=Params,
+    params=ClothParams,
     presets=PRESETS,
     about=ABOUT,
     make=ClothScene,

@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 
 from app.messages import Vector
-from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.parameters import ClothParams
 from sim.springs import Air, Contact, Net, cloth
 from sim.springs.cloth import pleated_cloth, vertical_cloth
 
 CONTACT_DISTANCE = 0.012  # [m] between the cloth and sphere or floor, so that it is drawn outside them
 
 
-def corner(params: Params) -> Vector:
+def corner(params: ClothParams) -> Vector:
     """Initial position of particle (0, 0) [m]."""
     if params.start == "flag":
         return -0.9, 0.0, 2.1
@@ -21,7 +21,7 @@ def corner(params: Params) -> Vector:
     return -0.5 * params.width, -0.5 * params.length, 1.5
 
 
-def sphere_home(params: Params) -> Vector:
+def sphere_home(params: ClothParams) -> Vector:
     """Initial position of the sphere [m]: under a level cloth, in front of a hanging one."""
     if params.start == "level":
         below = 0.15 if params.bob > 0.0 else CONTACT_DISTANCE + 0.15
@@ -29,7 +29,7 @@ def sphere_home(params: Params) -> Vector:
     return 0.0, -params.sphere_radius - 0.5, 1.2
 
 
-def build(params: Params, sphere: Vector) -> Net:
+def build(params: ClothParams, sphere: Vector) -> Net:
     """The net that the parameters describe, at its start. sphere: centre [m]."""
     net = cloth(
         params.rows,

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.lab.live_net import CLOTH, LiveNet, Marched
-from app.lab.rope_march import Segment, Sheet
-from app.scenes.cloth.parameters import Params
+from app.lab.rope_march import ClothData, Segment
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.laws import SPRING
 from app.scenes.springs.student_net import StudentNet, forces_of
@@ -30,7 +30,7 @@ class StudentCloth(StudentNet):
         super().__init__(live)
         self.side = COARSE_SIDES[0]
 
-    def set_up(self, params: Params) -> bool:
+    def set_up(self, params: ClothParams) -> bool:
         """Choose the points and their links. True if they have changed."""
         self.params, self.unlike = params, unlike(params)
         rows, cols = params.rows, params.cols
@@ -45,7 +45,7 @@ class StudentCloth(StudentNet):
         across, down, shear, _, bend, _ = self.net.families
         pins = tuple(i * cols + j for i, j in sorted(self.net.pinned))
         before = self.sheet
-        self.sheet = Sheet(rows, cols, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins)
+        self.sheet = ClothData(rows, cols, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins)
         method = INTEGRATORS["symplectic_euler"]
         self.longest = STEP_SHARE * method.stable_step(*gershgorin(self.net, self.net.x0))
         return before is None or (before.rows, before.cols, before.pins) != (rows, cols, pins)
@@ -55,7 +55,7 @@ class StudentCloth(StudentNet):
         assert self.sheet is not None
         return resample(values, self.sheet.rows, self.sheet.cols).reshape(3, -1).T.copy()
 
-    def start(self, params: Params, state: State) -> None:
+    def start(self, params: ClothParams, state: State) -> None:
         """A new run."""
         self.side = COARSE_SIDES[0]
         self.set_up(params)
@@ -63,7 +63,7 @@ class StudentCloth(StudentNet):
         self.restart(x if self.is_comparable else self.net.x0.reshape(3, -1).T.copy(), np.zeros_like(x))
         self.tell_grid()
 
-    def change(self, params: Params, old: Params, state: State) -> None:
+    def change(self, params: ClothParams, old: ClothParams, state: State) -> None:
         """Other parameters: the motion goes on, from the program's where the points are others."""
         if self.set_up(params) or params.integrator != old.integrator:
             self.begin(self.rows_of(state.x), self.rows_of(state.v), state.t)
@@ -85,7 +85,7 @@ class StudentCloth(StudentNet):
         forces = forces_of(net, before.t)._replace(mass=self.net.mass, damping=self.net.families[0].damping)
         x, last = self.rows_of(after.x), self.rows_of(before.x)
         if not self.is_comparable:
-            forces = forces._replace(held=-1)
+            forces = forces._replace(grabbed=-1)
         pins = list(self.sheet.pins)
         path = np.zeros((len(pins), 4, 3))
         path[:, 0], path[:, 1] = last[pins], (x[pins] - last[pins]) / duration
@@ -123,7 +123,7 @@ class StudentCloth(StudentNet):
             self.tell_grid()
 
 
-def unlike(params: Params) -> tuple[str, ...]:
+def unlike(params: ClothParams) -> tuple[str, ...]:
     """The parameters that the functions of the tasks do not feel as the program's cloth does, a line each."""
     lines: list[str] = []
     if params.integrator not in CLOTH.exact:

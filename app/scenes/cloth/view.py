@@ -16,7 +16,7 @@ from app.render.html import Html, fill, info, join
 from app.render.meshes import ball, rod, tube_faces
 from app.render.viser_inside import set_arrays
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
-from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.springs.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.view import SecondNet, Sphere, SpringView
@@ -35,7 +35,7 @@ POLE_WIDTH = 0.03  # [m]
 POLE_OVERHANG = 0.06  # of the flag's height, above the flag
 MIN_POLE_DROP = 0.1  # [m] smallest height of the flag from which the foot of the pole is computed
 
-ClothSnapshot: TypeAlias = Snapshot[Params, ClothFrame, ClothReadings]
+ClothSnapshot: TypeAlias = Snapshot[ClothParams, ClothFrame, ClothReadings]
 
 
 @functools.lru_cache(maxsize=4)
@@ -62,7 +62,7 @@ def checks(rows: int, cols: int) -> np.ndarray:
 STRAIN = "Strain: by how much a thread is longer than at rest. 5 % is 5 mm on 100 mm."
 
 
-class View(SpringView[Params, ClothFrame, ClothReadings]):
+class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
     """Draws `ClothFrame`s."""
 
     CAMERA = ((0.7, -1.5, 1.9), (0.12, 0.0, 1.12))  # position, target [m]; of a level cloth
@@ -90,7 +90,7 @@ class View(SpringView[Params, ClothFrame, ClothReadings]):
             server, "/student", "yours (translucent)", color=STUDENT_COLOUR, opacity=STUDENT_OPACITY, side="double"
         )
 
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+    def first_view(self, params: ClothParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved."""
         if params.start != "level":
             return self.HANGING
@@ -121,7 +121,7 @@ class View(SpringView[Params, ClothFrame, ClothReadings]):
             self.build(frame)
         assert self.mesh is not None
         self.mesh.set(self.points, self.colours(frame))
-        self.show_surroundings(p.floor, p.grid, frame.pull)
+        self.show_surroundings(p.floor, p.grid, frame.grab)
         self.sphere.show(frame.sphere, frame.sphere_home if p.handles else None)
         if frame.student is None:
             self.student.set_visible(False)
@@ -170,3 +170,6 @@ class View(SpringView[Params, ClothFrame, ClothReadings]):
         """Parameter -> the line under its control: the largest step that is stable with the others as they are."""
         readings = snapshot.readings
         return {"integrator": readings.note, "time_step": step_mark(readings.stability.critical_step)}
+
+
+VIEW = ClothView

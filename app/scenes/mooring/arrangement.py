@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from app.messages import Vector, vector_of
 from app.scenes.mooring.from_file import mooring_of
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from sim import floating
-from sim.mooring import Body, Line, LineType, Point, System, moored
+from sim.mooring import Line, LineType, MooredBody, Point, System, moored
 from sim.ocean.gerstner import draw_waves, waves_under
 from sim.ocean.spectra import SPECTRA
 from sim.water import Water
@@ -38,38 +38,38 @@ class Places(NamedTuple):
     fairleads: tuple[Vector, ...]  # [m] from the body's centre
 
 
-def water_of(params: Params) -> Water:
+def water_of(params: MooringParams) -> Water:
     """The water of the parameters, or that of their file."""
     if not params.moordyn_file:
         return Water(params.depth, GRAVITY, DENSITY)
     return mooring_of(params.moordyn_file).system.water
 
 
-def depth_of(params: Params) -> float:
+def depth_of(params: MooringParams) -> float:
     """Depth of the water [m]."""
     return water_of(params).depth
 
 
-def extent(params: Params) -> float:
+def extent(params: MooringParams) -> float:
     """A length [m] that the picture is made for."""
     if params.moordyn_file:
         return mooring_of(params.moordyn_file).extent
     return max(params.reach, 1.2 * params.depth)
 
 
-def diameter_of(params: Params) -> float:
+def diameter_of(params: MooringParams) -> float:
     """Diameter [m] of the lines; of a file the largest."""
     if params.moordyn_file:
         return max(line.type.diameter for line in mooring_of(params.moordyn_file).system.lines)
     return params.diameter
 
 
-def has_body(params: Params) -> bool:
+def has_body(params: MooringParams) -> bool:
     """False of a file without coupled points, which has no vessel."""
     return not params.moordyn_file or bool(mooring_of(params.moordyn_file).vessel)
 
 
-def width_of(params: Params) -> float:
+def width_of(params: MooringParams) -> float:
     """Width [m] of the body; a vessel from a file is drawn within its fairleads, as no file has its shape."""
     if not params.moordyn_file:
         return params.size
@@ -77,7 +77,7 @@ def width_of(params: Params) -> float:
     return min(max(VESSEL_WIDTH * found.radius, LEAST_VESSEL * found.extent), LARGEST_VESSEL * found.extent)
 
 
-def hull_of(params: Params) -> floating.Hull:
+def hull_of(params: MooringParams) -> floating.Hull:
     """The body's hull."""
     if params.moordyn_file:
         return floating.Hull.cylinder(0.5 * width_of(params), VESSEL_HEIGHT * width_of(params))
@@ -87,12 +87,12 @@ def hull_of(params: Params) -> floating.Hull:
     return floating.Hull.box(BOX_LENGTH * width, width, height)
 
 
-def bearings(params: Params) -> NDArray[np.float64]:
+def bearings(params: MooringParams) -> NDArray[np.float64]:
     """Directions (lines,) [rad] from body to anchors; the first is up-wave."""
     return math.radians(params.direction) + math.pi * (1.0 + 2.0 * np.arange(params.lines) / params.lines)
 
 
-def first_places(params: Params) -> Places:
+def first_places(params: MooringParams) -> Places:
     """Anchors and fairleads that nobody has moved."""
     (x, y, z), _ = np.abs(hull_of(params).extents).T
     anchors, fairleads = [], []
@@ -105,7 +105,7 @@ def first_places(params: Params) -> Places:
     return Places(tuple(anchors), tuple(fairleads))
 
 
-def sea_of(params: Params) -> Waves | None:
+def sea_of(params: MooringParams) -> Waves | None:
     """The waves, all in one direction; None for a level sea."""
     if params.wave_height == 0.0:
         return None
@@ -121,12 +121,12 @@ def sea_of(params: Params) -> Waves | None:
     return dataclasses.replace(drawn, kx=drawn.k * c, ky=drawn.k * s)
 
 
-def surface_side(params: Params) -> float:
+def surface_side(params: MooringParams) -> float:
     """Side of the drawn surface [m]."""
     return SURFACE_SIDE * extent(params)
 
 
-def surface_heights(params: Params, sea: Waves | None, t: float, fade: float) -> NDArray[np.float32]:
+def surface_heights(params: MooringParams, sea: Waves | None, t: float, fade: float) -> NDArray[np.float32]:
     """Heights (m, m) [m] of the drawn surface, which lies about the origin, at time t [s]; fade: of all."""
     side = surface_side(params)
     if sea is None:
@@ -139,7 +139,7 @@ def surface_heights(params: Params, sea: Waves | None, t: float, fade: float) ->
     return np.interp(axis[:, None] * c + axis[None] * s, along, heights).astype(np.float32)
 
 
-def line_types(params: Params) -> tuple[LineType, LineType]:
+def line_types(params: MooringParams) -> tuple[LineType, LineType]:
     """The line, and its part with floats."""
     plain = LineType(
         "line", params.diameter, params.line_mass, params.axial_stiffness, -params.line_damping, params.added_mass,
@@ -149,7 +149,7 @@ def line_types(params: Params) -> tuple[LineType, LineType]:
     return plain, plain._replace(name="line with floats", diameter=math.sqrt(4.0 * area / math.pi))
 
 
-def first_line(params: Params) -> tuple[LineType, float]:
+def first_line(params: MooringParams) -> tuple[LineType, float]:
     """Type and length [m] of line 1."""
     if params.moordyn_file:
         line = mooring_of(params.moordyn_file).system.lines[0]
@@ -157,7 +157,7 @@ def first_line(params: Params) -> tuple[LineType, float]:
     return line_types(params)[0], params.length
 
 
-def sections(params: Params) -> tuple[tuple[LineType, float, int], ...]:
+def sections(params: MooringParams) -> tuple[tuple[LineType, float, int], ...]:
     """Of a line from its anchor: (type, length [m], segments) of each part."""
     plain, lifted = line_types(params)
     if not params.floats:
@@ -169,7 +169,7 @@ def sections(params: Params) -> tuple[tuple[LineType, float, int], ...]:
     return tuple((kind, params.length * n / params.segments, n) for kind, n in zip(types, counts, strict=True))
 
 
-def body_of(params: Params, sea: Waves | None) -> Body:
+def body_of(params: MooringParams, sea: Waves | None) -> MooredBody:
     """The body, with the forces of waves and the steady force."""
     body = floating.Body(hull_of(params), density=params.density)
     found = moored(BODY, body, 2.0 * math.pi / params.wave_period, sea, GRAVITY)
@@ -178,7 +178,7 @@ def body_of(params: Params, sea: Waves | None) -> Body:
     return found._replace(steady=(force * c, force * s, 0.0, 0.0, 0.0, 0.0))
 
 
-def build(params: Params, places: Places, body: Body, sea: Waves | None) -> System:
+def build(params: MooringParams, places: Places, body: MooredBody, sea: Waves | None) -> System:
     """The system. Anchors are points that are moved, since a user may drag them."""
     # Drag on the body acts in the middle of its wet side.
     draft = params.density / DENSITY * HEIGHT_OVER_WIDTH * params.size
@@ -203,7 +203,7 @@ def build(params: Params, places: Places, body: Body, sea: Waves | None) -> Syst
     )  # fmt: skip
 
 
-def nodes_and_links(system: System, params: Params) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def nodes_and_links(system: System, params: MooringParams) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Numbers of each line's nodes (lines, segments + 1) and links (lines, segments), from the anchor on."""
     nodes, links = [], []
     for i in range(params.lines):

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, Release, SceneCommand, Vector, vector_of
+from app.messages import GrabTo, Place, Release, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import (
     Places,
     body_of,
@@ -19,14 +19,14 @@ from app.scenes.mooring.arrangement import (
     sections,
 )
 from app.scenes.mooring.line_scene import LineScene, rest_or_start
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.restoring import StaticInputs, force_of_lines
 from app.scenes.mooring.start_check import Fault, fault_of
 from app.scenes.springs.tracking import CriticallyDampedTracker
 
 # Largest speeds of what is dragged, so that no line snaps by it: in distances of anchors and sizes of the body [1/s].
 ANCHOR_SPEED, FAIRLEAD_SPEED = 0.02, 0.1
-DRAG_RATE = 1.0  # [rad/s] natural frequency of the mouse's pull on the body
+GRAB_RATE = 1.0  # [rad/s] natural frequency of the grab of the body
 FARTHEST = 5.0  # in lengths of a line and distances of anchors, beyond which a run has diverged
 CHANGING = (
     "state", "system", "places", "tensions", "path", "path_count", "most_offset", "farthest", "rest_place",
@@ -65,7 +65,7 @@ class MooringScene(LineScene):
         """(lines,) [m], unstretched."""
         return np.full(self.params.lines, self.params.length)
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion goes on."""
         old, self.params = self.params, params
         self.sea = sea_of(params)
@@ -89,7 +89,7 @@ class MooringScene(LineScene):
     @property
     def is_dragged(self) -> bool:
         """True while a user moves an anchor, a fairlead or the body."""
-        return self.hold is not None or not all(one.at_rest for one in (*self.anchors, *self.fairleads))
+        return self.grabbed is not None or not all(one.at_rest for one in (*self.anchors, *self.fairleads))
 
     def drag(self, command: SceneCommand) -> None:
         """Move an anchor or a fairlead, pull the body, or let go of it."""
@@ -102,10 +102,10 @@ class MooringScene(LineScene):
                     self.move_anchor(int(number) - 1, (x, y))
                 elif kind == "fairlead":
                     self.move_fairlead(int(number) - 1, (x, y, z))
-            case Grab(0, target, client) if self.hold is None or self.hold[0] == client:
-                self.hold = client, target
-            case Release(client) if self.hold is not None and self.hold[0] == client:
-                self.hold = None
+            case GrabTo(0, target, client) if self.grabbed is None or self.grabbed[0] == client:
+                self.grabbed = client, target
+            case Release(client) if self.grabbed is not None and self.grabbed[0] == client:
+                self.grabbed = None
             case _:
                 pass
 
@@ -152,16 +152,16 @@ class MooringScene(LineScene):
     def driven(self) -> dict[str, NDArray[np.float64]]:
         """Those of waves and current, and the mouse's pull."""
         found = super().driven()
-        if self.hold is not None:
-            found["steady"] = self.system.kernel_view(self.step).steady + self.mouse_pull()
+        if self.grabbed is not None:
+            found["steady"] = self.system.kernel_view(self.step).steady + self.grab_force()
         return found
 
-    def mouse_pull(self) -> NDArray[np.float64]:
+    def grab_force(self) -> NDArray[np.float64]:
         """(1, 6) [N, N m] critically damped, on the body."""
-        assert self.hold is not None
+        assert self.grabbed is not None
         mass = float(self.body.mass[0, 0])
         v = self.state.v[:, self.system.node_count]
-        force = mass * (DRAG_RATE**2 * (np.array(self.hold[1]) - self.body_place()) - 2.0 * DRAG_RATE * v)
+        force = mass * (GRAB_RATE**2 * (np.array(self.grabbed[1]) - self.body_place()) - 2.0 * GRAB_RATE * v)
         limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.gravity
         force *= min(1.0, limit / max(float(np.linalg.norm(force)), 1e-9))
         return np.concatenate((force, np.zeros(3)))[None]

@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Release, SceneCommand, Vector, vector_of
+from app.messages import GrabTo, Release, SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import extent, sea_of
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.from_file import FileMooring, mooring_of, slack_of
 from app.scenes.mooring.line_scene import LineScene, fade_at
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.restoring import LEAST_SHARE, SHARE
 from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
@@ -102,7 +102,7 @@ class FileScene(LineScene):
         current = (p.current * math.cos(bearing), p.current * math.sin(bearing), 0.0)
         return dataclasses.replace(self.file.system, waves=self.sea, current=current)
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion goes on."""
         self.params = params
         self.sea = sea_of(params)
@@ -117,18 +117,18 @@ class FileScene(LineScene):
     @property
     def is_dragged(self) -> bool:
         """True while a user moves the vessel."""
-        return self.hold is not None or not self.vessel.at_rest
+        return self.grabbed is not None or not self.vessel.at_rest
 
     def drag(self, command: SceneCommand) -> None:
         """Drag the vessel, or leave it where it is."""
         match command:
-            case Grab(0, target, client) if self.hold is None or self.hold[0] == client:
-                self.hold = client, target
+            case GrabTo(0, target, client) if self.grabbed is None or self.grabbed[0] == client:
+                self.grabbed = client, target
                 away = np.subtract(target, self.middle)[:2]
                 away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))
                 self.vessel.target = vector_of(np.append(away, 0.0))
-            case Release(client) if self.hold is not None and self.hold[0] == client:
-                self.hold = None
+            case Release(client) if self.grabbed is not None and self.grabbed[0] == client:
+                self.grabbed = None
             case _:
                 pass
 

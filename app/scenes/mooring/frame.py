@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.start_check import Fault
 from sim.springs.stability import Gauge
 
@@ -14,7 +14,7 @@ from sim.springs.stability import Gauge
 class MooringFrame(NamedTuple):
     """Drawn state of a mooring."""
 
-    params: Params
+    params: MooringParams
     time: float  # [s]
     body: NDArray[np.float32]  # (3,) [m] the body's centre
     rotation: NDArray[np.float32]  # (4,) its quaternion
@@ -29,7 +29,7 @@ class MooringFrame(NamedTuple):
     anchors: NDArray[np.float32]  # (a, 3) [m]
     fairleads: NDArray[np.float32]  # (f, 3) [m], and other points that move
     uplift: NDArray[np.bool_]  # (a,) whether an anchor is pulled upwards
-    pull: Vector | None  # [m] where the mouse pulls the body to
+    grab: Vector | None  # [m] where the mouse pulls the body to
 
 
 class EndStatistics(NamedTuple):

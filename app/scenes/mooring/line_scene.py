@@ -13,7 +13,7 @@ from app.scenes.charts import Chart
 from app.scenes.moments import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
-from app.scenes.mooring.parameters import MAX_LINES, Params
+from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.restoring import CurveInputs, RestoringCurve
 from app.scenes.mooring.start_check import Fault
 from app.scenes.mooring.tensions import Tensions
@@ -58,7 +58,7 @@ class LineScene(abc.ABC):
     def middle(self) -> Vector:
         """[m] of the body or vessel, where it rests without lines or begins."""
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: MooringParams) -> None:
         self.params = params
         self.plot_rows = PlotRows(len(SERIES))
         self.last_moments = LastMoments()
@@ -82,7 +82,7 @@ class LineScene(abc.ABC):
 
     def reset(self) -> None:
         """At rest in level water, with all things in their first places."""
-        self.hold: tuple[int, Vector] | None = None
+        self.grabbed: tuple[int, Vector] | None = None
         self.arrange()
         rest, self.failure = rest_or_start(self.system)
         self.state = LineState(self.system, rest)
@@ -118,7 +118,7 @@ class LineScene(abc.ABC):
         """Go on with the mooring as it is arranged now."""
 
     @abc.abstractmethod
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion goes on."""
 
     @property
@@ -293,7 +293,7 @@ class LineScene(abc.ABC):
             anchors=self.points[:, 0].astype(np.float32),
             fairleads=self.points[:, -1].astype(np.float32),
             uplift=self.tensions.uplift > 0.0,
-            pull=None if self.hold is None else self.hold[1],
+            grab=None if self.grabbed is None else self.grabbed[1],
         )
         self.last_moments.add(self.time, frame, frame.points)
         return frame
@@ -315,7 +315,7 @@ class LineScene(abc.ABC):
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
-        self.hold = None
+        self.grabbed = None
         self.state.system = self.system
         self.take_step()
         self.measure()

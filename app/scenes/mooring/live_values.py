@@ -5,7 +5,7 @@ from app.scenes.contract import Measure
 from app.scenes.mooring.arrangement import first_line, water_of
 from app.scenes.mooring.frame import MooringReadings
 from app.scenes.mooring.measures import tension_measures
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.springs.live_values import stability_values
 
 
@@ -13,7 +13,7 @@ def live_values(snapshot: Snapshot) -> dict[str, Measure]:
     """The numbers of a snapshot."""
     readings: MooringReadings = snapshot.readings
     first = readings.lines[0]
-    p: Params = snapshot.params
+    p: MooringParams = snapshot.params
     kind, length = first_line(p)
     water = water_of(p)
     weight = water.gravity * (kind.mass - water.density * kind.volume)

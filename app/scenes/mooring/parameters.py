@@ -19,7 +19,7 @@ in_sea = functools.partial(parameter, group="Sea")
 
 
 @dataclasses.dataclass(frozen=True)
-class Params:
+class MooringParams:
     """The mooring's parameters; the defaults are a buoy on three chains."""
 
     lines: int = in_main(
@@ -144,11 +144,11 @@ ABOUT = {  # preset -> what it shows and what to try
 # What a MoorDyn file says itself, or what a vessel without a hull does not have.
 OF_NO_FILE = {
     "lines", "length", "reach", "depth", "friction", "steady_force", "handles",
-    *(name for name, one in parameters_of(Params).items() if one.group in ("Line", "Body")),
+    *(name for name, one in parameters_of(MooringParams).items() if one.group in ("Line", "Body")),
 } - {"breaking_load"}  # fmt: skip
 
 
-def hidden(params: Params) -> set[str]:
+def hidden(params: MooringParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = set() if params.floats else {"lift"}
     names |= OF_NO_FILE if params.moordyn_file else {"follow"}

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Line as ChartLine
-from app.messages import Vector, vector_of
+from app.messages import ChartLine, Vector, vector_of
 from app.scenes.charts import PALETTE, Chart
 from app.scenes.mooring.arrangement import Places
 from sim.interruption import raise_if_stopped

@@ -11,7 +11,7 @@ from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, SERIES, LineScene
 from app.scenes.mooring.live_values import live_values
 from app.scenes.mooring.measures import measures
-from app.scenes.mooring.parameters import ABOUT, EXPLICIT, PRESETS, Params, hidden
+from app.scenes.mooring.parameters import ABOUT, EXPLICIT, PRESETS, MooringParams, hidden
 from app.scenes.mooring.start_check import raised_points
 from app.scenes.springs.divergence import holding_step
 
@@ -23,14 +23,14 @@ PLOTS = {
 CURVES = {"plot_restoring": CurveAxes("Restoring force", "kN", "Offset along the waves [m]", ("static", "now"))}
 
 
-def scene_of(params: Params) -> LineScene:
+def scene_of(params: MooringParams) -> LineScene:
     """The scene of the parameters, or of the file that they name."""
     return FileScene(params) if params.moordyn_file else MooringScene(params)
 
 
 def compile_with(method: str) -> None:
     """Run the kernels of a method, and all that a scene calls."""
-    scene = MooringScene(Params(integrator=method, lines=1, segments=4, time_step=1e-4))
+    scene = MooringScene(MooringParams(integrator=method, lines=1, segments=4, time_step=1e-4))
     scene.advance(2)
     scene.frame()
     scene.readings()
@@ -46,7 +46,7 @@ def on_use() -> Pieces:
     return {name: (lambda name=name: compile_with(name)) for name in EXPLICIT if name != "leapfrog"}
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: MooringParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     return ("leapfrog",) if params.integrator == "leapfrog" else ("leapfrog", params.integrator)
 
@@ -76,7 +76,7 @@ SCENE = SceneKind(
     name="mooring",
     title="Mooring",
     help="<b>Drag the body</b>, or the arrows of anchors and fairleads.",
-    params=Params,
+    params=MooringParams,
     presets=PRESETS,
     about=ABOUT,
     make=scene_of,

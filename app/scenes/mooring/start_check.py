@@ -12,7 +12,7 @@ from app.messages import Vector
 from app.scenes.contract import Advice
 from app.scenes.mooring.arrangement import Places
 from app.scenes.mooring.from_file import FileMooring
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from sim.parameters import parameters_of
 
 MAX_REST_STRETCH = 0.05  # of a line at rest, over its length: moorings are laid with less
@@ -42,11 +42,11 @@ def rounded_up(value: float) -> float:
 
 def advice_on(name: str, least: float) -> Advice | None:
     """The least value of a parameter, rounded up; None if the parameter does not reach it."""
-    parameter, value = parameters_of(Params)[name], rounded_up(least)
+    parameter, value = parameters_of(MooringParams)[name], rounded_up(least)
     return Advice(name, value, f"{number(value)} {parameter.unit}") if value <= float(parameter.high) else None
 
 
-def fault_of(params: Params, places: Places, body: Vector, stretch: NDArray[np.float64]) -> Fault | None:
+def fault_of(params: MooringParams, places: Places, body: Vector, stretch: NDArray[np.float64]) -> Fault | None:
     """The fault of a mooring of the parameters, None if there is none.
 
     body: [m] where it rests without lines. stretch: (lines,) at rest, over the length.

@@ -12,17 +12,16 @@ from app.messages import RestartStatistics, Snapshot, Vector
 from app.render.cameras import set_clipping
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
-from app.render.dragging import PullLine, drag
+from app.render.dragging import GrabLine, drag
 from app.render.gizmo import Gizmo
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import as_linear_bytes
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
 from app.render.viser_inside import set_arrays
-from app.scenes.contract import Pieces, PostCommand
-from app.scenes.contract import View as SceneView
+from app.scenes.contract import Pieces, PostCommand, SceneView
 from app.scenes.mooring.arrangement import depth_of, diameter_of, extent, has_body, hull_of, width_of
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
-from app.scenes.mooring.parameters import MAX_LINES, Params
+from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
 from app.scenes.springs.html import simple_drawing
 from app.scenes.springs.view import compile_tube
@@ -56,7 +55,7 @@ ANCHOR_COLOUR, LIFTED_COLOUR, FAIRLEAD_COLOUR = (50, 54, 62), (214, 40, 40), (30
 WATCH_COLOUR, PATH_COLOUR, SHADOW_COLOUR = (200, 30, 60), (250, 250, 250), (52, 72, 76)
 CELLS = (1.0, 2.0, 5.0)  # of the bed's lines, times a power of ten
 FAR_VIEW = 40.0  # where the picture ends, and the bed would, in `extent`s
-MooringSnapshot: TypeAlias = Snapshot[Params, MooringFrame, MooringReadings]
+MooringSnapshot: TypeAlias = Snapshot[MooringParams, MooringFrame, MooringReadings]
 Shape: TypeAlias = tuple[Any, ...]
 
 
@@ -104,7 +103,7 @@ def bed_colours(depth: float) -> NDArray[np.float64]:
     return np.clip(mottled + away * away * (3.0 - 2.0 * away) * (lost - mottled), 0.0, 1.0)
 
 
-class View(SceneView[Params, MooringFrame, MooringReadings]):
+class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
     """Draws `MooringFrame`s."""
 
     FIELD_OF_VIEW = 0.8  # [rad]
@@ -119,14 +118,14 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         scene = server.scene
         scene.configure_environment_map("studio", background=False, environment_intensity=0.4)
         scene.configure_default_lights(enabled=True, cast_shadow=False)
-        self.pull = PullLine(server)
+        self.grab = GrabLine(server)
         self.gizmos = {
             name: Gizmo(server, post, name, 1.0, position=(0.0, 0.0, 0.0), visible=False)
             for i in range(1, MAX_LINES + 1)
             for name in (f"anchor {i}", f"fairlead {i}")
         }
 
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+    def first_view(self, params: MooringParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: beside the surface, which it sees edge on."""
         far = extent(params)
         return (0.35 * far, -2.2 * far, 0.42 * far), (0.0, 0.0, -0.4 * depth_of(params))
@@ -245,7 +244,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
         )
 
     async def on_body(self, event: Any) -> None:
-        """Pull the body."""
+        """Grab the body, and pull it."""
         drag(self.post, event, 0)
 
     def surface_of(self, frame: MooringFrame) -> NDArray[np.float32]:
@@ -309,7 +308,7 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
             self.bed.cell_thickness = self.bed.section_thickness = thickness
         self.show_watch(frame)
         self.show_handles(frame)
-        self.pull.show(None if frame.pull is None else (tuple(frame.body.tolist()), frame.pull))
+        self.grab.show(None if frame.grab is None else (tuple(frame.body.tolist()), frame.grab))
 
     def show_watch(self, frame: MooringFrame) -> None:
         """The watch circle, and the path of the body."""
@@ -360,3 +359,6 @@ class View(SceneView[Params, MooringFrame, MooringReadings]):
     def notes(self, snapshot: MooringSnapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
         return notes_of(snapshot)
+
+
+VIEW = MooringView

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Line
+from app.messages import ChartLine
 from app.scenes.charts import DASHES, PALETTE, Chart, CurveAxes
 from app.scenes.plot_rows import ROW_INTERVAL, row_number
 from app.scenes.race.entrants import Race
@@ -19,7 +19,7 @@ CURVES = {
     "plot_errors": CurveAxes("Distance from the reference", "m", "t [s]", ("rope 1",), ERROR_TICKS),
     "plot_energies": CurveAxes("Energy error", "J", "t [s]", ("rope 1",)),
 }
-FLOOR_LINE = Line("below what the reference can tell", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
+FLOOR_LINE = ChartLine("below what the reference can tell", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
 MAX_ENERGY_RATIO = 0.7  # drawn energy error over the potential energy of the rope's whole fall, at most
 FLOOR_WITHOUT_REFERENCE = 1e3  # [m], above the scale
 
@@ -73,7 +73,7 @@ class RaceCharts:
             race, table = self.race, self.rows[: self.count].T.copy()
             stiffness_differs = race.ratio != 1.0
             lines = tuple(
-                Line(rope_name(entrant, stiffness_differs), PALETTE[i], 2.0, DASHES[i])
+                ChartLine(rope_name(entrant, stiffness_differs), PALETTE[i], 2.0, DASHES[i])
                 for i, entrant in enumerate(race.entrants)
             )
             floor = np.where(np.isnan(table[1]), FLOOR_WITHOUT_REFERENCE, table[1])
@@ -91,13 +91,15 @@ class RaceCharts:
             }
         return self.drawn
 
-    def ends(self, table: NDArray[np.float64]) -> tuple[list[Line], list[NDArray[np.float64]]]:
+    def ends(self, table: NDArray[np.float64]) -> tuple[list[ChartLine], list[NDArray[np.float64]]]:
         """A cross where each rope has diverged, and its column: a number at that row, NaN at the others."""
-        marks: list[Line] = []
+        marks: list[ChartLine] = []
         places: list[NDArray[np.float64]] = []
         for i, entrant in enumerate(self.race.entrants):
             without = np.flatnonzero(np.isnan(table[3 + 2 * i]))
             if entrant.failure and len(without) and (row := without[0]) > 0:  # it has run before
-                marks.append(Line(f"{entrant.number}: {entrant.failure.partition(':')[0]}", PALETTE[i], cross=True))
+                marks.append(
+                    ChartLine(f"{entrant.number}: {entrant.failure.partition(':')[0]}", PALETTE[i], cross=True)
+                )
                 places.append(np.where(np.arange(len(table[0])) == row, ERROR_TICKS[0][0], math.nan))
         return marks, places

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
-from app.scenes.race.parameters import Params, method_of
+from app.scenes.race.parameters import RaceParams, method_of
 from app.scenes.springs.divergence import limit_text
 from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.energy_account import EnergyAccount
@@ -71,7 +71,7 @@ def evals_of(net: Net, record: Integrator, h: float) -> float:
     return max(float(record.evals), state.force_evals / state.steps)
 
 
-def step_of(params: Params, number: int, net: Net) -> float:
+def step_of(params: RaceParams, number: int, net: Net) -> float:
     """The step [s] that the rule of the race gives to rope `number`."""
     if number == 1 or params.race_steps == "same step":
         return params.time_step
@@ -223,7 +223,7 @@ class Entrant:
 class Race:
     """All entrants, the reference run of each, and the clock."""
 
-    def __init__(self, net: Net, params: Params, clock: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(self, net: Net, params: RaceParams, clock: Callable[[], float] = time.perf_counter) -> None:
         """net: of rope 1, at rest at time 0. clock: [s], to time steps."""
         self.ratio = params.stiffness_ratio
         numbers = range(1, params.ropes + 1)

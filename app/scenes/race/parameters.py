@@ -5,7 +5,7 @@ from typing import Any
 
 from app.scenes.groups import in_look, in_main, in_plots, in_rope
 from app.scenes.springs.methods import METHODS
-from app.scenes.springs.rope_parameters import RopeParams, hidden_of_rope
+from app.scenes.springs.rope_parameters import SharedRopeParams, hidden_of_rope
 from sim.parameters import redeclare
 
 MAX_ROPES = 6
@@ -62,20 +62,20 @@ class RaceMethods:
 
 
 @dataclasses.dataclass(frozen=True)
-class Params(RaceMethods, RopeParams, RaceRules):
+class RaceParams(RaceMethods, SharedRopeParams, RaceRules):
     """The race's parameters. A change of the compared problem starts it again; other forces do not."""
 
     integrator: str = redeclare(
-        RopeParams, "integrator", default="explicit_euler", choices=tuple(METHODS),
+        SharedRopeParams, "integrator", default="explicit_euler", choices=tuple(METHODS),
         choice_titles=tuple(METHODS.values()), doc="Method of integration of rope 1", affects="start",
         title="1: method",
     )  # fmt: skip
     time_step: float = redeclare(
-        RopeParams, "time_step", default=1 / 240, doc="Step of rope 1", affects="start", title="1: time step"
+        SharedRopeParams, "time_step", default=1 / 240, doc="Step of rope 1", affects="start", title="1: time step"
     )
-    units: str = redeclare(RopeParams, "units", affects="start")
-    points: int = redeclare(RopeParams, "points", affects="start")
-    length: float = redeclare(RopeParams, "length", affects="start")
+    units: str = redeclare(SharedRopeParams, "units", affects="start")
+    points: int = redeclare(SharedRopeParams, "points", affects="start")
+    length: float = redeclare(SharedRopeParams, "length", affects="start")
 
     plot_errors: bool = in_plots(
         True, doc="Distance of each rope from the reference run over time", title="Distance from reference"
@@ -124,17 +124,17 @@ ABOUT = {  # preset -> what it shows and what to try
 }
 
 
-def method_of(params: Params, number: int) -> str:
+def method_of(params: RaceParams, number: int) -> str:
     """Name of the method of rope `number`, from 1."""
     return params.integrator if number == 1 else getattr(params, f"integrator_{number}")
 
 
-def offset_of(params: Params, index: int) -> float:
+def offset_of(params: RaceParams, index: int) -> float:
     """Drawn y [m] of rope `index`, from 0. All ropes move in the same place; only the drawing differs."""
     return (index - 0.5 * (params.ropes - 1)) * params.spacing
 
 
-def hidden(params: Params) -> set[str]:
+def hidden(params: RaceParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = hidden_of_rope(params, sphere=False)
     if params.ropes == 1:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, PlotRow, Release, SceneCommand, Vector, vector_of
+from app.messages import GrabTo, Place, PlotRow, Release, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.moments import copied, restore
@@ -15,8 +15,8 @@ from app.scenes.race.entrants import Race, RaceReadings
 from app.scenes.race.live_values import live_values
 from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_labels
-from app.scenes.race.parameters import ABOUT, PRESETS, Params, hidden, method_of, offset_of
-from app.scenes.springs.drag import PullFrame
+from app.scenes.race.parameters import ABOUT, PRESETS, RaceParams, hidden, method_of, offset_of
+from app.scenes.springs.grab import GrabFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.rope_handles import RopeHandles
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
@@ -35,13 +35,13 @@ REFERENCE = "reference run"  # name of the piece to compile
 class RaceFrame(NamedTuple):
     """Drawn state of a race."""
 
-    params: Params
+    params: RaceParams
     ropes: NDArray[np.float32]  # (ropes, points, 3) [m], C-contiguous, side by side
     references: NDArray[np.float32] | None  # the same of the reference runs, or None where there are none to show
     labels: tuple[str, ...]
     failed: tuple[bool, ...]
     root: Vector  # [m] where the roots are going to
-    pull: PullFrame | None
+    grab: GrabFrame | None
 
 
 def warm_up(law: str = SPRING) -> Pieces:
@@ -65,7 +65,7 @@ def compile_reference(net: Net) -> None:
     ReferenceRun(net, 2.0, 1).advance(net, 0.0, 1e-3)
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: RaceParams) -> tuple[str, ...]:
     """Compiled pieces that a race with these parameters runs."""
     methods = {method_of(params, number) for number in range(1, params.ropes + 1)}
     return pieces_of_law((*sorted(methods), GAUGE, REFERENCE), params.law)
@@ -78,7 +78,7 @@ class RaceScene:
     faster = "fewer ropes, fewer points or longer steps"
     note = ""  # a rope with a method that cannot run stops and says so; no other method runs instead
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: RaceParams) -> None:
         self.params = params
         self.handles = RopeHandles()
         self.reset()
@@ -109,9 +109,9 @@ class RaceScene:
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
-        self.handles.drag.clear()
+        self.handles.grab.clear()
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: RaceParams) -> None:
         """Take new parameters; the motion goes on."""
         self.params = params
         self.net = build_rope(params, self.handles.root.position)
@@ -123,10 +123,10 @@ class RaceScene:
         match command:
             case Place("root", position):
                 self.handles.move_root(position)
-            case Grab(index, target, client) if 0 <= index < self.params.points * self.params.ropes:
+            case GrabTo(index, target, client) if 0 <= index < self.params.points * self.params.ropes:
                 self.grab(index, target, client)
             case Release(client):
-                self.handles.drag.release(client)
+                self.handles.grab.release(client)
             case _:
                 pass
 
@@ -137,8 +137,8 @@ class RaceScene:
         target = x, y - offset_of(self.params, number), z
         if point > 0:
             position = vector_of(self.race.entrants[number].state.x[:, 0, point])
-            self.handles.drag.move(client, index, position, target)
-        elif self.handles.drag.may_move(client):
+            self.handles.grab.move(client, index, position, target)
+        elif self.handles.grab.may_move(client):
             self.handles.move_root(target)
 
     def advance(self, steps: int) -> None:
@@ -158,7 +158,7 @@ class RaceScene:
         params, race, handles = self.params, self.race, self.handles
         offsets = np.array([(0.0, offset_of(params, i), 0.0) for i in range(len(race.entrants))])[:, None]
         references = race.reference_points() if params.show_reference else None
-        number, point = divmod(handles.drag.hold.particle if handles.drag.hold else 0, params.points)
+        number, point = divmod(handles.grab.grabbed.particle if handles.grab.grabbed else 0, params.points)
         held = race.entrants[number].state.x[:, 0, point]
         offset = offset_of(params, number)
         return RaceFrame(
@@ -168,7 +168,7 @@ class RaceScene:
             labels=rope_labels(race.entrants),
             failed=tuple(bool(entrant.failure) for entrant in race.entrants),
             root=handles.home,
-            pull=handles.pull_frame(held, offset, self.net.mass, self.step, params.pull),
+            grab=handles.grab_frame(held, offset, self.net.mass, self.step, params.pull),
         )
 
     def readings(self) -> RaceReadings:
@@ -203,7 +203,7 @@ SCENE = SceneKind(
     name="race",
     title="Race of ropes",
     help="<b>Drag a rope</b> to pull all of them alike.",
-    params=Params,
+    params=RaceParams,
     presets=PRESETS,
     about=ABOUT,
     opening="Shaken at the root",

@@ -16,7 +16,7 @@ from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.race.entrants import RaceReadings
 from app.scenes.race.html import errors_line, results_table
-from app.scenes.race.parameters import Params
+from app.scenes.race.parameters import RaceParams
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.html import step_mark
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
@@ -44,7 +44,7 @@ MAX_STRETCH = 3.0  # [m] that the first view shows
 BELOW_FLOOR = 0.15  # [m] below a floor that the first view shows: a rope sinks into it, and has a radius
 SHOWN_ASPECT = 1.25  # width over height of what the first view shows at least (`js/camera.js`)
 
-RaceSnapshot: TypeAlias = Snapshot[Params, RaceFrame, RaceReadings]
+RaceSnapshot: TypeAlias = Snapshot[RaceParams, RaceFrame, RaceReadings]
 
 
 def material_colour(index: int, *, dark: bool = False) -> tuple[int, int, int]:
@@ -70,7 +70,7 @@ def label_rows(count: int) -> float:
     return float(label_heights(count).max()) + LABEL_AIR
 
 
-def shown_height(params: Params) -> float:
+def shown_height(params: RaceParams) -> float:
     """Height [m] of the first view: of all ropes, as far as they swing, and of their labels."""
     depth = (params.ropes - 1) * params.spacing
     across = BEARING[0] * 2.0 * params.length * SHOWN_SWING + BEARING[1] * depth
@@ -202,7 +202,7 @@ class RopesDrawing:
             handle.remove()
 
 
-class View(SpringView[Params, RaceFrame, RaceReadings]):
+class RaceView(SpringView[RaceParams, RaceFrame, RaceReadings]):
     """Draws `RaceFrame`s."""
 
     FIELD_OF_VIEW = 0.06  # [rad], from so far away that all ropes look equally large
@@ -213,11 +213,11 @@ class View(SpringView[Params, RaceFrame, RaceReadings]):
         self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
         injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
         self.ropes: RopesDrawing | None = None
-        self.params: Params | None = None  # that the height of a row of labels [m] is of
+        self.params: RaceParams | None = None  # that the height of a row of labels [m] is of
         self.label_row = 0.0
         self.dark: set[int] = set()  # browsers that draw on a dark floor
 
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+    def first_view(self, params: RaceParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: all ropes, as far as they swing, and labels."""
         depth, height = (params.ropes - 1) * params.spacing, shown_height(params)
         distance = 0.5 * height / math.tan(0.5 * self.FIELD_OF_VIEW) + 0.5 * BEARING[0] * depth
@@ -245,7 +245,7 @@ class View(SpringView[Params, RaceFrame, RaceReadings]):
         self.ropes.show(frame, self.label_row)
         p = frame.params
         self.root.show(frame.root if p.handles else None)
-        self.show_surroundings(p.floor, p.grid, frame.pull)
+        self.show_surroundings(p.floor, p.grid, frame.grab)
 
     def figures(self, snapshot: RaceSnapshot) -> str:
         """The ropes that are nearest to the reference and farthest from it."""
@@ -266,3 +266,6 @@ class View(SpringView[Params, RaceFrame, RaceReadings]):
         (self.dark.add if dark else self.dark.discard)(client.client_id)
         if self.ropes is not None:
             self.ropes.set_dark(client, dark)
+
+
+VIEW = RaceView

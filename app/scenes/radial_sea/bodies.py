@@ -166,7 +166,7 @@ class FloatingBodies:
         self.excitation = self.make_excitation()
         self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water at the bodies, the newest first
         self.heave_meter, self.lift = self.make_meters()
-        self.holders: dict[int, int] = {}  # body -> the browser that drags it
+        self.grabbed_by: dict[int, int] = {}  # body -> the browser that has grabbed it
         self.targets: dict[int, tuple[float, float, float]] = {}  # body -> where it is pulled [m]
         self.draft = np.zeros(self.count)  # [m]
         self.stain = np.zeros(self.count)  # [m] of the body above its lowest point that oil has wetted
@@ -233,25 +233,25 @@ class FloatingBodies:
         bodies = [Body(hull, density) for hull, density in zip(hulls, self.densities, strict=True)]
         return WaveExcitation(bodies, self.widths, self.column.layers)
 
-    def hold(self, index: int, target: tuple[float, float, float], limit: float, client: int = 0) -> None:
+    def grab(self, index: int, target: tuple[float, float, float], limit: float, client: int = 0) -> None:
         """Pull body `index` towards a target [m] for a browser, with at most `limit` weights of the body.
 
         A body that another browser holds stays with that one. A browser holds one body at a time.
         """
-        if not 0 <= index < self.count or self.holders.get(index, client) != client:
+        if not 0 <= index < self.count or self.grabbed_by.get(index, client) != client:
             return
-        if self.holders.get(index) != client:
+        if self.grabbed_by.get(index) != client:
             self.release(client)
-        self.holders[index], self.targets[index] = client, target
+        self.grabbed_by[index], self.targets[index] = client, target
         pull(self.fleet, index, (0.0, 0.0, 0.0), target, limit * GRAVITY * float(self.fleet.mass[index]))
 
     def release(self, client: int = 0) -> None:
         """Release the body that a browser holds; it keeps its velocity."""
-        for index in [index for index, holder in self.holders.items() if holder == client]:
+        for index in [index for index, grabber in self.grabbed_by.items() if grabber == client]:
             self.fleet.pull_limit[index] = 0.0
             self.heave_meter.restart(index)
             self.lift.restart(index)
-            del self.holders[index], self.targets[index]
+            del self.grabbed_by[index], self.targets[index]
 
     def moor(self, h: float, *, moored: bool = True) -> None:
         """Let the lines pull as in the middle of a step of h [s]: by a body's place before it they would drive it."""

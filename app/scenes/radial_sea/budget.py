@@ -2,7 +2,7 @@
 
 from app.formats.formatting import fixed, metres, number, percent
 from app.render.html import Html, faint, fill, join, table
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from sim.ocean.weathering import OilRecord, WeatheredOil, Weathering, can_weather, oil_at, oil_records
 from sim.ocean.weathering.components import CELSIUS, api_gravity, boiled_off
 from sim.ocean.weathering.laws import fingas, stiver_mackay
@@ -12,7 +12,7 @@ FINGAS_TEMPERATURE = 180.0 + CELSIUS  # [K] up to which Fingas's law asks what h
 COMPARED_HOURS = 24.0  # [h] at which laws of evaporation are compared
 
 
-def budget_html(params: Params, weathering: Weathering | None) -> Html:
+def budget_html(params: RadialSeaParams, weathering: Weathering | None) -> Html:
     """The whole folder; a sentence on why where a layer's spill cannot be followed, and nothing without a layer."""
     if weathering is None:
         if params.spill != "layer":
@@ -38,7 +38,7 @@ def row_of(state: WeatheredOil, label: str) -> tuple[str, ...]:
     return (label, *(fixed(100.0 * share, 1) for share in shares))
 
 
-def now_html(params: Params, now: WeatheredOil) -> Html:
+def now_html(params: RadialSeaParams, now: WeatheredOil) -> Html:
     """The slick at the time that is shown."""
     fresh = oil_at(params.oil, params.temperature)
     return fill(
@@ -54,7 +54,7 @@ def now_html(params: Params, now: WeatheredOil) -> Html:
     )
 
 
-def other_laws(params: Params, weathering: Weathering) -> Html:
+def other_laws(params: RadialSeaParams, weathering: Weathering) -> Html:
     """Evaporation in a day by the laws of Fingas and of Stiver and Mackay."""
     is_crude = oil_records()[params.oil].is_crude
     distilled = boiled_off(params.oil, FINGAS_TEMPERATURE)
@@ -84,7 +84,7 @@ def origin_text(record: OilRecord) -> str:
     return f"Shares of the mass spilled, by the laws of NOAA's PyGNOME. {known} {emulsion}"
 
 
-def budget_marks(params: Params, weathering: Weathering | None) -> dict[str, str]:
+def budget_marks(params: RadialSeaParams, weathering: Weathering | None) -> dict[str, str]:
     """Parameter -> the line under its control."""
     if params.spill != "layer":
         return {}

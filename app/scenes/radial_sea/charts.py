@@ -4,17 +4,17 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.messages import Line
+from app.messages import ChartLine
 from app.scenes.charts import PALETTE, Chart
 from sim.ocean.weathering import Spill, weather
 from sim.ocean.weathering.spill import MAX_HOURS
 
 BUDGET_LINES = (  # the first three are stacked: each is drawn over the one before it
-    Line("evaporated", PALETTE[5], 1.0, fill="#a9d8f5"),
-    Line("drops in the water", PALETTE[2], 1.0, fill="#7fcfb5"),
-    Line("on the sea", "#5c3a17", 1.0, fill="#8a5a2b"),
-    Line("water in the emulsion", PALETTE[3], 2.5, (6.0, 4.0)),
-    Line("now", "#c92a2a", 1.0, fill="#c92a2a"),
+    ChartLine("evaporated", PALETTE[5], 1.0, fill="#a9d8f5"),
+    ChartLine("drops in the water", PALETTE[2], 1.0, fill="#7fcfb5"),
+    ChartLine("on the sea", "#5c3a17", 1.0, fill="#8a5a2b"),
+    ChartLine("water in the emulsion", PALETTE[3], 2.5, (6.0, 4.0)),
+    ChartLine("now", "#c92a2a", 1.0, fill="#c92a2a"),
 )
 NOW_WIDTH = 0.6  # [h] of the bar at the time that is shown: a gap ends at the next point, and so needs two
 HOURS = np.unique(np.concatenate([np.linspace(0.0, 6.0, 25), np.linspace(6.0, MAX_HOURS, 115)]))  # [h] of its points

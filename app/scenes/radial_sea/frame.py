@@ -11,7 +11,7 @@ from app.messages import Vector
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
 from app.scenes.radial_sea.bodies import BodyReading
 from app.scenes.radial_sea.cutaway import Cutaway
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.well_blowout import OilBudget, Slick
 from sim.floating import Hull
 from sim.ocean.fluid_column import FluidColumn
@@ -31,7 +31,7 @@ class JetParcels(NamedTuple):
 class RadialFrame(NamedTuple):
     """Drawn state of the sea."""
 
-    params: Params
+    params: RadialSeaParams
     time: float  # [s]
     grid: RadialGrid
     grid_middle: tuple[float, float]  # x, y [m]
@@ -46,7 +46,7 @@ class RadialFrame(NamedTuple):
     stains: NDArray[np.float32]  # (bodies,) [m] above the lowest point of each to which oil has wetted it
     fairleads: NDArray[np.float32]  # (bodies, 3) [m] of the mooring lines; none where they are taken off
     anchors: NDArray[np.float64]  # (bodies, 4, 3) [m]
-    pulls: tuple[tuple[Vector, Vector], ...]  # from each held body to where it is pulled [m]
+    grabs: tuple[tuple[Vector, Vector], ...]  # from each grabbed body to where it is pulled [m]
     # (3, n) [m]; (4, n) heat, age over life, radius of the plume [m], age over the longest life
     fire: tuple[NDArray[np.float32], NDArray[np.float32]] | None
     jet: JetParcels | None  # in the air
@@ -55,23 +55,23 @@ class RadialFrame(NamedTuple):
     sent: SentSurface
 
 
-class PackedFrame(NamedTuple):
+class PackedRadialFrame(NamedTuple):
     """A frame as a recording keeps it."""
 
     frame: RadialFrame  # without a surface and its foam
     surface: NDArray[np.float32]
 
 
-def pack_frame(frame: RadialFrame) -> PackedFrame:
+def pack_frame(frame: RadialFrame) -> PackedRadialFrame:
     """A frame for the recording. Its Jacobian, which nothing draws, is left out."""
     surface, nothing = frame.surface, np.empty(0, np.float32)
     rest, spokes = resting_points(frame), frame.grid.spokes
     packed = pack_surface(surface.vertices, surface.slope, frame.foam, rest, spokes, frame.sent)
     empty = RadialSurface(nothing, nothing, nothing)
-    return PackedFrame(frame._replace(surface=empty, foam=nothing, sent=SentSurface()), packed)
+    return PackedRadialFrame(frame._replace(surface=empty, foam=nothing, sent=SentSurface()), packed)
 
 
-def unpack_frame(packed: PackedFrame) -> RadialFrame:
+def unpack_frame(packed: PackedRadialFrame) -> RadialFrame:
     """The frame, to draw it."""
     frame = packed.frame
     vertices, slope, foam = unpack_surface(packed.surface, resting_points(frame), (len(frame.grid),))

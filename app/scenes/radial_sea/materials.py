@@ -9,7 +9,7 @@ import numpy as np
 
 from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline, blend
 from app.scenes.radial_sea.frame import RadialFrame
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
 from sim.floating import Hull
 from sim.ocean.fluid_column import FluidColumn
@@ -67,7 +67,7 @@ DECKS = Waterline(
 )
 
 
-def ripple_slope(p: Params, column: FluidColumn, age: float) -> float:
+def ripple_slope(p: RadialSeaParams, column: FluidColumn, age: float) -> float:
     """Root mean square slope of the material's ripples: Cox and Munk's (1954), decayed for `age` [s] in the fluid."""
     clean = math.sqrt(0.003 + 0.00512 * p.wind_speed) if p.waves else CALM_SLOPE
     remaining = math.exp(-ripple_decay(column) * age) if age > 0.0 else 1.0
@@ -163,7 +163,7 @@ def spill_look(frame: RadialFrame) -> dict[str, Any]:
     }
 
 
-def slick_look(p: Params, column: FluidColumn, slick: Slick) -> dict[str, Any]:
+def slick_look(p: RadialSeaParams, column: FluidColumn, slick: Slick) -> dict[str, Any]:
     """Changes of a material under a slick of this oil."""
     # Rounded, as the decay of ripples is found again for each thickness.
     thickness = THICKNESS_RATIO ** round(math.log(slick.thickness) / math.log(THICKNESS_RATIO))

@@ -38,7 +38,7 @@ in_spill = functools.partial(parameter, group="Spill over hours")
 
 @dataclasses.dataclass(frozen=True)
 @with_parameters(SPECTRUM_PARAMETERS, group="Waves")
-class Params:
+class RadialSeaParams:
     """The parameters, with those of all spectra; the defaults are clean water in a moderate breeze."""
 
     wind_speed: float = in_main(7.0, 0.5, 25.0, "m/s", "Wind speed 10 m above the sea")
@@ -215,7 +215,7 @@ ABOUT = {  # preset -> what it shows and what to try
 }
 
 
-def hidden(params: Params) -> set[str]:
+def hidden(params: RadialSeaParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = unused_waves(params)
     if params.spill != "layer":
@@ -255,22 +255,22 @@ def hidden(params: Params) -> set[str]:
     return names
 
 
-def reading_of(params: Params) -> MeshReading:
+def reading_of(params: RadialSeaParams) -> MeshReading:
     """The way in which the mesh file of the hull is read."""
     return MeshReading(params.hull_unit, params.hull_weld, params.hull_mirror, params.hull_cap)
 
 
-def own_densities_of(params: Params) -> tuple[float, ...]:
+def own_densities_of(params: RadialSeaParams) -> tuple[float, ...]:
     """Densities [kg/m3] of the first bodies, where they have their own."""
     return tuple(getattr(params, name) for name in OWN_DENSITIES) if params.own_densities else ()
 
 
-def densities_of(params: Params) -> tuple[float, ...]:
+def densities_of(params: RadialSeaParams) -> tuple[float, ...]:
     """Densities of the parameters [kg/m3]; equal ones make equal bodies."""
     return (params.density, *own_densities_of(params))
 
 
-def spill_of(params: Params) -> Spill | None:
+def spill_of(params: RadialSeaParams) -> Spill | None:
     """The spill that floats on the sea.
 
     None without a layer of oil, or where the oil's record does not tell how it evaporates.
@@ -283,13 +283,13 @@ def spill_of(params: Params) -> Spill | None:
     )  # fmt: skip
 
 
-def weathered_oil(params: Params) -> WeatheredOil | None:
+def weathered_oil(params: RadialSeaParams) -> WeatheredOil | None:
     """The oil of the spill as it is by then; None where there is no spill to follow."""
     spill = spill_of(params)
     return None if spill is None else weather(spill).at(params.spill_hours)
 
 
-def oil_of(params: Params) -> Fluid:
+def oil_of(params: RadialSeaParams) -> Fluid:
     """The oil in force: of a layer as warm and as old as set, else at 15 degrees and fresh."""
     if params.spill != "layer":
         return fluids()[params.oil]
@@ -297,7 +297,7 @@ def oil_of(params: Params) -> Fluid:
     return oil_at(params.oil, params.temperature) if weathered is None else weathered.fluid(params.oil)
 
 
-def thickness_of(params: Params) -> float:
+def thickness_of(params: RadialSeaParams) -> float:
     """Thickness [m] of the layer of oil: as set, or as thin as it has spread."""
     if params.spill != "layer":
         return 0.0
@@ -307,7 +307,7 @@ def thickness_of(params: Params) -> float:
     return weathered.thickness if weathered.thickness >= MIN_FILM else 0.0
 
 
-def column_of(params: Params) -> FluidColumn:
+def column_of(params: RadialSeaParams) -> FluidColumn:
     """The fluids that the parameters describe."""
     return FluidColumn(
         oil=oil_of(params),
@@ -319,12 +319,12 @@ def column_of(params: Params) -> FluidColumn:
     )
 
 
-def spectrum_of(params: Params) -> Spectrum:
+def spectrum_of(params: RadialSeaParams) -> Spectrum:
     """The spectrum of the waves; one that makes none without wind where there are to be none."""
     return chosen_spectrum(params) if params.waves else SPECTRA[LEVEL_SPECTRUM]
 
 
-def conditions_of(params: Params) -> Conditions:
+def conditions_of(params: RadialSeaParams) -> Conditions:
     """The conditions under which the spectrum is evaluated."""
     spectrum = spectrum_of(params)
     values = spectrum_values(params) | {"wind_direction": math.radians(params.wind_direction)}
@@ -333,6 +333,6 @@ def conditions_of(params: Params) -> Conditions:
     return spectrum.conditions_from(values | {"wind_speed": 0.0, "second_height": 0.0})
 
 
-def exposure_of(params: Params) -> float:
+def exposure_of(params: RadialSeaParams) -> float:
     """For how long the waves have run under oil at the start [s]."""
     return params.exposure if params.spill != "none" else 0.0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, PlotRow, Release, SceneCommand, StudentAnswer
+from app.messages import GrabTo, Place, PlotRow, Release, SceneCommand, StudentAnswer
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
 from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -21,7 +21,7 @@ from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import (
     ABOUT,
     PRESETS,
-    Params,
+    RadialSeaParams,
     column_of,
     densities_of,
     exposure_of,
@@ -84,7 +84,7 @@ def warm_up() -> Pieces:
     return {MOTION: compile_motion, **scenes}
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: RadialSeaParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     fire = (FIRE,) if params.fire or params.jet else ()
     tile = (TILE,) if params.surface == "fft" or params.compare else ()
@@ -99,9 +99,9 @@ def compile_motion() -> None:
 
 def compile_with(changes: dict[str, Value]) -> None:
     """Call the kernels of a scene with these parameters changed from their defaults."""
-    scene = RadialSeaScene(check_record(Params, changes))
+    scene = RadialSeaScene(check_record(RadialSeaParams, changes))
     if scene.params.bodies:
-        scene.handle(Grab(0, (0.0, 0.0, 0.0)))
+        scene.handle(GrabTo(0, (0.0, 0.0, 0.0)))
     for _ in range(8):
         scene.advance(1)
     if scene.params.jet:
@@ -117,7 +117,7 @@ class RadialSeaScene:
     faster = "fewer bodies, fewer waves or a larger step"  # these take the time
     note = ""  # it always runs what the parameters ask for
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+    def __init__(self, params: RadialSeaParams, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any.
 
         Raises ValueError where the parameters name a hull file that is not a closed mesh.
@@ -171,7 +171,7 @@ class RadialSeaScene:
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
-        for client in set(self.bodies.holders.values()):
+        for client in set(self.bodies.grabbed_by.values()):
             self.bodies.release(client)
         self.tile, self.drawing.drawn = None, ()
         self.plot_rows.resume()
@@ -213,7 +213,7 @@ class RadialSeaScene:
         """The surface in force."""
         return self.sum if self.params.surface == "sum" else self.tile_now()
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: RadialSeaParams) -> None:
         """Take parameters while the sea runs: only the affected parts are replaced."""
         old, self.params = self.params, params
         column, choice = self.fluids(params), wave_choice_of(params)
@@ -244,7 +244,7 @@ class RadialSeaScene:
         self.well_blowout.change(params)
         self.drawing.forget_costs()
 
-    def fluids(self, params: Params) -> FluidColumn:
+    def fluids(self, params: RadialSeaParams) -> FluidColumn:
         """The fluids that the parameters describe, by a student's functions where the sea runs by them."""
         return column_of(params) if self.student is None else self.student.column(params)
 
@@ -274,8 +274,8 @@ class RadialSeaScene:
         match command:
             case StudentAnswer() if self.student is not None:
                 self.take_student(self.student)
-            case Grab(index, target, client):
-                self.bodies.hold(index, target, self.params.pull, client)
+            case GrabTo(index, target, client):
+                self.bodies.grab(index, target, self.params.pull, client)
             case Release(client):
                 self.bodies.release(client)
             case Place("camera", (x, y, _)):
@@ -344,7 +344,7 @@ class RadialSeaScene:
         self.set_grid()
         drawing = self.drawing
         drawing.update(self)
-        held = [(bodies.fleet.position[i].tolist(), target) for i, target in bodies.targets.items()]
+        grabbed = [(bodies.fleet.position[i].tolist(), target) for i, target in bodies.targets.items()]
         fire, jet = self.well_blowout.fire, self.well_blowout.jet
         return RadialFrame(
             params=p,
@@ -362,7 +362,7 @@ class RadialSeaScene:
             stains=bodies.stain.astype(np.float32),
             fairleads=bodies.fairleads(moored=p.mooring),
             anchors=bodies.lines.anchors,
-            pulls=tuple(((x, y, z), target) for (x, y, z), target in held),
+            grabs=tuple(((x, y, z), target) for (x, y, z), target in grabbed),
             fire=None if fire is None else parcels_of(fire),
             jet=None if jet is None else flying_parcels(jet),
             column=self.column if self.student is None else self.student.drawn(self.column),
@@ -431,7 +431,7 @@ SCENE = SceneKind(
     name="radial_sea",
     title="Radial sea",
     help="<b>Drag a buoy</b> under the water and let go.",
-    params=Params,
+    params=RadialSeaParams,
     presets=PRESETS,
     about=ABOUT,
     make=RadialSeaScene,

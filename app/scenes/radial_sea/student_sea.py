@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
-from app.lab.tabulate import Range
+from app.lab.tabulate import Interval
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of
-from app.scenes.radial_sea.parameters import Params, column_of
+from app.scenes.radial_sea.parameters import RadialSeaParams, column_of
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import normal_reflectance
 
@@ -45,7 +45,7 @@ class StudentRadialSea(TableUser):
         super().__init__(live)
         self.numbers = StudentNumbers(None, None, None, None)  # that they come to
 
-    def want(self, p: Params, bodies: FloatingBodies) -> None:
+    def want(self, p: RadialSeaParams, bodies: FloatingBodies) -> None:
         """Ask for the tables that the parameters need; tables that are no longer needed are not taken."""
         column, calls, idle = column_of(p), {}, {}
         oil, water = column.oil, column.water
@@ -58,7 +58,7 @@ class StudentRadialSea(TableUser):
         else:
             nu = column.surface.kinematic_viscosity
             k, one = WAVENUMBERS, np.ones(WAVENUMBERS.size)
-            calls[DECAY] = Call((one, k, nu * one, asked_time(nu)), Range(LEAST, 1.0, "m"))
+            calls[DECAY] = Call((one, k, nu * one, asked_time(nu)), Interval(LEAST, 1.0, "m"))
         if column.kind == "mixed":
             idle[REFLECTANCE] = idle[DRAFT] = "let the oil float as a layer"
         elif column.kind == "layer":
@@ -79,7 +79,7 @@ class StudentRadialSea(TableUser):
             self.numbers = numbers_of(self.taken)
         return set(changed)
 
-    def column(self, p: Params) -> FluidColumn:
+    def column(self, p: RadialSeaParams) -> FluidColumn:
         """The fluids of the sea."""
         column = column_of(p)
         viscosity = self.numbers.viscosity if column.kind == "mixed" else None
@@ -93,7 +93,7 @@ class StudentRadialSea(TableUser):
             return column
         return dataclasses.replace(column, oil=column.oil._replace(refractive_index=index))
 
-    def report(self, p: Params, bodies: FloatingBodies) -> None:
+    def report(self, p: RadialSeaParams, bodies: FloatingBodies) -> None:
         """Report to the panel the functions that run, and their differences from the program's."""
         viscosity, decay, index, draft = self.numbers
         program, wave = column_of(p), np.array([SHOWN_WAVE])
@@ -143,7 +143,7 @@ def interpolated_decay(over_k2: np.ndarray, k: np.ndarray) -> np.ndarray:
 
 def call_of(*arguments: float, allowed: tuple[float, float, str]) -> Call:
     """One call of a function."""
-    return Call(tuple(np.array([argument]) for argument in arguments), Range(*allowed))
+    return Call(tuple(np.array([argument]) for argument in arguments), Interval(*allowed))
 
 
 def asked_time(viscosity: float) -> np.ndarray:

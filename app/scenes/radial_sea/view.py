@@ -13,23 +13,22 @@ from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector_of
 from app.render.cameras import place_cameras
-from app.render.dragging import PullLine, drag
+from app.render.dragging import GrabLine, drag
 from app.render.follow_camera import FollowCamera
 from app.render.html import bold, fill
 from app.render.material import Material
 from app.render.meshes import ball, rod, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
-from app.render.water import Water
-from app.scenes.contract import Pieces
-from app.scenes.contract import View as SceneView
+from app.render.water import DrawnWater
+from app.scenes.contract import Pieces, SceneView
 from app.scenes.radial_sea.bodies import BODY_KINDS
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.fire_view import Flames
 from app.scenes.radial_sea.frame import RadialFrame, RadialReadings
 from app.scenes.radial_sea.materials import material_of, waterlines_of
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.stain_view import Stains
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
@@ -67,7 +66,7 @@ def model(name: str) -> bytes:
     return importlib.resources.files("assets").joinpath(f"{name}.glb").read_bytes()
 
 
-class View(SceneView[Params, RadialFrame, RadialReadings]):
+class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
     """Draws `RadialFrame`s."""
 
     CAMERA = ((-6.5, -7.5, 3.0), (3.9, 3.2, 1.0))  # position, target [m]
@@ -76,7 +75,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
-        self.water: Water | None = None
+        self.water: DrawnWater | None = None
         self.grid: RadialGrid | None = None
         self.sky = ""
         self.light = self.material = Material()
@@ -97,10 +96,10 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
         )
         self.flames: Flames | None = None
         self.walls: Walls | None = None
-        self.pull_lines: list[PullLine] = []
+        self.grab_lines: list[GrabLine] = []
         self.stains = Stains(server)
 
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+    def first_view(self, params: RadialSeaParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: beside the followed object."""
         if self.followed_body is None or params.follow not in FOLLOWED_BODY:
             return VIEWS.get(params.follow, self.CAMERA)
@@ -157,7 +156,7 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
             if self.water is not None:
                 self.water.remove()
             self.grid = frame.grid
-            self.water = Water(self.server, "/sea", frame.grid, material)
+            self.water = DrawnWater(self.server, "/sea", frame.grid, material)
         elif material != self.material:
             self.water.set_material(material)
         self.material = material
@@ -240,11 +239,11 @@ class View(SceneView[Params, RadialFrame, RadialReadings]):
         drag(self.post, event, event.instance_index)
 
     def show_pulls(self, frame: RadialFrame) -> None:
-        """Draw a line from each held body to where it is pulled."""
-        while len(self.pull_lines) < len(frame.pulls):
-            self.pull_lines.append(PullLine(self.server, f"/pull{len(self.pull_lines)}"))
-        for i, line in enumerate(self.pull_lines):
-            line.show(frame.pulls[i] if i < len(frame.pulls) else None)
+        """Draw a line from each grabbed body to where it is pulled."""
+        while len(self.grab_lines) < len(frame.grabs):
+            self.grab_lines.append(GrabLine(self.server, f"/pull{len(self.grab_lines)}"))
+        for i, line in enumerate(self.grab_lines):
+            line.show(frame.grabs[i] if i < len(frame.grabs) else None)
 
     def show_moorings(self, frame: RadialFrame) -> None:
         """Draw the mooring lines as rods: a stroke that passes the camera would be drawn where it is not.
@@ -329,7 +328,7 @@ def keel_of(frame: RadialFrame) -> float | None:
     return float(frame.positions[0, 2]) + float((frame.hulls[frame.kinds[0]].vertices @ up).min())
 
 
-def offset_of_view(params: Params) -> np.ndarray:
+def offset_of_view(params: RadialSeaParams) -> np.ndarray:
     """(2, 3) [m] from the followed body to a camera that has not been moved, and to its target."""
     return np.array(CUTAWAY_VIEW if params.follow == "cutaway" else BODY_VIEW) * params.size / VIEW_SIZE
 
@@ -340,3 +339,6 @@ def handle_scale(frame: RadialFrame, kind: str) -> float:
     if hull.shape.lengths:
         return frame.params.size
     return 0.5 * float(np.ptp(hull.extents, axis=1).mean()) / HANDLE_RADIUS
+
+
+VIEW = RadialSeaView

@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from app.scenes.radial_sea.parameters import Params, conditions_of, spectrum_of
+from app.scenes.radial_sea.parameters import RadialSeaParams, conditions_of, spectrum_of
 from sim.ocean.gerstner import draw_waves
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.waves import Waves
@@ -16,7 +16,7 @@ class WaveChoice(NamedTuple):
     wave_count: int
 
 
-def wave_choice_of(params: Params) -> WaveChoice:
+def wave_choice_of(params: RadialSeaParams) -> WaveChoice:
     """Waves of these parameters."""
     return WaveChoice(spectrum_of(params), conditions_of(params), params.wave_count)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from sim.interruption import raise_if_stopped
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSea
@@ -79,14 +79,14 @@ class JetSettings(NamedTuple):
     parcels: int
 
 
-def fire_settings(params: Params) -> FireSettings | None:
+def fire_settings(params: RadialSeaParams) -> FireSettings | None:
     """Fire of these parameters; None if nothing burns."""
     if not (params.rig and params.fire):
         return None
     return FireSettings(params.fire_power * 1e6, params.particles, wind_of(params))
 
 
-def jet_settings(params: Params) -> JetSettings | None:
+def jet_settings(params: RadialSeaParams) -> JetSettings | None:
     """Jet of these parameters; None if it is shut."""
     if not (params.rig and params.jet):
         return None
@@ -96,7 +96,7 @@ def jet_settings(params: Params) -> JetSettings | None:
 class WellBlowout:
     """Fire, jet and slick; used on the simulation thread."""
 
-    def __init__(self, params: Params) -> None:
+    def __init__(self, params: RadialSeaParams) -> None:
         self.fire: Fire | None = None
         self.jet: Jet | None = None
         self.fire_settings: FireSettings | None = None
@@ -115,7 +115,7 @@ class WellBlowout:
                 raise_if_stopped()
                 self.fire.step(BURN_IN_STEP)
 
-    def change(self, params: Params) -> None:
+    def change(self, params: RadialSeaParams) -> None:
         """Light or put out the fire, open or shut the jet, as the parameters say; oil on the sea stays."""
         self.wind = wind_of(params)
         fire, jet = fire_settings(params), jet_settings(params)
@@ -204,7 +204,7 @@ def spread_radius(volume: float, age: float, column: FluidColumn) -> float:
     )
 
 
-def wind_of(params: Params) -> tuple[float, float]:
+def wind_of(params: RadialSeaParams) -> tuple[float, float]:
     """The wind at the rig (x, y) [m/s]."""
     angle = math.radians(params.wind_direction)
     return params.wind_speed * math.cos(angle), params.wind_speed * math.sin(angle)

@@ -6,22 +6,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
-from app.scenes.rope.parameters import Params
-from app.scenes.springs.drag import PullFrame
+from app.scenes.rope.parameters import RopeParams
+from app.scenes.springs.grab import GrabFrame
 from sim.springs.stability import Gauge
 
 
 class RopeFrame(NamedTuple):
     """Drawn state of a rope: the student's if there is one, with the program's beside it."""
 
-    params: Params
+    params: RopeParams
     points: NDArray[np.float32]  # (n, 3) [m], C-contiguous
     reference: NDArray[np.float32] | None  # (n, 3) [m] the program's rope beside the student's
     tension: NDArray[np.float32]  # (n - 1,) [N]
     full_scale: float  # [N] tension at the end of the colour scale
     root: Vector  # [m] where the root is going to
     sphere: tuple[float, float, float, float] | None  # x, y, z, radius [m]
-    pull: PullFrame | None
+    grab: GrabFrame | None
 
 
 class NumericalCost(NamedTuple):

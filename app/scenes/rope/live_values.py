@@ -5,14 +5,14 @@ import numpy as np
 from app.messages import Snapshot
 from app.scenes.contract import Measure
 from app.scenes.rope.frame import RopeFrame, RopeReadings
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.live_values import stability_values
 from app.scenes.springs.rope_parameters import ROPE_RADIUS, link_and_point
 
 
 def live_values(snapshot: Snapshot) -> dict[str, Measure]:
     """The numbers of a snapshot."""
-    p: Params = snapshot.params
+    p: RopeParams = snapshot.params
     frame: RopeFrame = snapshot.frame
     readings: RopeReadings = snapshot.readings
     values = link_and_point(p)

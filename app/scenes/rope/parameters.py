@@ -4,11 +4,11 @@ import dataclasses
 from typing import Any
 
 from app.scenes.groups import in_look, in_main, in_plots, in_surroundings
-from app.scenes.springs.rope_parameters import RopeParams, hidden_of_rope
+from app.scenes.springs.rope_parameters import SharedRopeParams, hidden_of_rope
 
 
 @dataclasses.dataclass(frozen=True)
-class Params(RopeParams):
+class RopeParams(SharedRopeParams):
     """The rope's parameters."""
 
     sphere: bool = in_main(False, doc="A sphere; drag its arrows to move it")
@@ -57,7 +57,7 @@ ABOUT = {  # preset -> what it shows and what to try
 }
 
 
-def hidden(params: Params) -> set[str]:
+def hidden(params: RopeParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = hidden_of_rope(params, sphere=params.sphere)
     if not params.sphere:

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Grab, Place, Release, SceneCommand, StudentAnswer, Vector, vector_of
+from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Vector, vector_of
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.live_values import live_values
 from app.scenes.rope.measures import measures
-from app.scenes.rope.parameters import ABOUT, PRESETS, Params, hidden
+from app.scenes.rope.parameters import ABOUT, PRESETS, RopeParams, hidden
 from app.scenes.springs.divergence import holding_step, leapfrog_alternative
-from app.scenes.springs.drag import Drag
+from app.scenes.springs.grab import ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.rope_handles import RopeHandles
@@ -45,7 +45,7 @@ PLOTS = {
 }
 
 
-def build(params: Params, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
+def build(params: RopeParams, root: Vector = ROOT, sphere: Vector = SPHERE) -> Net:
     """The net that the parameters describe, with root and sphere centre there [m]."""
     return build_rope(params, root, (*sphere, params.sphere_radius) if params.sphere else None)
 
@@ -59,12 +59,12 @@ def warm_up(law: str = SPRING) -> Pieces:
 
 def compile_gauge(law: str) -> None:
     """All but the integrators."""
-    scene = RopeScene(Params(law=law))
+    scene = RopeScene(RopeParams(law=law))
     extremes(scene.state.x, scene.state.v)
     scene.frame()
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: RopeParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
     method = integrator_or_fallback(params.integrator, build(params), params.time_step)[0].name
     return pieces_of_law((method, GAUGE), params.law)
@@ -80,7 +80,7 @@ def state_of(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray(points.T[:, None])
 
 
-class RopeScene(NetScene[Params]):
+class RopeScene(NetScene[RopeParams]):
     """The rope on the simulation thread."""
 
     CHANGING = ("net", "state", "account", "handles", "corrections", "max_reach")
@@ -88,7 +88,7 @@ class RopeScene(NetScene[Params]):
     student: "StudentRope | None" = None
     stability: RopeReadings
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None) -> None:
+    def __init__(self, params: RopeParams, live: "LiveCode | None" = None) -> None:
         """live: runs a student's functions, where there are any."""
         if live is not None:
             from app.scenes.rope import student_rope  # only `springtide lab DIR` pays for it
@@ -98,9 +98,9 @@ class RopeScene(NetScene[Params]):
         super().__init__(params, len(SERIES))
 
     @property
-    def drag(self) -> Drag:  # type: ignore[override]
+    def grab(self) -> ParticleGrab:  # type: ignore[override]
         """The drag of a point."""
-        return self.handles.drag
+        return self.handles.grab
 
     @property
     def frame_interval(self) -> float:
@@ -145,7 +145,7 @@ class RopeScene(NetScene[Params]):
         self.max_reach = 4.0 + 3.0 * (self.params.length + 0.5 * sag * n * (n + 1)) + reach  # [m] from the root
         self.max_speed = np.inf  # [m/s] along an axis, of the fastest point
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: RopeParams) -> None:
         """Take new parameters. The motion goes on, interpolated where the number of points changes."""
         old, self.params = self.params, params
         self.take_net(build(params, self.handles.root.position, self.handles.sphere.position))
@@ -163,12 +163,12 @@ class RopeScene(NetScene[Params]):
                 self.handles.move_root(position)
             case Place("sphere", position):
                 self.handles.sphere.target = position
-            case Grab(0, target, client) if self.handles.drag.may_move(client):
+            case GrabTo(0, target, client) if self.handles.grab.may_move(client):
                 self.handles.move_root(target)
-            case Grab(index, target, client) if 0 < index < self.params.points:
-                self.handles.drag.move(client, index, vector_of(self.state.x[:, 0, index]), target)
+            case GrabTo(index, target, client) if 0 < index < self.params.points:
+                self.handles.grab.move(client, index, vector_of(self.state.x[:, 0, index]), target)
             case Release(client):
-                self.handles.drag.release(client)
+                self.handles.grab.release(client)
             case StudentAnswer() if self.student is not None:
                 self.student.collect(self.max_reach)
             case _:
@@ -251,7 +251,7 @@ class RopeScene(NetScene[Params]):
         weight = self.net.mass * abs(self.net.gravity[2]) * (params.points - 1)
         both = None if self.student is None else self.student.drawn(rows_of(self.state.x))
         x = self.state.x if both is None else state_of(both[0])
-        held = x[:, 0, handles.drag.hold.particle if handles.drag.hold else 0]
+        held = x[:, 0, handles.grab.grabbed.particle if handles.grab.grabbed else 0]
         frame = RopeFrame(
             params=params,
             points=np.ascontiguousarray(x[:, 0].T, dtype=np.float32),
@@ -260,7 +260,7 @@ class RopeScene(NetScene[Params]):
             full_scale=max(1.25 * weight, 1e-3),
             root=handles.home,
             sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
-            pull=handles.pull_frame(held, 0.0, self.net.mass, self.step, params.pull),
+            grab=handles.grab_frame(held, 0.0, self.net.mass, self.step, params.pull),
         )
         self.last_moments.add(self.state.t, frame, frame.points)
         return frame
@@ -274,7 +274,7 @@ SCENE = SceneKind(
     name="rope",
     title="Rope",
     help="<b>Drag the rope</b> to pull it, or the arrows to move its root.",
-    params=Params,
+    params=RopeParams,
     presets=PRESETS,
     about=ABOUT,
     opening="Shaken at the root",

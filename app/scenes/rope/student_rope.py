@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from app.lab.live_net import ROPE
 from app.lab.rope_march import Segment
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.laws import SPRING
 from app.scenes.springs.student_net import StudentNet, forces_of
 from sim.springs import Net
@@ -15,7 +15,7 @@ class StudentRope(StudentNet):
     """Used by the rope scene on the simulation thread."""
 
     def follow_rope(
-        self, net: Net, start: float, steps: int, params: Params, x: NDArray[np.float64], v: NDArray[np.float64]
+        self, net: Net, start: float, steps: int, params: RopeParams, x: NDArray[np.float64], v: NDArray[np.float64]
     ) -> None:
         """The program's rope has taken steps from time `start` [s], and is at x with velocities v, shape (n, 3)."""
         self.unlike = unlike(params)
@@ -24,7 +24,7 @@ class StudentRope(StudentNet):
         self.follow(segment, start + steps * params.time_step, params.integrator, x, v)
 
 
-def unlike(params: Params) -> tuple[str, ...]:
+def unlike(params: RopeParams) -> tuple[str, ...]:
     """The parameters that the functions of the tasks do not feel as the program's rope does, a line each."""
     lines: list[str] = []
     method = params.integrator

@@ -11,7 +11,7 @@ from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.colormap import SCALE, set_tube_colours
 from app.render.coloured_mesh import ColouredMesh
-from app.render.dragging import HELD_COLOUR
+from app.render.dragging import GRAB_COLOUR
 from app.render.gizmo import Gizmo
 from app.render.html import Html, bold, fill
 from app.render.injection import add_contact_shadow
@@ -19,7 +19,7 @@ from app.render.meshes import SIDES, ball, smooth_line, sweep, tube_faces
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.html import colour_scale, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, link_and_point
 from app.scenes.springs.view import ROOT_ARROW_LENGTH, SecondNet, Sphere, SpringView, compile_tube
@@ -43,10 +43,10 @@ LOWER = 0.03  # heights of the picture from the middle of the rope down to the t
 POSITION_TOLERANCE = 2e-4  # [m] that a point may be from where it is drawn: far below a pixel
 COLOUR_TOLERANCE = 2e-3  # of the colour scale that a link may be from its drawn colour: less than 1/256 of it
 
-RopeSnapshot: TypeAlias = Snapshot[Params, RopeFrame, RopeReadings]
+RopeSnapshot: TypeAlias = Snapshot[RopeParams, RopeFrame, RopeReadings]
 
 
-class View(SpringView[Params, RopeFrame, RopeReadings]):
+class RopeView(SpringView[RopeParams, RopeFrame, RopeReadings]):
     """Draws `RopeFrame`s."""
 
     FIELD_OF_VIEW = 1.3  # [rad]
@@ -64,7 +64,7 @@ class View(SpringView[Params, RopeFrame, RopeReadings]):
             server, "/reference", "yours", color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY, receive_shadow=False
         )
 
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+    def first_view(self, params: RopeParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: in front of the rope as it hangs."""
         link, n = link_and_point(params), params.points - 1
         stretch = 0.5 * n * (n + 1) * link["mass"] * params.gravity / link["stiffness"]
@@ -106,7 +106,7 @@ class View(SpringView[Params, RopeFrame, RopeReadings]):
         )
         self.beads.on_drag("left")(self.on_bead)
         self.tube.mesh.on_drag("left")(self.on_surface)
-        self.shown_pull = -1  # point that is drawn as held
+        self.shown_grab = -1  # point that is drawn as grabbed
         self.shown_hook: Any = None
         self.count = n
 
@@ -147,13 +147,13 @@ class View(SpringView[Params, RopeFrame, RopeReadings]):
         self.beads.visible = p.show_points
         if p.show_points:
             set_arrays(self.beads, batched_positions=self.points)
-        held = -1 if frame.pull is None else frame.pull.particle
-        if held != self.shown_pull:
+        grabbed = -1 if frame.grab is None else frame.grab.particle
+        if grabbed != self.shown_grab:
             colours = np.tile(np.array(BEAD_COLOUR, np.uint8), (self.count, 1))
-            if held >= 0:
-                colours[held] = HELD_COLOUR
+            if grabbed >= 0:
+                colours[grabbed] = GRAB_COLOUR
             self.beads.batched_colors = colours
-            self.shown_pull = held
+            self.shown_grab = grabbed
         root = tuple(self.points[0].tolist())
         # A slow page moves a node later than the vertices of the rope: while the root moves, the hook is not shown.
         self.hook.visible = self.shown_hook in (None, root)
@@ -162,7 +162,7 @@ class View(SpringView[Params, RopeFrame, RopeReadings]):
             self.hook.position = root
         self.root.show(frame.root if p.handles else None)
         self.sphere.show(frame.sphere, frame.sphere[:3] if frame.sphere and p.handles else None)
-        self.show_surroundings(p.floor, p.grid, frame.pull)
+        self.show_surroundings(p.floor, p.grid, frame.grab)
         if frame.reference is None:
             self.reference.set_visible(False)
         else:
@@ -217,3 +217,6 @@ def cost_text(cost: NumericalCost | None) -> Html:
         bold(f"{number(abs(energy))} J"),
         damping,
     )
+
+
+VIEW = RopeView

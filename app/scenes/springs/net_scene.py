@@ -11,7 +11,7 @@ from app.scenes.contract import MethodParams
 from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
-from app.scenes.springs.drag import Drag
+from app.scenes.springs.grab import ParticleGrab
 from app.scenes.springs.recent_gauges import RecentGauges
 from sim.springs import Net
 from sim.springs.analysis.energy_account import EnergyAccount
@@ -31,7 +31,7 @@ class NetScene(abc.ABC, Generic[P]):
     CHANGING: ClassVar[tuple[str, ...]]  # attributes that change as the net moves
     ASSESSMENT_INTERVAL: ClassVar[float]  # [s] of simulated time between two assessments of the stability
 
-    drag: Drag
+    grab: ParticleGrab
     stability: Any  # readings: the worst of the last assessments
     integrator: Integrator
     fallback_note: str
@@ -123,7 +123,7 @@ class NetScene(abc.ABC, Generic[P]):
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
-        self.drag.clear()
+        self.grab.clear()
         self.plot_rows.resume()
         self.last_moments.clear()
         self.recent.clear()
@@ -134,7 +134,7 @@ class NetScene(abc.ABC, Generic[P]):
         stored, before, self.net = self.account.stored(self.net, self.state), self.net, net
         if net.shape != before.shape:
             self.state.x, self.state.v = (resample(values, *net.shape) for values in (self.state.x, self.state.v))
-            self.drag.clear()
+            self.grab.clear()
         self.hold_pins(before)
         self.account.book_change(stored, net, self.state)
 

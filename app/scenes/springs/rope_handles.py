@@ -7,18 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
-from app.scenes.springs.drag import Drag, PullFrame
-from app.scenes.springs.rope_parameters import ROOT, SPHERE, RopeParams
+from app.scenes.springs.grab import GrabFrame, ParticleGrab
+from app.scenes.springs.rope_parameters import ROOT, SPHERE, SharedRopeParams
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.springs import Grab, Net
 
-MAX_PULL_RATE = 30.0  # [1/s] natural frequency of the pull on a free point
-MAX_PULL_RATE_STEP = 0.5  # the same times the time step, so that the pull is stable at any step
+MAX_GRAB_RATE = 30.0  # [1/s] natural frequency of the grab of a free point
+MAX_GRAB_RATE_STEP = 0.5  # the same times the time step, so that it is stable at any step
 
 
-def pull_rate(step: float) -> float:
-    """Natural frequency [1/s] of the pull on a free point, at time step `step` [s]; it is critically damped."""
-    return min(MAX_PULL_RATE, MAX_PULL_RATE_STEP / step)
+def grab_rate(step: float) -> float:
+    """Natural frequency [1/s] of the grab of a free point, at time step `step` [s]; it is critically damped."""
+    return min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step)
 
 
 class RopeHandles:
@@ -28,7 +28,7 @@ class RopeHandles:
         self.home = ROOT  # [m] where the root was put; it swings about it where the parameters ask for that
         self.root = CriticallyDampedTracker(ROOT)
         self.sphere = CriticallyDampedTracker(SPHERE)
-        self.drag = Drag()
+        self.grab = ParticleGrab()
 
     def move_root(self, position: Vector) -> None:
         """Move the root, or the centre of its swing."""
@@ -37,17 +37,17 @@ class RopeHandles:
     @property
     def at_rest(self) -> bool:
         """True if nothing is moved."""
-        return self.root.at_rest and self.sphere.at_rest and self.drag.hold is None
+        return self.root.at_rest and self.sphere.at_rest and self.grab.grabbed is None
 
     def restart(self) -> None:
-        """Root and sphere at rest where a new scene has them; nothing held."""
+        """Root and sphere at rest where a new scene has them; nothing grabbed."""
         self.home = ROOT
         self.root.place_at(ROOT)
         self.sphere.place_at(SPHERE)
-        self.drag.clear()
+        self.grab.clear()
 
-    def net_during(self, net: Net, t: float, duration: float, step: float, params: RopeParams) -> Net:
-        """`net` with the motions of root, sphere and pull over the next `duration` [s] from time t [s].
+    def net_during(self, net: Net, t: float, duration: float, step: float, params: SharedRopeParams) -> Net:
+        """`net` with the motions of root, sphere and grab over the next `duration` [s] from time t [s].
 
         step: [s]. The same object where nothing moves, as in most frames.
         """
@@ -60,33 +60,33 @@ class RopeHandles:
         before = self.sphere.position
         self.sphere.advance(t, duration)
         velocity = tuple((b - a) / duration for a, b in zip(before, self.sphere.position, strict=True))
-        pull = None
-        if self.drag.hold is not None:
-            _, index, hand = self.drag.hold
+        grab = None
+        if self.grab.grabbed is not None:
+            _, index, hand = self.grab.grabbed
             hand.advance(t, duration)
-            rate = pull_rate(step)
+            rate = grab_rate(step)
             point = index % net.shape[1]  # the points of several ropes are numbered through
-            pull = Grab(0, point, hand.position, net.mass * rate**2, 2.0 * net.mass * rate, params.pull)
+            grab = Grab(0, point, hand.position, net.mass * rate**2, 2.0 * net.mass * rate, params.pull)
         return dataclasses.replace(
             net,
             pin_paths=() if path is None else (((0, 0), path),),
             sphere=(*before, net.sphere[3]) if net.sphere else None,
             sphere_velocity=velocity,
             epoch=t,
-            grab=pull,
+            grab=grab,
         )
 
-    def pull_frame(
+    def grab_frame(
         self, position: NDArray[np.float64], offset: float, mass: float, step: float, max_force: float
-    ) -> PullFrame | None:
-        """The pull as drawn, None where nothing is held.
+    ) -> GrabFrame | None:
+        """The grab as drawn, None where nothing is grabbed.
 
-        position: (3,) of the held point [m]; offset: of its rope as drawn, along y [m]; mass: of the point [kg].
+        position: (3,) of the grabbed point [m]; offset: of its rope as drawn, along y [m]; mass: of the point [kg].
         """
-        if self.drag.hold is None:
+        if self.grab.grabbed is None:
             return None
-        _, index, hand = self.drag.hold
+        _, index, hand = self.grab.grabbed
         x, y, z = hand.position
         distance = float(np.linalg.norm(np.asarray(hand.position) - position))
-        load = min(1.0, distance * mass * pull_rate(step) ** 2 / max_force)
-        return PullFrame(index, (x, y + offset, z), load)
+        load = min(1.0, distance * mass * grab_rate(step) ** 2 / max_force)
+        return GrabFrame(index, (x, y + offset, z), load)

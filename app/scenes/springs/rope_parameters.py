@@ -15,7 +15,7 @@ ROPE_RADIUS = 0.035  # [m] of the drawn rope, and of its points for contact
 
 
 @dataclasses.dataclass(frozen=True)
-class RopeParams:
+class SharedRopeParams:
     """Clock, material and surroundings of a rope; the defaults are the lab's code defaults with a better integrator."""
 
     integrator: str = in_main("leapfrog", choices=METHODS_AND_AUTO, doc="Method of integration", title="Method")
@@ -72,7 +72,7 @@ LAB_ONLY = {"stiffness", "damping", "mass", "drag"}
 MATERIAL_ONLY = {"axial_stiffness", "axial_viscosity", "mass_per_length", "drag_per_length"}
 
 
-def hidden_of_rope(params: RopeParams, *, sphere: bool) -> set[str]:
+def hidden_of_rope(params: SharedRopeParams, *, sphere: bool) -> set[str]:
     """The shared parameters that mean nothing with the others as they are. sphere: whether there is one."""
     names = set(MATERIAL_ONLY if params.units == "lab" else LAB_ONLY)
     if not (params.floor or sphere):
@@ -84,12 +84,12 @@ def hidden_of_rope(params: RopeParams, *, sphere: bool) -> set[str]:
     return names
 
 
-def stiffness_parameter(params: RopeParams) -> str:
+def stiffness_parameter(params: SharedRopeParams) -> str:
     """Name of the stiffness parameter in use, for the map of step and stiffness."""
     return "stiffness" if params.units == "lab" else "axial_stiffness"
 
 
-def link_and_point(params: RopeParams) -> dict[str, float]:
+def link_and_point(params: SharedRopeParams) -> dict[str, float]:
     """Stiffness [N/m] and damping [N s/m] of a link, mass [kg] and air drag [N s/m] of a point."""
     if params.units == "lab":
         return {name: getattr(params, name) for name in LAB_ONLY}
@@ -97,7 +97,9 @@ def link_and_point(params: RopeParams) -> dict[str, float]:
     return lab_units(p.points, p.length, p.axial_stiffness, p.mass_per_length, p.axial_viscosity, p.drag_per_length)
 
 
-def build_rope(params: RopeParams, root: Vector = ROOT, sphere: tuple[float, float, float, float] | None = None) -> Net:
+def build_rope(
+    params: SharedRopeParams, root: Vector = ROOT, sphere: tuple[float, float, float, float] | None = None
+) -> Net:
     """The net that the parameters describe, with its root at `root` [m]. sphere: (x, y, z, radius) [m], or None."""
     lab = link_and_point(params)
     contact = Contact(params.contact_stiffness, params.contact_damping, params.friction, params.contact_law)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.lab.live_net import LiveNet, Marched, StudentReport
-from app.lab.rope_march import Forces, Segment, Sheet
+from app.lab.rope_march import ClothData, Forces, Segment
 from sim.springs import Net
 
 MAX_BEHIND = 1.0  # [s] of simulated time that the student's rope may be late; then it starts again from the program's
@@ -26,7 +26,7 @@ MAX_PART = 16  # steps of a job at least: a slow function must not seem endless 
 class StudentNet:
     """Used by a scene on the simulation thread."""
 
-    sheet: Sheet | None = None  # what a cloth is made of; None for a rope
+    sheet: ClothData | None = None  # what a cloth is made of; None for a rope
     is_comparable = True  # whether it has the same points as the program's
     unlike: tuple[str, ...] = ()  # of `StudentReport`, with the parameters as they are
 

@@ -9,14 +9,13 @@ import viser
 from app.messages import F, P, R, Vector
 from app.render.cameras import NEAR
 from app.render.colormap import SCALE, set_tube_colours
-from app.render.dragging import PullLine, SurfaceDrag, drag
+from app.render.dragging import GrabLine, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
 from app.render.meshes import SIDES, ball, smooth_line, sweep
 from app.render.surroundings import Surroundings, set_dark
 from app.render.viser_inside import set_arrays
-from app.scenes.contract import PostCommand
-from app.scenes.contract import View as SceneView
-from app.scenes.springs.drag import PullFrame
+from app.scenes.contract import PostCommand, SceneView
+from app.scenes.springs.grab import GrabFrame
 
 ROOT_ARROW_LENGTH = 0.34  # [m]
 SPHERE_ROWS = 24  # of the drawn sphere, from pole to pole
@@ -32,7 +31,7 @@ class SpringView(SceneView[P, F, R]):
         """near: [m] from the camera, where the picture begins."""
         self.server, self.post = server, post
         self.surroundings = Surroundings(server, near)
-        self.pull, self.surface_drag = PullLine(server), SurfaceDrag(post)
+        self.grab, self.surface_drag = GrabLine(server), SurfaceDrag(post)
 
     async def on_bead(self, event: Any) -> None:
         """Pull the bead that is dragged."""
@@ -42,13 +41,13 @@ class SpringView(SceneView[P, F, R]):
         """Pull the point nearest to where the drag began: beads may be close to each other, or hidden."""
         self.surface_drag.handle(event, self.points)
 
-    def show_surroundings(self, floor: bool, grid: bool, pull: PullFrame | None) -> None:
-        """Assign changes of the floor, of its lines and of the pull, which is on one of `points`."""
+    def show_surroundings(self, floor: bool, grid: bool, grab: GrabFrame | None) -> None:
+        """Assign changes of the floor, of its lines and of the grab, which is on one of `points`."""
         self.surroundings.show(floor, grid)
-        if pull is None:
-            self.pull.show(None)
+        if grab is None:
+            self.grab.show(None)
         else:
-            self.pull.show((self.points[pull.particle], pull.target), pull.load)
+            self.grab.show((self.points[grab.particle], grab.target), grab.load)
 
     def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
         """Draw sky and floor dark, or light again, for one browser."""

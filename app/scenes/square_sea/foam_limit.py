@@ -2,7 +2,7 @@
 
 import math
 
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import SquareSeaParams
 from sim.ocean.foam import threshold, whitecaps
 
 FULL_FOAM_DEPTH = 0.35  # the Jacobian of full foam lies this many standard deviations of the Jacobian below the limit
@@ -27,7 +27,9 @@ class FoamLimit:
         self.correction = INITIAL_FOAM_CORRECTION  # standard deviations of the Jacobian above the formula's
         self.deviation = 0.0  # standard deviation of the Jacobian as drawn; 0: not drawn yet
 
-    def update(self, p: Params, dt: float, slope: float, frequency: float, expected: float, drawn: float) -> float:
+    def update(
+        self, p: SquareSeaParams, dt: float, slope: float, frequency: float, expected: float, drawn: float
+    ) -> float:
         """Update the limit over dt [s]. Returns the Jacobian's distance below it at which foam is full.
 
         slope: mean square slope of the waves, which changes at `frequency` [rad/s]; expected and drawn: shares of the

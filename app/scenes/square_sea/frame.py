@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.rainfall import RainFrame, RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
@@ -17,7 +17,7 @@ from app.scenes.square_sea.tile_mesh import Highest
 class SeaFrame(NamedTuple):
     """Drawn state of a sea."""
 
-    params: Params
+    params: SquareSeaParams
     time: float  # [s]
     vertices: NDArray[np.float32]  # (n, n, 3) [m]
     slopes: NDArray[np.float32]  # (n, n, 2)
@@ -29,7 +29,7 @@ class SeaFrame(NamedTuple):
     highest: Highest | None = None  # wave since the start, of a sea that is solved step by step
 
 
-class PackedFrame(NamedTuple):
+class PackedSeaFrame(NamedTuple):
     """A frame as a recording keeps it."""
 
     frame: SeaFrame  # without a surface
@@ -44,17 +44,17 @@ def resting_points(length: float, side: int) -> NDArray[np.float32]:
     return np.stack(np.meshgrid(along, along, indexing="ij")).reshape(2, -1).astype(np.float32)
 
 
-def pack_frame(frame: SeaFrame) -> PackedFrame:
+def pack_frame(frame: SeaFrame) -> PackedSeaFrame:
     """A frame for the recording."""
     side, nothing = len(frame.vertices), np.empty(0, np.float32)
     rest = resting_points(frame.params.length, side)
     surface = pack_surface(frame.vertices, frame.slopes, frame.foam, rest, side, frame.sent)
-    return PackedFrame(
+    return PackedSeaFrame(
         frame._replace(vertices=nothing, slopes=nothing, foam=nothing, sent=SentSurface()), side, surface
     )
 
 
-def unpack_frame(packed: PackedFrame) -> SeaFrame:
+def unpack_frame(packed: PackedSeaFrame) -> SeaFrame:
     """The frame, to draw it."""
     frame, side, surface = packed
     vertices, slopes, foam = unpack_surface(surface, resting_points(frame.params.length, side), (side, side))

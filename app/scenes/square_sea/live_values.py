@@ -8,7 +8,7 @@ from app.messages import Snapshot
 from app.scenes.contract import Measure
 from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.frame import SeaReadings
-from app.scenes.square_sea.parameters import Params, conditions, gravity
+from app.scenes.square_sea.parameters import SquareSeaParams, conditions, gravity
 from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.planets import EARTH_GRAVITY, gravity_of
 from sim.ocean.spectra import Conditions, Spectrum
@@ -17,7 +17,7 @@ from sim.ocean.statistics import open_sea_height
 LIGHT, HEAVY = 0.01, 100.0  # [Earth masses] of the planets of the lab
 
 
-def spectrum_conditions(params: Params, wind_speed: float, g: float) -> Conditions:
+def spectrum_conditions(params: SquareSeaParams, wind_speed: float, g: float) -> Conditions:
     """The conditions of the parameters' spectrum in another wind [m/s], 10 m above the sea, or gravity [m/s2]."""
     values = conditions(params, wind_speed) | {"gravity": g}
     return chosen_spectrum(params).conditions_from(values)
@@ -29,7 +29,7 @@ def peak_speed(spectrum: Spectrum, c: Conditions) -> float:
     return float(c.omega(np.asarray(k))) / k
 
 
-def open_sea(params: Params, wind_speed: float, g: float) -> tuple[float, float]:
+def open_sea(params: SquareSeaParams, wind_speed: float, g: float) -> tuple[float, float]:
     """Significant height [m] of an open sea, and speed [m/s] of its peak waves; NaN for the speed of a level one."""
     spectrum, c = chosen_spectrum(params), spectrum_conditions(params, wind_speed, g)
     if spectrum.is_level(c):
@@ -39,7 +39,7 @@ def open_sea(params: Params, wind_speed: float, g: float) -> tuple[float, float]
 
 def live_values(snapshot: Snapshot) -> dict[str, Measure]:
     """The numbers of a snapshot. Measured values are there once the sea has been measured."""
-    p: Params = snapshot.frame.params
+    p: SquareSeaParams = snapshot.frame.params
     readings: SeaReadings = snapshot.readings
     g = gravity(p)
     height, speed = open_sea(p, p.wind_speed, g)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenes.square_sea.parameters import LONG_CRESTED_STARTS, Params, solved_points
+from app.scenes.square_sea.parameters import LONG_CRESTED_STARTS, SquareSeaParams, solved_points
 from app.scenes.square_sea.tile_mesh import Fields, Highest
 from sim.ocean import Sea
 from sim.ocean.high_crests import HighCrests, high_crests, moments_of
@@ -30,7 +30,7 @@ class Heights(NamedTuple):
     lost: float  # share of the energy at the start that breaking has taken
 
 
-def nonlinear_sea(p: Params, linear: Sea, t: float, place: tuple[float, float]) -> NonlinearSea:
+def nonlinear_sea(p: SquareSeaParams, linear: Sea, t: float, place: tuple[float, float]) -> NonlinearSea:
     """The sea at time t [s]. linear: the waves of the conditions; place [m]: of the wave that is to grow."""
     c, n = linear.conditions, solved_points(p)
     hs, period = linear.significant_height_at(t), expected(linear, t).peak_period
@@ -64,7 +64,7 @@ def on_tile(field: NDArray[np.floating]) -> NDArray[np.float32]:
 class Marching:
     """The nonlinear sea of a scene."""
 
-    def __init__(self, p: Params, linear: Sea, t: float, place: tuple[float, float]) -> None:
+    def __init__(self, p: SquareSeaParams, linear: Sea, t: float, place: tuple[float, float]) -> None:
         """The arguments are those of `nonlinear_sea`."""
         self.sea = nonlinear_sea(p, linear, t, place)
         self.highest: Highest | None = None
@@ -74,12 +74,12 @@ class Marching:
         """Move on to time t [s]. Raises DivergenceError."""
         self.sea.advance(max(t, self.sea.time))
 
-    def resize(self, p: Params) -> None:
+    def resize(self, p: SquareSeaParams) -> None:
         """Go on on the grid of the parameters."""
         n = solved_points(p)
         self.sea = self.sea.resized((n, 1 if self.sea.size[1] == 1 else n))
 
-    def fields(self, p: Params) -> Fields:
+    def fields(self, p: SquareSeaParams) -> Fields:
         """The fields as they are now, the Jacobian where foam is drawn. The highest crest is noted."""
         if p.amplitude != self.scale:
             self.highest, self.scale = None, p.amplitude

@@ -47,7 +47,7 @@ in_water = functools.partial(parameter, group="Water and planet")
 
 @dataclasses.dataclass(frozen=True)
 @with_parameters(SPECTRUM_PARAMETERS, group="Waves")
-class Params:
+class SquareSeaParams:
     """The square sea's parameters, with those of all spectra; the defaults are the first preset."""
 
     wind_speed: float = in_main(8.0, 0.0, 60.0, "m/s", "Wind speed 10 m above the sea")
@@ -219,12 +219,12 @@ class RainSettings(NamedTuple):
     amplitude: float  # factor on every drawn height
 
 
-def marches(params: Params) -> bool:
+def marches(params: SquareSeaParams) -> bool:
     """True if the sea is solved step by step, in place of the sum of linear waves, which is known at all times."""
     return params.order > 1 or params.start in MARCHING_STARTS
 
 
-def solved_points(p: Params) -> int:
+def solved_points(p: SquareSeaParams) -> int:
     """Points a side of the grid that is solved; of long-crested waves, along x alone."""
     size = int(p.size)
     if not marches(p) or p.start in LONG_CRESTED_STARTS:
@@ -232,7 +232,7 @@ def solved_points(p: Params) -> int:
     return min(size, MAX_POINTS if p.order <= 3 else MAX_POINTS_OF_HIGH_ORDER)
 
 
-def gravity(params: Params) -> float:
+def gravity(params: SquareSeaParams) -> float:
     """Gravity [m/s2] of the chosen planet."""
     if params.planet == "by gravity":
         return params.gravity
@@ -241,7 +241,7 @@ def gravity(params: Params) -> float:
     return SOLAR_SYSTEM[params.planet].gravity
 
 
-def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any]:
+def conditions(params: SquareSeaParams, wind_speed: float | None = None) -> dict[str, Any]:
     """The arguments of `Sea` and `Sea.change`. wind_speed: U10 [m/s] in place of the one in `params`."""
     wind, spectrum = params.wind_speed if wind_speed is None else wind_speed, chosen_spectrum(params)
     found = {
@@ -262,7 +262,7 @@ def conditions(params: Params, wind_speed: float | None = None) -> dict[str, Any
     return found
 
 
-def rain_settings(params: Params) -> RainSettings:
+def rain_settings(params: SquareSeaParams) -> RainSettings:
     """Parameters of the rainfall."""
     p = params
     bearing = math.radians(p.wind_direction)
@@ -271,7 +271,7 @@ def rain_settings(params: Params) -> RainSettings:
     return RainSettings(p.rain, p.drops, rings, wind, gravity(p), int(p.size), p.amplitude)
 
 
-def hidden(params: Params) -> set[str]:
+def hidden(params: SquareSeaParams) -> set[str]:
     """Names of the parameters that have no effect while the others are as they are."""
     names = unused_waves(params)
     if params.planet != "by mass":

@@ -48,7 +48,7 @@ class RainReadings(NamedTuple):
     drops_per_ring: float  # real drops, all at one place, that would make a ring as drawn; 0 where no rings are drawn
 
 
-class Rainfall:
+class SeaRain:
     """The rain above one sea, on the simulation thread."""
 
     def __init__(self, sea: Sea, settings: RainSettings, highest: float, seed: int) -> None:

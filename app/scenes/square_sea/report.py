@@ -9,7 +9,7 @@ from app.scenes.measured_sea import measured_text
 from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.live_values import spectrum_conditions
-from app.scenes.square_sea.parameters import Params, gravity, marches, solved_points
+from app.scenes.square_sea.parameters import SquareSeaParams, gravity, marches, solved_points
 from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
@@ -103,7 +103,7 @@ def foam_text(r: "SeaReadings", g: float) -> str:
     return f"{covered}; by Monahan's law {percent(r.expected_foam_cover)}."
 
 
-def breaking_text(params: Params) -> str:
+def breaking_text(params: SquareSeaParams) -> str:
     """A warning where the waves are too high for the depth; "" where they are not."""
     if params.deep:
         return ""
@@ -118,7 +118,7 @@ def breaking_text(params: Params) -> str:
     )
 
 
-def depth_line(params: Params) -> str:
+def depth_line(params: SquareSeaParams) -> str:
     """Height over depth."""
     return breaking_text(params) or "waves are lower than 0.6 of the depth"
 
@@ -176,7 +176,7 @@ def statistics_table(r: Report, source: str = "an open sea") -> Html:
     return join((measured, faint(text)))
 
 
-def loop_line(p: Params) -> str:
+def loop_line(p: SquareSeaParams) -> str:
     """After which time the sea repeats: the scale on frequencies comes after the rounding."""
     if p.loop_period == 0.0 or p.dispersion_scale == 0.0:
         return "never repeats"
@@ -185,7 +185,7 @@ def loop_line(p: Params) -> str:
 
 def marks(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
-    p: Params = snapshot.frame.params
+    p: SquareSeaParams = snapshot.frame.params
     limit = snapshot.readings.foam_limit
     points = solved_points(p)
     cell = p.length / points
@@ -216,14 +216,14 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     return found
 
 
-def order_line(params: Params, frame: SeaFrame) -> str:
+def order_line(params: SquareSeaParams, frame: SeaFrame) -> str:
     """Line under the order: the highest crest, or the solver."""
     if frame.highest is not None:
         return f"{highest_text(frame.highest)}, at t = {frame.highest.time:.1f} s"
     return "solved step by step; new weather begins it again" if marches(params) else "a sum of linear waves"
 
 
-def wind_line(params: Params) -> str:
+def wind_line(params: SquareSeaParams) -> str:
     """The wind on Beaufort's scale."""
     force, name = beaufort(params.wind_speed)
     spectrum = chosen_spectrum(params)
@@ -233,7 +233,7 @@ def wind_line(params: Params) -> str:
     return f"Beaufort {force}, {name}; {there} m/s at {spectrum.wind_height:g} m height"
 
 
-def radius_line(params: Params) -> str:
+def radius_line(params: SquareSeaParams) -> str:
     """Gravity of a planet of this mass by each rule for its radius."""
     each = ", ".join(
         f"{number(gravity_of(params.planet_mass, rule))} ({rule.replace('_', ' ')})" for rule in RADIUS_RULES
@@ -241,7 +241,7 @@ def radius_line(params: Params) -> str:
     return f"gravity in m/s² by each rule: {each}"
 
 
-def low_pass_line(params: Params) -> str:
+def low_pass_line(params: SquareSeaParams) -> str:
     """How long fluids at rest take to lower a wave of wavenumber 1/l as the low pass l does: by e^(-1/2)."""
     if params.low_pass == 0.0:
         return "no wave is left out"
@@ -250,7 +250,7 @@ def low_pass_line(params: Params) -> str:
     return f"like {seconds(water, 2)} of decay in water, or {seconds(oil, 2)} in heavy oil (2×10⁻² m²/s)"
 
 
-def viscosity_line(params: Params, area: float) -> str:
+def viscosity_line(params: SquareSeaParams, area: float) -> str:
     """How fast viscosity damps a wave of 1 m, and the lab's length l for the decay so far; area [m2]: of nu T."""
     length = 2.0 * math.sqrt(area)
     so_far = ""

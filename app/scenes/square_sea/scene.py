@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, Point, SceneCommand, Snapshot, StudentAnswer
+from app.messages import PlotRow, PointAlong, SceneCommand, Snapshot, StudentAnswer
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import Awaited, FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
@@ -23,14 +23,14 @@ from app.scenes.square_sea.parameters import (
     ABOUT,
     GAUGE_OFFSET_SHARE,
     PRESETS,
-    Params,
+    SquareSeaParams,
     conditions,
     hidden,
     marches,
     rain_settings,
     solved_points,
 )
-from app.scenes.square_sea.rainfall import Rainfall
+from app.scenes.square_sea.rainfall import SeaRain
 from app.scenes.square_sea.statistics import INTERVAL, LiveStatistics
 from app.scenes.square_sea.tile_mesh import Fields, set_mesh_of
 from sim.ocean import Sea
@@ -83,8 +83,8 @@ def warm_up() -> Pieces:
 
 def compile_drawn_sea() -> None:
     """Call all kernels of a small sea with rain."""
-    small = Params(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
-    for params in (small, Params(**{**vars(small), "choppiness": 0.0})):
+    small = SquareSeaParams(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
+    for params in (small, SquareSeaParams(**{**vars(small), "choppiness": 0.0})):
         scene = SquareSeaScene(params)
         for _ in range(4):
             scene.advance(30)
@@ -93,7 +93,7 @@ def compile_drawn_sea() -> None:
 
 def compile_nonlinear_sea() -> None:
     """Call all kernels of both kinds of nonlinear sea."""
-    small = Params(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
+    small = SquareSeaParams(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
     for params in (small, dataclasses.replace(small, start="breather", spectrum="regular")):
         scene = SquareSeaScene(params)
         for _ in range(4):
@@ -106,7 +106,7 @@ def pieces_on_use() -> Pieces:
     return {NONLINEAR: compile_nonlinear_sea}
 
 
-def needs(params: Params) -> tuple[str, ...]:
+def needs(params: SquareSeaParams) -> tuple[str, ...]:
     """The pieces that these parameters run."""
     return (*warm_up(), *((NONLINEAR,) if marches(params) else ()))
 
@@ -121,7 +121,7 @@ class SquareSeaScene:
     faster = "a smaller grid"
     note = ""  # it always runs what the parameters ask for
 
-    def __init__(self, params: Params, live: "LiveCode | None" = None, step: float = STEP) -> None:
+    def __init__(self, params: SquareSeaParams, live: "LiveCode | None" = None, step: float = STEP) -> None:
         """live: runs a student's functions, where there are any. step: of the clock [s]."""
         self.params, self.step = params, step
         self.student: StudentSea | None = None
@@ -208,10 +208,10 @@ class SquareSeaScene:
     def make_rainfall(self) -> None:
         """Make the rain that the parameters ask for."""
         p = self.params
-        self.rainfall: Rainfall | None = None
+        self.rainfall: SeaRain | None = None
         if p.rain > 0.0:
             highest = max(p.amplitude * self.sea.significant_height_at(self.time), 1.0)
-            self.rainfall = Rainfall(self.sea, rain_settings(p), highest, p.seed)
+            self.rainfall = SeaRain(self.sea, rain_settings(p), highest, p.seed)
 
     def clear_mesh(self) -> None:
         """Start a new drawn mesh, without foam."""
@@ -226,7 +226,7 @@ class SquareSeaScene:
         self.statistics.earlier_height = None
         self.foam_cover, self.foam_limit = 0.0, FoamLimit()
 
-    def change_forces(self, params: Params) -> None:
+    def change_forces(self, params: SquareSeaParams) -> None:
         """Take new parameters: new weather grows out of the present sea, another grid shows the same sea."""
         old, foam_cover = self.params, self.undamped_foam_cover(self.time)
         self.params = params
@@ -280,7 +280,7 @@ class SquareSeaScene:
         match command:
             case StudentAnswer() if self.student is not None:
                 self.take_student(self.student)
-            case Point(origin, direction):
+            case PointAlong(origin, direction):
                 at = where_hit(*self.water, origin, direction, self.params.amplitude)
                 if at is not None:
                     self.gauge.put(at)
@@ -423,7 +423,7 @@ SCENE = SceneKind(
     name="square_sea",
     title="Square sea",
     help="<b>Click the water</b> to place a wave gauge; drag to look around.",
-    params=Params,
+    params=SquareSeaParams,
     presets=PRESETS,
     about=ABOUT,
     make=SquareSeaScene,

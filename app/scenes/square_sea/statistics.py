@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import SquareSeaParams
 from sim.ocean import Sea
 from sim.ocean.statistics import Statistics, expected, height_scatter, measured, open_sea_height
 
@@ -41,7 +41,7 @@ def scaled(s: Statistics, factor: float) -> Statistics:
     )
 
 
-def theory(sea: Sea, t: float, params: Params) -> Theory:
+def theory(sea: Sea, t: float, params: SquareSeaParams) -> Theory:
     """Theory of the sea at time t [s] as drawn."""
     found = expected(sea, t)
     whole = open_sea_height(sea.spectrum, sea.conditions)
@@ -50,7 +50,7 @@ def theory(sea: Sea, t: float, params: Params) -> Theory:
 
 
 def measure(
-    sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: Params, interval: float = 0.0
+    sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: SquareSeaParams, interval: float = 0.0
 ) -> Statistics:
     """Statistics of heights (n, n) [m]; earlier: those of the frame before, `interval` [s] ago."""
     found = measured(height, sea.length, sea.conditions, earlier, interval * params.dispersion_scale)
@@ -84,14 +84,14 @@ class LiveStatistics:
         self.measured_at = -math.inf  # [s] of simulated time
         self.earlier_height: np.ndarray | None = None  # (n, n) [m] of the frame before, while reports are shown
 
-    def is_due(self, params: Params, t: float) -> bool:
+    def is_due(self, params: SquareSeaParams, t: float) -> bool:
         """True if reports are shown and the last one is out of date."""
         return params.statistics and abs(t - self.measured_at) >= INTERVAL
 
     def update(
         self,
         sea: Sea,
-        params: Params,
+        params: SquareSeaParams,
         t: float,
         height: np.ndarray,
         dt: float,

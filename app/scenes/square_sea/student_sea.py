@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
-from app.lab.tabulate import Range
+from app.lab.tabulate import Interval
 from app.scenes.sea_parameters import spectrum_values
-from app.scenes.square_sea.parameters import Params, conditions, gravity, marches
+from app.scenes.square_sea.parameters import SquareSeaParams, conditions, gravity, marches
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA, Spectrum
 from sim.ocean.spectra.record import MIN_WIND_SPEED
@@ -31,15 +31,15 @@ class StudentSea(TableUser):
         super().__init__(live)
         self.spectrum: Spectrum[Any] | None = None  # of the taken table
 
-    def want(self, p: Params) -> None:
+    def want(self, p: SquareSeaParams) -> None:
         """Ask for the tables that the parameters need; tables that are no longer needed are not taken."""
         calls, idle = {}, {}
         if marches(p):
             self.ask({}, dict.fromkeys(WHAT, "choose order 1, and a start that is as set, calm or storm"))
             return
         if p.planet == "by mass" and p.radius_rule == "same_density":
-            declared = parameters_of(Params)["gravity"]
-            calls[GRAVITY] = Call((np.array([p.planet_mass]),), Range(declared.low, declared.high, declared.unit))
+            declared = parameters_of(SquareSeaParams)["gravity"]
+            calls[GRAVITY] = Call((np.array([p.planet_mass]),), Interval(declared.low, declared.high, declared.unit))
         else:
             idle[GRAVITY] = "choose a planet by its mass, as dense as the Earth"
         if p.spectrum_file or p.spectrum != PHILLIPS.name:
@@ -51,12 +51,12 @@ class StudentSea(TableUser):
         calls[DISPERSION] = dispersion_call(p, self.gravity(p))
         self.ask(calls, idle)
 
-    def gravity(self, p: Params) -> float:
+    def gravity(self, p: SquareSeaParams) -> float:
         """Gravity [m/s2] of the planet, the student's where it is taken."""
         table = self.taken.get(GRAVITY)
         return gravity(p) if table is None else float(table.values[0])
 
-    def collect(self, p: Params) -> float | None:
+    def collect(self, p: SquareSeaParams) -> float | None:
         """Take the tables that there are. In how long [s] the sea is to adapt to them; None where nothing changed."""
         changed = self.take()
         if not changed:
@@ -66,7 +66,7 @@ class StudentSea(TableUser):
             self.spectrum = spectrum_by(self.taken[SPECTRUM]) if SPECTRUM in self.taken else None
         return p.transition if same_code else 0.0
 
-    def conditions(self, p: Params) -> dict[str, Any]:
+    def conditions(self, p: SquareSeaParams) -> dict[str, Any]:
         """The arguments of `Sea.change`, with the student's in place of the program's."""
         found: dict[str, Any] = {**conditions(p), "frequency": None, "gravity": self.gravity(p)}
         if SPECTRUM in self.taken:
@@ -81,7 +81,7 @@ class StudentSea(TableUser):
             }
         return found
 
-    def report(self, p: Params) -> None:
+    def report(self, p: SquareSeaParams) -> None:
         """Report to the panel the functions that run, and the difference of the sea from the program's."""
         differences = ()
         if self.taken:
@@ -99,7 +99,7 @@ class StudentSea(TableUser):
         self.live.report = TableReport(running, self.live.report.idle, differences)
 
 
-def spectrum_call(p: Params, g: float) -> Call:
+def spectrum_call(p: SquareSeaParams, g: float) -> Call:
     """The spectrum at wave vectors of all directions, from waves longer than the tile to those of the finest grid."""
     k, theta = polar_grid(p.length)
     x, y = (k[:, None] * np.cos(theta)).ravel(), (k[:, None] * np.sin(theta)).ravel()
@@ -107,7 +107,7 @@ def spectrum_call(p: Params, g: float) -> Call:
     wind = PHILLIPS.wind_speed(p.wind_speed) * np.array([math.cos(bearing), math.sin(bearing)])
     n, constant = x.size, spectrum_values(p)["phillips_constant"]
     columns = np.column_stack([x, y]), np.tile(wind, (n, 1)), np.full(n, constant), np.full(n, g)
-    return Call(columns, Range(0.0, math.inf, "m⁴"))
+    return Call(columns, Interval(0.0, math.inf, "m⁴"))
 
 
 def polar_grid(length: float) -> tuple[np.ndarray, np.ndarray]:
@@ -142,9 +142,9 @@ def spectrum_by(table: Table) -> Spectrum[Any]:
     return Spectrum("student", "The student's own", density, None, PHILLIPS.peak, PHILLIPS.conditions)
 
 
-def dispersion_call(p: Params, g: float) -> Call:
+def dispersion_call(p: SquareSeaParams, g: float) -> Call:
     """The dispersion at every wavenumber that the grid has."""
     n = np.arange(int(p.size) // 2) ** 2
     k = np.sqrt(np.unique(n[:, None] + n)[1:]) * (2.0 * math.pi / p.length)
     columns = k, *(np.full(k.size, value) for value in (p.dispersion_scale, p.loop_period or ENDLESS, g))
-    return Call(columns, Range(0.0, math.inf, "rad/s"))
+    return Call(columns, Interval(0.0, math.inf, "rad/s"))

@@ -12,16 +12,15 @@ import viser
 from app.formats.formatting import number, percent
 from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
-from app.messages import Command, Point, Snapshot, Vector, finite_vector
+from app.messages import Command, PointAlong, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
 from app.render.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
 from app.render.viser_inside import set_arrays
-from app.render.water import Tile, Water
-from app.scenes.contract import Pieces
-from app.scenes.contract import View as SceneView
+from app.render.water import DrawnWater, Tile
+from app.scenes.contract import Pieces, SceneView
 from app.scenes.measured_sea import height_and_period
 from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
@@ -29,7 +28,7 @@ from app.scenes.square_sea.parameters import (
     GAUGE_OFFSET_SHARE,
     SURFACE_TENSION,
     VIEW_HEIGHTS,
-    Params,
+    SquareSeaParams,
     gravity,
     rain_settings,
 )
@@ -39,7 +38,7 @@ from sim.particles.rain import rainfall
 from sim.particles.rain_rings import ring_flux, ring_wave
 from sim.water import SEA_DENSITY
 
-DEFAULTS = Params()
+DEFAULTS = SquareSeaParams()
 TARGETS = {  # [m] of each view: how far ahead its target is, and the target's height
     "swimmer": (6.0, 0.5),
     "side": (60.0, 0.5),
@@ -83,7 +82,7 @@ def rain_look(rate: float, gravity: float) -> tuple[tuple[float, float, float], 
     return (ring_flux(rate, gravity), length, speed), 0.5 * rainfall(rate, gravity).extinction
 
 
-class View(SceneView[Params, SeaFrame, SeaReadings]):
+class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
     """Draws `SeaFrame`s."""
 
     FIELD_OF_VIEW = 0.65  # [rad]
@@ -91,7 +90,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
 
     def __init__(self, server: viser.ViserServer, post: Callable[[Command], None]) -> None:
         self.server, self.post = server, post
-        self.water: Water | None = None
+        self.water: DrawnWater | None = None
         self.rain: RainMesh | None = None
         self.gauge: WaveGaugeMesh | None = None
         self.mark: viser.LabelHandle | None = None
@@ -104,7 +103,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         self.last: SeaFrame | None = None
         server.scene.on_click()(self.on_click)  # type: ignore[arg-type]  # it takes coroutines, as on_drag does
 
-    def first_view(self, params: Params) -> tuple[Vector, Vector]:
+    def first_view(self, params: SquareSeaParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved."""
         return camera_of(params.view, params.length)
 
@@ -112,7 +111,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
         """Report the point under the mouse to the scene."""
         origin, direction = finite_vector(event.ray_origin, MAX_CLICK_DISTANCE), finite_vector(event.ray_direction)
         if origin is not None and direction is not None:
-            self.post(Point(origin, direction))
+            self.post(PointAlong(origin, direction))
 
     def show(self, frame: SeaFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
@@ -132,7 +131,7 @@ class View(SceneView[Params, SeaFrame, SeaReadings]):
             if self.water is not None:
                 self.water.remove()
                 self.move_cameras(self.mesh_shape[1], length)
-            self.water = Water(self.server, "/sea", Tile(n, n, length), material)
+            self.water = DrawnWater(self.server, "/sea", Tile(n, n, length), material)
             self.mesh_shape = mesh_shape
         elif material is not self.material and material != self.material:
             self.water.set_material(material)
@@ -323,3 +322,6 @@ def upright(radius: float, low: float, high: float) -> tuple[np.ndarray, np.ndar
     sides = np.hstack([np.concatenate([ring, ring]), heights])
     vertices = np.concatenate([sides, [[0.0, 0.0, low], [0.0, 0.0, high]]])
     return vertices, tube_faces(2, GAUGE_SIDES)
+
+
+VIEW = SquareSeaView

@@ -10,7 +10,7 @@ import numpy as np
 from sim.mooring.moordyn.options import read_options
 from sim.mooring.moordyn.rows import FileBody, ends_first, read_body, read_line, read_point, read_type
 from sim.mooring.moordyn.sections import BODIES, LINES, OPTIONS, POINTS, TYPES, Row, Section, read_text, split_sections
-from sim.mooring.system import Body, Point, System
+from sim.mooring.system import MooredBody, Point, System
 from sim.mooring.turning import with_turning
 from sim.validation import ConvergenceError, Refusals, argument_error
 
@@ -113,7 +113,7 @@ def drag_of(body: FileBody) -> Point:
     return Point(-body.id, "body", (x, y, z), drag_area=body.drag_area, body=body.id)
 
 
-def free_body(body: FileBody, gravity: float, density: float) -> Body:
+def free_body(body: FileBody, gravity: float, density: float) -> MooredBody:
     """The Body of a row: weight and the buoyancy of all its volume act at its centre of gravity, as in MoorDyn."""
     arm, turn = body.turn @ body.centre, body.turn
     cross = np.cross(np.eye(3), arm)  # cross @ v = arm x v
@@ -129,4 +129,4 @@ def free_body(body: FileBody, gravity: float, density: float) -> Body:
     stiffness = np.diag([0.0, 0.0, 0.0, upright + held, upright + held, held])
     moment = np.cross(arm, (0.0, 0.0, lift))
     x, y, z = body.place.tolist()
-    return Body(body.id, (x, y, z), mass, stiffness, steady=(0.0, 0.0, lift, *moment.tolist()))
+    return MooredBody(body.id, (x, y, z), mass, stiffness, steady=(0.0, 0.0, lift, *moment.tolist()))

@@ -52,7 +52,7 @@ FADED = 40.0 ** (1.0 / FADE_POWER)  # times of the fade-in until the nonlinear p
 FIRST_STEP = 0.05  # periods of the mean wave
 
 
-class Energy(NamedTuple):
+class SeaEnergy(NamedTuple):
     """Mean energy per area [J/m2] of a nonlinear sea. kinetic + potential + breaking = start + fade_in + error."""
 
     kinetic: float
@@ -218,12 +218,12 @@ class NonlinearSea:
         return self.significant_height
 
     @property
-    def energy(self) -> Energy:
+    def energy(self) -> SeaEnergy:
         """The energy account at the present time."""
         kinetic, potential = self._energies()
         change = kinetic + potential + self._lost - self._begun
         fade_in = self._fade_in if self._is_faded else change
-        return Energy(kinetic, potential, self._lost, fade_in, change - fade_in)
+        return SeaEnergy(kinetic, potential, self._lost, fade_in, change - fade_in)
 
     @property
     def steps(self) -> int:

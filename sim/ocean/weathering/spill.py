@@ -147,7 +147,7 @@ def steps() -> NDArray[np.float64]:
     return np.array(times)
 
 
-class State(NamedTuple):
+class SpillState(NamedTuple):
     """State of the spill at one time."""
 
     mass: NDArray[np.float64]  # (n,) [kg] of each part of the oil on the sea
@@ -182,10 +182,10 @@ def weathered(spill: Spill) -> Weathering:
     scale = fresh_density / float((parts.share * parts.density).sum())
     volatile = laws.volatility(parts, CELSIUS + spill.temperature)
 
-    def water_of(state: State, t: float) -> float:
+    def water_of(state: SpillState, t: float) -> float:
         return laws.water_content(t - state.onset, spill.wind_speed, record.emulsion_water)
 
-    def step(state: State, rates_of: State, t: float, rates_at: float, h: float) -> State:
+    def step(state: SpillState, rates_of: SpillState, t: float, rates_at: float, h: float) -> SpillState:
         """From `state` at t on by h [s], at the rates of another state at another time [s]."""
         if rates_of.mass.sum() < GONE * total:  # a half step took all: the rates before it take the rest
             rates_of, rates_at = state, t
@@ -206,10 +206,10 @@ def weathered(spill: Spill) -> Weathering:
             wanted = record.emulsion_onset * total
             onset = t + h * ((wanted - before) / (after - before) if after > before else 0.0)
         dispersed = state.dispersed + float((gone * (1.0 - share)).sum())
-        return State(state.mass - gone, evaporated, dispersed, area, onset)
+        return SpillState(state.mass - gone, evaporated, dispersed, area, onset)
 
     times = steps()
-    state = State(total * parts.share, 0.0, 0.0, min(first_area, largest), math.inf)
+    state = SpillState(total * parts.share, 0.0, 0.0, min(first_area, largest), math.inf)
     rows = np.empty((len(times), 5))
     for i, t in enumerate(times):
         raise_if_stopped()

@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 from app.__main__ import main
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.report import forces_html
 from app.scenes.radial_sea.scene import RadialSeaScene
 from sim.floating import Hull, boundary_elements, equilibrium_draft, shape_from_file
@@ -61,10 +61,10 @@ def test_the_table_of_a_hull_is_found_beside_it_and_used(box_file: Path) -> None
 
 @pytest.mark.usefixtures("solver")
 def test_the_page_says_that_a_hull_is_taken_for_a_box_until_it_has_its_own_table(box_file: Path) -> None:
-    scene = RadialSeaScene(dataclasses.replace(Params(), hull=str(box_file)))
+    scene = RadialSeaScene(dataclasses.replace(RadialSeaParams(), hull=str(box_file)))
     assert "springtide hydrodynamics" in forces_html(scene.readings())
     assert main(["hydrodynamics", str(box_file)]) == 0
-    scene = RadialSeaScene(dataclasses.replace(Params(), hull=str(box_file)))
+    scene = RadialSeaScene(dataclasses.replace(RadialSeaParams(), hull=str(box_file)))
     assert "springtide hydrodynamics" not in forces_html(scene.readings())
 
 

@@ -10,16 +10,18 @@ import trimesh
 
 from app.__main__ import main
 from app.export.command import export
-from app.scenes.cloth.parameters import Params as ClothParams
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
-from app.scenes.square_sea.parameters import Params, conditions
+from app.scenes.square_sea.parameters import SquareSeaParams, conditions
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.stepping import steps_to
 from sim.ocean import Sea
 
 OpenEXR = pytest.importorskip("OpenEXR")
 RATE, START, FRAMES = 24.0, 0.5, 3
-SEA = Params(size="64", mesh="32", length=64.0, amplitude=1.2, wind_speed=12.0, foam_by_wind=False, foam_threshold=0.7)
+SEA = SquareSeaParams(
+    size="64", mesh="32", length=64.0, amplitude=1.2, wind_speed=12.0, foam_by_wind=False, foam_threshold=0.7
+)
 
 
 def write_sea(out: Path, form: str | None) -> dict:
@@ -54,7 +56,7 @@ def test_exr_holds_the_displacement_of_the_model_at_any_rate(tmp_path):
 
 def test_foam_is_that_of_the_scene_on_the_solved_grid(tmp_path):
     write_sea(tmp_path / "a", "exr")
-    scene = SquareSeaScene(Params(**{**vars(SEA), "mesh": "64", "statistics": False}), step=1.0 / 48.0)
+    scene = SquareSeaScene(SquareSeaParams(**{**vars(SEA), "mesh": "64", "statistics": False}), step=1.0 / 48.0)
     for _ in range(24 + 2):  # a frame of 1/24 s is two steps: foam is made 30 times a second at least
         scene.advance(1)
         foam = scene.frame().foam
@@ -65,7 +67,7 @@ def test_foam_is_that_of_the_scene_on_the_solved_grid(tmp_path):
 
 @pytest.mark.parametrize("start", ["as set", "groups"])
 def test_nonlinear_waves_are_written_as_they_are_drawn(tmp_path, start):
-    params = Params(**{**vars(SEA), "order": 3, "start": start})
+    params = SquareSeaParams(**{**vars(SEA), "order": 3, "start": start})
     assert export("square_sea", params, 2 / RATE, RATE, 0.0, "exr", tmp_path / "a") == 0
     scene = SquareSeaScene(params, step=1.0 / 48.0)
     scene.advance(2)

@@ -16,16 +16,16 @@ from app.lab.versions import Versions
 from app.messages import StudentAnswer
 from app.panel.code_panel import sea_texts
 from app.scenes.radial_sea.bodies import box_of
-from app.scenes.radial_sea.parameters import Params as RadialParams
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.scene import RadialSeaScene
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
 from sim.ocean.emulsions import arrhenius
 from tests.waiting import wait_for
 
 TASKS = {task.name: task for task in load_tasks()}
 HEAD = "import numpy as np\n\n\n"
-PHILLIPS = Params(size="64", mesh="32", spectrum="phillips", length=400.0, wind_speed=9.0, foam=False)
+PHILLIPS = SquareSeaParams(size="64", mesh="32", spectrum="phillips", length=400.0, wind_speed=9.0, foam=False)
 # What a function does in place of its body -> kind of the error and a part of what is said.
 FAULTS = {
     "return 1 / 0": ("raised", "ZeroDivisionError"),
@@ -207,7 +207,7 @@ def test_a_moment_that_comes_back_runs_by_the_functions_of_now(folder: Folder) -
 
 
 RADIAL = ("mixture_viscosity", "wave_decay", "reflectance", "draft")
-OIL = RadialParams(spill="layer", thickness=0.2, waves=False, rig=False, ripples=False, rings=16, spokes=16)
+OIL = RadialSeaParams(spill="layer", thickness=0.2, waves=False, rig=False, ripples=False, rings=16, spokes=16)
 
 
 def test_the_radial_sea_runs_by_right_functions_as_the_program_does(folder: Folder) -> None:

@@ -11,13 +11,13 @@ import pytest
 from app.lab.folder import make_folder
 from app.lab.session import Session
 from app.lab.task import load_tasks
-from app.messages import Grab, StudentAnswer
+from app.messages import GrabTo, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
-from app.scenes.cloth.parameters import Params as ClothParams
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.cloth.student_cloth import unlike
-from app.scenes.rope.parameters import Params as RopeParams
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from sim.parameters import Parameter, Value, effect_of_change, in_words, parameters_of
 from sim.springs import LAWS
@@ -95,7 +95,7 @@ def run(scene: Any, seconds: float) -> None:
 def changed(name: str, base: Any, parameter: str, value: Value, session: Session | None = None) -> Any:
     """A scene some time after the parameter was changed. session: moves a rope or a cloth beside the program's."""
     scene = SCENES[name](base, None if session is None else session.live)
-    scene.handle(Grab(HELD[name], (-1.0, 0.5, 1.5), 0))
+    scene.handle(GrabTo(HELD[name], (-1.0, 0.5, 1.5), 0))
     run(scene, BEFORE)
     new = dataclasses.replace(base, **{parameter: value})
     if effect_of_change(base, new) == "start":

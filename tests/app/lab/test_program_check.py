@@ -15,7 +15,7 @@ import pytest
 from msgspec.structs import replace
 
 from app.lab.folder import stub
-from app.lab.program_check import SAMPLES, SEED, Student, Verdict, call, check_program, same, special_case
+from app.lab.program_check import SAMPLES, SEED, StudentFunction, Verdict, call, check_program, same, special_case
 from app.lab.runner import RunError, Runner
 from app.lab.saved import keep
 from app.lab.source import read_source
@@ -264,7 +264,7 @@ def test_a_task_may_take_as_long_as_others_keep_the_processor(monkeypatch: pytes
     clock = [0.0]
     runner = SimpleNamespace(effort=3.0, call=lambda file, name, *arguments: 1.0)
     monkeypatch.setattr("app.lab.program_check.time.monotonic", lambda: clock[0])
-    student = Student(cast(Runner, runner), TASKS["gravity"])
+    student = StudentFunction(cast(Runner, runner), TASKS["gravity"])
     clock[0] = 50.0
     assert student(1.0) == 1.0
     runner.effort = 13.1

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.lab.live_net import COMPILE_AFTER, MAX_REST, REST_RATIO, ROPE, LiveNet, Marched
-from app.lab.rope_march import Forces, Functions, March, Segment, Unfit, march
+from app.lab.rope_march import Forces, Functions, MarchResult, Segment, Unfit, march
 from app.lab.runner import BUSY, RunError
 from app.lab.task import load_tasks
 from app.lab.versions import Versions
@@ -81,9 +81,9 @@ class Folder:
         self.versions.close()
 
 
-def marched(seconds: float, effort: float) -> March:
+def marched(seconds: float, effort: float) -> MarchResult:
     """A step that takes so long [s]."""
-    return March(X[None], X, 1, seconds, effort, False)
+    return MarchResult(X[None], X, 1, seconds, effort, False)
 
 
 @pytest.fixture

@@ -24,9 +24,9 @@ from app.lab.saved import read_files
 from app.lab.session import CodeState, Session
 from app.lab.task import load_tasks
 from app.lab.versions import Versions, stamps
-from app.messages import Grab, Place, StudentAnswer
+from app.messages import GrabTo, Place, StudentAnswer
 from app.panel.code_panel import code_lines, function_lines, headline
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene, rows_of
 from tests.waiting import wait_for
 
@@ -109,7 +109,7 @@ def run(scene: RopeScene, frames: int = 20) -> None:
 
 
 def make_scene(session: Session, **values: object) -> RopeScene:
-    return RopeScene(dataclasses.replace(Params(integrator="rk4"), **values), session.live)
+    return RopeScene(dataclasses.replace(RopeParams(integrator="rk4"), **values), session.live)
 
 
 @pytest.fixture
@@ -161,7 +161,7 @@ def test_floor_sphere_and_mouse_are_those_of_the_program(right: Session, law: st
     scene.handles.sphere.place_at((-1.0, 0.1, 0.3))
     scene.change_forces(scene.params)
     scene.handle(Place("sphere", (-1.1, 0.1, 0.3)))
-    scene.handle(Grab(9, (-2.0, 0.4, 0.5)))
+    scene.handle(GrabTo(9, (-2.0, 0.4, 0.5)))
     scene.student.restart(rows_of(scene.state.x), rows_of(scene.state.v))
     start = scene.state.x.copy()
     run(scene, 20)
@@ -174,7 +174,7 @@ def test_floor_sphere_and_mouse_are_those_of_the_program(right: Session, law: st
 def test_a_wrong_function_leaves_the_program_s_rope_alone(right: Session) -> None:
     save(right, RIGHT.replace("return stiffness", "return -stiffness"))
     wait_for(lambda: taken(right) == right.state.version)
-    scene, alone = make_scene(right), RopeScene(Params(integrator="rk4"))
+    scene, alone = make_scene(right), RopeScene(RopeParams(integrator="rk4"))
     run(scene, 60)
     alone.advance(120)
     assert np.isfinite(right.rope.report.left_at)

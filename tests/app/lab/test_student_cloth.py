@@ -10,9 +10,9 @@ import pytest
 
 from app.lab.session import Session
 from app.lab.task import load_tasks
-from app.messages import Grab, Place, StudentAnswer
+from app.messages import GrabTo, Place, StudentAnswer
 from app.panel.code_panel import code_lines, tables_of
-from app.scenes.cloth.parameters import Params
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from tests.app.lab.test_session import save, taken, working_in
 from tests.waiting import wait_for
@@ -20,7 +20,7 @@ from tests.waiting import wait_for
 TASKS = load_tasks()
 SOURCES = {task.name: inspect.getsource(task.function) for task in TASKS if task.file == "cloth.py"}
 RIGHT = "import numpy as np\n\n\n" + "\n\n".join(SOURCES.values())
-SMALL = Params(
+SMALL = ClothParams(
     integrator="symplectic_euler", time_step=1 / 240, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, gather=1.0
 )
 ACCIDENTS = {
@@ -101,14 +101,14 @@ def test_pins_and_mouse_move_both(right: Session) -> None:
     scene = ClothScene(dataclasses.replace(SMALL, air=0.0), right.live)
     run(scene, 2)
     scene.handle(Place("pin a", (-0.6, 0.2, 2.2)))
-    scene.handle(Grab(20, (0.2, -0.5, 1.0)))
+    scene.handle(GrabTo(20, (0.2, -0.5, 1.0)))
     run(scene, 20)
     assert scene.state.x[1, 0, 0] > 0.05
     assert right.cloth.report.difference < 1e-9
 
 
 def test_a_large_cloth_has_a_coarser_one_beside_it(right: Session) -> None:
-    scene = ClothScene(Params(), right.live)
+    scene = ClothScene(ClothParams(), right.live)
     run(scene, 6)
     frame = scene.frame()
     assert frame.student is not None

@@ -14,7 +14,7 @@ from app.lab.folder import PICTURES, make_folder
 from app.lab.live_values import LiveNumber
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.panel.guide import BACK, HIDE, ON, PICTURE, SET_UP, SHOW, UNANSWERED, Guide, QuestionWidgets
+from app.panel.guide import BACK, HIDE, ON, PICTURE, SET_UP, SHOW, UNANSWERED, GuideTab, QuestionWidgets
 from app.panel.panel import Panel
 from app.render.html import escape
 from app.scenes.race.html import error_text
@@ -56,12 +56,12 @@ def student(folder: Path) -> Iterator[Viewer]:
     viewer.shut()
 
 
-def guide_of(viewer: Viewer) -> Guide:
+def guide_of(viewer: Viewer) -> GuideTab:
     assert viewer.panel.guide is not None
     return viewer.panel.guide
 
 
-def show(viewer: Viewer, name: str) -> Guide:
+def show(viewer: Viewer, name: str) -> GuideTab:
     """Show a task."""
     guide = guide_of(viewer)
     guide.workbook.go(next(i for i, task in enumerate(guide.workbook.tasks) if task.name == name))
@@ -69,7 +69,7 @@ def show(viewer: Viewer, name: str) -> Guide:
     return guide
 
 
-def widgets_of(guide: Guide, key: str) -> QuestionWidgets:
+def widgets_of(guide: GuideTab, key: str) -> QuestionWidgets:
     return next(widgets for widgets in guide.questions if widgets.question.key == key)
 
 

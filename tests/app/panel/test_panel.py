@@ -16,8 +16,8 @@ from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
 from app.messages import Reset, RunOn, Take
 from app.scenes import NAMES, scene_named
-from app.scenes.radial_sea.parameters import Params as RadialParams
-from app.scenes.square_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests import coroutines
@@ -143,7 +143,7 @@ def test_a_simple_drawing_has_no_key_to_colours_that_are_not_drawn_and_no_cutawa
             text = lab.panel.readings.readout.content
             assert (said in text) == plain, name
             assert (key in text) != plain, name
-        lab.open("radial_sea", RadialParams(cutaway=True, particles=100, wave_count=16))
+        lab.open("radial_sea", RadialSeaParams(cutaway=True, particles=100, wave_count=16))
         line = lab.panel.controls["cutaway"]
         wait_for(lambda: lab.served.shown > 2 and (line.text != "") == plain)
         assert ("no cutaway" in line.text) == plain
@@ -153,7 +153,7 @@ def test_a_simple_drawing_has_no_key_to_colours_that_are_not_drawn_and_no_cutawa
 
 
 def test_a_sea_that_is_stepped_offers_to_run_on_to_a_high_crest(viewer: Viewer) -> None:
-    viewer.open("square_sea", Params(size="64", mesh="32"))
+    viewer.open("square_sea", SquareSeaParams(size="64", mesh="32"))
     panel = viewer.panel
     assert panel.run_on is not None
     assert not panel.run_on.visible

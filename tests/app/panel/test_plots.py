@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Line, Snapshot
+from app.messages import ChartLine, Snapshot
 from app.panel.plots import KEPT_DASH, MIN_FILLED, SHOWN_ROWS, Plots, at_times, beside, scale_of, with_kept
 from app.scenes import scene_named
 from app.scenes.charts import Chart, lines_of, with_numbers
@@ -52,7 +52,7 @@ def test_kept_curves_stand_at_their_times_beside_those_of_the_next_run() -> None
 
 
 def test_a_whole_chart_shows_the_kept_lines_but_no_kept_areas() -> None:
-    area, line = Line("floor", "#808080", fill="#808080"), Line("rope 1", "#0072B2", 2.0, (1.0, 1.0))
+    area, line = ChartLine("floor", "#808080", fill="#808080"), ChartLine("rope 1", "#0072B2", 2.0, (1.0, 1.0))
     now = Chart("t [s]", (area, line), (np.array([0.0, 1.0]), np.zeros(2), np.array([1.0, 2.0])), 2.0)
     before = Chart("t [s]", (area, line), (np.array([0.0, 2.0, 4.0]), np.ones(3), np.array([5.0, 6.0, 7.0])), 5.0)
     both = with_kept(now, before)

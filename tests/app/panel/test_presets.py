@@ -4,8 +4,8 @@ from pathlib import Path
 
 from app.messages import Pause
 from app.panel.history import History, Settings
-from app.scenes.mooring.parameters import Params as MooringParams
-from app.scenes.rope.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
+from app.scenes.rope.parameters import RopeParams
 from app.server.viewer import Viewer
 
 
@@ -18,7 +18,7 @@ def test_a_changed_preset_says_so_and_can_be_loaded_again(lab: Viewer) -> None:
     panel.load(first)
     assert panel.head.preset.value == first
     assert f"{first} (changed)" not in panel.head.preset.options
-    assert panel.params == Params()
+    assert panel.params == RopeParams()
 
 
 def test_a_change_of_the_look_leaves_the_preset_as_it_is(lab: Viewer) -> None:
@@ -58,30 +58,30 @@ def test_a_preset_and_a_change_can_be_undone(lab: Viewer) -> None:
     panel.set("stiffness", 2000.0)
     panel.load("Lab scene: 50 points")
     panel.undo()
-    assert panel.params == Params(stiffness=2000.0)
+    assert panel.params == RopeParams(stiffness=2000.0)
     assert panel.head.preset.value == f"{first} (changed)"
     assert panel.controls["stiffness"].field.value == "2000"
     panel.undo()
-    assert panel.params == Params()
+    assert panel.params == RopeParams()
     panel.undo()
-    assert panel.params == Params()
+    assert panel.params == RopeParams()
 
 
 def test_a_slider_that_is_moved_is_one_change() -> None:
     history = History()
     for stiffness in range(1, 50):
-        history.note(Settings(Params(stiffness=float(stiffness)), "first"), "stiffness")
-    history.note(Settings(Params(mass=3.0), "first"), "mass")
-    assert history.take_last() == Settings(Params(mass=3.0), "first")
-    assert history.take_last() == Settings(Params(stiffness=1.0), "first")
+        history.note(Settings(RopeParams(stiffness=float(stiffness)), "first"), "stiffness")
+    history.note(Settings(RopeParams(mass=3.0), "first"), "mass")
+    assert history.take_last() == Settings(RopeParams(mass=3.0), "first")
+    assert history.take_last() == Settings(RopeParams(stiffness=1.0), "first")
     assert history.take_last() is None
 
 
 def test_each_change_that_begins_a_run_has_a_number_to_which_undo_returns() -> None:
     history = History()
     changes = ("b", True), ("mass", False), ("reset", True), ("b", True)
-    assert [history.note(Settings(Params(), "a"), what, begins=begins) for what, begins in changes] == [2, 2, 3, 4]
-    assert history.note(Settings(Params(), "a"), "b", begins=True) == 4  # the same change
+    assert [history.note(Settings(RopeParams(), "a"), what, begins=begins) for what, begins in changes] == [2, 2, 3, 4]
+    assert history.note(Settings(RopeParams(), "a"), "b", begins=True) == 4  # the same change
     back = [history.take_last() for _ in range(4)]
     assert [settings.run for settings in back if settings is not None] == [3, 2, 2, 1]
-    assert history.note(Settings(Params(), "a"), "c", begins=True) == 5  # no number comes twice
+    assert history.note(Settings(RopeParams(), "a"), "c", begins=True) == 5  # no number comes twice

@@ -110,6 +110,16 @@ def test_a_run_that_begins_again_begins_a_new_recording(filled: Recorder) -> Non
     assert number_of(filled) is None
 
 
+def test_a_run_that_goes_back_while_the_past_is_shown_shows_the_present(filled: Recorder) -> None:
+    filled.follow(snapshot(99, running=False))
+    filled.show_time(40 * INTERVAL)
+    filled.follow(snapshot(99, running=False))
+    assert number_of(filled) == 40
+    filled.follow(snapshot(0, running=False))  # a parameter was changed that begins the scene again
+    assert number_of(filled) is None
+    assert filled.span() == (0.0, 0.0)
+
+
 def test_a_pause_adds_no_frames(filled: Recorder) -> None:
     for later in range(50):
         filled.note(snapshot(99, running=False), 10.0 + later)

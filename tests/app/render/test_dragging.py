@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from app.messages import Command, Grab, Release
+from app.messages import Command, GrabTo, Release
 from app.render.dragging import SurfaceDrag, drag
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
@@ -25,9 +25,10 @@ def test_two_browsers_drag_the_same_surface_by_points_of_their_own() -> None:
     surface.handle(event(2, "end", (1.9, 0.0, 0.0), (1.9, 1.0, 0.0)), POINTS)
     surface.handle(event(1, "end", (0.1, 0.0, 0.0), (0.0, 1.0, 0.0)), POINTS)
     assert posted == [
-        Grab(0, (0.1, 0.0, 0.0), 1), Grab(2, (1.9, 0.0, 0.0), 2), Grab(0, (0.0, 1.0, 0.0), 1), Release(2), Release(1),
+        GrabTo(0, (0.1, 0.0, 0.0), 1), GrabTo(2, (1.9, 0.0, 0.0), 2), GrabTo(0, (0.0, 1.0, 0.0), 1),
+        Release(2), Release(1),
     ]  # fmt: skip
-    assert surface.held == {}
+    assert surface.grabbed == {}
 
 
 def test_a_drag_to_a_place_that_is_not_finite_lets_go() -> None:

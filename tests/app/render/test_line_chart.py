@@ -17,8 +17,8 @@ from app.render.line_chart import (
     SPACE,
     TOP,
     WIDTH,
+    ChartLine,
     Drawing,
-    Line,
     line_chart,
     ticks,
 )
@@ -28,7 +28,7 @@ BASE = PLOT_HEIGHT - BOTTOM
 
 
 def chart(*columns: object, title: str = "x", name: str = "e", fill: str = "", **looks: object) -> Drawing | None:
-    lines = [Line(name, "#ff0000", fill=fill) for _ in columns[1:]]
+    lines = [ChartLine(name, "#ff0000", fill=fill) for _ in columns[1:]]
     return line_chart(title, "t [s]", lines, [np.asarray(column, float) for column in columns], **looks)  # type: ignore
 
 
@@ -74,7 +74,7 @@ def test_an_area_reaches_down_to_the_axis() -> None:
 
 def test_long_names_stay_apart_and_within_the_chart() -> None:
     names = [f"rope {i}: Runge-Kutta 4, 1/1200 s, 40 kN/m" for i in range(1, 7)]
-    drawing = line_chart("E", "t [s]", [Line(name, "red") for name in names], [np.arange(2.0)] * 7)
+    drawing = line_chart("E", "t [s]", [ChartLine(name, "red") for name in names], [np.arange(2.0)] * 7)
     assert drawing is not None
     key = [t for t in ET.fromstring(drawing.svg).iter(f"{SVG}text") if t.text in names]
     places = [(float(t.attrib["x"]), float(t.attrib["y"]), CHARACTER_WIDTH * len(t.text or "")) for t in key]

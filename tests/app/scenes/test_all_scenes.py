@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Release, Reset
+from app.messages import GrabTo, Release, Reset
 from app.scenes import NAMES, scene_named
 from app.scenes.charts import Chart
 from app.server.loop import SimLoop
@@ -46,19 +46,19 @@ def test_arrays_for_files_are_finite_and_have_units(name: str) -> None:
 def test_what_one_browser_holds_no_other_takes_or_releases(name: str, values: dict, held: int, other: int) -> None:
     kind = scene_named(name)
     scene: Any = kind.make(kind.params(**values))
-    scene.handle(Grab(held, (0.0, 0.0, 2.0), client=1))
-    scene.handle(Grab(other, (1.0, 0.0, 2.0), client=2))
+    scene.handle(GrabTo(held, (0.0, 0.0, 2.0), client=1))
+    scene.handle(GrabTo(other, (1.0, 0.0, 2.0), client=2))
     if name != "cloth":
-        scene.handle(Grab(0, (1.0, 0.0, 2.0), client=2))  # the root as a bead
+        scene.handle(GrabTo(0, (1.0, 0.0, 2.0), client=2))  # the root as a bead
     scene.handle(Release(client=2))
     scene.advance(2)
-    assert scene.frame().pull.particle == held
-    assert scene.frame().pull.target[0] < 0.5
+    assert scene.frame().grab.particle == held
+    assert scene.frame().grab.target[0] < 0.5
     assert name == "cloth" or scene.handles.root.at_rest
     scene.handle(Release(client=1))
-    assert scene.frame().pull is None
-    scene.handle(Grab(other, (1.0, 0.0, 2.0), client=2))
-    assert scene.frame().pull.particle == other
+    assert scene.frame().grab is None
+    scene.handle(GrabTo(other, (1.0, 0.0, 2.0), client=2))
+    assert scene.frame().grab.particle == other
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Place, Release
+from app.messages import GrabTo, Place, Release
 from app.panel.head import status_line
-from app.scenes.cloth.parameters import PRESETS, Params
+from app.scenes.cloth.parameters import PRESETS, ClothParams
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
-from app.scenes.cloth.view import View, faces
+from app.scenes.cloth.view import ClothView, faces
 from app.scenes.contract import Measure
 from app.scenes.measures import plotted
 from app.server.loop import SimLoop
 from sim.parameters import check_record
 from sim.validation import DivergenceError
 
-SMALL = Params(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
+SMALL = ClothParams(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
 Loop: Any = SimLoop  # of a scene whose types the tests know
 
 
@@ -29,7 +29,7 @@ def run(scene: ClothScene, seconds: float) -> None:
 
 def marks_of(scene: ClothScene) -> dict[str, str]:
     """The lines under the controls."""
-    return View.marks(object.__new__(View), Loop(scene, paused=True).latest)
+    return ClothView.marks(object.__new__(ClothView), Loop(scene, paused=True).latest)
 
 
 def change(scene: ClothScene, **changes: object) -> None:
@@ -39,7 +39,7 @@ def change(scene: ClothScene, **changes: object) -> None:
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_a_preset_runs_and_is_drawn(preset):
-    scene = ClothScene(check_record(Params, PRESETS[preset]))
+    scene = ClothScene(check_record(ClothParams, PRESETS[preset]))
     start = scene.frame().points
     run(scene, 0.4)
     frame = scene.frame()
@@ -58,17 +58,17 @@ def test_a_dragged_particle_follows_and_is_released():
     index = 7 * 10 + 4
     before = scene.state.x[:, 7, 4].copy()
     target = (float(before[0]), float(before[1]) - 0.4, float(before[2]))
-    scene.handle(Grab(index, target))
+    scene.handle(GrabTo(index, target))
     run(scene, 0.7)
     stiffness = min(scene.params.pull / 0.1, 0.1 * scene.net.mass / scene.step**2)
     stretch = np.linalg.norm(np.array(target) - scene.state.x[:, 7, 4])
-    pull = scene.frame().pull
+    pull = scene.frame().grab
     assert pull is not None
     assert pull.load == pytest.approx(min(1.0, stretch * stiffness / scene.params.pull), rel=1e-4)
     assert scene.state.x[1, 7, 4] < before[1] - 0.2
     scene.handle(Release())
     run(scene, 0.1)
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
 
 
 @pytest.mark.parametrize(("pin", "end"), [("pin a", 0), ("pin b", 1)])
@@ -101,7 +101,7 @@ def test_the_sphere_pushes_the_cloth():
 
 def test_a_sphere_that_is_pulled_through_the_curtain_takes_the_cloth_along():
     """Dragged far beyond the cloth: it moves at its largest speed, and no particle gets into the drawn sphere."""
-    scene = ClothScene(dataclasses.replace(Params(), sphere=True, wind=0.0))
+    scene = ClothScene(dataclasses.replace(ClothParams(), sphere=True, wind=0.0))
     run(scene, 0.3)
     scene.handle(Place("sphere", (0.0, 50.0, 1.2)))
     sphere = before = np.array(scene.frame().sphere)
@@ -176,7 +176,7 @@ def test_one_step_a_frame_is_taken_while_it_takes_longer_than_a_frame_and_droppe
     assert "slower than real time" in status_line(loop.latest)
     assert "Faster: fewer rows and columns" in status_line(loop.latest)
     assert loop.pacer.dropped > 100
-    assert "Newton iterations a step" in View.readout(object.__new__(View), loop.latest)
+    assert "Newton iterations a step" in ClothView.readout(object.__new__(ClothView), loop.latest)
 
 
 def test_the_mesh_has_two_triangles_a_cell_with_the_same_orientation():
@@ -247,7 +247,7 @@ def test_a_change_of_forces_is_booked_as_work_and_not_as_an_error(changes):
 
 def test_a_large_cloth_keeps_its_account_from_when_the_plot_is_opened():
     """The account would cost more than the steps themselves, and the drape would no longer run in real time."""
-    scene = ClothScene(Params(rows=60, cols=60, integrator="symplectic_euler", time_step=1 / 4800))
+    scene = ClothScene(ClothParams(rows=60, cols=60, integrator="symplectic_euler", time_step=1 / 4800))
     scene.advance(20)
     assert scene.state.dissipated == 0.0
     scene.advance(200)
@@ -262,7 +262,7 @@ def test_a_pull_is_as_stiff_as_the_step_allows(step):
     scene = ClothScene(dataclasses.replace(SMALL, time_step=step, pull=3.0))
     for index in (74, 0):  # inside, and at a corner
         mass = scene.net.masses.flat[index]
-        stiffness, damping = scene.pull_spring(index)
+        stiffness, damping = scene.grab_spring(index)
         assert stiffness == pytest.approx(min(3.0 / 0.1, 0.1 * mass / step**2))
         assert damping == pytest.approx(0.5 * math.sqrt(stiffness * mass))
 

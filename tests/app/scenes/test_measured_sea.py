@@ -11,7 +11,7 @@ from app.__main__ import main, make_parser, read_params
 from app.scenes import scene_named
 from app.scenes.radial_sea.report import readout_of
 from app.scenes.square_sea.report import readout
-from app.scenes.square_sea.view import View
+from app.scenes.square_sea.view import SquareSeaView
 from app.server.loop import SimLoop
 from sim.ocean.statistics import expected
 from tests.sim.floating.test_mesh_files import DECK, SIDES, VERTICES, stl
@@ -53,7 +53,7 @@ def test_the_square_sea_takes_a_tile_that_holds_the_file(table):
     assert {"spectrum", "spreading", "hs", "fetch", "wind_direction"} <= kind.hidden(scene.params)
     text = re.sub(r"<[^>]*>", "", str(readout(latest)))
     assert f"Measured, buoy.csv: significant height {HEIGHT:.3g} m, peak period 11.1 s." in text
-    short = re.sub(r"<[^>]*>", "", str(View.figures(None, latest)))  # type: ignore[arg-type]
+    short = re.sub(r"<[^>]*>", "", str(SquareSeaView.figures(None, latest)))  # type: ignore[arg-type]
     assert re.search(rf"File: {HEIGHT:.3g} m, 11\.1 s; the tile holds 100.%\.", short), short
 
 
@@ -62,7 +62,7 @@ def test_a_tile_that_is_given_stays_and_shows_what_it_holds(table):
     assert scene.sea.length == 100.0
     share = expected(scene.sea).significant_height / HEIGHT
     assert share < 0.9
-    assert f"{100 * share:.1f}" in View.figures(None, latest).replace("\xa0", " ")  # type: ignore[arg-type]
+    assert f"{100 * share:.1f}" in SquareSeaView.figures(None, latest).replace("\xa0", " ")  # type: ignore[arg-type]
 
 
 def test_the_sum_of_waves_has_the_height_of_the_file(table):

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Place, Release
+from app.messages import GrabTo, Place, Release
 from app.scenes import scene_named
 from app.scenes.moments import arrays_in
 
@@ -52,12 +52,12 @@ def test_a_kept_state_is_gone_on_from_twice_to_the_last_bit(name: str) -> None:
 def test_what_was_held_is_let_go_of() -> None:
     kind = scene_named("rope")
     scene = kind.make(kind.params(points=6))
-    scene.handle(Grab(4, (0.5, 0.5, 2.0), client=3))
+    scene.handle(GrabTo(4, (0.5, 0.5, 2.0), client=3))
     run(scene, 2, 10)
     kept = scene.keep()
     scene.handle(Release(3))
     scene.resume(kept)
-    assert scene.handles.drag.hold is None  # type: ignore[attr-defined]
+    assert scene.handles.grab.grabbed is None  # type: ignore[attr-defined]
     run(scene, 1, 10)
     assert scene.net.grab is None  # type: ignore[attr-defined]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Place, Release, vector_of
+from app.messages import GrabTo, Place, Release, vector_of
 from app.scenes import scene_named
 from app.scenes.contract import Advice
 from app.scenes.mooring.arrangement import (
@@ -25,10 +25,10 @@ from app.scenes.mooring.arrangement import (
 )
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.line_scene import FADE, MAX_PATH, PATH_INTERVAL
-from app.scenes.mooring.parameters import PRESETS, Params
+from app.scenes.mooring.parameters import PRESETS, MooringParams
 from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_curve
 from app.scenes.mooring.tensions import Tensions
-from app.scenes.mooring.view import BED_ROWS, View, bed_colours
+from app.scenes.mooring.view import BED_ROWS, MooringView, bed_colours
 from app.server.loop import SimLoop
 from sim.mooring import balance, critical_step, interior
 from sim.parameters import Parameter, check_record, parameters_of
@@ -44,7 +44,7 @@ def run(scene: MooringScene, seconds: float) -> None:
 
 
 def test_a_frame_turns_the_body_as_its_state_and_draws_the_watch_circle_about_its_place_of_rest():
-    scene = MooringScene(Params(**SMALL))
+    scene = MooringScene(MooringParams(**SMALL))
     turn = np.array([0.3, -0.2, 0.6])  # a rotation vector [rad] of length 0.7
     scene.state.x[:, scene.system.node_count + 1] = turn
     scene.rest_place = np.array([3.0, -1.0, 0.0])
@@ -54,17 +54,17 @@ def test_a_frame_turns_the_body_as_its_state_and_draws_the_watch_circle_about_it
 
 
 def test_the_mouse_pulls_with_its_largest_force_at_most():
-    scene = MooringScene(Params(**SMALL, pull=0.5))
+    scene = MooringScene(MooringParams(**SMALL, pull=0.5))
     weight = scene.params.density * hull_of(scene.params).volume * 9.81
-    scene.hold = 1, vector_of(scene.body_place() + (1e4, 0.0, 0.0))
-    np.testing.assert_allclose(scene.mouse_pull()[0, :3], [0.5 * weight, 0.0, 0.0], rtol=1e-6, atol=1e-3)
-    scene.hold = 1, vector_of(scene.body_place() + (0.01, 0.0, 0.0))
-    assert 0.0 < scene.mouse_pull()[0, 0] < 0.01 * weight
+    scene.grabbed = 1, vector_of(scene.body_place() + (1e4, 0.0, 0.0))
+    np.testing.assert_allclose(scene.grab_force()[0, :3], [0.5 * weight, 0.0, 0.0], rtol=1e-6, atol=1e-3)
+    scene.grabbed = 1, vector_of(scene.body_place() + (0.01, 0.0, 0.0))
+    assert 0.0 < scene.grab_force()[0, 0] < 0.01 * weight
 
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_every_preset_rests_runs_and_stays_within_its_stable_step(preset):
-    scene = MooringScene(check_record(Params, PRESETS[preset]))
+    scene = MooringScene(check_record(MooringParams, PRESETS[preset]))
     assert scene.step < scene.stability.critical_step
     run(scene, 1.0)
     found = scene.readings()
@@ -73,7 +73,7 @@ def test_every_preset_rests_runs_and_stays_within_its_stable_step(preset):
 
 
 def test_the_rest_is_that_of_the_catenary():
-    scene = MooringScene(Params(wave_height=0.0))
+    scene = MooringScene(MooringParams(wave_height=0.0))
     p, fairlead = scene.params, scene.points[0, -1]
     weight = (p.line_mass - DENSITY * line_types(p)[0].volume) * 9.81
     found = catenary(
@@ -89,10 +89,10 @@ def test_the_rest_is_that_of_the_catenary():
 
 
 def test_without_waves_it_stays_at_rest_and_with_them_the_touchdown_wanders():
-    scene = MooringScene(Params(**SMALL, wave_height=0.0))
+    scene = MooringScene(MooringParams(**SMALL, wave_height=0.0))
     run(scene, 5.0)
     assert scene.most_offset < 1e-3
-    waves = MooringScene(Params(**SMALL, wave_height=6.0, regular=True))
+    waves = MooringScene(MooringParams(**SMALL, wave_height=6.0, regular=True))
     lying = []
     run(waves, FADE)
     for _ in range(40):
@@ -102,7 +102,7 @@ def test_without_waves_it_stays_at_rest_and_with_them_the_touchdown_wanders():
 
 
 def test_the_drawn_water_is_the_water_that_moves_the_lines():
-    params = Params(wave_height=4.0, direction=30.0)
+    params = MooringParams(wave_height=4.0, direction=30.0)
     sea = sea_of(params)
     assert sea is not None
     place, t = np.array([[12.0, -7.0, 0.0]]), 3.3
@@ -133,7 +133,7 @@ def test_slack_is_counted_and_dated():
 
 
 def test_a_snap_is_the_largest_tension_after_slack():
-    scene = MooringScene(check_record(Params, PRESETS["Snap in a storm"]))
+    scene = MooringScene(check_record(MooringParams, PRESETS["Snap in a storm"]))
     static, slack = scene.readings().lines[0].fairlead, False
     while scene.time < 40.0 and scene.tensions.at_fairlead.largest[0] < 4.0 * static:
         scene.advance(8)
@@ -144,7 +144,7 @@ def test_a_snap_is_the_largest_tension_after_slack():
 
 
 def test_dragging_an_anchor_a_fairlead_and_the_body():
-    scene = MooringScene(Params(**SMALL, wave_height=0.0))
+    scene = MooringScene(MooringParams(**SMALL, wave_height=0.0))
     before = scene.readings().lines[0].fairlead
     scene.handle(Place("anchor 1", (-95.0, 5.0, 30.0)))
     run(scene, 14.0)
@@ -157,18 +157,18 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
     scene.handle(Place("fairlead 1", vector_of(scene.body_place() + (0.0, 50.0, 0.0))))
     run(scene, 10.0)
     assert scene.places.fairleads[0] == pytest.approx((0.0, hull_of(scene.params).extents[1, 1], 0.0))
-    scene.handle(Grab(0, (0.0, 20.0, 0.0), client=1))
-    scene.handle(Grab(0, (0.0, -20.0, 0.0), client=2))  # the other browser waits
+    scene.handle(GrabTo(0, (0.0, 20.0, 0.0), client=1))
+    scene.handle(GrabTo(0, (0.0, -20.0, 0.0), client=2))  # the other browser waits
     run(scene, 2.0)
     assert scene.body_place()[1] > 1.0
     scene.handle(Release(client=2))
-    assert scene.frame().pull == (0.0, 20.0, 0.0)
+    assert scene.frame().grab == (0.0, 20.0, 0.0)
     scene.handle(Release(client=1))
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
 
 
 def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed_one():
-    pushed, free = (MooringScene(Params(segments=20, wave_height=0.0, steady_force=f)) for f in (15.0, 0.0))
+    pushed, free = (MooringScene(MooringParams(segments=20, wave_height=0.0, steady_force=f)) for f in (15.0, 0.0))
     offset, force = static_curve(StaticInputs.of(free))
     assert np.interp(0.0, offset, force) == pytest.approx(0.0, abs=400.0)
     assert (np.diff(force) > 0.0).all()
@@ -178,7 +178,7 @@ def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed
 
 
 def test_the_chart_of_the_restoring_force_marks_the_state():
-    scene = MooringScene(Params(**SMALL, plot_restoring=True))
+    scene = MooringScene(MooringParams(**SMALL, plot_restoring=True))
     run(scene, 1.0)
     charts = scene.curves()
     assert charts is not None
@@ -190,9 +190,9 @@ def test_the_chart_of_the_restoring_force_marks_the_state():
 
 
 def test_the_gauge_is_that_of_the_library_and_a_longer_step_diverges():
-    scene = MooringScene(Params(**SMALL))
+    scene = MooringScene(MooringParams(**SMALL))
     assert scene.stability.critical_step == pytest.approx(critical_step(scene.system, "leapfrog"), rel=1e-9)
-    long = MooringScene(Params(**{**SMALL, "time_step": 1.5 * scene.stability.critical_step}))
+    long = MooringScene(MooringParams(**{**SMALL, "time_step": 1.5 * scene.stability.critical_step}))
     with pytest.raises(DivergenceError, match="became unstable"):
         run(long, 60.0)
     kind = scene_named("mooring")
@@ -212,7 +212,7 @@ def test_a_run_that_begins_with_lines_that_are_too_short_blames_them_and_no_step
 
 
 def test_a_checkpoint_goes_on_as_the_run_did():
-    scene = MooringScene(Params(**SMALL))
+    scene = MooringScene(MooringParams(**SMALL))
     run(scene, 1.0)
     kept = scene.keep()
     run(scene, 1.0)
@@ -240,7 +240,7 @@ def test_the_bed_is_darker_and_bluer_with_depth_and_is_lost_towards_the_sides():
     "changed", [{"steady_force": 400.0}, {"density": 900.0}, {"direction": 90.0}, {"length": 99.0}]
 )
 def test_the_restoring_curve_is_that_of_the_rest_now(changed):
-    scene = MooringScene(Params(plot_restoring=True, segments=12, wave_height=0.0))
+    scene = MooringScene(MooringParams(plot_restoring=True, segments=12, wave_height=0.0))
     scene.curves()
     scene.params = dataclasses.replace(scene.params, **changed)
     scene.reset()
@@ -252,17 +252,17 @@ def test_the_restoring_curve_is_that_of_the_rest_now(changed):
 
 
 def test_the_painted_waterline_is_that_of_the_rest():
-    light, heavy = (MooringScene(Params(**SMALL, density=density)) for density in (450.0, 850.0))
-    assert View.shape_of(light.frame()) != View.shape_of(heavy.frame())
-    before = View.shape_of(light.frame())
+    light, heavy = (MooringScene(MooringParams(**SMALL, density=density)) for density in (450.0, 850.0))
+    assert MooringView.shape_of(light.frame()) != MooringView.shape_of(heavy.frame())
+    before = MooringView.shape_of(light.frame())
     light.state.x[2, light.system.node_count] += 0.7  # heave
     light.measure()
     assert light.frame().body[2] != pytest.approx(light.frame().rest[2])
-    assert View.shape_of(light.frame()) == before
+    assert MooringView.shape_of(light.frame()) == before
 
 
 def test_the_path_is_bounded_and_its_last_place_is_that_of_the_body():
-    scene = MooringScene(Params(**SMALL))
+    scene = MooringScene(MooringParams(**SMALL))
     for i in range(1, MAX_PATH + 300):
         scene.state.t = PATH_INTERVAL * i
         scene.state.x[0, scene.system.node_count] = 1e-3 * i
@@ -281,7 +281,7 @@ def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
         raise ConvergenceError("static state of the mooring", "3 N", 40)
 
     monkeypatch.setattr("app.scenes.mooring.line_scene.at_rest", fail)
-    scene = MooringScene(Params(**SMALL))
+    scene = MooringScene(MooringParams(**SMALL))
     assert np.isfinite(scene.frame().points).all()
     with pytest.raises(DivergenceError, match=r"no state of rest .*3 N left.* Change their length"):
         scene.advance(1)
@@ -303,7 +303,7 @@ def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
     ],
 )  # fmt: skip
 def test_light_ropes_and_stiff_lines_rest(changed):
-    assert not MooringScene(Params(**changed)).failure
+    assert not MooringScene(MooringParams(**changed)).failure
 
 
 def anywhere(rng: random.Random, one: Parameter) -> float:
@@ -317,14 +317,14 @@ def an_end(rng: random.Random, one: Parameter) -> float:
     return rng.choice((one.low, one.high))
 
 
-def random_params(rng: random.Random, value: Callable[[random.Random, Parameter], float] = anywhere) -> Params:
+def random_params(rng: random.Random, value: Callable[[random.Random, Parameter], float] = anywhere) -> MooringParams:
     """A mooring inside the sliders."""
     values = {}
-    for name, one in parameters_of(Params).items():
+    for name, one in parameters_of(MooringParams).items():
         if name in STATIC:
             number = value(rng, one)
             values[name] = round(number) if isinstance(one.default, int) else number
-    return Params(**values, body=rng.choice(["buoy", "box"]), floats=rng.random() < 0.5, wave_height=0.0)
+    return MooringParams(**values, body=rng.choice(["buoy", "box"]), floats=rng.random() < 0.5, wave_height=0.0)
 
 
 STATIC = (
@@ -333,7 +333,7 @@ STATIC = (
 )  # fmt: skip
 
 
-def corrections_of(params: Params) -> int:
+def corrections_of(params: MooringParams) -> int:
     """Corrections of the search for rest, which has to find it."""
     with pytest.MonkeyPatch.context() as patch:
         done = []

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.__main__ import main
-from app.messages import Grab, Release
+from app.messages import GrabTo, Release
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted, recording_npz
 from app.scenes.mooring.arrangement import depth_of, extent, has_body, water_of
@@ -16,7 +16,7 @@ from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.live_values import live_values
 from app.scenes.mooring.measures import measures
-from app.scenes.mooring.parameters import Params, hidden
+from app.scenes.mooring.parameters import MooringParams, hidden
 from app.scenes.mooring.report import notes_of
 from app.scenes.mooring.scene import SCENE
 from app.scenes.setups import missing_files, read_file, read_setup_text, write_file
@@ -29,7 +29,7 @@ SHARED = str(FILES / "shared_line.txt")
 
 
 def scene_of(name: str, **values: object) -> FileScene:
-    scene = SCENE.make(Params(moordyn_file=str(FILES / f"{name}.txt"), **{"time_step": 2e-3, **values}))  # type: ignore[arg-type]
+    scene = SCENE.make(MooringParams(moordyn_file=str(FILES / f"{name}.txt"), **{"time_step": 2e-3, **values}))  # type: ignore[arg-type]
     assert isinstance(scene, FileScene)
     return scene
 
@@ -68,7 +68,7 @@ def test_a_line_that_begins_at_the_vessel_is_shown_the_other_way_round(tmp_path)
     text = (FILES / "chain.txt").read_text(encoding="utf-8").replace("1 c 1 2 320.0", "1 c 2 1 320.0")
     path = tmp_path / "turned.txt"
     path.write_text(text, encoding="utf-8")
-    turned = SCENE.make(Params(moordyn_file=str(path), wave_height=0.0))
+    turned = SCENE.make(MooringParams(moordyn_file=str(path), wave_height=0.0))
     there = scene_of("chain", wave_height=0.0)
     assert turned.frame().points == pytest.approx(there.frame().points, abs=1e-3)
     (now, end), (same, other) = (
@@ -100,8 +100,8 @@ def test_the_vessel_moves_as_the_water_does_and_its_points_as_one():
 
 def test_the_mouse_drags_the_vessel_no_farther_than_its_lines_reach():
     scene = scene_of("chain", wave_height=0.0)
-    scene.handle(Grab(0, (-1e4, 0.0, 7.0), 1))
-    scene.handle(Grab(0, (1e4, 0.0, 7.0), 2))  # another browser, which does not hold it
+    scene.handle(GrabTo(0, (-1e4, 0.0, 7.0), 1))
+    scene.handle(GrabTo(0, (1e4, 0.0, 7.0), 2))  # another browser, which does not hold it
     for _ in range(40):
         run_for(scene, 0.5)
     away = scene.body_place() - scene.middle
@@ -149,7 +149,7 @@ def test_water_numbers_and_texts_are_those_of_the_file():
     assert scene.arrays()["x_1"][0].shape == (16, 3)
     assert {"lines", "depth", "axial_stiffness", "size", "handles"} <= hidden(p)
     assert "follow" not in hidden(p)
-    assert "follow" in hidden(Params())
+    assert "follow" in hidden(MooringParams())
     from types import SimpleNamespace
 
     snapshot = SimpleNamespace(params=p, frame=scene.frame(), readings=scene.readings())
@@ -165,7 +165,7 @@ def test_a_file_without_coupled_points_has_no_vessel(tmp_path):
     text = (FILES / "stiff_cable.txt").read_text(encoding="utf-8").replace("Coupled", "Fixed")
     path = tmp_path / "hanging.txt"
     path.write_text(text, encoding="utf-8")
-    scene = SCENE.make(Params(moordyn_file=str(path), time_step=2e-4, current=0.5))
+    scene = SCENE.make(MooringParams(moordyn_file=str(path), time_step=2e-4, current=0.5))
     assert not has_body(scene.params)
     scene.advance(400)
     assert scene.readings().most_offset == 0.0
@@ -174,7 +174,7 @@ def test_a_file_without_coupled_points_has_no_vessel(tmp_path):
 
 
 def test_a_setup_holds_the_name_of_the_file_only():
-    params = Params(moordyn_file="/home/anna/deck.dat", wave_height=1.0)
+    params = MooringParams(moordyn_file="/home/anna/deck.dat", wave_height=1.0)
     content = json.loads(write_file(SCENE, params))
     assert content["mooring"] == "deck.dat"
     assert content["version"] == 2
@@ -189,7 +189,7 @@ def test_recording_and_replay_hold_the_name_of_the_file_and_no_folder(tmp_path):
     folder.mkdir()
     path = folder / "deck.txt"
     path.write_text((FILES / "turned_body.txt").read_text(encoding="utf-8"), encoding="utf-8")
-    loop, recorder = SimLoop(SCENE.make(Params(moordyn_file=str(path), time_step=1e-3))), Recorder(SCENE.packing)
+    loop, recorder = SimLoop(SCENE.make(MooringParams(moordyn_file=str(path), time_step=1e-3))), Recorder(SCENE.packing)
     for i in range(4):
         loop.tick(1 / 25)
         recorder.note(loop.latest, i / 25)

@@ -13,7 +13,7 @@ from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.live_values import live_values
 from app.scenes.mooring.measures import measures
-from app.scenes.mooring.parameters import Params
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.restoring import force_of_lines
 from app.scenes.mooring.tensions import Tensions
 from sim.mooring import critical_step
@@ -25,7 +25,7 @@ PARAMS: dict[str, Any] = {"segments": 12, "lines": 2, "steady_force": 15.0, "tim
 @pytest.fixture(scope="module")
 def scene() -> MooringScene:
     """Two lines, pushed away from the first anchor: all four end tensions are different."""
-    return MooringScene(Params(**PARAMS))
+    return MooringScene(MooringParams(**PARAMS))
 
 
 def snapshot_of(scene: MooringScene) -> Any:
@@ -139,7 +139,7 @@ def test_rows_of_the_plots_are_both_ends_in_kilonewtons(scene):
 
 
 def test_offset_is_level_and_from_the_place_of_rest(scene):
-    moved = MooringScene(Params(**PARAMS))
+    moved = MooringScene(MooringParams(**PARAMS))
     moved.state.x[:, moved.system.node_count] += (3.0, 4.0, 12.0)
     moved.measure()
     assert moved.readings().offset == pytest.approx(5.0)
@@ -149,7 +149,7 @@ def test_offset_is_level_and_from_the_place_of_rest(scene):
 
 
 def test_waves_and_current_begin_smoothly():
-    scene = MooringScene(Params(**{**PARAMS, "wave_height": 3.0, "current": 0.8, "regular": True}))
+    scene = MooringScene(MooringParams(**{**PARAMS, "wave_height": 3.0, "current": 0.8, "regular": True}))
     fades = []
     for t in (0.0, 0.25 * FADE, 0.5 * FADE, FADE, 3.0 * FADE):
         scene.state.t = t
@@ -167,7 +167,7 @@ def test_waves_and_current_begin_smoothly():
 
 @pytest.mark.parametrize("lines", [1, 3, 4])
 def test_anchors_stand_evenly_about_the_body_the_first_up_wave(lines):
-    params = Params(lines=lines, direction=30.0)
+    params = MooringParams(lines=lines, direction=30.0)
     places = first_places(params)
     assert bearings(params)[0] == pytest.approx(math.radians(210.0))
     assert np.diff(bearings(params)) == pytest.approx(np.full(lines - 1, 2.0 * math.pi / lines))
@@ -177,7 +177,7 @@ def test_anchors_stand_evenly_about_the_body_the_first_up_wave(lines):
 
 
 def test_the_part_with_floats_lifts_by_its_share():
-    params = Params(floats=True, lift=300.0)
+    params = MooringParams(floats=True, lift=300.0)
     _, lifted = line_types(params)
     assert (DENSITY * lifted.volume - lifted.mass) * GRAVITY == pytest.approx(300.0)
     parts = sections(params)

@@ -14,7 +14,7 @@ from app.scenes.contract import Advice
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
 from app.scenes.mooring.line_scene import NO_REST, LineScene
-from app.scenes.mooring.parameters import PRESETS, Params
+from app.scenes.mooring.parameters import PRESETS, MooringParams
 from app.scenes.mooring.report import figures_of, marks_of, notes_of
 from app.scenes.mooring.scene import advice, remedy, scene_of, warnings
 from app.scenes.mooring.start_check import MAX_REST_STRETCH, rounded_up
@@ -28,7 +28,7 @@ FEW: dict[str, Any] = {"segments": 12, "wave_height": 0.0}
 
 
 def scene_with(**values: Any) -> LineScene:
-    return scene_of(check_record(Params, {**FEW, **values}))
+    return scene_of(check_record(MooringParams, {**FEW, **values}))
 
 
 def snapshot_of(scene: LineScene) -> Any:
@@ -49,7 +49,7 @@ def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> str:
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_no_preset_has_a_fault(preset):
-    scene = scene_of(check_record(Params, PRESETS[preset]))
+    scene = scene_of(check_record(MooringParams, PRESETS[preset]))
     assert scene.fault is None
     assert warnings(scene) == []
 
@@ -137,7 +137,7 @@ def test_a_shorter_step_is_advised_only_if_the_start_is_not_at_fault(monkeypatch
 
 
 def test_a_fault_is_that_of_the_place_of_a_dragged_anchor():
-    scene = MooringScene(check_record(Params, {**FEW, "lines": 1}))
+    scene = MooringScene(check_record(MooringParams, {**FEW, "lines": 1}))
     scene.places = scene.places._replace(anchors=((-140.0, 0.0, -40.0),))
     scene.change_forces(dataclasses.replace(scene.params, axial_stiffness=6e7))
     assert scene.fault is not None
@@ -145,10 +145,10 @@ def test_a_fault_is_that_of_the_place_of_a_dragged_anchor():
 
 
 def test_lines_and_points_of_a_file(tmp_path):
-    plain = FileScene(Params(moordyn_file=str(FILES / "chain.txt"), wave_height=0.0, time_step=2e-3))
+    plain = FileScene(MooringParams(moordyn_file=str(FILES / "chain.txt"), wave_height=0.0, time_step=2e-3))
     assert warnings(plain) == []
     short = edited(tmp_path, "chain", ("1 c 1 2 320.0", "1 c 1 2 120.0"))
-    scene = FileScene(Params(moordyn_file=short, wave_height=0.0, time_step=1e-3))
+    scene = FileScene(MooringParams(moordyn_file=short, wave_height=0.0, time_step=1e-3))
     first, last = (point.position for point in scene.file.system.points)
     way = rounded_up(math.dist(first, last))
     said = f"Line 1 of 120 m cannot reach from point 1 to point 2: at least {way:g} m."
@@ -162,7 +162,7 @@ def test_lines_and_points_of_a_file(tmp_path):
 
 def test_fixed_points_above_the_bed_and_the_water_are_said(tmp_path):
     hung = edited(tmp_path, "stiff_cable", ("Coupled", "Fixed"))
-    scene = FileScene(Params(moordyn_file=hung, time_step=2e-4))
+    scene = FileScene(MooringParams(moordyn_file=hung, time_step=2e-4))
     heights = [point.position[2] + scene.system.depth for point in scene.file.system.points if point.kind == "fixed"]
     raised = [h for h in heights if h > 1e-3 * scene.system.depth]
     found = warnings(scene)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from app.__main__ import with_mooring
-from app.messages import Grab, Place, Release, RestartStatistics
+from app.messages import GrabTo, Place, Release, RestartStatistics
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
 from app.scenes.mooring.measures import measures
-from app.scenes.mooring.parameters import PRESETS, Params, hidden
+from app.scenes.mooring.parameters import PRESETS, MooringParams, hidden
 from app.scenes.mooring.report import figures_of, notes_of, tension_tables
 from app.scenes.mooring.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
 from sim.parameters import check_record
@@ -43,7 +43,7 @@ def test_running_statistics_are_those_of_all_numbers_by_their_times():
 
 
 def test_the_scene_has_the_statistics_of_both_ends_of_each_line():
-    scene = MooringScene(Params(**FEW))
+    scene = MooringScene(MooringParams(**FEW))
     samples = [scene.tension[:, [-1, 0]]]
     for _ in range(360):
         scene.advance(1)
@@ -85,12 +85,12 @@ def test_a_drag_and_three_periods_after_it_are_left_out_and_said_apart():
 @pytest.mark.parametrize("drag", ["body", "anchor", "vessel"])
 def test_what_the_mouse_does_leaves_the_numbers_as_they_are(drag):
     if drag == "vessel":
-        scene: Any = FileScene(Params(moordyn_file=str(FILES / "shared_line.txt"), time_step=4e-3, **WAVES))
+        scene: Any = FileScene(MooringParams(moordyn_file=str(FILES / "shared_line.txt"), time_step=4e-3, **WAVES))
     else:
-        scene = MooringScene(Params(**FEW))
+        scene = MooringScene(MooringParams(**FEW))
     scene.advance(240)
     before = scene.readings()
-    scene.handle(Place("anchor 1", (-82.0, 0.0, 0.0)) if drag == "anchor" else Grab(0, (8.0, 0.0, 0.0), 1))
+    scene.handle(Place("anchor 1", (-82.0, 0.0, 0.0)) if drag == "anchor" else GrabTo(0, (8.0, 0.0, 0.0), 1))
     scene.advance(480)
     during = scene.readings()
     assert not during.counts
@@ -115,7 +115,7 @@ WAVES: dict[str, Any] = {"wave_height": 0.5, "wave_period": PERIOD}
 
 
 def test_the_statistics_begin_again_at_once():
-    scene = MooringScene(Params(**FEW))
+    scene = MooringScene(MooringParams(**FEW))
     scene.advance(240)
     row = scene.take_plot_rows()[-1]
     scene.handle(RestartStatistics())
@@ -132,7 +132,7 @@ def test_the_statistics_begin_again_at_once():
 
 
 def test_the_use_is_of_the_breaking_load_and_without_one_there_is_none():
-    scene = MooringScene(Params(**FEW, breaking_load=1000.0))
+    scene = MooringScene(MooringParams(**FEW, breaking_load=1000.0))
     largest = max(line.at_fairlead.largest for line in scene.readings().lines)
     shown = snapshot_of(scene)
     assert "<th>use<br>%</th>" in str(tension_tables(shown))
@@ -147,14 +147,14 @@ def test_the_use_is_of_the_breaking_load_and_without_one_there_is_none():
 
 def test_a_file_has_no_breaking_load_until_one_is_set():
     path = FILES / "chain.txt"
-    assert with_mooring(Params(), path, ()).breaking_load == 0.0
-    assert with_mooring(Params(breaking_load=5000.0), path, ("breaking_load",)).breaking_load == 5000.0
-    assert "breaking_load" not in hidden(Params(moordyn_file=str(path)))
+    assert with_mooring(MooringParams(), path, ()).breaking_load == 0.0
+    assert with_mooring(MooringParams(breaking_load=5000.0), path, ("breaking_load",)).breaking_load == 5000.0
+    assert "breaking_load" not in hidden(MooringParams(moordyn_file=str(path)))
 
 
 @pytest.mark.parametrize("preset", PRESETS)
 def test_no_preset_begins_near_its_breaking_load(preset):
-    params = check_record(Params, PRESETS[preset])
+    params = check_record(MooringParams, PRESETS[preset])
     scene = MooringScene(params)
     largest = max(line.fairlead for line in scene.readings().lines)
     assert params.breaking_load == 0.0 or largest < 0.2 * 1e3 * params.breaking_load

@@ -5,7 +5,7 @@ import pytest
 
 from app.formats.surface_fields import pack_fields, set_surface_fields
 from app.scenes.packed_surface import DISPLACEMENT_STEP, MAX_SENT_STEP, SentSurface
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SeaFrame, SquareSeaScene, pack_frame, unpack_frame
 
 SIDE = 64
@@ -13,7 +13,7 @@ SIDE = 64
 
 @pytest.fixture(scope="module")
 def frame() -> SeaFrame:
-    scene = SquareSeaScene(Params(size="64", mesh="64", length=100.0))
+    scene = SquareSeaScene(SquareSeaParams(size="64", mesh="64", length=100.0))
     scene.advance(100)
     return scene.frame()
 

@@ -9,7 +9,7 @@ import pytest
 
 from app.commands.run import run_to_file
 from app.formats import formatting
-from app.messages import Grab, Place, Release
+from app.messages import GrabTo, Place, Release
 from app.render.html import ERROR_COLOUR
 from app.render.line_chart import line_chart
 from app.scenes.contract import FRAME_INTERVAL
@@ -17,10 +17,10 @@ from app.scenes.race.charts import MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
 from app.scenes.race.html import results_table
 from app.scenes.race.measures import measures
-from app.scenes.race.parameters import PRESETS, Params, hidden, offset_of
+from app.scenes.race.parameters import PRESETS, RaceParams, hidden, offset_of
 from app.scenes.race.scene import SCENE, RaceScene, compile_gauge
-from app.scenes.race.view import LABEL_SHARE, SHOWN_ASPECT, View, label_heights, shown_height
-from app.scenes.rope.parameters import Params as RopeParams
+from app.scenes.race.view import LABEL_SHARE, SHOWN_ASPECT, RaceView, label_heights, shown_height
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.scenes.springs.methods import method_name
 from app.scenes.springs.rope_parameters import ROOT, build_rope
@@ -45,7 +45,7 @@ ALIKE = {"integrator": "leapfrog", "integrator_3": "symplectic_euler", "time_ste
 
 def race(**changes) -> Any:
     """A race of ropes at one step."""
-    return RaceOf(Params(**{**ALIKE, **changes}))
+    return RaceOf(RaceParams(**{**ALIKE, **changes}))
 
 
 def change(scene: RaceScene, **changes: object) -> None:
@@ -61,7 +61,7 @@ def run(scene: RaceScene, seconds: float) -> None:
 
 
 def raced(preset: str, seconds: float, **others) -> Any:
-    scene = RaceOf(dataclasses.replace(check_record(Params, PRESETS[preset]), **others))
+    scene = RaceOf(dataclasses.replace(check_record(RaceParams, PRESETS[preset]), **others))
     run(scene, seconds)
     return scene
 
@@ -111,7 +111,7 @@ def test_a_rope_races_as_it_would_alone():
 @pytest.mark.parametrize("damping", [7.0, 0.0])
 def test_the_reference_run_is_as_accurate_as_its_separation_says(damping):
     """Against an eighth-order method at a tolerance a thousand times finer."""
-    params = Params(damping=damping, drag=damping / 7.0, floor=False)
+    params = RaceParams(damping=damping, drag=damping / 7.0, floor=False)
     net = build_rope(params)
     reference = ReferenceRun(net, params.length)
     truth = simulate(net, "dop853", duration=4.0, frames=241, rtol=1e-13, atol=1e-15)
@@ -245,7 +245,7 @@ def test_every_parameter_that_starts_the_race_again_says_so():
     """The parameters on which the ropes are compared."""
     named = {f"{what}_{number}" for what in ("integrator", "step") for number in range(2, 7)}
     first = {"ropes", "points", "length", "units", "integrator", "time_step", "race_steps", "stiffness_ratio"}
-    declared = parameters_of(Params).items()
+    declared = parameters_of(RaceParams).items()
     assert {name for name, parameter in declared if parameter.affects == "start"} == first | named
 
 
@@ -291,9 +291,9 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
     scene = race(ropes=3, integrator="rk4", integrator_2="rk4", integrator_3="rk4", spacing=0.5)
     run(scene, 3.0)
     bead = scene.frame().ropes[2, 6]
-    scene.handle(Grab(2 * 10 + 6, (bead[0] + 0.6, bead[1] + 0.4, bead[2])))
+    scene.handle(GrabTo(2 * 10 + 6, (bead[0] + 0.6, bead[1] + 0.4, bead[2])))
     run(scene, 0.5)
-    assert scene.frame().pull.particle == 26
+    assert scene.frame().grab.particle == 26
     xs = [entrant.state.x for entrant in scene.race.entrants]
     np.testing.assert_array_equal(xs[0], xs[1])
     np.testing.assert_array_equal(xs[0], xs[2])
@@ -301,7 +301,7 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
     assert scene.frame().ropes[2, 6, 1] > bead[1] + 0.1
     assert scene.readings().results[0].error < 1e-3
     scene.handle(Release())
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
 
 
 @pytest.mark.parametrize(
@@ -309,20 +309,20 @@ def test_a_drag_of_one_rope_pulls_all_alike_and_the_reference_run_too():
 )
 def test_the_first_view_shows_the_whole_fall_of_all_ropes_and_their_labels(changes):
     """The ropes of the reference runs: one that gains energy by its method may leave the picture."""
-    params = check_record(Params, changes)
+    params = check_record(RaceParams, changes)
     scene = RaceOf(params)
     corners = [scene.frame().ropes.reshape(-1, 3)]
     for _ in range(30):
         run(scene, 0.1)
         corners.append(scene.frame().references.reshape(-1, 3))
-    position, target = np.array(View.first_view(object.__new__(View), params))
+    position, target = np.array(RaceView.first_view(object.__new__(RaceView), params))
     ahead = (target - position) / np.linalg.norm(target - position)
     right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
     row = LABEL_SHARE * shown_height(params)
     for number, height in enumerate(label_heights(params.ropes)):
         corners.append([(0.0, offset_of(params, number), ROOT[2] + row * (height + 1.0))])
     seen = np.concatenate(corners) - position
-    reach = np.tan(0.5 * View.FIELD_OF_VIEW) * (seen @ ahead)
+    reach = np.tan(0.5 * RaceView.FIELD_OF_VIEW) * (seen @ ahead)
     assert (abs(seen @ right) < SHOWN_ASPECT * reach).all()
     assert (abs(seen @ np.cross(right, ahead)) < reach).all()
 
@@ -334,18 +334,18 @@ def test_no_two_labels_of_a_side_have_one_height(count, rows):
 
 
 def test_labels_say_what_differs():
-    assert RaceOf(Params()).frame().labels == (
+    assert RaceOf(RaceParams()).frame().labels == (
         "1: explicit Euler, 1/240 s",
         "2: Runge-Kutta 4, 1/60 s",
         "3: leapfrog, 1/240 s",
     )
     assert raced("RK4 at the same values", 0.0).frame().labels[:2] == ("1: 160 N/m", "2: 400 N/m")
-    assert RaceOf(Params(ropes=1)).frame().labels == ("1: explicit Euler",)
+    assert RaceOf(RaceParams(ropes=1)).frame().labels == ("1: explicit Euler",)
 
 
 def test_all_ropes_look_equally_large_from_the_front():
-    params = Params(ropes=6)
-    position, target = np.array(View.first_view(object.__new__(View), params))
+    params = RaceParams(ropes=6)
+    position, target = np.array(RaceView.first_view(object.__new__(RaceView), params))
     ahead = (target - position) / np.linalg.norm(target - position)
     depths = [(np.array([0.0, offset_of(params, number), ROOT[2]]) - position) @ ahead for number in range(6)]
     assert max(depths) / min(depths) < 1.05
@@ -381,10 +381,10 @@ def test_a_long_race_keeps_fewer_rows_but_those_of_its_start():
 
 
 @pytest.mark.parametrize(
-    "name", [name for name, parameter in parameters_of(Params).items() if parameter.group in ("Main", "Time")]
+    "name", [name for name, parameter in parameters_of(RaceParams).items() if parameter.group in ("Main", "Time")]
 )
 def test_both_ends_of_every_race_parameter_survive(name):
-    parameter = parameters_of(Params)[name]
+    parameter = parameters_of(RaceParams)[name]
     ends = parameter.choices or ((False, True) if parameter.kind is bool else (parameter.low, parameter.high))
     for value in ends:
         scene = race(**{name: value if parameter.choices else parameter.kind(value)})
@@ -396,11 +396,11 @@ def test_both_ends_of_every_race_parameter_survive(name):
 
 
 def test_parameters_that_mean_nothing_are_hidden():
-    three = hidden(Params())
+    three = hidden(RaceParams())
     assert {"integrator_4", "step_2", "axial_stiffness"} <= three
     assert not {"integrator_3", "plot_errors", "stiffness_ratio"} & three
-    assert "step_2" not in hidden(Params(race_steps="own steps"))
-    assert {"race_steps", "stiffness_ratio", "spacing", "integrator_2"} <= hidden(Params(ropes=1))
+    assert "step_2" not in hidden(RaceParams(race_steps="own steps"))
+    assert {"race_steps", "stiffness_ratio", "spacing", "integrator_2"} <= hidden(RaceParams(ropes=1))
 
 
 def test_a_race_runs_to_a_file(tmp_path, capsys):
@@ -438,7 +438,7 @@ def test_a_sweep_records_each_rope_of_a_race():
 
 
 def test_the_gauge_is_compiled_ahead_as_it_is_called():
-    compile_gauge(RaceOf(Params()).race.entrants[0].net)
+    compile_gauge(RaceOf(RaceParams()).race.entrants[0].net)
 
 
 def test_all_roots_swing_as_the_root_of_a_rope_does():
@@ -453,7 +453,7 @@ def test_all_roots_swing_as_the_root_of_a_rope_does():
 
 
 def test_the_curves_of_a_rope_that_has_diverged_end_and_a_cross_says_when():
-    scene = SCENE.make(check_record(Params, {**PRESETS["Shaken at the root"], "time_step": 1 / 60}))
+    scene = SCENE.make(check_record(RaceParams, {**PRESETS["Shaken at the root"], "time_step": 1 / 60}))
     while not scene.race.entrants[0].failure:
         scene.advance(1)
     scene.advance(20)

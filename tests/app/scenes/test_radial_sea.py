@@ -15,11 +15,11 @@ import trimesh
 
 from app.__main__ import main
 from app.formats.formatting import fixed
-from app.messages import Grab, Place, Release
+from app.messages import GrabTo, Place, Release
 from app.scenes.contract import AnyScene
 from app.scenes.radial_sea.bodies import BED_DEPTH, BODY_KINDS, LINE_REACH, place_of
 from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
-from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden
+from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden
 from app.scenes.radial_sea.report import forces_html, marks_of
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
@@ -34,8 +34,8 @@ from sim.parameters import check_record, clamp_value, effect_of_change, paramete
 CALM = {"waves": False, "rig": False, "ripples": False}
 
 
-def with_parameters(**changes: Any) -> Params:
-    return check_record(Params, changes)
+def with_parameters(**changes: Any) -> RadialSeaParams:
+    return check_record(RadialSeaParams, changes)
 
 
 def run(scene: RadialSeaScene, seconds: float) -> RadialSeaScene:
@@ -75,7 +75,7 @@ def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:
 
 
 def test_theory_is_that_of_the_hulls() -> None:
-    params = Params(spill="layer", density=700.0, size=2.0)
+    params = RadialSeaParams(spill="layer", density=700.0, size=2.0)
     scene, column = RadialSeaScene(params), column_of(params)
     for reading in scene.readings().bodies:
         hull = Hull.of_shape(next(k.shape for k in BODY_KINDS if k.name == reading.kind), 2.0)
@@ -103,14 +103,14 @@ def test_a_grabbed_buoy_goes_under_and_comes_back() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
     rest = scene.bodies.fleet.position[0].copy()
     for _ in range(60):
-        scene.handle(Grab(0, (rest[0], rest[1], rest[2] - 0.8)))
+        scene.handle(GrabTo(0, (rest[0], rest[1], rest[2] - 0.8)))
         scene.advance(2)
     assert scene.bodies.fleet.position[0, 2] < rest[2] - 0.4
-    assert scene.frame().pulls
+    assert scene.frame().grabs
     scene.handle(Release())
     run(scene, 40.0)
     assert scene.bodies.fleet.position[0, 2] == pytest.approx(rest[2], abs=1e-3)
-    assert scene.frame().pulls == ()
+    assert scene.frame().grabs == ()
 
 
 def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
@@ -125,27 +125,27 @@ def test_a_thrown_box_flies_and_its_mooring_brings_it_back() -> None:
 
 def test_a_body_held_by_one_browser_is_not_taken_over_by_another() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
-    scene.handle(Grab(0, (1.0, 0.0, 0.0), client=1))
-    scene.handle(Grab(0, (9.0, 0.0, 0.0), client=2))
-    scene.handle(Grab(1, (2.0, 0.0, 0.0), client=2))
-    assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
-    scene.handle(Grab(0, (1.5, 0.0, 0.0), client=1))  # its own body goes on being dragged
-    assert scene.frame().pulls[0][1] == (1.5, 0.0, 0.0)
+    scene.handle(GrabTo(0, (1.0, 0.0, 0.0), client=1))
+    scene.handle(GrabTo(0, (9.0, 0.0, 0.0), client=2))
+    scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
+    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
+    scene.handle(GrabTo(0, (1.5, 0.0, 0.0), client=1))  # its own body goes on being dragged
+    assert scene.frame().grabs[0][1] == (1.5, 0.0, 0.0)
 
 
 def test_a_browser_lets_go_only_of_what_it_holds() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
-    scene.handle(Grab(0, (1.0, 0.0, 0.0), client=1))
-    scene.handle(Grab(1, (2.0, 0.0, 0.0), client=2))
+    scene.handle(GrabTo(0, (1.0, 0.0, 0.0), client=1))
+    scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
     scene.handle(Release(client=2))
-    assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0)]
+    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0)]
     assert scene.bodies.fleet.pull_limit[0] > 0.0
     assert scene.bodies.fleet.pull_limit[1] == 0.0
     scene.handle(Release(client=3))
-    assert len(scene.frame().pulls) == 1
-    scene.handle(Grab(1, (2.0, 0.0, 0.0), client=2))  # free again
-    scene.handle(Grab(2, (3.0, 0.0, 0.0), client=2))  # and left for another one
-    assert [target for _, target in scene.frame().pulls] == [(1.0, 0.0, 0.0), (3.0, 0.0, 0.0)]
+    assert len(scene.frame().grabs) == 1
+    scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))  # free again
+    scene.handle(GrabTo(2, (3.0, 0.0, 0.0), client=2))  # and left for another one
+    assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0), (3.0, 0.0, 0.0)]
     assert scene.bodies.fleet.pull_limit[1] == 0.0
 
 
@@ -184,7 +184,7 @@ def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:
     scene.bodies.fleet.position[0, 0] += 20.0
     scene.advance(2)
     assert scene.bodies.fleet.mooring[0, 0] < 0.0
-    scene.handle(Grab(1, (2.0, 0.0, 0.0), client=1))
+    scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=1))
     scene.change_forces(dataclasses.replace(scene.params, mooring=False))
     scene.advance(2)
     assert not scene.bodies.fleet.mooring.any()
@@ -193,17 +193,17 @@ def test_a_mooring_that_is_taken_off_pulls_no_longer() -> None:
 
 
 def test_the_other_surface_is_computed_only_when_it_is_asked_for() -> None:
-    scene = run(RadialSeaScene(Params()), 0.2)
+    scene = run(RadialSeaScene(RadialSeaParams()), 0.2)
     scene.frame()
     assert scene.tile is None
     assert scene.readings().surfaces == {}
-    scene.params = Params(compare=True)  # as the loop does: it affects the look only
+    scene.params = RadialSeaParams(compare=True)  # as the loop does: it affects the look only
     scene.frame()
     assert set(scene.readings().surfaces) == {"sum", "fft"}
 
 
 def test_a_change_of_the_grid_is_a_change_of_look() -> None:
-    scene = run(RadialSeaScene(Params()), 0.2)
+    scene = run(RadialSeaScene(RadialSeaParams()), 0.2)
     scene.frame()
     for changes in ({"rings": 60}, {"spokes": 40}, {"ring_law": "power"}, {"centre": "camera"}):
         params = dataclasses.replace(scene.params, **changes)
@@ -242,16 +242,16 @@ def test_a_model_is_as_wide_as_the_hull_that_it_stands_for(kind) -> None:
 
 
 def test_a_nonsense_grab_is_no_grab() -> None:
-    scene = RadialSeaScene(Params())
-    scene.handle(Grab(10**6, (0.0, 0.0, 0.0)))
-    scene.handle(Grab(-1, (0.0, 0.0, 0.0)))
+    scene = RadialSeaScene(RadialSeaParams())
+    scene.handle(GrabTo(10**6, (0.0, 0.0, 0.0)))
+    scene.handle(GrabTo(-1, (0.0, 0.0, 0.0)))
     scene.advance(2)
-    assert scene.frame().pulls == ()
+    assert scene.frame().grabs == ()
 
 
 @pytest.mark.parametrize("name", list(PRESETS))
 def test_each_preset_runs_and_its_frame_is_finite(name: str) -> None:
-    scene = RadialSeaScene(check_record(Params, PRESETS[name]))
+    scene = RadialSeaScene(check_record(RadialSeaParams, PRESETS[name]))
     run(scene, 4.0)
     frame = scene.frame()
     for array in (frame.surface.vertices, frame.surface.slope, frame.foam, frame.positions, frame.rotations):
@@ -265,19 +265,25 @@ def test_each_preset_runs_and_its_frame_is_finite(name: str) -> None:
 
 
 def test_hostile_values_are_clamped_to_what_runs() -> None:
-    def clamp(params: Params) -> Params:
-        return Params(**{n: clamp_value(k, getattr(params, n)) for n, k in parameters_of(Params).items()})  # type: ignore[arg-type]
+    def clamp(params: RadialSeaParams) -> RadialSeaParams:
+        return RadialSeaParams(
+            **{n: clamp_value(k, getattr(params, n)) for n, k in parameters_of(RadialSeaParams).items()}
+        )  # type: ignore[arg-type]
 
     low = clamp(
         dataclasses.replace(
-            Params(), **{n: -1e30 for n, k in parameters_of(Params()).items() if k.kind in (int, float)}
+            RadialSeaParams(),
+            **{n: -1e30 for n, k in parameters_of(RadialSeaParams()).items() if k.kind in (int, float)},
         )
     )
     high = clamp(
-        dataclasses.replace(Params(), **{n: 1e30 for n, k in parameters_of(Params()).items() if k.kind in (int, float)})
+        dataclasses.replace(
+            RadialSeaParams(),
+            **{n: 1e30 for n, k in parameters_of(RadialSeaParams()).items() if k.kind in (int, float)},
+        )
     )
-    odd = clamp(dataclasses.replace(Params(), oil="; rm -rf", surface=7, wind_speed=math.nan, waves="yes"))  # type: ignore[arg-type]
-    assert odd == Params()
+    odd = clamp(dataclasses.replace(RadialSeaParams(), oil="; rm -rf", surface=7, wind_speed=math.nan, waves="yes"))  # type: ignore[arg-type]
+    assert odd == RadialSeaParams()
     for params in (low, dataclasses.replace(high, bodies=20, rings=40, spokes=40, wave_count=32)):
         scene = RadialSeaScene(params)
         run(scene, 20 * params.time_step)
@@ -285,14 +291,14 @@ def test_hostile_values_are_clamped_to_what_runs() -> None:
 
 
 def test_parameters_change_under_way_without_a_jump_of_the_bodies() -> None:
-    scene = run(RadialSeaScene(Params()), 2.0)
+    scene = run(RadialSeaScene(RadialSeaParams()), 2.0)
     changes = [
         {"wind_speed": 12.0}, {"spill": "layer"}, {"spill_hours": 6.0, "spread": True}, {"oil": "Maya"},
         {"surface": "fft"}, {"surface": "sum"}, {"density": 700.0}, {"fire": True, "jet": True}, {"fire_power": 50.0},
         {"rings": 60}, {"choppiness": 0.3}, {"film": True}, {"jet": False}, {"spill": "mixed"}, {"waves": False},
         {"centre": "camera"},
     ]  # fmt: skip
-    params = Params()
+    params = RadialSeaParams()
     for change in changes:
         before = scene.bodies.fleet.position.copy()
         params = dataclasses.replace(params, **change)
@@ -303,14 +309,14 @@ def test_parameters_change_under_way_without_a_jump_of_the_bodies() -> None:
 
 
 def test_the_surface_drawn_is_the_one_the_bodies_float_on() -> None:
-    scene = run(RadialSeaScene(Params(ripples=False)), 3.0)
+    scene = run(RadialSeaScene(RadialSeaParams(ripples=False)), 3.0)
     vertices = scene.frame().surface.vertices[: 4 * 128]
     at = scene.sea.at(vertices[:, :2], scene.time)
     np.testing.assert_allclose(at.height, vertices[:, 2], atol=2e-5)
 
 
 def test_the_camera_takes_the_rings_along() -> None:
-    scene = run(RadialSeaScene(Params(centre="camera")), 0.2)
+    scene = run(RadialSeaScene(RadialSeaParams(centre="camera")), 0.2)
     scene.handle(Place("camera", (30.0, -12.0, 4.0)))
     scene.advance(1)
     vertices = scene.frame().surface.vertices
@@ -318,9 +324,9 @@ def test_the_camera_takes_the_rings_along() -> None:
 
 
 def test_bodies_that_bob_make_rings_and_bodies_at_rest_make_none() -> None:
-    still = run(RadialSeaScene(Params(waves=False, rig=False)), 8.0)
+    still = run(RadialSeaScene(RadialSeaParams(waves=False, rig=False)), 8.0)
     level = np.abs(still.frame().surface.vertices[:, 2]).max()
-    bobbing = RadialSeaScene(Params(waves=False, rig=False))
+    bobbing = RadialSeaScene(RadialSeaParams(waves=False, rig=False))
     bobbing.bodies.fleet.position[:, 2] -= 0.3
     run(bobbing, 1.5)
     assert np.abs(bobbing.frame().surface.vertices[:, 2]).max() > 5e-3
@@ -328,7 +334,7 @@ def test_bodies_that_bob_make_rings_and_bodies_at_rest_make_none() -> None:
 
 
 def test_oil_from_the_jet_makes_a_slick_that_grows() -> None:
-    scene = run(RadialSeaScene(Params(jet=True)), 6.0)
+    scene = run(RadialSeaScene(RadialSeaParams(jet=True)), 6.0)
     early = scene.readings().oil_budget
     run(scene, 12.0)
     late = scene.readings().oil_budget
@@ -433,13 +439,13 @@ def test_a_window_into_clean_water_has_no_interface_and_none_is_cut_unasked() ->
     assert cutaway is not None
     assert not cutaway.has_oil
     assert (cutaway.interface == cutaway.top).all()
-    assert RadialSeaScene(Params()).frame().cutaway is None
+    assert RadialSeaScene(RadialSeaParams()).frame().cutaway is None
 
 
 def test_closing_the_jet_keeps_its_oil() -> None:
-    scene = run(RadialSeaScene(Params(jet=True)), 6.0)
+    scene = run(RadialSeaScene(RadialSeaParams(jet=True)), 6.0)
     ejected = scene.readings().oil_budget.ejected
-    scene.change_forces(Params(jet=False))
+    scene.change_forces(RadialSeaParams(jet=False))
     tally = scene.readings().oil_budget
     assert tally.fed == pytest.approx(ejected)
     assert tally.in_flight == 0.0
@@ -447,8 +453,8 @@ def test_closing_the_jet_keeps_its_oil() -> None:
 
 
 def test_square_and_radial_surfaces_are_as_high_under_the_same_wind() -> None:
-    radial_sea = RadialSeaScene(Params())
-    square = RadialSeaScene(Params(surface="fft"))
+    radial_sea = RadialSeaScene(RadialSeaParams())
+    square = RadialSeaScene(RadialSeaParams(surface="fft"))
     assert square.sea.significant_height == pytest.approx(radial_sea.sea.significant_height, rel=0.15)
     run(square, 2.0)
     assert np.isfinite(square.bodies.fleet.position).all()
@@ -462,9 +468,9 @@ def test_bodies_start_apart() -> None:
 
 def test_hidden_parameters_are_parameters() -> None:
     for changes in PRESETS.values():
-        assert hidden(check_record(Params, changes)) <= set(parameters_of(Params()))
-    assert "thickness" in hidden(Params())
-    assert "thickness" not in hidden(Params(spill="layer"))
+        assert hidden(check_record(RadialSeaParams, changes)) <= set(parameters_of(RadialSeaParams()))
+    assert "thickness" in hidden(RadialSeaParams())
+    assert "thickness" not in hidden(RadialSeaParams(spill="layer"))
 
 
 @pytest.mark.parametrize("surface", ["sum", "fft"])
@@ -566,7 +572,7 @@ def test_a_mesh_that_is_not_closed_ends_the_command_with_one_line(tmp_path: Path
 
 
 def test_a_body_that_is_not_there_has_no_draft_in_the_plots():
-    scene = RadialSeaScene(Params(bodies=1))
+    scene = RadialSeaScene(RadialSeaParams(bodies=1))
     scene.take_plot_rows()
     scene.advance(20)
     rows = np.array(scene.take_plot_rows())

@@ -7,7 +7,7 @@ import pytest
 
 from app.scenes.radial_sea.bodies import LINE_REACH
 from app.scenes.radial_sea.measures import measures
-from app.scenes.radial_sea.parameters import PRESETS, Params
+from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams
 from app.scenes.radial_sea.report import forces_html
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import JetTotal
@@ -20,7 +20,7 @@ CALM = {"waves": False, "rig": False, "ripples": False}
 
 
 def scene_with(**changes) -> RadialSeaScene:
-    return RadialSeaScene(check_record(Params, changes))
+    return RadialSeaScene(check_record(RadialSeaParams, changes))
 
 
 WINDOW = np.hanning(3600)[:, None] / np.hanning(3600).sum()  # a minute, its ends faded: no wave is cut
@@ -92,7 +92,9 @@ def test_bodies_of_their_own_densities_float_at_their_own_drafts() -> None:
     scene = scene_with(**CALM, bodies=5, own_densities=True, density=500.0, density_1=200.0, density_3=800.0)
     assert scene.bodies.fleet.density.tolist() == [200.0, 600.0, 800.0, 500.0, 500.0]
     scene.change_forces(
-        check_record(Params, {**CALM, "bodies": 5, "own_densities": True, "density_1": 300.0, "density_3": 700.0})
+        check_record(
+            RadialSeaParams, {**CALM, "bodies": 5, "own_densities": True, "density_1": 300.0, "density_3": 700.0}
+        )
     )
     assert scene.bodies.fleet.density.tolist() == [300.0, 600.0, 700.0, 450.0, 450.0]
     for _ in range(60 * 10):
@@ -102,7 +104,7 @@ def test_bodies_of_their_own_densities_float_at_their_own_drafts() -> None:
         rest = equilibrium_draft(hull, scene.bodies.densities[i], scene.column.layers)
         assert reading.prediction.draft == rest
         assert reading.draft == pytest.approx(rest, abs=1e-4)
-    scene.change_forces(check_record(Params, {**CALM, "bodies": 5}))
+    scene.change_forces(check_record(RadialSeaParams, {**CALM, "bodies": 5}))
     assert scene.bodies.fleet.density.tolist() == [450.0] * 5
     assert scene.bodies.fleet.mass[0] == pytest.approx(450.0 * scene.bodies.hulls["buoy_red"].volume)
 

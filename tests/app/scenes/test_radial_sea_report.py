@@ -11,7 +11,7 @@ from app.formats.formatting import fixed
 from app.scenes.radial_sea.budget import budget_html
 from app.scenes.radial_sea.charts import budget_chart
 from app.scenes.radial_sea.live_values import live_values
-from app.scenes.radial_sea.parameters import PRESETS, Params, column_of, hidden, spill_of
+from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden, spill_of
 from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_budget_text, readout_of, surfaces_html
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import OilBudget
@@ -28,23 +28,23 @@ Loop: Any = SimLoop  # of a scene whose types the tests know
 
 @pytest.mark.parametrize("name", list(PRESETS))
 def test_each_preset_is_reported_without_a_number_that_is_none(name: str) -> None:
-    loop = Loop(RadialSeaScene(check_record(Params, PRESETS[name])))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, PRESETS[name])))
     loop.tick(0.1)
     snapshot = loop.latest
     texts = [readout_of(snapshot), *marks_of(snapshot).values()]
     assert all(texts)
     assert not any("nan" in text or "inf " in text for text in (*texts, *notes_of(snapshot).values()))
-    assert set(marks_of(snapshot)) <= set(parameters_of(Params()))
+    assert set(marks_of(snapshot)) <= set(parameters_of(RadialSeaParams()))
 
 
 def test_sinking_bodies_are_said_to_sink() -> None:
-    loop = Loop(RadialSeaScene(check_record(Params, {"spill": "mixed", "fraction": 0.6, "density": 1010.0})))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, {"spill": "mixed", "fraction": 0.6, "density": 1010.0})))
     loop.tick(0.1)
     assert "sinks" in notes_of(loop.latest)["Archimedes' principle"]
 
 
 def test_no_bodies_and_no_waves_are_reported_too() -> None:
-    loop = Loop(RadialSeaScene(check_record(Params, {"bodies": 0, "waves": False, "spill": "layer"})))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, {"bodies": 0, "waves": False, "spill": "layer"})))
     loop.tick(0.1)
     assert readout_of(loop.latest) == "<div>No bodies.</div><div>No waves.</div>"
     assert marks_of(loop.latest)["wind_speed"] == "no waves"
@@ -54,7 +54,7 @@ def test_no_bodies_and_no_waves_are_reported_too() -> None:
 @pytest.mark.parametrize(("density", "is_said"), [(50.0, True), (450.0, False)])
 def test_a_body_outside_its_table_of_coefficients_is_said_to_be(density: float, is_said: bool) -> None:
     """The box of 50 kg/m3 floats at 0.058 of half its width, where the table begins at 0.06."""
-    loop = Loop(RadialSeaScene(check_record(Params, {"density": density, "bodies": 3, "waves": False})))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, {"density": density, "bodies": 3, "waves": False})))
     loop.tick(0.1)
     words = "Box: draft over half the width 0.0569 (table: 0.06 to 4.2) is outside"
     assert (words in notes_of(loop.latest)["Forces"]) == is_said
@@ -62,7 +62,7 @@ def test_a_body_outside_its_table_of_coefficients_is_said_to_be(density: float, 
 
 def live(**values) -> dict[str, float]:
     """The live values of a scene."""
-    loop = Loop(RadialSeaScene(check_record(Params, values)))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, values)))
     loop.tick(0.1)
     return {name: measure.value for name, measure in live_values(loop.latest).items()}
 
@@ -126,7 +126,7 @@ def budget_rows(html: str) -> dict[str, list[float]]:
 
 @pytest.mark.parametrize("oil", naive_spill.OILS)
 def test_the_spill_budget_on_screen_is_that_of_plain_steps_of_pygnome_s_laws(oil: str) -> None:
-    params = check_record(Params, {"spill": "layer", "oil": oil, "spill_hours": 12.0, "wind_speed": 9.0})
+    params = check_record(RadialSeaParams, {"spill": "layer", "oil": oil, "spill_hours": 12.0, "wind_speed": 9.0})
     spill = spill_of(params)
     assert spill is not None
     html = budget_html(params, weather(spill)).replace("\u202f", "")
@@ -162,7 +162,7 @@ def test_the_spill_budget_on_screen_is_that_of_plain_steps_of_pygnome_s_laws(oil
 
 def test_what_floats_is_the_weathered_oil() -> None:
     aged = {"spill": "layer", "oil": "Arabian Light", "spill_hours": 24.0, "spread": True, "wind_speed": 7.0}
-    column = column_of(check_record(Params, aged))
+    column = column_of(check_record(RadialSeaParams, aged))
     expected = naive_spill.spill("Arabian Light", 100.0, 7.0, 24.0)
     assert column.oil.kinematic_viscosity == pytest.approx(expected["viscosity"], rel=0.02)
     # 89 % of it is water of 1025 kg/m3; the oil itself has grown heavier by what it lost.
@@ -170,15 +170,15 @@ def test_what_floats_is_the_weathered_oil() -> None:
     remaining = 100.0 * (1.0 - expected["evaporated"] - expected["dispersed"])
     volume = remaining * 864.0 / ((column.oil.density - 0.8913 * 1025.0) / 0.1087) / 0.1087
     assert column.thickness == pytest.approx(volume / expected["area"], rel=0.03)
-    fresh = column_of(check_record(Params, {**aged, "spill_hours": 0.0, "spread": False}))
+    fresh = column_of(check_record(RadialSeaParams, {**aged, "spill_hours": 0.0, "spread": False}))
     assert (fresh.oil, fresh.thickness) == (fluids()["Arabian Light"], 0.2)
-    cold = column_of(check_record(Params, {**aged, "spill_hours": 0.0, "temperature": 0.0}))
+    cold = column_of(check_record(RadialSeaParams, {**aged, "spill_hours": 0.0, "temperature": 0.0}))
     assert (cold.oil.density, cold.oil.viscosity) == (pytest.approx(877.6), pytest.approx(0.033))
 
 
 def test_a_spill_that_is_gone_leaves_clean_water() -> None:
     gone = {"spill": "layer", "oil": "diesel 2002", "spill_hours": 48.0, "spread": True, "wind_speed": 15.0}
-    assert column_of(check_record(Params, gone)).kind == "water"
+    assert column_of(check_record(RadialSeaParams, gone)).kind == "water"
 
 
 def test_without_a_spill_to_follow_the_budget_says_why() -> None:
@@ -187,19 +187,19 @@ def test_without_a_spill_to_follow_the_budget_says_why() -> None:
         ({"spill": "mixed"}, ""),
         ({"spill": "layer", "oil": "IFO 180", "spill_hours": 24.0}, "does not tell how it evaporates"),
     ):
-        params = check_record(Params, values)
+        params = check_record(RadialSeaParams, values)
         assert spill_of(params) is None
         assert said in budget_html(params, None)
         assert bool(budget_html(params, None)) == bool(said)
         assert {"spill_hours", "spill_volume", "spread", "plot_budget"} <= hidden(params)
     assert (
-        column_of(check_record(Params, {"spill": "layer", "oil": "IFO 180", "spill_hours": 24.0})).oil
+        column_of(check_record(RadialSeaParams, {"spill": "layer", "oil": "IFO 180", "spill_hours": 24.0})).oil
         == fluids()["IFO 180"]
     )
 
 
 def test_the_chart_of_the_budget_is_stacked_to_the_whole() -> None:
-    spill = spill_of(check_record(Params, PRESETS["A day after a spill"]))
+    spill = spill_of(check_record(RadialSeaParams, PRESETS["A day after a spill"]))
     assert spill is not None
     chart = budget_chart(spill, 24.0)
     hours, whole, below, oil, water, now = chart.columns
@@ -225,7 +225,7 @@ def test_lines_on_the_waves_are_jonswap_s_and_those_of_the_exact_root(
     oil: str, thickness: float, wind: float, exposure: float
 ) -> None:
     values = {"spill": "layer", "oil": oil, "thickness": thickness, "wind_speed": wind, "exposure": exposure}
-    loop = Loop(RadialSeaScene(check_record(Params, {**values, "bodies": 0, "ageing": False})))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, {**values, "bodies": 0, "ageing": False})))
     loop.tick(0.1)
     said = {name: text.replace("\u202f", "") for name, text in marks_of(loop.latest).items()}
     # JONSWAP from 100 km, at most full growth (22 x 1.026/0.87716)^3, where the peak factor is 1.
@@ -259,7 +259,7 @@ def test_what_a_slick_leaves_of_a_wave_is_said_in_words_where_it_is_nothing() ->
 
 @pytest.mark.parametrize(("values", "calms"), [({}, True), ({"surface": "fft"}, False), ({"spill": "mixed"}, False)])
 def test_a_slick_is_said_to_calm_the_sea_where_it_does(values: dict[str, str], calms: bool) -> None:
-    loop = Loop(RadialSeaScene(check_record(Params, {"jet": True, "jet_flow": 20.0, "bodies": 0, **values})))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, {"jet": True, "jet_flow": 20.0, "bodies": 0, **values})))
     for _ in range(60):
         loop.tick(0.1)
     assert loop.latest.readings.oil_budget.fed > 0.0
@@ -267,7 +267,7 @@ def test_a_slick_is_said_to_calm_the_sea_where_it_does(values: dict[str, str], c
 
 
 def test_the_cost_of_a_surface_is_shown_in_milliseconds() -> None:
-    loop = Loop(RadialSeaScene(check_record(Params, {"compare": True, "bodies": 0, "wave_count": 16})))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, {"compare": True, "bodies": 0, "wave_count": 16})))
     loop.tick(0.1)
     costs = [surface.cost for surface in loop.latest.readings.surfaces.values()]
     assert len(costs) == 2
@@ -282,7 +282,7 @@ def test_the_cost_of_a_surface_is_shown_in_milliseconds() -> None:
 @pytest.mark.parametrize(("fraction", "beyond"), [(0.05, False), (0.3, True)])
 def test_the_line_under_a_mixture_says_where_its_law_ends(fraction: float, beyond: bool) -> None:
     values = {"spill": "mixed", "mixture_law": "taylor", "fraction": fraction, "bodies": 0, "oil": "Arabian Light"}
-    loop = Loop(RadialSeaScene(check_record(Params, {"wave_count": 16, **values})))
+    loop = Loop(RadialSeaScene(check_record(RadialSeaParams, {"wave_count": 16, **values})))
     loop.tick(0.1)
     said = marks_of(loop.latest)
     ending = "; the law holds up to 10%" if beyond else ""

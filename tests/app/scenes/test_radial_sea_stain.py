@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import viser
 
-from app.scenes.radial_sea.parameters import Params
+from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.stain_view import SKIN, Stains, stain_of
 from sim.parameters import check_record
 
 
 def scene_with(**changes) -> RadialSeaScene:
-    return RadialSeaScene(check_record(Params, {"rig": False, "ripples": False, **changes}))
+    return RadialSeaScene(check_record(RadialSeaParams, {"rig": False, "ripples": False, **changes}))
 
 
 @pytest.fixture

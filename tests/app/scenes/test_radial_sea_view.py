@@ -13,7 +13,7 @@ from app.scenes.radial_sea import cutaway_view
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.materials import SPILL_RADIUS, material_of
-from app.scenes.radial_sea.view import LINE_SIDES, NEAR_END, View, keel_of
+from app.scenes.radial_sea.view import LINE_SIDES, NEAR_END, RadialSeaView, keel_of
 
 
 @pytest.fixture
@@ -55,7 +55,7 @@ def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -
 
 def test_the_cutaway_has_only_the_lines_of_the_body_beside_it(server: viser.ViserServer) -> None:
     """Others cross it as sticks that hang in the air."""
-    view = View(server, lambda _: None)
+    view = RadialSeaView(server, lambda _: None)
     rod = 2 * LINE_SIDES + 2  # vertices
     for cutaway, bodies in ((True, 1), (False, 3), (True, 1)):
         frame = frame_of(bodies=3, cutaway=cutaway)

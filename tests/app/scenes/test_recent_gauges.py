@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene as Rope
 from app.scenes.springs.html import stability_bar
 from app.scenes.springs.recent_gauges import SPAN
@@ -22,7 +22,7 @@ def text_of(scene: Rope) -> str:
 
 
 def test_the_line_has_one_number_and_no_symbol() -> None:
-    scene = Rope(Params(time_step=1 / 120))
+    scene = Rope(RopeParams(time_step=1 / 120))
     share = 100.0 / 120.0 / critical_step(scene.net, "leapfrog")
     assert text_of(scene) == f"Step: {float(f'{share:.2g}'):g} % of the largest stable"
     assert "hω" in stability_bar(scene.readings().stability)  # behind the (i)
@@ -30,7 +30,7 @@ def test_the_line_has_one_number_and_no_symbol() -> None:
 
 def test_the_worst_of_the_last_seconds_is_shown_until_they_are_over() -> None:
     """A rope that falls from level is stretched most as it passes below; the share at each moment wanders."""
-    scene = Rope(Params(damping=0.5, drag=0.0))
+    scene = Rope(RopeParams(damping=0.5, drag=0.0))
     now = [(0.0, scene.readings().stability.share)]
     take = scene.recent.worst
 
@@ -47,7 +47,7 @@ def test_the_worst_of_the_last_seconds_is_shown_until_they_are_over() -> None:
 
 
 def test_another_step_another_run_and_another_moment_forget_the_last_seconds() -> None:
-    scene = Rope(Params(damping=0.5, drag=0.0))
+    scene = Rope(RopeParams(damping=0.5, drag=0.0))
     first = scene.readings().stability.share
     scene.advance(240)
     kept = scene.keep()
@@ -63,7 +63,7 @@ def test_another_step_another_run_and_another_moment_forget_the_last_seconds() -
 
 
 def test_a_divergence_says_the_number_of_the_line() -> None:
-    scene = Rope(Params(integrator="explicit_euler"))
+    scene = Rope(RopeParams(integrator="explicit_euler"))
     with pytest.raises(DivergenceError) as error:
         scene.advance(600)
     said = re.search(r"was (\S+ %) of the largest stable", str(error.value).replace("\xa0", " "))

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Place, Point
+from app.messages import GrabTo, Place, PointAlong
 from app.scenes import NAMES, scene_named
 
 SMALL: dict[str, dict[str, Any]] = {
@@ -17,8 +17,8 @@ SMALL: dict[str, dict[str, Any]] = {
 }
 MOVES = (
     *(Place(thing, (0.4, 0.3, 1.7)) for thing in ("root", "sphere", "pin a", "pin b", "camera")),
-    Point((40.0, 60.0, 8.0), (0.9, 0.3, -0.12)),
-    Grab(1, (0.5, 0.5, 2.0)),
+    PointAlong((40.0, 60.0, 8.0), (0.9, 0.3, -0.12)),
+    GrabTo(1, (0.5, 0.5, 2.0)),
 )
 
 

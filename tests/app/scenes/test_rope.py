@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Place, Release, finite_vector
+from app.messages import GrabTo, Place, Release, finite_vector
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, coloured
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.measures import measures
-from app.scenes.rope.parameters import PRESETS, Params
+from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
 from app.scenes.rope.view import bead_radius
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
@@ -44,7 +44,7 @@ def change(scene: RopeScene, **changes: object) -> None:
 
 @pytest.mark.parametrize("preset", [name for name in PRESETS if name != "Euler explodes"])
 def test_every_preset_runs(preset: str) -> None:
-    scene = Rope(check_record(Params, PRESETS[preset]))
+    scene = Rope(check_record(RopeParams, PRESETS[preset]))
     run(scene, 180, max(1, round(1 / 60 / scene.step)))
     frame = scene.frame()
     assert np.isfinite(frame.points).all()
@@ -52,7 +52,7 @@ def test_every_preset_runs(preset: str) -> None:
 
 
 def test_explicit_euler_at_the_labs_defaults_explodes_and_the_reason_is_given() -> None:
-    scene = Rope(Params(integrator="explicit_euler"))
+    scene = Rope(RopeParams(integrator="explicit_euler"))
     with pytest.raises(
         DivergenceError,
         match=r"for explicit Euler \(hω 0.93 of 0.51\). Use a time step up to 1/111 s \(9 ms\) or leap",
@@ -65,22 +65,22 @@ def test_explicit_euler_at_the_labs_defaults_explodes_and_the_reason_is_given() 
 
 
 def test_the_diagnosed_step_holds() -> None:
-    scene = Rope(Params(integrator="explicit_euler"))
+    scene = Rope(RopeParams(integrator="explicit_euler"))
     holds = scene.readings().stability.critical_step
-    scene = Rope(Params(integrator="explicit_euler", time_step=0.8 * holds))
+    scene = Rope(RopeParams(integrator="explicit_euler", time_step=0.8 * holds))
     for _ in range(500):
         scene.advance(10)
 
 
 def test_the_rope_comes_to_rest_as_the_exact_chain() -> None:
-    scene = Rope(Params(drag=5.0))
+    scene = Rope(RopeParams(drag=5.0))
     for _ in range(300):
         scene.advance(10)
     np.testing.assert_allclose(scene.state.x[2, 0], hanging_chain(scene.net)[0][:, 2], atol=1e-6)
 
 
 def test_the_root_follows_where_it_is_placed() -> None:
-    scene = Rope(Params())
+    scene = Rope(RopeParams())
     scene.handle(Place("root", (0.3, -0.2, 3.5)))
     for _ in range(120):
         scene.advance(1)
@@ -89,7 +89,7 @@ def test_the_root_follows_where_it_is_placed() -> None:
 
 
 def test_a_reset_puts_root_and_sphere_back() -> None:
-    scene = Rope(Params(sphere=True))
+    scene = Rope(RopeParams(sphere=True))
     scene.handle(Place("root", (0.0, 0.0, -90.0)))
     scene.handle(Place("sphere", (1.0, 2.0, 3.0)))
     with pytest.raises(DivergenceError):
@@ -102,34 +102,34 @@ def test_a_reset_puts_root_and_sphere_back() -> None:
 
 
 def test_a_pull_is_capped() -> None:
-    scene = Rope(Params(pull=50.0, gravity=0.0, drag=2.0, floor=False))
-    scene.handle(Grab(9, (-50.0, 0.0, 3.0)))
+    scene = Rope(RopeParams(pull=50.0, gravity=0.0, drag=2.0, floor=False))
+    scene.handle(GrabTo(9, (-50.0, 0.0, 3.0)))
     for _ in range(600):
         scene.advance(1)
     # A taut rope pulled by 50 N in line with it stretches by F/k a link, root to held point.
     stretched = np.linalg.norm(scene.state.x[:, 0, 9] - np.array(ROOT))
     assert stretched == pytest.approx(2.0 + 9 * 50.0 / 800.0, rel=1e-3)
-    assert scene.frame().pull is not None
-    assert scene.frame().pull.load == 1.0
+    assert scene.frame().grab is not None
+    assert scene.frame().grab.load == 1.0
     scene.handle(Release())
-    assert scene.frame().pull is None
+    assert scene.frame().grab is None
 
 
 @pytest.mark.parametrize("particle", [-1, 10, 10**9])
 def test_grabbing_what_is_not_there_does_nothing(particle: int) -> None:
-    scene = Rope(Params())
-    scene.handle(Grab(particle, (0.0, 0.0, 0.0)))
-    assert scene.handles.drag.hold is None
+    scene = Rope(RopeParams())
+    scene.handle(GrabTo(particle, (0.0, 0.0, 0.0)))
+    assert scene.handles.grab.grabbed is None
     scene.advance(5)
 
 
-@pytest.mark.parametrize("name", list(parameters_of(Params)))
+@pytest.mark.parametrize("name", list(parameters_of(RopeParams)))
 def test_both_ends_of_every_parameter_survive_two_seconds(name: str) -> None:
-    parameter = parameters_of(Params)[name]
+    parameter = parameters_of(RopeParams)[name]
     ends = parameter.choices or ((False, True) if parameter.kind is bool else (parameter.low, parameter.high))
     for value in ends:
         value = value if parameter.choices else parameter.kind(value)
-        scene = Rope(dataclasses.replace(Params(), **{name: value}))
+        scene = Rope(dataclasses.replace(RopeParams(), **{name: value}))
         steps = int(np.clip(round(1 / 60 / scene.step), 1, 200))
         with contextlib.suppress(DivergenceError):  # an end may be unstable; what was good is kept
             run(scene, 120, steps)
@@ -138,7 +138,7 @@ def test_both_ends_of_every_parameter_survive_two_seconds(name: str) -> None:
 
 
 def test_changing_the_points_keeps_the_shape() -> None:
-    scene = Rope(Params())
+    scene = Rope(RopeParams())
     scene.advance(40)
     before = scene.state.x.copy()
     change(scene, points=19)
@@ -147,8 +147,8 @@ def test_changing_the_points_keeps_the_shape() -> None:
 
 
 def test_every_integrator_can_be_chosen_while_moving() -> None:
-    scene = Rope(Params())
-    for name in parameters_of(Params)["integrator"].choices:
+    scene = Rope(RopeParams())
+    for name in parameters_of(RopeParams)["integrator"].choices:
         change(scene, integrator=name, time_step=1 / 400)
         scene.advance(20)
         assert np.isfinite(scene.frame().points).all()
@@ -156,7 +156,7 @@ def test_every_integrator_can_be_chosen_while_moving() -> None:
 
 
 def test_where_the_chosen_method_takes_no_damping_another_runs_and_the_note_says_so() -> None:
-    scene = Rope(Params(integrator="pefrl"))
+    scene = Rope(RopeParams(integrator="pefrl"))
     scene.advance(10)
     assert scene.integrator.name == "leapfrog"
     assert "pefrl takes no damping, so leapfrog runs" in scene.readings().note
@@ -166,7 +166,7 @@ def test_where_the_chosen_method_takes_no_damping_another_runs_and_the_note_says
 
 
 def test_plots_are_recorded_while_closed_with_a_small_error_and_begin_anew_with_a_reset() -> None:
-    scene = Rope(Params(time_step=1 / 600, integrator="rk4"))
+    scene = Rope(RopeParams(time_step=1 / 600, integrator="rk4"))
     scene.take_plot_rows()
     for _ in range(60):
         scene.advance(10)
@@ -202,7 +202,7 @@ def test_far_vectors_are_bounded() -> None:
 
 
 def test_frames_come_less_often_the_slower_the_rope_is() -> None:
-    scene = Rope(Params())
+    scene = Rope(RopeParams())
     assert scene.frame_interval == FRAME_INTERVAL  # just released: how fast it will be is not known
     scene.advance(2)
     assert np.abs(scene.state.v).max() < FULL_RATE_SPEED
@@ -218,7 +218,7 @@ def test_frames_come_less_often_the_slower_the_rope_is() -> None:
     assert scene.frame_interval == FRAME_INTERVAL  # how fast it will be is not known
     scene.advance(1)
     assert scene.frame_interval == 2 * FRAME_INTERVAL
-    scene.handle(Grab(5, (0.0, 0.0, 2.0)))
+    scene.handle(GrabTo(5, (0.0, 0.0, 2.0)))
     assert scene.frame_interval == FRAME_INTERVAL
     scene.handle(Release())
     scene.handle(Place("root", (0.5, 0.0, 3.0)))
@@ -234,7 +234,7 @@ LOOKS = (
 @pytest.mark.parametrize("integrator", ["leapfrog", "rk4", "leapfrog_lagged"])
 def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit(integrator: str) -> None:
     """Compared where both have taken the same number of steps, as another speed takes other steps in a frame."""
-    params = Params(integrator=integrator, time_step=1 / 480)
+    params = RopeParams(integrator=integrator, time_step=1 / 480)
     alone, changed = Rope(params), Rope(params)
     loops = [Loop(scene, clock=lambda: 0.0, effort=lambda: 0.0) for scene in (alone, changed)]
     accounts: list[dict[int, tuple[float, ...]]] = [{}, {}]
@@ -254,7 +254,7 @@ def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit(integrator
 
 
 def test_a_change_of_look_costs_no_stability_check(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = Rope(Params())
+    scene = Rope(RopeParams())
     scene.advance(2)
     monkeypatch.setattr("app.scenes.rope.scene.top_modes", None)  # a call would fail
     monkeypatch.setattr("app.scenes.rope.scene.gauge", None)
@@ -264,7 +264,7 @@ def test_a_change_of_look_costs_no_stability_check(monkeypatch: pytest.MonkeyPat
 
 def test_a_rope_at_rest_is_not_assessed_again():
     def assessed(**changes: Any) -> int:
-        scene = Rope(Params(**changes))
+        scene = Rope(RopeParams(**changes))
         moments = {scene.assessed_at}  # [s]
         while scene.time < 2.0:
             scene.advance(round(1 / 60 / scene.step))
@@ -273,7 +273,7 @@ def test_a_rope_at_rest_is_not_assessed_again():
 
     assert assessed(gravity=0.0) == 0
     assert assessed() in (3, 4)
-    scene = Rope(Params(gravity=0.0))
+    scene = Rope(RopeParams(gravity=0.0))
     for moved, has_news in ((0.9e-3, False), (1.1e-3, True)):  # of a link
         scene.state.x[2, 0, -1] = scene.assessed_x[2, 0, -1] + moved * scene.net.families[0].rest
         assert scene.has_news() is has_news
@@ -289,7 +289,7 @@ CHANGES = (
 
 @pytest.mark.parametrize("changes", CHANGES, ids=lambda changes: next(iter(changes)))
 def test_a_change_of_forces_is_booked_as_work_and_not_as_an_error(changes: dict[str, object]) -> None:
-    scene = Rope(Params(integrator="rk4", time_step=1 / 4800))
+    scene = Rope(RopeParams(integrator="rk4", time_step=1 / 4800))
     run(scene, 60, 80)
     state, initial, before = scene.state, scene.account.initial, scene.account.error(scene.net, scene.state)
     stored, dissipated, work = scene.account.stored(scene.net, state), state.dissipated, state.work
@@ -306,7 +306,7 @@ def test_a_change_of_forces_is_booked_as_work_and_not_as_an_error(changes: dict[
 
 
 def test_another_method_goes_on_with_the_same_account() -> None:
-    scene = Rope(Params(time_step=1 / 2400))
+    scene = Rope(RopeParams(time_step=1 / 2400))
     run(scene, 30, 40)
     initial = scene.account.initial
     dissipated = scene.state.dissipated
@@ -322,7 +322,7 @@ def test_another_method_goes_on_with_the_same_account() -> None:
 @pytest.mark.parametrize("name", [name for name, record in INTEGRATORS.items() if record.implicit])
 def test_the_stiffest_rope_holds_with_every_implicit_method(name: str) -> None:
     """1e9 N/m at the lab's own step: in bounds for ten seconds, at a bounded cost that is shown."""
-    scene = Rope(Params(integrator=name, stiffness=1e9))
+    scene = Rope(RopeParams(integrator=name, stiffness=1e9))
     most_evals = 0.0
     for _ in range(600):
         before = scene.state.force_evals
@@ -339,11 +339,11 @@ def test_the_stiffest_rope_holds_with_every_implicit_method(name: str) -> None:
     assert scene.readings().cost.corrections == evals - {"tr_bdf2": 1}.get(name, 0)
     if name == "implicit_euler":
         assert cost.numerical_dissipation > 0.1 * cost.damping_dissipation
-    assert Rope(Params()).readings().cost is None
+    assert Rope(RopeParams()).readings().cost is None
 
 
 def test_the_root_swings_about_where_it_was_put_and_comes_to_rest_again() -> None:
-    scene = Rope(Params(root_swing=0.3, swing_period=2.0, time_step=1 / 240))
+    scene = Rope(RopeParams(root_swing=0.3, swing_period=2.0, time_step=1 / 240))
     places = []
     for _ in range(240):
         scene.advance(4)
@@ -360,7 +360,7 @@ def test_the_root_swings_about_where_it_was_put_and_comes_to_rest_again() -> Non
 
 
 def test_a_sweep_records_the_tip_of_the_rope_and_nothing_dissipated_at_the_start() -> None:
-    scene = Rope(Params())
+    scene = Rope(RopeParams())
     assert measures(scene)["dissipated_energy"].value == measures(scene)["energy_error"].value == 0.0
     run(scene, 30, 2)
     found = {name: measure.value for name, measure in measures(scene).items()}
@@ -394,7 +394,7 @@ def test_the_panel_says_what_limits_a_step_that_only_damping_limits() -> None:
 
 
 def test_a_rope_has_left_its_bounds_at_three_times_the_length_it_hangs_at() -> None:
-    scene = Rope(Params(floor=False))
+    scene = Rope(RopeParams(floor=False))
     start = extremes(scene.state.x, scene.state.v).reach
     assert scene.max_reach == pytest.approx(4.0 + 3.0 * 2.5625 + start)  # the lab's ten points hang 2.56 m deep
 

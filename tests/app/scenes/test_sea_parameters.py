@@ -17,7 +17,7 @@ SWELL = {"wind_speed": 0.0, "second_height": 1.0, "second_period": 6.0}
 
 def test_no_angle_of_the_library_is_in_degrees_and_none_of_the_panels_in_radians() -> None:
     assert not any("°" in declared.unit for declared in PARAMETERS.values())
-    for params in (radial.Params, square.Params):
+    for params in (radial.RadialSeaParams, square.SquareSeaParams):
         assert not any(declared.unit == "rad" for declared in parameters_of(params).values())
     found = SPECTRUM_PARAMETERS["second_direction"]
     assert (found.default, found.low, found.high, found.unit) == (90.0, -180.0, 180.0, "°")
@@ -25,9 +25,9 @@ def test_no_angle_of_the_library_is_in_degrees_and_none_of_the_panels_in_radians
 
 @pytest.mark.parametrize("degrees", [-180.0, -35.0, 90.0, 180.0])
 def test_a_direction_in_degrees_on_the_panel_is_the_same_in_radians_in_the_sea(degrees: float) -> None:
-    under = radial.conditions_of(radial.Params(second_direction=degrees))
+    under = radial.conditions_of(radial.RadialSeaParams(second_direction=degrees))
     assert under.second_direction == pytest.approx(math.radians(degrees), rel=1e-15)
-    given = square.conditions(square.Params(second_direction=degrees))
+    given = square.conditions(square.SquareSeaParams(second_direction=degrees))
     assert given["second_direction"] == under.second_direction
 
 

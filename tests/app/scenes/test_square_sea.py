@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Point, Reset
+from app.messages import PointAlong, Reset
 from app.scenes.square_sea import report
 from app.scenes.square_sea import scene as square_sea
 from app.scenes.square_sea.live_values import live_values
 from app.scenes.square_sea.measures import measures
-from app.scenes.square_sea.parameters import PRESETS, Params, conditions, rain_settings
-from app.scenes.square_sea.rainfall import RING_STEEPNESS, Rainfall
+from app.scenes.square_sea.parameters import PRESETS, SquareSeaParams, conditions, rain_settings
+from app.scenes.square_sea.rainfall import RING_STEEPNESS, SeaRain
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.server.loop import SimLoop
 from sim.ocean import Sea
@@ -58,7 +58,7 @@ def arrays(scene: Any) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_preset_runs_three_seconds_and_everything_drawn_is_finite(name):
-    scene = Scene(Params(**PRESETS[name]))
+    scene = Scene(SquareSeaParams(**PRESETS[name]))
     for _ in range(30):
         run(scene, 1, 6)
         assert all(np.isfinite(array).all() for array in arrays(scene))
@@ -70,7 +70,7 @@ def test_a_preset_runs_three_seconds_and_everything_drawn_is_finite(name):
     "change", [{"wind_speed": 22.0}, {"spectrum": "jonswap"}, {"planet_mass": 10.0}, {"deep": False}]
 )
 def test_new_weather_grows_out_of_the_sea_without_a_jump(change):
-    scene = Scene(Params(**SMALL, foam=False, transition=10.0))
+    scene = Scene(SquareSeaParams(**SMALL, foam=False, transition=10.0))
     scene.advance(180)
     before = scene.frame().vertices
     change_parameters(scene, **change)
@@ -80,8 +80,8 @@ def test_new_weather_grows_out_of_the_sea_without_a_jump(change):
 
 
 def test_a_storm_arrives_from_a_calm_and_leaves_one():
-    arriving = Scene(Params(**{**PRESETS["Storm arriving"], **SMALL, "rain": 0.0}))
-    leaving = Scene(Params(**{**PRESETS["Storm over"], **SMALL}))
+    arriving = Scene(SquareSeaParams(**{**PRESETS["Storm arriving"], **SMALL, "rain": 0.0}))
+    leaving = Scene(SquareSeaParams(**{**PRESETS["Storm over"], **SMALL}))
     heights = {scene: [] for scene in (arriving, leaving)}
     for scene, found in heights.items():
         for _ in range(5):
@@ -95,14 +95,14 @@ def test_a_storm_arrives_from_a_calm_and_leaves_one():
 
 def test_a_frame_costs_three_transforms_and_one_without_choppiness():
     for choppiness, each in ((1.0, 3), (0.0, 1)):
-        scene = Scene(Params(**SMALL, choppiness=choppiness))
+        scene = Scene(SquareSeaParams(**SMALL, choppiness=choppiness))
         run(scene, 10)
         assert scene.counts["transforms"] == 10 * each
         assert scene.counts["steps"] == 20
 
 
 def test_steps_cost_nothing_and_an_unchanged_sea_is_the_same_frame():
-    scene = Scene(Params(**SMALL))
+    scene = Scene(SquareSeaParams(**SMALL))
     scene.advance(10_000)
     assert scene.counts["transforms"] == 0
     assert scene.frame() is scene.frame()
@@ -110,7 +110,7 @@ def test_steps_cost_nothing_and_an_unchanged_sea_is_the_same_frame():
 
 
 def test_a_new_look_on_a_paused_sea_computes_and_sends_no_surface():
-    scene = Scene(Params(**SMALL))
+    scene = Scene(SquareSeaParams(**SMALL))
     scene.advance(5)
     before, done = scene.frame(), scene.counts["transforms"]
     change_parameters(scene, clouds=0.9, daylight=0.3, grid=True)
@@ -123,7 +123,7 @@ def test_a_new_look_on_a_paused_sea_computes_and_sends_no_surface():
 
 
 def test_a_paused_sea_shows_its_wave_gauge_and_statistics_as_soon_as_they_are_wanted():
-    scene = Scene(Params(**SMALL, statistics=False, gauge=False))
+    scene = Scene(SquareSeaParams(**SMALL, statistics=False, gauge=False))
     scene.advance(5)
     assert scene.frame().gauge is None
     change_parameters(scene, statistics=True, plot_wave_gauge=True)
@@ -133,8 +133,8 @@ def test_a_paused_sea_shows_its_wave_gauge_and_statistics_as_soon_as_they_are_wa
 
 
 def test_another_length_starts_the_sea_again_with_the_wave_gauge_where_a_new_scene_has_it():
-    scene = Scene(Params(**SMALL, length=64.0))
-    scene.handle(Point((40.0, 60.0, 8.0), (0.9, 0.3, -0.12)))
+    scene = Scene(SquareSeaParams(**SMALL, length=64.0))
+    scene.handle(PointAlong((40.0, 60.0, 8.0), (0.9, 0.3, -0.12)))
     assert scene.gauge_placed
     scene.advance(5)
     change_parameters(scene, length=128.0)
@@ -145,7 +145,7 @@ def test_another_length_starts_the_sea_again_with_the_wave_gauge_where_a_new_sce
 
 
 def test_nobody_looking_costs_nothing():
-    scene = Scene(Params(**SMALL, rain=20.0))
+    scene = Scene(SquareSeaParams(**SMALL, rain=20.0))
     loop = SimLoop(scene, audience=lambda: 0)
     done = dict(scene.counts)
     for _ in range(60):
@@ -154,7 +154,7 @@ def test_nobody_looking_costs_nothing():
 
 
 def test_without_rain_no_ring_is_begun_and_no_drop_falls():
-    scene = Scene(Params(**SMALL, length=32.0))
+    scene = Scene(SquareSeaParams(**SMALL, length=32.0))
     run(scene, 20)
     assert scene.counts["rings"] == scene.counts["rainfall steps"] == 0
     assert scene.sea._ripples is None
@@ -162,7 +162,7 @@ def test_without_rain_no_ring_is_begun_and_no_drop_falls():
 
 
 def test_statistics_and_spectrum_are_computed_only_where_shown_and_a_hidden_gauge_is_read_for_the_plot_only():
-    scene = Scene(Params(**SMALL, statistics=False, gauge=False))
+    scene = Scene(SquareSeaParams(**SMALL, statistics=False, gauge=False))
     run(scene, 30)
     assert scene.counts["statistics"] == scene.counts["gauge spectra"] == 0
     rows = scene.take_plot_rows()
@@ -170,27 +170,27 @@ def test_statistics_and_spectrum_are_computed_only_where_shown_and_a_hidden_gaug
     # After the mark of the start and the row of the first frame.
     assert np.diff([row[0] for row in rows[2:]]).min() > 0.99 * square_sea.PLOT_ROW_INTERVAL
     assert scene.readings().report is None
-    shown = Scene(Params(**SMALL, plot_wave_gauge=True, plot_wave_spectrum=True))
+    shown = Scene(SquareSeaParams(**SMALL, plot_wave_gauge=True, plot_wave_spectrum=True))
     run(shown, 30)
     assert shown.counts["gauge readings"] == 31  # of the start, and of each frame
     assert 1 <= shown.counts["statistics"] <= 3
 
 
 def test_slope_and_frequency_of_waves_that_stay_the_same_are_found_once() -> None:
-    scene = Scene(Params(size="64", mesh="64", viscosity=0.0))
+    scene = Scene(SquareSeaParams(size="64", mesh="64", viscosity=0.0))
     for _ in range(100):
         scene.advance(4)
         scene.frame()
     assert scene.counts["paces"] == 1
     before = scene.pace
-    scene.change_forces(Params(size="64", mesh="64", viscosity=0.0, wind_speed=20.0, transition=0.2))
+    scene.change_forces(SquareSeaParams(size="64", mesh="64", viscosity=0.0, wind_speed=20.0, transition=0.2))
     for _ in range(120):  # 8 s, or 40 transition times: the last are steady again
         scene.advance(4)
         scene.frame()
     assert scene.pace != before
     assert 3 <= scene.counts["paces"] < 14
     assert scene.pace == pace(scene.sea, scene.time)
-    decaying = Scene(Params(size="64", mesh="64", viscosity=1e-3))
+    decaying = Scene(SquareSeaParams(size="64", mesh="64", viscosity=1e-3))
     for _ in range(60):  # 4 s, every half of one
         decaying.advance(4)
         decaying.frame()
@@ -198,7 +198,7 @@ def test_slope_and_frequency_of_waves_that_stay_the_same_are_found_once() -> Non
 
 
 def test_the_rain_that_is_counted_is_the_rain_that_theory_has():
-    scene = Scene(Params(**SMALL, length=32.0, wind_speed=3.0, rain=25.0, drops=1500, rings=0.0))
+    scene = Scene(SquareSeaParams(**SMALL, length=32.0, wind_speed=3.0, rain=25.0, drops=1500, rings=0.0))
     run(scene, 30)  # a second for the first drops to reach the water
     rainfall = scene.rainfall
     begun, start = rainfall.rain.hits, scene.time
@@ -211,11 +211,11 @@ def test_the_rain_that_is_counted_is_the_rain_that_theory_has():
 
 
 def test_rain_makes_rings_where_the_grid_can_carry_them():
-    fine = Scene(Params(length=32.0, size="128", mesh="64", rain=25.0))
+    fine = Scene(SquareSeaParams(length=32.0, size="128", mesh="64", rain=25.0))
     run(fine, 60)
     assert fine.counts["rings"] == fine.rainfall.rain.hits > 0
     assert fine.sea.ripples.rms > 0.0
-    coarse = Scene(Params(length=1024.0, size="128", mesh="64", rain=25.0))
+    coarse = Scene(SquareSeaParams(length=1024.0, size="128", mesh="64", rain=25.0))
     run(coarse, 60)
     assert coarse.rainfall.rain.hits > 0
     assert coarse.counts["rings"] == 0
@@ -224,8 +224,8 @@ def test_rain_makes_rings_where_the_grid_can_carry_them():
 
 def test_a_ring_is_as_deep_as_its_blow_says():
     sea = Sea(256, 32.0, wind_speed=0.0, choppiness=0.0)
-    settings = rain_settings(Params(rain=25.0, drops=100, wind_speed=0.0))
-    rainfall = Rainfall(sea, settings, 1.0, 0)
+    settings = rain_settings(SquareSeaParams(rain=25.0, drops=100, wind_speed=0.0))
+    rainfall = SeaRain(sea, settings, 1.0, 0)
     sea.ripples.add(0.0, [[16.0, 16.0]], rainfall.ring_width, impulse=rainfall.drops_per_ring * rainfall.momentum)
     deepest = min(float(sea.surface(t).height[128, 128]) for t in np.linspace(0.0, 0.6, 61))
     assert -deepest == pytest.approx(RING_STEEPNESS * rainfall.ring_width, rel=0.03)
@@ -235,7 +235,7 @@ def test_the_sea_is_as_white_as_monahan_measured():
     """Cover over Monahan's law at three winds: its mean over the first 5 s, and over 15 to 30 s, when it is steady."""
     first, later = [], []
     for wind in (10.0, 15.0, 25.0):
-        scene = Scene(Params(wind_speed=wind, length=512.0, size="128", statistics=False))
+        scene = Scene(SquareSeaParams(wind_speed=wind, length=512.0, size="128", statistics=False))
         cover = []
         for _ in range(900):
             run(scene, 1)
@@ -247,7 +247,7 @@ def test_the_sea_is_as_white_as_monahan_measured():
 
 
 def test_foam_fades_over_its_lifetime():
-    scene = Scene(Params(**SMALL, wind_speed=15.0, foam_by_wind=False, foam_threshold=0.7, foam_fade=3.0))
+    scene = Scene(SquareSeaParams(**SMALL, wind_speed=15.0, foam_by_wind=False, foam_threshold=0.7, foam_fade=3.0))
     run(scene, 30)
     before, since = scene.frame().foam, scene.time
     change_parameters(scene, foam_threshold=-1.0)  # no new foam
@@ -257,7 +257,7 @@ def test_foam_fades_over_its_lifetime():
 
 
 def test_the_cover_expected_goes_from_one_wind_s_to_the_other_s_as_the_waves_do():
-    scene = Scene(Params(**SMALL, wind_speed=8.0, transition=10.0))
+    scene = Scene(SquareSeaParams(**SMALL, wind_speed=8.0, transition=10.0))
     run(scene, 30)
     change_parameters(scene, wind_speed=15.0)
     since = scene.time
@@ -269,7 +269,7 @@ def test_the_cover_expected_goes_from_one_wind_s_to_the_other_s_as_the_waves_do(
 
 
 def test_slopes_of_the_mesh_are_those_of_the_displaced_surface():
-    scene = Scene(Params(size="128", mesh="128", length=512.0, choppiness=0.6, low_pass=8.0))
+    scene = Scene(SquareSeaParams(size="128", mesh="128", length=512.0, choppiness=0.6, low_pass=8.0))
     scene.advance(60)
     frame = scene.frame()
     surface = scene.sea.surface(scene.time)
@@ -282,7 +282,7 @@ def test_slopes_of_the_mesh_are_those_of_the_displaced_surface():
 
 
 def test_the_amplitude_scales_heights_and_displacements_alike():
-    plain, double = (Scene(Params(**SMALL, amplitude=a, foam=False)) for a in (1.0, 2.0))
+    plain, double = (Scene(SquareSeaParams(**SMALL, amplitude=a, foam=False)) for a in (1.0, 2.0))
     rest = np.arange(32) * plain.params.length / 32
     flat = np.stack([*np.meshgrid(rest, rest, indexing="ij"), np.zeros((32, 32))], -1)
     moved = [scene.frame().vertices - flat for scene in (plain, double)]
@@ -294,11 +294,11 @@ def test_the_amplitude_scales_heights_and_displacements_alike():
 
 
 def test_a_click_puts_the_wave_gauge_where_the_ray_meets_the_water():
-    scene = Scene(Params(**SMALL))
+    scene = Scene(SquareSeaParams(**SMALL))
     scene.advance(60)
     scene.frame()
     origin, direction = (40.0, 60.0, 8.0), (0.9, 0.3, -0.12)
-    scene.handle(Point(origin, direction))
+    scene.handle(PointAlong(origin, direction))
     scene.advance(1)
     x, y, z = scene.frame().gauge
     height, _ = scene.sea.height_at([[x, y]], scene.time)
@@ -313,15 +313,15 @@ def test_a_click_puts_the_wave_gauge_where_the_ray_meets_the_water():
     [((0.0, 0.0, 5.0), (0.0, 0.0, 1.0)), ((0.0, 0.0, -50.0), (0.0, 0.0, -1.0)), ((0.0, 0.0, 5.0), (0.0, 0.0, 0.0))],
 )
 def test_a_click_that_meets_no_water_moves_nothing(ray):
-    scene = Scene(Params(**SMALL))
+    scene = Scene(SquareSeaParams(**SMALL))
     at = scene.gauge.at
-    scene.handle(Point(*ray))
+    scene.handle(PointAlong(*ray))
     assert scene.gauge.at == at
     assert not scene.gauge_placed
 
 
 def test_the_wave_gauge_finds_the_energy_of_the_sea_in_its_trace():
-    scene = Scene(Params(**SMALL, wind_speed=6.0, plot_wave_spectrum=True, statistics=False, foam=False))
+    scene = Scene(SquareSeaParams(**SMALL, wind_speed=6.0, plot_wave_spectrum=True, statistics=False, foam=False))
     run(scene, 4000, 6)  # 400 s
     f, measured, theory = scene.curves()["plot_wave_spectrum"]
     band = f[1] - f[0]
@@ -332,7 +332,7 @@ def test_the_wave_gauge_finds_the_energy_of_the_sea_in_its_trace():
 
 
 def test_the_wave_gauge_forgets_what_comes_after_a_checkpoint_and_nothing_else():
-    scene = Scene(Params(**SMALL, plot_wave_spectrum=True, statistics=False))
+    scene = Scene(SquareSeaParams(**SMALL, plot_wave_spectrum=True, statistics=False))
     run(scene, 10)
     kept, trace = scene.keep(), list(scene.gauge.trace)
     run(scene, 10)
@@ -341,7 +341,7 @@ def test_the_wave_gauge_forgets_what_comes_after_a_checkpoint_and_nothing_else()
 
 
 def test_another_size_shows_the_same_sea_and_keeps_time():
-    scene = Scene(Params(size="128", mesh="64"))
+    scene = Scene(SquareSeaParams(size="128", mesh="64"))
     scene.advance(100)
     shared = scene.sea.amplitudes_at(scene.time)[:20, :20]
     change_parameters(scene, size="64")
@@ -350,7 +350,7 @@ def test_another_size_shows_the_same_sea_and_keeps_time():
 
 
 def test_a_reset_is_the_same_sea_again():
-    scene = Scene(Params(**{**PRESETS["Storm arriving"], **SMALL}))
+    scene = Scene(SquareSeaParams(**{**PRESETS["Storm arriving"], **SMALL}))
     first = scene.frame().vertices
     run(scene, 20)
     loop = SimLoop(scene)
@@ -361,7 +361,7 @@ def test_a_reset_is_the_same_sea_again():
 
 def ends() -> list[tuple[str, object]]:
     found = []
-    for name, parameter in parameters_of(Params).items():
+    for name, parameter in parameters_of(SquareSeaParams).items():
         values = parameter.choices or (
             (False, True) if parameter.kind is bool else (parameter.kind(parameter.low), parameter.kind(parameter.high))
         )
@@ -371,7 +371,7 @@ def ends() -> list[tuple[str, object]]:
 
 @pytest.mark.parametrize(("name", "value"), ends())
 def test_both_ends_of_every_parameter_survive(name, value):
-    start = Params(**{**SMALL, **EVERY_OTHER.get(name, {})})
+    start = SquareSeaParams(**{**SMALL, **EVERY_OTHER.get(name, {})})
     scene = Scene(start)
     run(scene, 3)
     # Set live, and from the start.
@@ -387,7 +387,7 @@ def test_both_ends_of_every_parameter_survive(name, value):
 @pytest.mark.parametrize("spectrum", SPECTRA)
 @pytest.mark.parametrize("wind", [0.0, 1e-200, 0.05, 60.0])
 def test_any_wind_makes_a_finite_sea(spectrum, wind):
-    scene = Scene(Params(**SMALL, spectrum=spectrum, wind_speed=wind, planet_mass=0.01, deep=False, depth=0.1))
+    scene = Scene(SquareSeaParams(**SMALL, spectrum=spectrum, wind_speed=wind, planet_mass=0.01, deep=False, depth=0.1))
     run(scene, 2)
     assert all(np.isfinite(array).all() for array in arrays(scene))
     assert conditions(scene.params)["wind_speed"] == SPECTRA[spectrum].wind_speed(wind)
@@ -402,10 +402,10 @@ def test_the_warm_up_compiles_what_a_scene_calls():
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_the_panel_has_words_for_every_preset(name):
-    loop = SimLoop(Scene(Params(**{**PRESETS[name], **SMALL, "plot_wave_gauge": True})))
+    loop = SimLoop(Scene(SquareSeaParams(**{**PRESETS[name], **SMALL, "plot_wave_gauge": True})))
     for _ in range(40):
         loop.tick(1 / 30)
-    assert set(report.marks(loop.latest)) <= set(parameters_of(Params))
+    assert set(report.marks(loop.latest)) <= set(parameters_of(SquareSeaParams))
     texts = [report.readout(loop.latest), *report.marks(loop.latest).values()]
     assert all(texts)
     assert not any(re.search(r"\b(nan|inf)\b", text) for text in texts)
@@ -413,7 +413,7 @@ def test_the_panel_has_words_for_every_preset(name):
 
 @pytest.mark.parametrize("change", [{"deep": False}, {"planet": "Enceladus"}, {"wind_speed": 0.0}])
 def test_the_dominant_waves_have_a_length_where_there_are_waves(change):
-    loop = SimLoop(Scene(Params(**change)))
+    loop = SimLoop(Scene(SquareSeaParams(**change)))
     loop.tick(1 / 30)
     found = live_values(loop.latest)
     has_waves = "wind_speed" not in change
@@ -422,7 +422,7 @@ def test_the_dominant_waves_have_a_length_where_there_are_waves(change):
 
 
 def test_a_sweep_records_the_highest_crest_and_the_waves_about_the_peak():
-    scene = Scene(Params(size="128", mesh="64", amplitude=1.5))
+    scene = Scene(SquareSeaParams(size="128", mesh="64", amplitude=1.5))
     scene.advance(2)
     found = {name: measure.value for name, measure in measures(scene).items()}
     assert found["crest_height"] == pytest.approx(1.5 * scene.sea.surface(scene.time).height.max(), rel=1e-6)

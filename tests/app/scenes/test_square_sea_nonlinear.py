@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from app.formats.formatting import number
-from app.messages import Pause, Play, Point, Reset, RunOn
+from app.messages import Pause, Play, PointAlong, Reset, RunOn
 from app.scenes.square_sea import report
 from app.scenes.square_sea.measures import measures
-from app.scenes.square_sea.parameters import LINEAR_ONLY, PRESETS, Params, hidden, solved_points
+from app.scenes.square_sea.parameters import LINEAR_ONLY, PRESETS, SquareSeaParams, hidden, solved_points
 from app.scenes.square_sea.scene import SCENE, SquareSeaScene
 from app.server.loop import SimLoop
 from sim.ocean import Sea
@@ -33,7 +33,7 @@ def change(scene: Any, **values: object) -> None:
 @pytest.fixture(scope="module")
 def draupner() -> Any:
     """The preset at the time of its wave."""
-    scene = Scene(Params(**PRESETS["Draupner"]))
+    scene = Scene(SquareSeaParams(**PRESETS["Draupner"]))
     assert SCENE.awaited is not None
     assert not SCENE.awaited.reached(SimLoop(scene).latest)
     scene.advance(round(59.4 * 60))
@@ -56,17 +56,17 @@ def test_the_draupner_wave_is_as_high_as_it_was_measured(draupner: Any) -> None:
 
 
 def test_order_1_is_the_linear_sea_and_a_rogue_wave_comes_by_linear_sums_too() -> None:
-    scene = Scene(Params(size="64", mesh="32"))
+    scene = Scene(SquareSeaParams(size="64", mesh="32"))
     assert scene.marching is None
     assert isinstance(scene.water[0], Sea)
     assert scene.frame().highest is None
-    rogue = Scene(Params(**(PRESETS["Draupner"] | {"order": 1})))
+    rogue = Scene(SquareSeaParams(**(PRESETS["Draupner"] | {"order": 1})))
     rogue.advance(round(59.4 * 60))
     assert rogue.frame().highest.place[2] == pytest.approx(1.245 * rogue.sea.significant_height, rel=0.06)
 
 
 def test_the_breather_grows_from_even_waves() -> None:
-    scene = Scene(Params(**PRESETS["Peregrine breather"]))
+    scene = Scene(SquareSeaParams(**PRESETS["Peregrine breather"]))
     first = scene.frame()
     assert first.vertices[..., 2].max() == pytest.approx(1.3 * 0.635, rel=0.05)
     assert np.ptp(first.vertices[..., 2], axis=1).max() == 0.0  # long crests
@@ -77,7 +77,7 @@ def test_the_breather_grows_from_even_waves() -> None:
 
 @pytest.mark.parametrize("start", ["as set", "groups"])
 def test_a_run_goes_on_from_a_checkpoint_as_it_did(start: str) -> None:
-    scene = Scene(Params(**STEEP, start=start))
+    scene = Scene(SquareSeaParams(**STEEP, start=start))
     scene.advance(60)
     scene.frame()
     kept = scene.keep()
@@ -92,9 +92,9 @@ def test_a_run_goes_on_from_a_checkpoint_as_it_did(start: str) -> None:
 
 
 def test_the_wave_gauge_reads_the_surface_and_a_click_moves_it() -> None:
-    scene = Scene(Params(**STEEP))
+    scene = Scene(SquareSeaParams(**STEEP))
     scene.advance(120)
-    scene.handle(Point((100.0, 120.0, 12.0), (0.9, 0.3, -0.4)))
+    scene.handle(PointAlong((100.0, 120.0, 12.0), (0.9, 0.3, -0.4)))
     x, y, z = scene.frame().gauge
     assert scene.gauge_placed
     sea: NonlinearSea = scene.marching.sea
@@ -103,7 +103,7 @@ def test_the_wave_gauge_reads_the_surface_and_a_click_moves_it() -> None:
 
 
 def test_new_weather_begins_a_new_sea_and_another_grid_shows_the_same() -> None:
-    scene = Scene(Params(**STEEP))
+    scene = Scene(SquareSeaParams(**STEEP))
     scene.advance(120)
     before = scene.marching.sea
     change(scene, size="128")
@@ -117,7 +117,7 @@ def test_new_weather_begins_a_new_sea_and_another_grid_shows_the_same() -> None:
 
 
 def test_a_sea_that_is_too_steep_stops_with_words_and_keeps_its_last_state() -> None:
-    scene = Scene(Params(**(STEEP | {"length": 64.0}), start="groups"))
+    scene = Scene(SquareSeaParams(**(STEEP | {"length": 64.0}), start="groups"))
     wave = stokes_wave(0.8 * 64.0 / (2.0 * math.pi), 64.0, order=20)
     x = np.arange(64.0)
     start = wave.elevation(x), wave.potential(x)
@@ -137,7 +137,7 @@ def test_a_sea_that_is_too_steep_stops_with_words_and_keeps_its_last_state() -> 
 
 def test_foam_is_where_crests_fall_by_half_of_gravity() -> None:
     """The Jacobian is 1 - k eta, and k eta g the downward acceleration at a crest."""
-    scene = Scene(Params(**(STEEP | {"hs": 5.0}), foam_by_wind=False, foam_threshold=0.5))
+    scene = Scene(SquareSeaParams(**(STEEP | {"hs": 5.0}), foam_by_wind=False, foam_threshold=0.5))
     scene.advance(600)
     frame = scene.frame()
     jacobian = scene.fields().jacobian[::2, ::2]
@@ -147,7 +147,7 @@ def test_foam_is_where_crests_fall_by_half_of_gravity() -> None:
 
 
 def test_the_panel_compares_crests_with_theory_and_says_what_broke() -> None:
-    loop = SimLoop(Scene(Params(**STEEP)))
+    loop = SimLoop(Scene(SquareSeaParams(**STEEP)))
     for _ in range(30):
         loop.tick(1 / 30)
     text = str(report.readout(loop.latest))
@@ -155,29 +155,29 @@ def test_the_panel_compares_crests_with_theory_and_says_what_broke() -> None:
         assert words in text
     highest = loop.latest.frame.highest
     assert f"Highest crest: {number(highest.place[2])} m" in report.marks(loop.latest)["order"]
-    level = SimLoop(Scene(Params(**(STEEP | {"hs": 0.0}))))
+    level = SimLoop(Scene(SquareSeaParams(**(STEEP | {"hs": 0.0}))))
     level.tick(1 / 30)
     assert "crest over" not in str(report.readout(level.latest))
 
 
 def test_what_only_a_linear_sea_has_is_hidden() -> None:
-    assert hidden(Params(**STEEP)) >= LINEAR_ONLY
-    assert not hidden(Params()) & (LINEAR_ONLY - {"rings"})
-    plain, other = (Scene(Params(**STEEP, **more)) for more in ({}, {"viscosity": 0.01, "choppiness": 0.0}))
+    assert hidden(SquareSeaParams(**STEEP)) >= LINEAR_ONLY
+    assert not hidden(SquareSeaParams()) & (LINEAR_ONLY - {"rings"})
+    plain, other = (Scene(SquareSeaParams(**STEEP, **more)) for more in ({}, {"viscosity": 0.01, "choppiness": 0.0}))
     for scene in (plain, other):
         scene.advance(60)
     assert np.array_equal(plain.frame().vertices, other.frame().vertices)
 
 
 def test_the_grid_of_a_high_order_is_smaller_and_the_panel_says_so() -> None:
-    assert [solved_points(Params(size="512", order=order)) for order in (1, 3, 4)] == [512, 256, 128]
-    assert solved_points(Params(size="512", order=7, start="breather")) == 512
-    loop = SimLoop(Scene(Params(**(STEEP | {"size": "256", "order": 4}))))
+    assert [solved_points(SquareSeaParams(size="512", order=order)) for order in (1, 3, 4)] == [512, 256, 128]
+    assert solved_points(SquareSeaParams(size="512", order=7, start="breather")) == 512
+    loop = SimLoop(Scene(SquareSeaParams(**(STEEP | {"size": "256", "order": 4}))))
     assert "128 × 128 at most" in report.marks(loop.latest)["size"]
 
 
 def test_measures_for_sweeps() -> None:
-    scene = Scene(Params(**STEEP))
+    scene = Scene(SquareSeaParams(**STEEP))
     scene.advance(300)
     found = {name: measure.value for name, measure in measures(scene).items()}
     height = scene.marching.sea.height
@@ -189,7 +189,7 @@ def test_measures_for_sweeps() -> None:
 
 
 def test_a_run_goes_on_until_an_event_begins() -> None:
-    loop = SimLoop(Scene(Params(size="64", mesh="32")), queue.SimpleQueue(), paused=True)
+    loop = SimLoop(Scene(SquareSeaParams(size="64", mesh="32")), queue.SimpleQueue(), paused=True)
     loop.handle(Pause())
     loop.handle(RunOn(lambda snapshot: 0.5 <= snapshot.status.time % 1.0 < 0.8))
     ends = []
@@ -213,14 +213,14 @@ def test_a_run_goes_on_until_an_event_begins() -> None:
 
 def test_the_event_is_a_crest_of_1_25_hs(draupner: Any) -> None:
     assert SCENE.awaited is not None
-    assert SCENE.awaited.offered(Params(**STEEP))
-    assert not SCENE.awaited.offered(Params())
+    assert SCENE.awaited.offered(SquareSeaParams(**STEEP))
+    assert not SCENE.awaited.offered(SquareSeaParams())
     assert SCENE.awaited.reached(SimLoop(draupner).latest)
 
 
 def ends() -> list[tuple[str, object]]:
     found: list[tuple[str, object]] = []
-    for name, declared in parameters_of(Params).items():
+    for name, declared in parameters_of(SquareSeaParams).items():
         low_high = (declared.kind(declared.low), declared.kind(declared.high)) if not declared.choices else ()
         found += [(name, value) for value in declared.choices or low_high or (False, True)]
     return [(name, value) for name, value in found if name not in ("size", "mesh")]
@@ -235,7 +235,7 @@ def test_steep_seas_at_the_ends_of_all_sliders_go_on_or_stop_with_words(order: i
     stopped = []
     for name, value in ends():
         more = {"deep": False} if name == "depth" else {"planet": "by gravity"} if name == "gravity" else {}
-        params = Params(**(steep | more | {name: value}))
+        params = SquareSeaParams(**(steep | more | {name: value}))
         loop = SimLoop(Scene(params))
         for _ in range(20):
             loop.tick(1.0 / max(params.speed, 0.05) if name != "speed" else 0.2)

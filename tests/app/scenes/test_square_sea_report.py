@@ -11,7 +11,7 @@ import pytest
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, bold
 from app.scenes.square_sea.live_values import open_sea
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.report import (
     breaking_text,
     foam_text,
@@ -32,8 +32,8 @@ DIGITS = {"⁰": "0", "¹": "1", "²": "2", "³": "3", "⁴": "4", "⁵": "5", "
 SECONDS = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0, "days": 86400.0, "years": 31557600.0, "µs": 1e-6}
 
 
-def params(**values: Any) -> Params:
-    return check_record(Params, values)
+def params(**values: Any) -> SquareSeaParams:
+    return check_record(SquareSeaParams, values)
 
 
 def numbers(text: object) -> list[float]:

@@ -8,9 +8,9 @@ import pytest
 import viser
 from viser._messages import SetOrientationMessage, SetPositionMessage
 
-from app.scenes.square_sea.parameters import Params
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
-from app.scenes.square_sea.view import View
+from app.scenes.square_sea.view import SquareSeaView
 
 
 @pytest.fixture
@@ -22,8 +22,8 @@ def server() -> Iterator[viser.ViserServer]:
 
 def test_a_closed_view_leaves_no_click_callback_behind(server: viser.ViserServer) -> None:
     for _ in range(3):
-        view = View(server, lambda command: None)
-        view.show(SquareSeaScene(Params(size="64", mesh="32")).frame())
+        view = SquareSeaView(server, lambda command: None)
+        view.show(SquareSeaScene(SquareSeaParams(size="64", mesh="32")).frame())
         assert len(server.scene._scene_pointer_cb) == 1
         view.close()
         server.scene.reset()
@@ -32,17 +32,17 @@ def test_a_closed_view_leaves_no_click_callback_behind(server: viser.ViserServer
 
 def test_a_closed_view_keeps_the_callbacks_of_others(server: viser.ViserServer) -> None:
     server.scene.on_click()(lambda event: None)
-    View(server, lambda command: None).close()
+    SquareSeaView(server, lambda command: None).close()
     assert len(server.scene._scene_pointer_cb) == 1
 
 
 def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> None:
-    view = View(server, lambda command: None)
-    scene = SquareSeaScene(Params(size="64", mesh="32", length=64.0))
+    view = SquareSeaView(server, lambda command: None)
+    scene = SquareSeaScene(SquareSeaParams(size="64", mesh="32", length=64.0))
     view.show(scene.frame())
     camera = server.initial_camera
     camera.position, camera.look_at = (30.0, 20.0, 5.0), (40.0, 20.0, 3.0)
-    scene.params = Params(size="64", mesh="32", length=128.0)
+    scene.params = SquareSeaParams(size="64", mesh="32", length=128.0)
     scene.reset()
     view.show(scene.frame())
     np.testing.assert_allclose(camera.position, (62.0, 52.0, 5.0))
@@ -51,7 +51,10 @@ def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> No
 
 def test_the_wave_gauge_moves_with_the_vertices_of_the_water_and_not_as_a_node(server: viser.ViserServer) -> None:
     """viser's page draws new vertices, and instances of a batch, frames after it has moved a node."""
-    view, scene = View(server, lambda command: None), SquareSeaScene(Params(size="64", mesh="32", plot_wave_gauge=True))
+    view, scene = (
+        SquareSeaView(server, lambda command: None),
+        SquareSeaScene(SquareSeaParams(size="64", mesh="32", plot_wave_gauge=True)),
+    )
     scene.advance(1)
     view.show(scene.frame())
     sent: list[Any] = []

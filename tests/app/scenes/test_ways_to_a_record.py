@@ -40,7 +40,7 @@ def by_notebook(kind: AnyKind, preset: str, values: Values) -> BaseParams:
 
 
 def by_task(kind: AnyKind, preset: str, values: Values) -> BaseParams:
-    return setup_of_task(task.Setup(scene=kind.name, look="at it", preset=preset, parameters=values)).params
+    return setup_of_task(task.TaskSetup(scene=kind.name, look="at it", preset=preset, parameters=values)).params
 
 
 def by_sweep(kind: AnyKind, preset: str, values: Values) -> BaseParams:

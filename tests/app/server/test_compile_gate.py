@@ -4,7 +4,7 @@ from concurrent.futures import Future
 
 from app.messages import Advance, KeptState, Play, Reset, Take
 from app.scenes.compiling import Compiling, Job
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import SCENE
 from app.server.compile_gate import CompileGate
 
@@ -32,12 +32,12 @@ class Queue(Compiling):
 
 def made() -> tuple[Queue, CompileGate]:
     queue = Queue()
-    return queue, CompileGate(queue, SCENE, Params())
+    return queue, CompileGate(queue, SCENE, RopeParams())
 
 
 def test_a_method_that_is_not_compiled_waits_and_starts_by_itself() -> None:
     queue, gate = made()
-    chosen = Take(Params(integrator="rk4"))
+    chosen = Take(RopeParams(integrator="rk4"))
     assert gate.admit([chosen]) == []
     assert "rk4" in gate.notice
     assert queue.wanted == ["rk4"]
@@ -51,8 +51,8 @@ def test_a_method_that_is_not_compiled_waits_and_starts_by_itself() -> None:
 
 def test_going_back_to_what_is_there_ends_the_wait() -> None:
     queue, gate = made()
-    assert gate.admit([Take(Params(integrator="rk4"))]) == []
-    back = Take(Params(gravity=3.0))
+    assert gate.admit([Take(RopeParams(integrator="rk4"))]) == []
+    back = Take(RopeParams(gravity=3.0))
     assert gate.admit([back]) == [back]
     assert not gate.notice
     queue.finish("rk4")
@@ -61,7 +61,7 @@ def test_going_back_to_what_is_there_ends_the_wait() -> None:
 
 def test_a_preset_is_held_until_it_can_run() -> None:
     queue, gate = made()
-    preset = Take(Params(integrator="tr_bdf2"), start=True)
+    preset = Take(RopeParams(integrator="tr_bdf2"), start=True)
     assert gate.admit([preset, Reset()]) == [Reset()]
     queue.finish("tr_bdf2")
     assert gate.admit([Play()]) == [preset, Play()]
@@ -70,8 +70,8 @@ def test_a_preset_is_held_until_it_can_run() -> None:
 
 def test_of_two_presets_only_the_last_is_loaded() -> None:
     queue, gate = made()
-    later = Take(Params(gravity=3.0), start=True)
-    assert gate.admit([Take(Params(integrator="tr_bdf2"), start=True)]) == []
+    later = Take(RopeParams(gravity=3.0), start=True)
+    assert gate.admit([Take(RopeParams(integrator="tr_bdf2"), start=True)]) == []
     assert gate.admit([later]) == [later]
     queue.finish("tr_bdf2")
     assert gate.admit([]) == []
@@ -79,8 +79,8 @@ def test_of_two_presets_only_the_last_is_loaded() -> None:
 
 def test_a_slider_that_is_moved_while_a_preset_is_compiled_is_taken_after_its_start() -> None:
     queue, gate = made()
-    preset = Take(Params(integrator="rk4"), start=True)
-    moved = [Take(Params(integrator="rk4", gravity=gravity)) for gravity in (3.0, 4.0, 5.0)]
+    preset = Take(RopeParams(integrator="rk4"), start=True)
+    moved = [Take(RopeParams(integrator="rk4", gravity=gravity)) for gravity in (3.0, 4.0, 5.0)]
     assert gate.admit([preset]) == []
     for change in moved:
         assert gate.admit([change]) == []
@@ -90,8 +90,8 @@ def test_a_slider_that_is_moved_while_a_preset_is_compiled_is_taken_after_its_st
 
 def test_a_moment_to_go_on_from_keeps_its_own_parameters() -> None:
     queue, gate = made()
-    kept = Take(Params(integrator="rk4"), state=KeptState(0.0, {}))
-    moved = Take(Params(integrator="rk4", gravity=3.0))
+    kept = Take(RopeParams(integrator="rk4"), state=KeptState(0.0, {}))
+    moved = Take(RopeParams(integrator="rk4", gravity=3.0))
     assert gate.admit([kept, moved]) == []
     queue.finish("rk4")
     assert gate.admit([]) == [kept, moved]
@@ -99,28 +99,28 @@ def test_a_moment_to_go_on_from_keeps_its_own_parameters() -> None:
 
 def test_a_newer_record_that_can_run_drops_the_preset_that_waits() -> None:
     queue, gate = made()
-    assert gate.admit([Take(Params(integrator="rk4"), start=True)]) == []
-    undone = Take(Params(gravity=3.0))
+    assert gate.admit([Take(RopeParams(integrator="rk4"), start=True)]) == []
+    undone = Take(RopeParams(gravity=3.0))
     assert gate.admit([undone]) == [undone]
     assert not gate.notice
     queue.finish("rk4")
     assert gate.admit([]) == []
-    later = Take(Params(gravity=5.0), start=True)
+    later = Take(RopeParams(gravity=5.0), start=True)
     assert gate.admit([later]) == [later]
 
 
 def test_a_preset_that_can_run_since_a_moment_ago_is_not_dropped_for_a_newer_record() -> None:
     queue, gate = made()
-    preset = Take(Params(integrator="rk4"), start=True)
+    preset = Take(RopeParams(integrator="rk4"), start=True)
     assert gate.admit([preset]) == []
     queue.finish("rk4")
-    newer = Take(Params(integrator="rk4", gravity=3.0))
+    newer = Take(RopeParams(integrator="rk4", gravity=3.0))
     assert gate.admit([newer]) == [preset, newer]
 
 
 def test_a_program_waits_for_the_time_after_what_it_has_set() -> None:
     queue, gate = made()
-    change, wait = Take(Params(integrator="rk4")), Advance(1.0, Future())
+    change, wait = Take(RopeParams(integrator="rk4")), Advance(1.0, Future())
     assert gate.admit([change, wait, Play()]) == [Play()]
     assert gate.admit([]) == []
     queue.finish("rk4")

@@ -6,10 +6,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from app.messages import Grab, Pause, Place, Play, Reset, StudentAnswer, Take
-from app.scenes.cloth.parameters import Params as ClothParams
+from app.messages import GrabTo, Pause, Place, Play, Reset, StudentAnswer, Take
+from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.server.loop import PATIENCE, SimLoop
 from app.server.snapshots import MAX_BLIND_TIME
@@ -29,14 +29,16 @@ def ask(loop, **changes):
 @pytest.fixture
 def busy():
     """A loop in the middle of a step that takes long."""
-    scene = RopeScene(Params(points=4))
+    scene = RopeScene(RopeParams(points=4))
     loop = SimLoop(scene, clock=lambda: 1.0)
     loop.busy_since = loop.turn_at = 1.0 - 2.0 * PATIENCE
     loop.solving = loop.may_end = True
     return loop
 
 
-@pytest.mark.parametrize(("command", "ends"), [(Reset(), 1), (Pause(), 1), (Play(), 0), (Grab(1, (0.0, 0.0, 0.0)), 0)])
+@pytest.mark.parametrize(
+    ("command", "ends"), [(Reset(), 1), (Pause(), 1), (Play(), 0), (GrabTo(1, (0.0, 0.0, 0.0)), 0)]
+)
 def test_a_solve_ends_for_what_begins_anew_and_not_for_a_drag(busy, command, ends):
     busy.commands.put(command)
     busy.give_turn()
@@ -84,7 +86,7 @@ def test_a_turn_is_asked_for_after_a_while_and_not_of_an_idle_loop(busy):
 
 def test_one_tick_that_takes_long_makes_only_the_next_show_a_picture_more():
     now, seconds = [0.0], iter([2.0 * PATIENCE, 0.0, 0.0, 0.0])
-    scene = RopeScene(Params(points=4))
+    scene = RopeScene(RopeParams(points=4))
     loop = SimLoop(scene, clock=lambda: now[0], effort=lambda: 0.0)
     advance = scene.advance
 
@@ -123,7 +125,7 @@ def test_a_reset_that_was_ended_early_is_done_again_and_a_step_is_not(busy):
     busy.commands.put(Reset())
     busy.tick(0.0)
     assert busy.unfinished is not None
-    busy.commands.put(Grab(1, (0.0, 0.0, 0.0)))  # what else is asked for does not make it forget that
+    busy.commands.put(GrabTo(1, (0.0, 0.0, 0.0)))  # what else is asked for does not make it forget that
     busy.tick(0.0)
     assert calls == ["reset", "reset"]
     assert busy.unfinished is None
@@ -212,13 +214,13 @@ def test_where_nothing_may_be_ended_other_forces_are_answered_with_the_last_fram
 def test_steps_that_are_kept_whole_are_neither_ended_nor_shown_half_done(busy):
     params = ask(busy, stiffness=90.0)
     busy.commands.put(Pause())
-    busy.commands.put(Grab(1, (0.0, 0.0, 0.0)))
+    busy.commands.put(GrabTo(1, (0.0, 0.0, 0.0)))
     busy.scene.frame = None  # not asked for
     with kept_whole():
         busy.give_turn()
     assert busy.request[STOP] == 0
     assert busy.latest.params is params
-    assert busy.waiting == [Take(params), Pause(), Grab(1, (0.0, 0.0, 0.0))]
+    assert busy.waiting == [Take(params), Pause(), GrabTo(1, (0.0, 0.0, 0.0))]
     busy.give_turn()
     assert busy.request[STOP] == 1
 

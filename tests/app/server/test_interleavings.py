@@ -15,9 +15,9 @@ import pytest
 from app.messages import Ask, Pause, Play, StepOnce
 from app.scenes.compiling import Job
 from app.scenes.contract import AnySnapshot
-from app.scenes.rope.parameters import Params
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.setups import Setup
-from app.server.beside import Comparison
+from app.server.beside import ComparedLabs
 from app.server.served_scene import ServedScene
 from app.server.viewer import Viewer
 
@@ -88,7 +88,7 @@ def test_a_scene_that_is_opened_during_a_slow_one_has_nothing_of_the_old_scene(
             old.scene.advance = held
         assert held.begun.wait(TIMEOUT)
         outlast(thread, held)
-        params = Params(points=5 + number % 3)
+        params = RopeParams(points=5 + number % 3)
         watched.open("rope", params)
         new = watched.served
         updates = noted_updates(new)
@@ -160,7 +160,7 @@ def test_a_preset_that_is_undone_while_it_is_compiled_never_begins(
     monkeypatch.setattr(scene, "reset", lambda: (begun.append(scene.params), reset()))
     for number in range(times):
         before, starts = panel.params, watched.loop.counts["starts"]
-        panel.load_params(Params(integrator="rk4", gravity=9.0), undone)
+        panel.load_params(RopeParams(integrator="rk4", gravity=9.0), undone)
         assert asked(watched, lambda: scene.params) == before
         panel.undo()
         assert asked(watched, lambda: scene.params) == before
@@ -169,7 +169,7 @@ def test_a_preset_that_is_undone_while_it_is_compiled_never_begins(
         assert watched.loop.counts["starts"] == starts
         assert not watched.loop.halted
         if number % 5 == 4:
-            panel.load_params(Params(gravity=2.0), ready)
+            panel.load_params(RopeParams(gravity=2.0), ready)
             assert asked(watched, lambda: watched.loop.counts["starts"]) == starts + 1
     assert all(params.integrator != "rk4" for params in begun)
     assert len(begun) == times // 5
@@ -184,7 +184,7 @@ def test_a_preset_that_settles_late_is_not_lost(watched: Viewer, monkeypatch: py
     for number in range(times):
         settled.clear()
         settled.looks_left = 1 + number % 4
-        panel.load_params(Params(integrator="rk4", gravity=1.0 + number), preset)
+        panel.load_params(RopeParams(integrator="rk4", gravity=1.0 + number), preset)
         for _ in range(8):  # ticks
             asked(watched, lambda: None)
         assert watched.loop.counts["starts"] == number + 1
@@ -197,9 +197,9 @@ def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
     watched: Viewer, pane: Viewer, monkeypatch: pytest.MonkeyPatch, times: int
 ) -> None:
     """End a comparison while the first lab's tick is at the clock that both share."""
-    setup, loop = Setup("rope", Params(stiffness=2000.0), {}, ""), watched.loop
+    setup, loop = Setup("rope", RopeParams(stiffness=2000.0), {}, ""), watched.loop
     for number in range(times):
-        comparison = Comparison(watched, lambda _: pane)
+        comparison = ComparedLabs(watched, lambda _: pane)
         comparison.begin([setup], resume=False)
         assert asked(watched, lambda: loop.seat) is comparison.seats[watched]
         with monkeypatch.context() as point:
@@ -217,7 +217,7 @@ def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
         watched.commands.put(Play())
 
 
-def held_at_the_clock(lab: Viewer, comparison: Comparison, point: pytest.MonkeyPatch, place: int) -> Held:
+def held_at_the_clock(lab: Viewer, comparison: ComparedLabs, point: pytest.MonkeyPatch, place: int) -> Held:
     """Hold the first lab's tick between the test for a seat and its use, as the clock goes on, or in a step by hand."""
     loop, clock = lab.loop, comparison.clock
     if place == 0:

@@ -14,14 +14,14 @@ from app.messages import (
     Advance,
     Ask,
     Command,
-    Grab,
+    GrabTo,
     Halt,
     KeptState,
     Moment,
     Pause,
     Place,
     Play,
-    Point,
+    PointAlong,
     Release,
     Reset,
     StepOnce,
@@ -30,7 +30,7 @@ from app.messages import (
     TogglePlay,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.scenes.rope.parameters import Params as RopeParams
+from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.server.loop import SimLoop
 from app.server.merging import merged
@@ -89,13 +89,13 @@ class Scene:
         match command:
             case Place(thing, position):
                 self.places = tuple(sorted({**dict(self.places), thing: position}.items()))
-            case Grab(0, target):  # as the root of a rope, which stays there
+            case GrabTo(0, target):  # as the root of a rope, which stays there
                 self.places = tuple(sorted({**dict(self.places), "root": target}.items()))
-            case Grab(particle, target, client) if self.hold is None or self.hold[2] == client:
+            case GrabTo(particle, target, client) if self.hold is None or self.hold[2] == client:
                 self.hold = particle, target, client
             case Release(client) if self.hold is not None and self.hold[2] == client:
                 self.hold = None
-            case Point(origin):
+            case PointAlong(origin):
                 self.points = (*self.points, origin)
             case StudentAnswer():
                 self.motion = hash((self.motion, self.answers, self.params.stiffness)) if self.answers else self.motion
@@ -178,8 +178,8 @@ COMMANDS: tuple[Command, ...] = (
     Take(Params(points=5, stiffness=3.0)), Take(Params(stiffness=4.0), start=True),
     Take(Params(stiffness=5.0), state=KeptState(0.25, {})),
     Place("root", (1.0, 0.0, 0.0)), Place("camera", (2.0, 0.0, 0.0)),
-    Grab(0, (3.0, 0.0, 0.0)), Grab(1, (4.0, 0.0, 0.0)), Grab(1, (5.0, 0.0, 0.0)), Grab(1, (6.0, 0.0, 0.0), 7),
-    Release(), Point((8.0, 0.0, 0.0), (0.0, 0.0, -1.0)),
+    GrabTo(0, (3.0, 0.0, 0.0)), GrabTo(1, (4.0, 0.0, 0.0)), GrabTo(1, (5.0, 0.0, 0.0)), GrabTo(1, (6.0, 0.0, 0.0), 7),
+    Release(), PointAlong((8.0, 0.0, 0.0), (0.0, 0.0, -1.0)),
     StudentAnswer(), Ask(lambda: None, Future()), Advance(2.0, Future()),
 )  # fmt: skip
 STATES: dict[str, dict[str, object]] = {
@@ -221,7 +221,7 @@ def test_a_rope_is_left_by_merged_commands_as_by_all_in_order(first: int) -> Non
     commands: tuple[Command, ...] = (
         StepOnce(3), Reset(), Take(stiffer), Take(dataclasses.replace(stiffer, gravity=3.0)), Take(params),
         Take(stiffer, start=True), Take(params, state=KeptState(earlier.keep(), {})),
-        Grab(3, (1.0, 0.0, 0.0)), Grab(3, (0.0, 1.0, 0.0)), Place("root", (0.2, 0.0, 0.0)),
+        GrabTo(3, (1.0, 0.0, 0.0)), GrabTo(3, (0.0, 1.0, 0.0)), Place("root", (0.2, 0.0, 0.0)),
     )  # fmt: skip
     count = 0
     for rest in itertools.product(commands, repeat=2):

@@ -6,7 +6,7 @@ import pytest
 from app.messages import Moment, Pause, Play, Reset, StepOnce, Take
 from app.render.cameras import fit_cameras
 from app.scenes.contract import FRAME_INTERVAL
-from app.scenes.rope.parameters import PRESETS, Params
+from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.server.loop import SimLoop
 from app.server.replay import MOMENT_INTERVAL, Replay
@@ -18,7 +18,7 @@ MOMENTS = tuple(Moment(0.1 * k, k, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)) for k in ra
 
 def diverged(**changes: object) -> SimLoop:
     """A loop in which the rope has just diverged."""
-    loop = SimLoop(RopeScene(check_record(Params, {**PRESETS["Euler explodes"], **changes})))
+    loop = SimLoop(RopeScene(check_record(RopeParams, {**PRESETS["Euler explodes"], **changes})))
     for _ in range(1000):
         loop.tick(FRAME_INTERVAL)
         if loop.replay is not None:
@@ -96,7 +96,7 @@ def test_a_reset_ends_the_replay_and_other_forces_halt_at_the_last_good_state() 
     assert loop.latest.status.replayed is None
     assert loop.running
     loop = diverged()
-    params = check_record(Params, {**PRESETS["Euler explodes"], "stiffness": 10.0})
+    params = check_record(RopeParams, {**PRESETS["Euler explodes"], "stiffness": 10.0})
     loop.commands.put(Take(params))
     loop.tick(FRAME_INTERVAL)
     assert loop.replay is None
@@ -108,7 +108,7 @@ def test_a_reset_ends_the_replay_and_other_forces_halt_at_the_last_good_state() 
 
 
 def test_a_step_by_hand_that_diverges_halts_at_once() -> None:
-    loop = SimLoop(RopeScene(check_record(Params, PRESETS["Euler explodes"])), paused=True)
+    loop = SimLoop(RopeScene(check_record(RopeParams, PRESETS["Euler explodes"])), paused=True)
     for _ in range(400):
         loop.commands.put(StepOnce())
         loop.tick(FRAME_INTERVAL)

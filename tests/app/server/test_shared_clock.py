@@ -121,10 +121,10 @@ def test_what_begins_one_run_again_begins_all():
 
 
 def test_a_change_that_begins_one_run_again_begins_all():
-    ropes = race.SCENE.make(race.Params(ropes=2))
+    ropes = race.SCENE.make(race.RaceParams(ropes=2))
     group = Group(rope(), ropes)
     group.run(0.5)
-    group.loops[1].commands.put(Take(race.Params(ropes=1)))
+    group.loops[1].commands.put(Take(race.RaceParams(ropes=1)))
     group.run(0.2)
     assert len(ropes.frame().ropes) == 1
     assert 0.0 < max(group.times) < 0.3

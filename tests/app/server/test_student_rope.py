@@ -12,7 +12,7 @@ from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
 from app.scenes import scene_named
-from app.scenes.race.parameters import Params
+from app.scenes.race.parameters import RaceParams
 from app.server.viewer import Viewer
 from tests.app.lab.test_session import taken
 from tests.waiting import wait_for
@@ -47,7 +47,7 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
         assert loop.counts["ticks"] - ticks > 3 * waited  # the loop of the scene goes on meanwhile
         assert not loop.halted
         assert loop.latest.frame.reference is not None
-        viewer.make_scene(scene_named("race"), Params(), viewer.commands.put)  # which runs nothing of the student's
+        viewer.make_scene(scene_named("race"), RaceParams(), viewer.commands.put)  # which runs nothing of the student's
         (folder / "rope.py").write_text(RIGHT + "\n# once more\n")
         wait_for(lambda: taken(session) == 4)
         assert loop.counts["starts"] == 1

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Grab, Play, Reset, StepOnce, TogglePlay
+from app.messages import GrabTo, Play, Reset, StepOnce, TogglePlay
 from app.panel.recorder import MAX_RATE
 from app.scenes import scene_named
 from app.scenes.compiling import Job
@@ -78,14 +78,14 @@ class Client:
 
 def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Viewer) -> None:
     scene: Any = lab.scene
-    lab.commands.put(Grab(5, (0.0, 0.0, 2.0), client=1))
-    wait_for(lambda: scene.handles.drag.hold is not None)
+    lab.commands.put(GrabTo(5, (0.0, 0.0, 2.0), client=1))
+    wait_for(lambda: scene.handles.grab.grabbed is not None)
     coroutines.run(lab.release(Client(2)))  # type: ignore[arg-type]
     ticks = lab.loop.counts["ticks"]
     wait_for(lambda: lab.loop.counts["ticks"] > ticks + 3)
-    assert scene.handles.drag.hold is not None
+    assert scene.handles.grab.grabbed is not None
     coroutines.run(lab.release(Client(1)))  # type: ignore[arg-type]
-    wait_for(lambda: scene.handles.drag.hold is None)
+    wait_for(lambda: scene.handles.grab.grabbed is None)
 
 
 def panel_text(viewer: Viewer) -> str:
@@ -147,7 +147,7 @@ def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_
     assert panel.controls["stiffness"].field.value == "1234"
     wait_for(lambda: lab.loop.halted)
     said = "The scene cannot begin with these values. stiffness: 1234 is not allowed; allowed: another one"
-    for command in (Play(), TogglePlay(), StepOnce(), Grab(3, (0.0, 0.0, 0.0)), Reset()):
+    for command in (Play(), TogglePlay(), StepOnce(), GrabTo(3, (0.0, 0.0, 0.0)), Reset()):
         lab.commands.put(command)
         wait_for(lambda: lab.commands.empty() and not lab.loop.waiting)
         assert lab.loop.halted == said

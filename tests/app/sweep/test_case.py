@@ -39,14 +39,14 @@ def test_every_scene_gives_labelled_numbers_and_none_bears_the_name_of_a_paramet
 def test_a_rope_that_has_come_to_rest_hangs_as_statics_say():
     values = {"time_step": 5e-3, "drag": 20.0, "damping": 50.0, "floor": False, "plot_energy": True}
     found = run_case("rope", values, (60.0,)).measures
-    net = app.scenes.rope.scene.build(app.scenes.rope.scene.Params(**values))
+    net = app.scenes.rope.scene.build(app.scenes.rope.scene.RopeParams(**values))
     assert found["tip_height"][0] == pytest.approx(hanging_chain(net).x[-1, 2], abs=1e-6)
     assert found["kinetic_energy"][0] < 1e-9
 
 
 def test_the_rope_of_a_case_is_the_rope_of_the_library():
     found = run_case("rope", {"time_step": 1e-3, "floor": False}, (0.5, 1.0)).measures["tip_height"]
-    net = app.scenes.rope.scene.build(app.scenes.rope.scene.Params(floor=False))
+    net = app.scenes.rope.scene.build(app.scenes.rope.scene.RopeParams(floor=False))
     run = simulate(net, "leapfrog", 1e-3, 1.0, 3)
     assert found == pytest.approx(run.x[1:, -1, 2], abs=1e-12)
 

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from app.scenes.rope.scene import Params
+from app.scenes.rope.scene import RopeParams
 from app.sweep.design import Listed, Range, grid, grid_values, hypercube, size
 from sim.parameters import parameters_of
 
-PARAMETERS = parameters_of(Params)
+PARAMETERS = parameters_of(RopeParams)
 
 
 def test_a_grid_has_every_combination_once_the_last_parameter_the_fastest():

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from sim.mooring import Body, Line, LineType, Point, System
+from sim.mooring import Line, LineType, MooredBody, Point, System
 
 CHAIN = LineType("chain", 0.09, 80.0, 5e7, -0.8, 1.0, 1.6, 0.0, 0.1)
 TAUT = LineType("taut", 0.04, 1.1, 1.5e6, 3e4, 1.0, 1.2, 0.0, 0.05)
@@ -45,9 +45,9 @@ def in_vacuum(kind: LineType) -> LineType:
     return kind._replace(damping=0.0)
 
 
-def floating_body(surge_stiffness: float = 0.0) -> Body:
+def floating_body(surge_stiffness: float = 0.0) -> MooredBody:
     """A body of 20 t with springs of heave, roll, pitch and yaw, at the surface."""
     mass = np.diag([2e4, 2e4, 3e4, 8e4, 8e4, 9e4])
     mass[0, 4] = mass[4, 0] = -1e4
     mass[1, 3] = mass[3, 1] = 1e4
-    return Body(1, (0.0, 0.0, 0.0), mass, np.diag([surge_stiffness, surge_stiffness, 2e5, 5e5, 5e5, 1e4]))
+    return MooredBody(1, (0.0, 0.0, 0.0), mass, np.diag([surge_stiffness, surge_stiffness, 2e5, 5e5, 5e5, 1e4]))

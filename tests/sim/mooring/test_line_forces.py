@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.mooring import Body, Line, LineType, Point, System
+from sim.mooring import Line, LineType, MooredBody, Point, System
 from sim.springs.acceleration import set_acceleration
 from sim.springs.lines.damping import damp_lines, make_lines_decay
 from sim.springs.lines.energy import lines_pins_damping_power, lines_power, set_tensions
@@ -162,7 +162,7 @@ def test_the_pull_of_a_line_turns_a_body_about_its_reference_point():
     arm, pull = np.array([1.5, -0.9, 2.0]), 4000.0 / 3.0  # stretched from 3 to 4 m
     kind = LineType("wire", 1e-6, 1e-9, 4000.0, 0.0)
     mass = np.diag([10.0, 20.0, 30.0, 40.0, 50.0, 60.0])
-    body = Body(1, (0.0, 0.0, 0.0), mass, np.zeros((6, 6)))
+    body = MooredBody(1, (0.0, 0.0, 0.0), mass, np.zeros((6, 6)))
     way = np.array([0.48, 0.6, 0.64])
     points = Point(1, "body", tuple(arm.tolist()), body=1), Point(2, "fixed", tuple((arm + 4.0 * way).tolist()))
     system = System((Line(1, kind, 1, 2, 3.0, 1),), points, 50.0, (body,), gravity=0.0, density=0.0, bed_stiffness=0.0)

@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import expm
 
 from sim import springs
-from sim.mooring import Body, Line, LineType, Point, System, critical_step, simulate
+from sim.mooring import Line, LineType, MooredBody, Point, System, critical_step, simulate
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
 from sim.springs.acceleration import set_acceleration
@@ -281,7 +281,7 @@ def test_damping_of_a_body_decays_exactly_and_limits_no_step(rate):
     rng = np.random.default_rng(3)
     square = rng.normal(size=(6, 6))
     mass, damping = np.diag([2e4, 2e4, 3e4, 8e4, 8e4, 9e4]), rate * 1e4 * (square @ square.T)
-    body = Body(1, (0.0, 0.0, 0.0), mass, np.zeros((6, 6)), damping)
+    body = MooredBody(1, (0.0, 0.0, 0.0), mass, np.zeros((6, 6)), damping)
     hair = LineType("hair", 1e-9, 1e-9, 1e-9, 0.0)
     points = Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "body", (0.0, 0.0, 0.0), body=1)
     system = System((Line(1, hair, 1, 2, 80.0, 1),), points, 50.0, (body,), gravity=0.0, density=0.0)
@@ -302,7 +302,7 @@ def damped(rate: float) -> System:
         Point(3, "body", (1.0, 0.0, 0.0), body=1), Point(4, "fixed", (40.0, 0.0, 0.0)),
     )  # fmt: skip
     lines = (Line(1, wire, 1, 2, 38.9, 8), Line(2, wire, 3, 4, 38.9, 8))
-    body = Body(1, (0.0, 0.0, 0.0), 1e4 * np.eye(6), 1e4 * np.eye(6), rate * 1e4 * np.eye(6))
+    body = MooredBody(1, (0.0, 0.0, 0.0), 1e4 * np.eye(6), 1e4 * np.eye(6), rate * 1e4 * np.eye(6))
     return System(lines, points, 100.0, (body,), gravity=0.0, density=0.0, bed_stiffness=0.0)
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.mooring import Body, Line, LineType, Point, System, read_moordyn
+from sim.mooring import Line, LineType, MooredBody, Point, System, read_moordyn
 from sim.mooring.gauge import modes
 from sim.mooring.turning import stiffness_of_turning, with_turning
 
@@ -18,7 +18,9 @@ def tethered(lift: float = LIFT) -> System:
     kind = LineType("tether", 1e-3, 1e-3, 1e9, 0.0)
     points = (Point(1, "fixed", (0.0, 0.0, -50.0)), Point(2, "body", (0.0, 0.0, LENGTH - 50.0), body=1))
     mass = np.diag([MASS] * 3 + [INERTIA] * 3)
-    body = Body(1, (0.0, 0.0, LENGTH + ARM - 50.0), mass, np.diag([0.0] * 3 + [1.0] * 3), steady=(0, 0, lift, 0, 0, 0))
+    body = MooredBody(
+        1, (0.0, 0.0, LENGTH + ARM - 50.0), mass, np.diag([0.0] * 3 + [1.0] * 3), steady=(0, 0, lift, 0, 0, 0)
+    )
     return System((Line(1, kind, 1, 2, LENGTH, 1),), points, 60.0, (body,), density=0.0)
 
 

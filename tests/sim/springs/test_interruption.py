@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from app.scenes.race.parameters import Params
+from app.scenes.race.parameters import RaceParams
 from app.scenes.race.scene import RaceScene
 from sim.interruption import InterruptionError, stop_request, use_request
 from sim.springs import INTEGRATORS, State, advance, cloth, rope, simulate
@@ -79,7 +79,9 @@ def test_a_state_stays_that_of_a_whole_step(request_of_this_thread):
 
 
 def test_a_race_that_is_ended_early_goes_on_from_where_all_its_ropes_were(request_of_this_thread):
-    ended, other = (RaceScene(Params(ropes=2, integrator="leapfrog", integrator_2="implicit_euler")) for _ in range(2))
+    ended, other = (
+        RaceScene(RaceParams(ropes=2, integrator="leapfrog", integrator_2="implicit_euler")) for _ in range(2)
+    )
     for scene in (ended, other):
         scene.advance(3)
     second = ended.race.entrants[1]

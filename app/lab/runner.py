@@ -45,6 +45,7 @@ MAX_WAIT = 10.0  # ratio of the longest wait to the time limit, on a machine tha
 TRACE_TIME = 0.2  # [s] for which a process that does not answer may take to say where it is
 MAX_TRACE = 2**16  # [bytes] of what it says
 FRAME = re.compile(r'File "(.+)", line (\d+) in (.+)')  # as faulthandler writes it
+ESCAPED = re.compile(r"\\x[0-9a-f]{2}|\\u[0-9a-f]{4}|\\U[0-9a-f]{8}")  # its characters beyond ASCII
 ROOT = Path(__file__).resolve().parents[2]  # the folder that holds `app`
 START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.worker import main; main()"
 COMMAND = (sys.executable, "-P", "-c", START, str(ROOT))
@@ -95,6 +96,7 @@ class Runner:
         self._aborted = False
         self._used = 0.0  # [s] of processor time that the process had taken at the start of the call
         self._trace: IO[bytes] | None = None  # where the process writes, when it is asked, where it is
+        self._place: tuple[str, int, str] | None = None  # file, line and function, of a process that tells it unasked
         self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
 
     def __enter__(self) -> "Runner":
@@ -209,7 +211,7 @@ class Runner:
             self._say(process, ["folder", str(self.folder)])
             self.is_fresh = False
         start = time.monotonic()
-        self._used = processor_time(process.pid)[1]
+        self._used, self._place = processor_time(process.pid)[1], None
         self._say(process, [kind, file, function, pack(arguments, refer)])
         while True:
             answer = self._next(start + time_limit, time_limit, file, function)
@@ -220,6 +222,10 @@ class Runner:
                     return unpack(answer[1], lambda _: None)
                 if answer[0] == "loaded":
                     self._loaded.add(file)
+                    continue
+                if answer[0] == "at":
+                    _, where, line, inner = answer
+                    self._place = str(where), int(line), str(inner)
                     continue
                 if answer[0] == "failed":
                     _, kind, text, where, line, loading = answer
@@ -304,19 +310,9 @@ class Runner:
 
     def _where(self) -> tuple[str, int, str] | None:
         """File, line and function of the student's at which the process is; None where that cannot be found out."""
-        process, trace = self._process, self._trace
-        if process is None or trace is None or TRACE_SIGNAL is None:
-            return None
-        before = os.fstat(trace.fileno()).st_size
-        with contextlib.suppress(OSError):  # it has ended
-            process.send_signal(TRACE_SIGNAL)
-        end = time.monotonic() + TRACE_TIME
-        found: list[tuple[str, str, str]] = []
-        while not found and time.monotonic() < end:
-            time.sleep(0.01)
-            text = os.pread(trace.fileno(), MAX_TRACE, before).decode("utf-8", "replace")
-            found = [f for f in FRAME.findall(text) if Path(f[0]).parent == self.folder]
-        return (Path(found[0][0]).name, int(found[0][1]), found[0][2]) if found else None
+        if self._process is None or self._trace is None or TRACE_SIGNAL is None:
+            return self._place
+        return traced(self._process, self._trace, self.folder)
 
     def _wait(self, deadline: float, time_limit: float) -> list[Any] | None:
         """The next message, or None at the end of the process. Raises queue.Empty if none comes in time.
@@ -372,6 +368,27 @@ class Runner:
             how = f"signal {-status}" if status is not None and status < 0 else f"exit status {status}"
             raise RunError("ended", f"{file if loading else function} ended its process ({how})", file, loading=loading)
         return answer
+
+
+def traced(process: Process, trace: IO[bytes], folder: Path) -> tuple[str, int, str] | None:
+    """File, line and function of a folder at which a process is as it writes them when it gets `TRACE_SIGNAL`."""
+    assert TRACE_SIGNAL is not None
+    before = os.fstat(trace.fileno()).st_size
+    with contextlib.suppress(OSError):  # it has ended
+        process.send_signal(TRACE_SIGNAL)
+    end = time.monotonic() + TRACE_TIME
+    while time.monotonic() < end:
+        time.sleep(0.01)
+        text = ESCAPED.sub(unescaped, os.pread(trace.fileno(), MAX_TRACE, before).decode("ascii", "replace"))
+        for file, line, function in FRAME.findall(text):
+            if Path(file).parent == folder:
+                return Path(file).name, int(line), function
+    return None
+
+
+def unescaped(escaped: "re.Match[str]") -> str:
+    """The character of an escape sequence of `ESCAPED`."""
+    return chr(int(escaped[0][2:], 16))
 
 
 def check_syntax(path: Path) -> None:

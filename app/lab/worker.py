@@ -6,7 +6,8 @@ computes it), or `["failed", kind, text, file, line, loading]` (loading: the fil
 `["loaded", file]` once it has run a file. With `["march", file, function, arguments]` it advances a rope or
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
-at many arguments (`tabulate.py`). What a student prints is counted and dropped: the pipes are the lab's own.
+at many arguments (`tabulate.py`). During a long call it says `["at", file, line, function]` again and again on systems
+without a signal by which the lab could ask. What a student prints is counted and dropped: the pipes are the lab's own.
 """
 
 import contextlib
@@ -35,6 +36,7 @@ from app.lab.wire import pack, receive, send, unpack
 MAX_LINES = 10_000  # printed in one call or march
 MEMORY = 768 * 2**20  # [bytes] that a call may ask for, where the system can limit it
 LOOK_AT_PARENT = 1.0  # [s] between two looks whether the lab still runs
+PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on where it is
 
 
 class PrintedTooMuchError(BaseException):
@@ -76,6 +78,8 @@ class Worker:
         self.modules: dict[str, ModuleType] = {}
         self.compiled: dict[str, Callable[..., Any]] = {}
         self.was_tried = was_tried
+        self.in_call = threading.Event()
+        self.sending = threading.Lock()  # for one message
 
     def enter(self, folder: Path) -> None:
         """Work in the student's folder."""
@@ -93,16 +97,37 @@ class Worker:
         while (message := receive(self.incoming)) is not None:
             kind, file, function, arguments = message
             self.output.lines = 0
+            self.in_call.set()
+            answer = self.answer(kind, file, function, arguments)
+            self.in_call.clear()
             try:
-                answer = self.answer(kind, file, function, arguments)
-                send(self.outgoing, answer)
+                self.say(answer)
             except BrokenPipeError:
                 return
             except ValueError as error:  # the result is too long to send
-                send(self.outgoing, ["failed", "raised", f"the result has {error}", file, None, False])
+                self.say(["failed", "raised", f"the result has {error}", file, None, False])
             if kind == "march" and not self.was_tried:
                 self.was_tried = True
                 lower_priority(ROPE_NICENESS)
+
+    def say(self, message: list[Any]) -> None:
+        """Send a message."""
+        with self.sending:
+            send(self.outgoing, message)
+
+    def say_where(self) -> NoReturn:
+        """Say where a long call is, from a thread of its own."""
+        main = threading.main_thread().ident
+        while True:
+            self.in_call.wait()
+            time.sleep(PLACE_INTERVAL)
+            frames = traceback.walk_stack(sys._current_frames()[main or 0])
+            codes = [(frame.f_code, line) for frame, line in frames]
+            own = [(code, line) for code, line in codes if Path(code.co_filename).parent == self.folder]
+            with self.sending, contextlib.suppress(OSError):  # the lab has gone
+                if own and self.in_call.is_set():  # no place comes after the result
+                    code, line = own[0]
+                    send(self.outgoing, ["at", Path(code.co_filename).name, line, code.co_name])
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
         """The message with the result of a call or a march."""
@@ -116,7 +141,7 @@ class Worker:
             loading = file not in self.modules
             module = self.load(file)
             if loading:
-                send(self.outgoing, ["loaded", file])
+                self.say(["loaded", file])
                 loading = False
             if kind == "march":
                 own, step, sheet, x, v, segments = unpack(arguments, self.remote)
@@ -174,7 +199,7 @@ class Worker:
         """A function of the lab as the student's function calls it."""
 
         def function(*arguments: Any) -> Any:
-            send(self.outgoing, ["callback", number, pack(list(arguments), lambda _: 0)])
+            self.say(["callback", number, pack(list(arguments), lambda _: 0)])
             message = receive(self.incoming)
             if message is None:
                 os._exit(0)  # the lab has gone
@@ -223,6 +248,8 @@ def main() -> None:
     if TRACE_SIGNAL is not None:
         faulthandler.register(TRACE_SIGNAL, file=trace, all_threads=False)
     worker = Worker(was_tried=compiles)
+    if TRACE_SIGNAL is None:
+        threading.Thread(target=worker.say_where, daemon=True).start()
     lower_priority(BACKGROUND_NICENESS if compiles else 0)
     if compiles:
         importlib.import_module("app.lab.compiled")  # before the memory is limited

@@ -2,7 +2,6 @@
 
 import inspect
 import itertools
-import os
 import subprocess
 import sys
 import textwrap
@@ -236,8 +235,7 @@ def test_an_endless_file_is_run_once_for_all_its_functions(tmp_path: Path) -> No
         verdicts = [check_program(tmp_path, runner, task) for task in own]
         assert runner.starts == 1
     line = (HEAD + FORCE).count("\n") + 1
-    where = f"line {line}: " if os.name == "posix" else ""  # Windows does not tell where an endless loop is
-    said = f"rope.py does not run: {where}rope.py does not come to an end within 0.3 s: is there an endless loop?"
+    said = f"rope.py does not run: line {line}: rope.py does not come to an end within 0.3 s: is there an endless loop?"
     assert {verdict.sentence for verdict in verdicts} == {said}
 
 

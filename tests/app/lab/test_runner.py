@@ -68,6 +68,16 @@ def test_what_goes_wrong_is_named_and_the_next_call_works(tmp_path: Path, body: 
         assert runner.call("mine.py", "right", 3.0) == 6.0
 
 
+def test_an_endless_loop_is_found_in_any_folder_and_function(tmp_path: Path) -> None:
+    folder = tmp_path / "Übung ∂"
+    folder.mkdir()
+    text = "def größe(x):\n    while True:\n        x = -x\n\ndef f(x):\n    return größe(x)\n"
+    (folder / "mine.py").write_text(text, "utf-8")
+    with Runner(folder, time_limit=0.5) as runner, pytest.raises(RunError, match="größe does not come to") as caught:
+        runner.call("mine.py", "f", 1.0)
+    assert (caught.value.file, caught.value.line in (2, 3)) == ("mine.py", True)
+
+
 def test_the_limit_that_is_told_is_the_one_that_was_passed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path, "while True: pass")
     with Runner(tmp_path, time_limit=0.5) as runner, pytest.raises(RunError, match=r"within 0\.5 s"):

@@ -1,7 +1,6 @@
 """The handle of a lab in a notebook, without a notebook."""
 
 import json
-import os
 import random
 import signal
 import socket
@@ -148,7 +147,7 @@ def test_a_run_that_diverges_ends_the_wait_with_its_reason(rope: Lab) -> None:
 def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab) -> None:
     def interrupt() -> None:
         wait_for(lambda: rope.running)
-        os.kill(os.getpid(), signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
 
     rope.set(points=50, time_step=0.0001)  # long enough to be waited for, by a method that is compiled
     wait_for(lambda: not rope.running)

@@ -1,7 +1,6 @@
 """What is waited for is compiled in other processes; one that is killed costs what it was at and no more."""
 
 import os
-import signal
 import subprocess
 import sys
 import threading
@@ -115,7 +114,7 @@ def test_a_killed_worker_gives_its_locks_back(tmp_path: Path) -> None:
     waiter = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, text=True)
     assert waiter.stdout is not None
     time.sleep(0.3)
-    os.kill(holder.pid, signal.SIGKILL)
+    holder.kill()
     assert waiter.stdout.readline() == "held\n"
     for process in (holder, waiter):
         process.kill()

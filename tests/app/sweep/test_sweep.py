@@ -24,6 +24,7 @@ from app.sweep.workers import on_cores
 from tests.app.sweep.cases import FATAL, counted
 from tests.full_disk import full_disk
 
+needs_signals = pytest.mark.skipif(os.name != "posix", reason="Ctrl-C for another process alone is POSIX")
 GRID = """
 scene = "rope"
 seconds = 1.0
@@ -100,6 +101,7 @@ def test_a_random_design_has_a_dimension_of_cases_and_its_seed(here, tmp_path):
         assert np.isfinite(data.tip_height).all()
 
 
+@needs_signals
 @pytest.mark.parametrize(
     "how",
     [
@@ -193,6 +195,7 @@ def test_a_case_that_kills_its_process_fails_and_all_others_are_finished(monkeyp
     assert {outcome.end for outcome in outcomes.values()} == {FAILED, FINISHED}
 
 
+@needs_signals
 @pytest.mark.parametrize(
     ("command", "delays"),
     [

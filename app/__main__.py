@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from app.commands.checkout import ELSEWHERE, in_checkout, of_checkout
+from app.messages import BaseParams
 from app.scenes import NAMES, check_name, scene_named
 from sim.quantities import read_number
 from sim.validation import ConvergenceError
@@ -580,8 +581,14 @@ def choose_scene(arguments: argparse.Namespace, of_task: str) -> None:
     if not is_asked and all(getattr(arguments, option) is None for option in SCENE_OF_FILE):
         arguments.scene = of_task
     if scene_name(arguments) == DEFAULT_SCENE and arguments.preset is None and not arguments.set:
-        # Of this method the program's rope and a student's right one are the same to rounding.
-        arguments.first_params = lambda: scene_named(DEFAULT_SCENE).params(integrator="rk4")
+        arguments.first_params = first_rope_of_student
+
+
+def first_rope_of_student() -> BaseParams:
+    """The rope by the method of which the program's and a student's right one are the same to rounding."""
+    from app.scenes.setups import make_setup
+
+    return make_setup(scene_named(DEFAULT_SCENE), "", {"integrator": "rk4"}).params
 
 
 def serve_class(arguments: argparse.Namespace) -> int:

@@ -158,7 +158,7 @@ class Tab:
         if not is_there():
             state = self.page.evaluate("[document.visibilityState, document.body.innerText.slice(0, 200)]")
             clients = len(viewer.server.get_clients())
-            warnings.warn(f"a page of {clients} got nothing for {STALLED} s: {state}", stacklevel=2)
+            warnings.warn(f"a page of {clients} got nothing for {STALLED} s: {state}; {self.errors}", stacklevel=2)
             self.page.reload()
         self.wait(is_there)
         mark.remove()

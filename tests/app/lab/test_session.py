@@ -292,7 +292,7 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
 
     before = right.state.version
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.lab.versions.keep", full_disk)
+        patch.setattr("app.lab.versions.store", full_disk)
         (right.folder / "rope.py").write_text(RIGHT + "\n# later\n")
         wait_for(lambda: right.state.error and "cannot be taken up" in right.state.error.text)
         assert right.state.version == before

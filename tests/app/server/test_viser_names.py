@@ -11,7 +11,7 @@ import pytest
 from tests.fresh import of_each
 
 ROOT = Path(__file__).parents[3]
-OWN = {"_replace", "_asdict", "_fields", "_exit"}  # of named tuples and of the os module
+OWN = {"_replace", "_asdict", "_fields", "_exit", "_current_frames"}  # of named tuples, and of the modules os and sys
 
 # Each name that `app/render/viser_inside.py` takes from viser's inside.
 NAMES = (

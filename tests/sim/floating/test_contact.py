@@ -30,7 +30,7 @@ def test_a_pulled_point_comes_to_its_target_without_overshoot(density, size):
         far.append(fleet.position[0, 0] - target[0])
     assert abs(far[-1]) < 1e-3 * size
     assert max(far) < 0.02 * size
-    hang = 9.81 / MotionCoefficients().grab_rate ** 2  # the spring gives by g/rate^2 under the weight
+    hang = 9.81 / MotionCoefficients().pull_rate ** 2  # the spring gives by g/rate^2 under the weight
     assert fleet.position[0, 2] - target[2] == pytest.approx(-hang, rel=0.05, abs=1e-3)
 
 

@@ -11,6 +11,7 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 WATCHED = 3000  # [ms], in which viser by itself draws three times
+SETTLED = 400  # [ms] without a frame, after a change that has been drawn: frames go on for 250 ms
 # Count the frames of the scene that are drawn for the page, and those for images that the server asks for.
 COUNT = """() => { const viewer = window.__viserMutable, scene = viewer.scene, earlier = scene.onBeforeRender;
     window.drawnFrames = [0, 0];
@@ -51,7 +52,7 @@ def test_a_paused_page_draws_nothing_and_draws_what_changes(paused: tuple[Viewer
         before = tab.page.evaluate("drawnFrames[0]")
         change()
         tab.wait(lambda: tab.page.evaluate("drawnFrames[0]") > before, 20)
-        tab.wait(lambda: drawn_while(tab, 1000) == 0, 20)
+        tab.wait(lambda: drawn_while(tab, SETTLED) == 0, 20)
         return True
 
     # The camera, a node of the server's in place, colour and text, the size of the page, and what a script may change.

@@ -1,12 +1,13 @@
 """A press near a rope or a cloth takes it and not the camera."""
 
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import Any
 
 import numpy as np
 import pytest
 
-from app.messages import Pause
+from app.messages import Advance, Pause
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
@@ -23,6 +24,7 @@ PLACES = """name => { const viewer = window.__viserMutable, node = viewer?.nodeR
         places.push([box.left + box.width * (1 + place.x) / 2, box.top + box.height * (1 - place.y) / 2]);
     }
     return places; }"""
+HANGING = 1.2  # [s] after the start: nothing swings out of the window
 MISSED = 30.0  # [pixels] from what is drawn now: beyond the reach of a mouse
 
 
@@ -78,8 +80,11 @@ def test_the_reach_is_marked_and_ends(shown: tuple[Viewer, Tab], scene: str) -> 
     if scene != "cloth":
         lab.panel.set("show_points", False)
     lab.loop.commands.put(Pause())
+    lab.panel.reset()
+    hanging: Future[float] = Future()
+    lab.loop.commands.put(Advance(HANGING, hanging))
     node = "/race/rope_1" if scene == "race" else f"/{scene}"
-    tab.wait(lambda: not lab.loop.running and lab.served.shown == lab.loop.latest.serial and len(drawn(tab, node)) > 0)
+    tab.wait(lambda: hanging.done() and not lab.loop.running and lab.served.shown == lab.loop.latest.serial and len(drawn(tab, node)) > 0)
     tab.page.wait_for_timeout(500)
     ring = tab.page.locator("#springtide-ring")
 

@@ -32,6 +32,8 @@ def add_twice(x):
     add_one(x)
 '''
 LOADED, COMPILED = "1 0 3.0", "0 1 3.0"
+# That of a source of the same length, changed within the same second, would be taken for new.
+NO_BYTE_CODE = {"PYTHONDONTWRITEBYTECODE": "1"}
 
 
 class Place:
@@ -47,6 +49,7 @@ class Place:
             "SPRINGTIDE_CACHE": str(own or self.own),
             "SPRINGTIDE_KERNELS": os.pathsep.join([*([str(shared)] if shared else []), noted()]),
             "PYTHONPATH": str(self.module.parent),
+            **NO_BYTE_CODE,
         }
         return python(TWICE, **environment, **(level_environment(level) if level else {}))
 
@@ -107,7 +110,7 @@ def test_kernels_of_the_distribution_are_found_where_it_is_installed(place: Plac
         part.unlink()  # callers from Python need none
     before = place.files(package)
     paths = os.pathsep.join([str(place.module.parent), str(package.parent)])
-    surroundings = {"SPRINGTIDE_CACHE": str(place.own), "PYTHONPATH": paths}
+    surroundings = {"SPRINGTIDE_CACHE": str(place.own), "PYTHONPATH": paths, **NO_BYTE_CODE}
     assert python(TWICE, **surroundings) == LOADED
     assert not list(place.own.rglob("*.nb?"))
     place.module.write_text(SOURCE.format("").replace("1.0", "2.0"))

@@ -585,7 +585,7 @@ def choose_scene(arguments: argparse.Namespace, of_task: str) -> None:
 
 
 def first_rope_of_student() -> BaseParams:
-    """The rope by the method of which the program's and a student's right one are the same to rounding."""
+    """The rope that a student's lab opens: with RK4 a right solution equals the program's to rounding."""
     from app.scenes.setups import make_setup
 
     return make_setup(scene_named(DEFAULT_SCENE), "", {"integrator": "rk4"}).params

@@ -108,7 +108,7 @@ def is_left_out(app, what, name, obj, skip, options):
 
 
 def copy_replays(app, error):
-    """Put the replays into the site as they are."""
+    """Copy the replays to the site."""
     if error is None and app.builder.format == "html" and REPLAYS.exists():
         shutil.copytree(REPLAYS, Path(app.outdir) / "replays", dirs_exist_ok=True)
 

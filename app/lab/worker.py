@@ -116,7 +116,7 @@ class Worker:
             send(self.outgoing, message)
 
     def say_where(self) -> NoReturn:
-        """Say where a long call is, from a thread of its own."""
+        """Report the place of a long call; runs in a separate thread."""
         main = threading.main_thread().ident
         while True:
             self.in_call.wait()

@@ -93,7 +93,7 @@ def session_with(mistake: Mistake, folder: Path) -> Session:
 
 
 def take(picture: Picture, browser: Any, folder: Path, path: Path) -> None:
-    """Show a moment on a page of its own, and write the picture."""
+    """Open a page at a moment of a scene, and write its picture."""
     session = session_with(picture.mistake, folder) if picture.mistake else None
     lab = Viewer("127.0.0.1", 0, session=session, workbook=Workbook(session.tasks, folder) if session else None)
     kind = scene_named(picture.scene)

@@ -1,4 +1,4 @@
-// A replay is a viewer of its own, which draws all the time: it is there while it is in view.
+// Each replay is a viewer that draws continuously, so its frame exists only while it is in view.
 // There is no room for the texts of a replay; what is drawn does not fade in, as that takes seconds without a graphics card.
 const IN_A_PAGE =
   "#springtide-slow, #springtide-about { display: none !important } canvas[data-engine] { opacity: 1 !important }";

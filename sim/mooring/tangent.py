@@ -76,7 +76,7 @@ def tangent_matrix(x: Array, p: LineArrays, part: int) -> Array:
 
 
 def others(p: LineArrays) -> LineArrays:
-    """The mooring without what the statics knows by laws of its own: the drag of a current and declared forces act."""
+    """The mooring with the drag of a current and declared forces only; the statics adds the others itself."""
     none, no_bends = p.links * [1.0, 0.0, 0.0, 0.0, 0.0], p.bends[:0]
     return p._replace(
         links=none, bends=no_bends, loads=0.0 * p.loads, bed_stiffness=0.0, bed_damping=0.0, friction=0.0, gz=0.0

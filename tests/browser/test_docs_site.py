@@ -25,7 +25,7 @@ def site(tmp_path: Path) -> Iterator[str]:
     page = page_of("rope", CLIPS["rope"]._replace(end=1.0)).encode()
     assert len(page) < MAX_BYTES
     (tmp_path / "rope.html").write_bytes(page)
-    (tmp_path / "index.html").write_text(PAGE)
+    (tmp_path / "index.html").write_text(PAGE, "utf-8")
     copytree(ROOT / "docs" / "static", tmp_path / "static")
 
     class Handler(SimpleHTTPRequestHandler):

@@ -5,12 +5,12 @@ rest = system.at_rest()
 run = simulate(system, motion={2: lambda t: (0.5 * math.sin(t), 0.0, 0.0)}, duration=60.0)
 """
 
-from sim.mooring.gauge import critical_step
 from sim.mooring.moordyn import read_moordyn, write_moordyn
 from sim.mooring.moored import moored
 from sim.mooring.simulate import MooringRun, simulate
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.system import Line, LineType, MooredBody, Point, System
+from sim.springs.stability import critical_step
 
 __all__ = [
     "Line",

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
-from sim.mooring.gauge import critical_step
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.system import System
 from sim.springs import INTEGRATORS
@@ -19,6 +18,8 @@ from sim.springs.analysis.energy_history import EnergyHistory, energy_history
 from sim.springs.forces.bending import set_line_tensions
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.line_arrays import LineArrays
+from sim.springs.stability import critical_step
+from sim.springs.state import State
 from sim.validation import argument_error, check_number, check_vector, is_whole_number
 
 SAFETY = 0.5  # of the critical step at rest
@@ -167,7 +168,7 @@ def simulate(
     if step is not None:
         check_number("step", step, 0, math.inf, "s", above=True)
     start = start or at_rest(system, {one: np.asarray(f(0.0), dtype=np.float64) for one, f in motion.items()})
-    h = step or SAFETY * critical_step(system, record, start)
+    h = step or SAFETY * critical_step(system, record, State.still(start.nodes))
     if not h > 0.0 or duration / h > MOST_STEPS:
         raise argument_error("step", h, f"at least duration / {MOST_STEPS:g} = {duration / MOST_STEPS:g} s")
     return run_of(system, motion, record, np.linspace(0.0, duration, int(frames)), h, start, with_account, progress)

@@ -31,6 +31,7 @@ from sim.springs.line_arrays import (
     STIFFNESS,
     LineArrays,
 )
+from sim.springs.point_system import PointSystem
 from sim.validation import argument_error, check_choice, check_kind, check_number, check_vector, is_whole_number
 from sim.water import Water
 from sim.waves import Waves
@@ -112,7 +113,7 @@ class MooredBody(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class System:
+class System(PointSystem):
     """Lines, points and bodies in water of one depth."""
 
     lines: tuple[Line, ...]
@@ -229,6 +230,15 @@ class System:
     def at_rest(self) -> Rest:
         """The static state: see `sim.mooring.statics.at_rest`."""
         return at_rest(self)
+
+    @property
+    def state_shape(self) -> tuple[int, ...]:
+        """(3, n) of all nodes, then two points a body: its displacement and its rotation."""
+        return 3, self.node_count + 2 * len(self.bodies)
+
+    def start(self) -> NDArray[np.float64]:
+        """Positions (3, n) [m] of the state of rest. Raises ConvergenceError without one."""
+        return self.at_rest().nodes
 
     @functools.cached_property
     def nodes_of(self) -> dict[int, NDArray[np.int64]]:

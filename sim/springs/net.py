@@ -17,6 +17,7 @@ from sim.jit import MAX_THREADS
 from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays, WideArrays
 from sim.springs.forces import OWN, check_forces, declared
 from sim.springs.laws import LAWS, check_law
+from sim.springs.point_system import PointSystem
 from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
@@ -87,7 +88,7 @@ class PinPath(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class Net:
+class Net(PointSystem):
     """The immutable description of a spring-mass system; its state is `State`."""
 
     x0: NDArray[np.float64]  # (3, rows, cols) [m], initial positions
@@ -168,6 +169,15 @@ class Net:
     def shape(self) -> tuple[int, int]:
         """(rows, cols)."""
         return self.x0.shape[1], self.x0.shape[2]
+
+    @property
+    def state_shape(self) -> tuple[int, ...]:
+        """(3, rows, cols)."""
+        return self.x0.shape
+
+    def start(self) -> NDArray[np.float64]:
+        """Positions (3, rows, cols) [m], as the net was built."""
+        return self.x0.copy()
 
     @property
     def is_rope(self) -> bool:

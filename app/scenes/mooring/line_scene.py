@@ -21,12 +21,11 @@ from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.speed_advice import faster_steps
 from sim.mooring import System, at_rest
-from sim.mooring.gauge import modes
 from sim.mooring.simulate import LineState
 from sim.mooring.statics import Rest, rest_of, straight
 from sim.springs import INTEGRATORS
 from sim.springs.forces.bending import set_line_tensions
-from sim.springs.stability import Gauge, Mode, gauge_of
+from sim.springs.stability import Gauge, Mode, gauge_of, top_modes
 from sim.validation import ConvergenceError, DivergenceError
 from sim.waves import AMPLITUDE, Waves
 
@@ -189,8 +188,7 @@ class LineScene(abc.ABC):
 
     def assess_stability(self) -> None:
         """Find the modes about the state, and with them the longest stable step."""
-        rest = Rest({}, {}, {}, self.state.x)
-        self.step_modes: list[Mode] = modes(self.system, rest)
+        self.step_modes: list[Mode] = top_modes(self.system, self.state.x)
         self.take_step()
 
     def take_step(self) -> None:

@@ -7,10 +7,10 @@ import pytest
 
 from sim.mooring import Line, LineType, Point, System, simulate
 from sim.mooring.balance import what_is_left
-from sim.mooring.tangent import stiffness_matrix
 from sim.springs.acceleration import set_rest_forces
 from sim.springs.analysis.energy import energies
 from sim.springs.forces import OWN
+from tests.sim.mooring.dense import stiffness_matrix
 from tests.sim.mooring.systems import floating_body
 
 WIRE = LineType("wire", 0.02, 1.0, 5e3, 0.0)

@@ -9,13 +9,13 @@ import pytest
 from sim.mooring import Line, LineType, Point, System, simulate
 from sim.mooring.simulate import LineState, paths_of
 from sim.mooring.statics import Rest
-from sim.mooring.tangent import stiffness_matrix
 from sim.springs import INTEGRATORS
 from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import energies as energies_of
 from sim.springs.analysis.energy import power
 from sim.water import Water
 from sim.waves import Waves
+from tests.sim.mooring.dense import stiffness_matrix
 
 CHAIN = LineType("chain", 0.05, 50.0, 1.674e9)
 HAIR = LineType("hair", 1e-9, 1e-9, 1.0)  # slack, and nothing beside the float

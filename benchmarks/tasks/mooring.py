@@ -58,7 +58,15 @@ def fairlead(t: float) -> tuple[float, float, float]:
 def our_run(system: System, start: Rest, method: str, step: float) -> Measured:
     """A run of ours."""
     begin = time.process_time()
-    run = simulate(system, {2: fairlead}, END, 2, step, integrator=method, start=start)
+    run = simulate(
+        system,
+        duration=END,
+        frames=2,
+        step=step,
+        integrator=method,
+        start=State.still(start.nodes),
+        motion={2: fairlead},
+    )
     return Measured(run.x[1][-1], time.process_time() - begin)
 
 

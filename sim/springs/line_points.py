@@ -223,7 +223,7 @@ def root_of_mobility(p, j):
 
 @kernel(noalias=True, allocates=False)
 def set_root_motion(y, p, out):
-    """out = L y (3 n,) with L L^T = M^-1: motions of unit mass as those of nodes, bodies, and what bodies carry."""
+    """out = L y (3 n,) with L L^T = M^-1: motions of unit mass as those of nodes and bodies, carried nodes included."""
     n = p.cols
     for j in range(p.nodes):
         xx, xy, xz, yy, yz, zz = root_of_mobility(p, j)

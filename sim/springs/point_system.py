@@ -1,4 +1,4 @@
-"""`PointSystem`: what the kernels of this package move, a net of springs or mooring lines."""
+"""`PointSystem`: a net of springs or mooring lines, as the kernels of this package move it."""
 
 import abc
 from typing import Any
@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.springs.integrators import Integrator
 from sim.validation import check_kind
 
 
@@ -24,6 +25,15 @@ class PointSystem(abc.ABC):
     @abc.abstractmethod
     def start(self) -> NDArray[np.float64]:
         """Positions [m] of `state_shape` at the start of a motion: as a net was built, or the rest of lines."""
+
+    @property
+    @abc.abstractmethod
+    def evaluation_cost(self) -> float:
+        """Time that one evaluation of the forces on all points takes, over that of one point of a rope."""
+
+    @abc.abstractmethod
+    def check_integrator(self, integrator: Integrator) -> None:
+        """Raises ValueError for an integrator that cannot advance the system."""
 
 
 def check_system(system: object) -> None:

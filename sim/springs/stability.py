@@ -280,7 +280,7 @@ def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float,
 
 
 def is_damped_anywhere(system: PointSystem, p: Any) -> bool:
-    """True if any damping counts: of links, of what points touch or are pulled by, or of declared forces."""
+    """True if any damping counts: of links, contacts, the grab, or declared forces."""
     if not isinstance(system, Net):
         return True
     touched = p.has_floor or p.has_sphere or p.grabbed >= 0 or system.thickness > 0.0

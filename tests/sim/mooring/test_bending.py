@@ -130,7 +130,7 @@ def test_the_account_of_a_stiff_line_with_a_table_and_slack_damping_balances():
     points = (Point(1, "fixed", (-20.0, 0.0, -29.0)), Point(2, "coupled", (0.0, 0.0, -5.0)))
     system = System((Line(1, kind, 1, 2, 31.0, 12),), points, 30.0, slack_damping=True)
     swing = lambda t: (1.5 * math.sin(2.0 * t), 0.0, -5.0 + 0.5 * math.sin(3.0 * t))  # noqa: E731
-    run = simulate(system, {2: swing}, 6.0, 61, integrator="rk4", step=2.5e-4, with_account=True)
+    run = simulate(system, duration=6.0, frames=61, step=2.5e-4, integrator="rk4", with_account=True, motion={2: swing})
     assert run.tension[1].min() < 0.0  # a slack link that closes is damped
     work = np.abs(run.energy.dissipated).max()
     assert np.abs(run.energy.error).max() < 2e-4 * work
@@ -161,7 +161,7 @@ def test_a_stiff_line_diverges_at_the_step_of_the_gauge(factor, holds):
     step = factor * critical_step(system, "leapfrog", State.still(rest.nodes))
     plain = dataclasses.replace(system, lines=(system.lines[0]._replace(type=kind._replace(bending=0.0)),))
     assert step < 0.7 * critical_step(plain, "leapfrog")
-    v = simulate(system, duration=400 * step, frames=2, step=step, start=rest)
+    v = simulate(system, duration=400 * step, frames=2, step=step, start=State.still(rest.nodes))
     moved = np.abs(v.x[1][-1] - v.x[1][0]).max()
     assert (moved < 1e-4) == holds
 

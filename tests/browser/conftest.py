@@ -1,10 +1,14 @@
 """A real Chromium for the tests that look, rendering in software: slow, and the same everywhere."""
 
 import base64
+import gc
 import os
 import shutil
+import sys
 import tempfile
+import threading
 import time
+import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -63,6 +67,7 @@ HARMLESS_ERRORS = ("preventDefault inside passive",)
 # after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a
 # removal.
 LATE_UPDATE = "Tried to update non-existent component"
+STUCK = 280.0  # [s] after which a test is about to be ended
 
 
 def new_page(chromium: Any, width: int, height: int, drawn: bool | str, flat: str = "") -> Any:
@@ -81,6 +86,24 @@ def surroundings() -> dict[str, str]:
     """The environment of a browser: its socket lies in the folder for temporary files, and has a name of 108 bytes."""
     is_long = os.name == "posix" and len(tempfile.gettempdir()) > MAX_TEMPORARY
     return {**os.environ, "TMPDIR": "/tmp"} if is_long else {**os.environ}
+
+
+@pytest.fixture(autouse=True)
+def said_where_it_waits(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Print where a test waits for its browser before it is ended: no traceback of threads shows greenlets."""
+    greenlet = pytest.importorskip("greenlet", reason="playwright is not installed").greenlet
+
+    def say() -> None:
+        with request.config.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
+            for one in gc.get_objects():
+                if isinstance(one, greenlet) and one.gr_frame is not None:
+                    print(f"{request.node.nodeid} waits:", file=sys.stderr)
+                    traceback.print_stack(one.gr_frame, limit=8, file=sys.stderr)
+
+    timer = threading.Timer(STUCK, say)
+    timer.start()
+    yield
+    timer.cancel()
 
 
 @pytest.fixture(scope="package")

@@ -46,15 +46,13 @@ def frame_times(
     return np.linspace(0.0, duration, int(frames))
 
 
-def check_steps(duration: float, step: float, name: str, most: float) -> None:
-    """Raises ValueError for more than `most` steps [s]; name: "step" where the caller gave it, else "duration"."""
-    if not step > 0.0 or duration / step > most:
-        allowed = (
-            f"at least duration / {most:g} = {duration / most:g} s"
-            if name == "step"
-            else (f"up to {most:g} steps of {step:g} s")
-        )
-        raise argument_error(name, step if name == "step" else duration, allowed)
+def check_steps(duration: float, step: float, most: float, is_given: bool) -> None:
+    """Raises ValueError for more than `most` steps [s], of the step if the caller gave it, else of the duration."""
+    if step > 0.0 and duration / step <= most:
+        return
+    if is_given:
+        raise argument_error("step", step, f"at least duration / {most:g} = {duration / most:g} s")
+    raise argument_error("duration", duration, f"up to {most:g} steps of {step:g} s")
 
 
 def steps_for(interval: float, step: float) -> int:

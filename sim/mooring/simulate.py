@@ -78,16 +78,16 @@ def cubic(x0: Array, v0: Array, x1: Array, v1: Array, t: float, duration: float)
     return np.array((x0, v0, c2, c3, (t, 0.0, 0.0)))
 
 
-def paths_of(system: System, motion: Mapping[int, Motion], t: float, duration: float) -> Array:
-    """Paths (coupled points, 5, 3) of motions from time t [s] on for `duration` [s], as `advance` takes them."""
-    coupled = [point for point in system.points if point.kind == "coupled"]
+def paths_of(system: System, state: State, motion: Mapping[int, Motion], duration: float) -> Array:
+    """Paths (coupled points, 5, 3) of motions on for `duration` [s] from a state's time; other points stay there."""
+    coupled = {point.id: i for i, point in enumerate(system.points) if point.kind == "coupled"}
     paths = np.zeros((len(coupled), 5, 3))
-    for q, point in enumerate(coupled):
-        if point.id in motion:
-            (x0, v0), (x1, v1) = (place_and_velocity(motion[point.id], s) for s in (t, t + duration))
-            paths[q] = cubic(x0, v0, x1, v1, t, duration)
+    for q, (one, node) in enumerate(coupled.items()):
+        if one in motion:
+            (x0, v0), (x1, v1) = (place_and_velocity(motion[one], t) for t in (state.t, state.t + duration))
+            paths[q] = cubic(x0, v0, x1, v1, state.t, duration)
         else:
-            paths[q, 0], paths[q, 4, 0] = point.position, t
+            paths[q, 0] = state.x[:, node]
     return paths
 
 
@@ -95,6 +95,7 @@ def paths_to(system: System, state: State, ends: Mapping[int, tuple[ArrayLike, A
     """Paths (coupled points, 5, 3) on for `duration` [s] from where the coupled points of a state are.
 
     ends: by the id of a coupled point, its place [m] and velocity [m/s] at the end; the others stop where they are.
+    `advance` takes the paths as `driven`; without any, coupled points are at their positions in `System.points`.
 
     >>> from sim.mooring import Line, LineType, Point, State, System, advance, paths_to, point_forces
     >>> chain = LineType("chain", 0.05, 20.0, 1e8)
@@ -161,7 +162,10 @@ class MooringFrames:
     ) -> None:
         """step: [s] the longest that may be taken."""
         self.system, self.motion, self.record, self.t, self.with_account = system, motion, record, t, with_account
-        self.state, interval = start.copy(), float(t[1])
+        self.state, interval = State(start.x.copy(), start.v.copy(), lag=start.lag), float(t[1])
+        for i, point in enumerate(system.points):
+            if point.id in motion:
+                self.state.x[:, i], self.state.v[:, i] = place_and_velocity(motion[point.id], 0.0)
         self.pieces = max(1, math.ceil(interval / PIECE - 1e-9)) if motion else 1
         self.piece = interval / self.pieces  # [s] of paths
         self.steps = steps_for(self.piece, step)
@@ -175,9 +179,8 @@ class MooringFrames:
     def advance(self, frame: int) -> None:
         """Go on to a frame from the one before, along the paths of the coupled points."""
         for piece in range(self.pieces):
-            begin = float(self.t[frame - 1]) + piece * self.piece
-            self.state.t = begin
-            paths = paths_of(self.system, self.motion, begin, self.piece) if self.motion else self.p.paths
+            self.state.t = float(self.t[frame - 1]) + piece * self.piece
+            paths = paths_of(self.system, self.state, self.motion, self.piece)
             advance(
                 self.system, self.state, self.record, self.h, self.steps,
                 with_account=self.with_account, driven={"paths": paths},
@@ -267,7 +270,7 @@ def simulate(
         start = State.still(at_rest(system, placed).nodes)
     check_state(system, start, "start")
     h = step or SAFETY * critical_step(system, record, start)
-    check_steps(duration, h, "step", MOST_STEPS)
+    check_steps(duration, h, MOST_STEPS, step is not None)
     kept = MooringFrames(system, motion, record, t, h, start, with_account)
     done = run_frames(kept, len(t), progress)
     run = kept.run(None if done == len(t) else float(t[done]))

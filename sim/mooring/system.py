@@ -41,7 +41,7 @@ Vector = tuple[float, float, float]
 
 KINDS = ("fixed", "coupled", "free", "body")
 FARTHEST = 1e5  # [m] from the origin
-LINE_COST = 30.0  # of a node in waves, over that of a point of a rope
+LINE_COST = 50.0  # of a node, over that of a point of a rope
 MOST_SEGMENTS = 2000  # of a line
 MOST_PARTS = 10_000  # lines or points of a system
 MOST_DAMPING = 100.0  # ratio, of a segment

@@ -101,11 +101,11 @@ def simulate(
     if record.adaptive and step is None:
         may_be_endless = duration * max(gershgorin(net)) > MOST_STEPS
         longest = (may_be_endless and critical_step(net, record)) or math.inf  # 0 where no step is stable for ever
-        check_steps(duration, longest, "duration", MOST_STEPS)
+        check_steps(duration, longest, MOST_STEPS, False)
         run = marched(net, velocity, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
     else:
         h = step or default_step(net, record)
-        check_steps(duration, h, "duration" if step is None else "step", MOST_STEPS)
+        check_steps(duration, h, MOST_STEPS, step is not None)
         run = stepped(net, velocity, record, t, h, with_account, progress)
     warn_of_divergence(run.integrator, run.step, run.diverged_at)
     if run.left_out > 0:

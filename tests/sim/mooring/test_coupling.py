@@ -66,6 +66,16 @@ def test_steps_from_outside_are_those_of_a_run():
     assert point_forces(system, state)[2] == pytest.approx(run.force[2][-1], rel=1e-6)
 
 
+def test_a_run_begins_with_the_motion_s_velocity_and_at_the_state_s_places():
+    state = State.at_rest(HANGING)
+    moved = simulate(HANGING, 0.1, 2, motion={2: lambda t: (0.5 * t, 0.0, -5.0)})
+    assert moved.v[1][0, -1] == pytest.approx((0.5, 0.0, 0.0), abs=1e-9)
+    state.x[0, 1], state.t, state.work, state.force_evals = 0.2, 3.0, 5.0, 7
+    held = simulate(HANGING, 0.1, 2, start=state)
+    assert held.x[1][:, -1] == pytest.approx(np.array([(0.2, 0.0, -5.0)] * 2))
+    assert held.force_evals == simulate(HANGING, 0.1, 2, held.step).force_evals
+
+
 def test_coupled_points_without_an_end_stop_where_they_are():
     state = State.at_rest(HANGING)
     state.x[0, 1], state.v[0, 1], state.t = 1.0, 0.3, 2.0
@@ -96,7 +106,9 @@ def test_bad_arguments_are_named(name, call, words):
 
 def test_the_paths_of_a_motion_go_through_its_places_and_velocities():
     motion = Shaking((0.0, 0.0, -5.0), 1, 2.0, 6.0)
-    path = paths_of(HANGING, {2: motion}, 12.0, 0.2)[0]
+    state = State.at_rest(HANGING)
+    state.t = 12.0
+    path = paths_of(HANGING, state, {2: motion}, 0.2)[0]
     for s in (0.0, 0.2):
         assert np.polynomial.polynomial.polyval(s, path[:4]) == pytest.approx(motion(12.0 + s), abs=1e-12)
         slope = np.polynomial.polynomial.polyder(path[:4])

@@ -46,8 +46,17 @@ def product(a: Any, b: Any) -> Any:
     )
 
 
+def quaternion_by_vector(u: Any) -> Any:
+    """The quaternion of a rotation vector (x, y, z) [rad]: its direction is the axis, its length the angle."""
+    half = 0.5 * math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
+    ratio = math.sin(half) / (2.0 * half) if half > 0.0 else 0.5
+    return math.cos(half), ratio * u[0], ratio * u[1], ratio * u[2]
+
+
 # The same functions for kernels.
-axes_of, heading_of, product_of = (kernel(inline=True)(one) for one in (axes_by_quaternion, heading_by_axes, product))
+axes_of, heading_of, quaternion_of, product_of = (
+    kernel(inline=True)(one) for one in (axes_by_quaternion, heading_by_axes, quaternion_by_vector, product)
+)
 
 
 def rotation_matrix(rotation: np.ndarray) -> np.ndarray:
@@ -172,9 +181,6 @@ def from_heading(heading, v):
 @kernel(inline=True)
 def rotated(q, spin, h):
     """The quaternion q after a rotation by spin [rad/s] for h [s]: exp(h spin/2) q."""
-    speed = math.sqrt(dot(spin, spin))
-    c = math.cos(speed * h / 2.0)
-    k = math.sin(speed * h / 2.0) / speed if speed > 0.0 else h / 2.0
-    w, x, y, z = product_of((c, k * spin[0], k * spin[1], k * spin[2]), q)
+    w, x, y, z = product_of(quaternion_of(scaled(h, spin)), q)
     size = math.sqrt(w * w + x * x + y * y + z * z)
     return w / size, x / size, y / size, z / size

@@ -26,7 +26,7 @@ from sim.floating.closed_mesh import area_vectors
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import add_displaced
-from sim.floating.rotation import heading_angle, product, rotation_matrix
+from sim.floating.rotation import heading_angle, product, quaternion_by_vector, rotation_matrix
 from sim.validation import ConvergenceError, argument_error, as_array, is_whole_number
 
 if TYPE_CHECKING:
@@ -236,9 +236,7 @@ def settled(loaded: Loaded, start: Balance, over: Callable[[np.ndarray], np.ndar
 
 def tilted(tilt: np.ndarray) -> Quaternion:
     """The quaternion of a rotation vector (tilt, 0) [rad] about x and y."""
-    angle = float(np.hypot(*tilt))
-    share = math.sin(angle / 2.0) / angle if angle > 0.0 else 0.5
-    return math.cos(angle / 2.0), share * float(tilt[0]), share * float(tilt[1]), 0.0
+    return quaternion_by_vector((float(tilt[0]), float(tilt[1]), 0.0))
 
 
 def without_heading(rotation: Quaternion) -> Quaternion:
@@ -250,5 +248,4 @@ def without_heading(rotation: Quaternion) -> Quaternion:
 
 def with_heading(turn: Quaternion, rotation: Quaternion) -> Quaternion:
     """`turn` after a turn about the vertical by the heading of another rotation."""
-    angle = heading_angle(np.array(rotation))
-    return product((math.cos(angle / 2.0), 0.0, 0.0, math.sin(angle / 2.0)), turn)
+    return product(quaternion_by_vector((0.0, 0.0, heading_angle(np.array(rotation)))), turn)

@@ -1,8 +1,8 @@
 """Four elastic lines a body, for many bodies at once: ropes as heavy as water, straight while taut, without a state.
 
 T = EA (l/L - 1) while taut, 0 while slack: a link that only pulls, and no catenary, as nothing bends it. Lines that are
-just taut at rest do not pull there, and one of each opposite two pulls elsewhere. So a body is held by K = EA/L cos^2 of
-their slope, alike in all level directions. Mass and drag of the lines are left out.
+just taut at rest do not pull there, and one of each opposite two pulls elsewhere. So a body is held by
+K = EA/L cos^2 of their slope, alike in all level directions. Mass and drag of the lines are left out.
 """
 
 import math

@@ -78,7 +78,7 @@ from sim.validation import argument_error, check_kind, check_positive, check_wit
 MAX_PHASE = 0.4  # of omega h in a substep: periods are within 0.7 %, and waves may add to gravity
 ENTRY_SHARE = 0.5  # of the area wet at rest, up to which a hull that gets wetter counts as entering the water
 MAX_SUBSTEPS = 512  # of a body in one call of `step`
-WORLD = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))  # axes
+WORLD = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))  # its axes
 
 
 class MotionCoefficients(NamedTuple):

@@ -34,8 +34,9 @@ from app.messages import (
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.stepping import steps_to
+from app.server.activity import NOTHING, OTHER_FORCES, STEPS
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
-from app.server.run import Goal, SceneRun
+from app.server.run import AwaitedEvent, Goal, SceneRun
 from app.server.shared_clock import Seat
 from app.server.snapshots import Clock
 from app.server.timer import TIMER_STEP, effort_clock, fine_timer
@@ -113,11 +114,11 @@ class SimLoop(SceneRun):
         elif self.seat is not None and self.audience():
             changed |= self.follow(self.seat, wall)
         elif self.running and self.audience():
-            n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
+            n = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
             if self.goal is not None:
                 n = min(n, steps_to(self.scene, self.goal.until))
             if n:
-                (self.advance_within_budget if self.cost_unknown else self.advance)(n)
+                (self.advance_within_budget if self.pacer.cost_unknown else self.advance)(n)
                 changed = True
         else:
             self.counts["idle ticks"] += 1
@@ -192,22 +193,22 @@ class SimLoop(SceneRun):
             activity, whole = self.activity, is_kept_whole()
             anew = any(map(begins_anew, self.waiting)) or effect == "start"
             asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
-            if anew and (activity.steps or activity.may_begin):
+            if anew and activity != NOTHING:
                 self.request[STOP] = ABANDON if whole else 1
                 return
             if asked and activity.may_end and not whole:
                 self.request[STOP] = 1
                 return
-            if effect == "look" and not (asked or self.taking):
+            if effect == "look" and not asked and activity != OTHER_FORCES:
                 self.scene.params = params
                 self.waiting = [command for command in self.waiting if not isinstance(command, Take)]
-            within_steps = activity.steps and not whole
+            within_steps = activity == STEPS and not whole
             drags = self.drags_waiting() if within_steps else []
             for command in drags:
                 self.scene.handle(command)
             is_begun = self.latest.status.starts == self.counts["starts"]
             if drags or self.latest.params != params or not is_begun:
-                self.capped = activity.steps
+                self.pacer.capped = activity == STEPS
                 self.publish_in_solve(params, with_frame=within_steps)
         except Exception:  # the solve knows nothing of it
             traceback.print_exc()
@@ -262,7 +263,7 @@ class SimLoop(SceneRun):
                 self.running, self.awaited = False, None
             case RunOn(reached):
                 self.handle(Play())
-                self.wait_for(reached)
+                self.awaited = AwaitedEvent(reached, self.latest)
             case TogglePlay():
                 self.handle(Pause() if self.running else Play())
             case StepOnce(steps):

@@ -10,11 +10,12 @@ from app.messages import BaseParams, KeptState, Pause, Take
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
+from app.server.activity import BEGINNING, NOTHING, OTHER_FORCES, STEPS, Activity
 from app.server.left_runs import LeftRun, LeftRuns
-from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
+from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from app.server.snapshots import BEGINNING, NOTHING, STEPS, Activity, Clock, Snapshots
+from app.server.snapshots import Clock, Snapshots
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
@@ -32,6 +33,20 @@ class Goal(NamedTuple):
     was_running: bool
 
 
+class AwaitedEvent:
+    """Event at whose beginning the run pauses; of one that happens just now, when it happens again."""
+
+    def __init__(self, reached: Callable[[AnySnapshot], bool], latest: AnySnapshot) -> None:
+        """reached: whether it happens in a snapshot."""
+        self.reached = reached
+        self.happens = reached(latest)
+
+    def begins(self, latest: AnySnapshot) -> bool:
+        """True if it happens in this snapshot and did not in the last one."""
+        before, self.happens = self.happens, self.reached(latest)
+        return self.happens and not before
+
+
 class SceneRun(Snapshots):
     """Takes a scene's steps, and begins it again."""
 
@@ -39,12 +54,8 @@ class SceneRun(Snapshots):
         self, scene: AnyScene, audience: Callable[[], int], clock: Clock, effort: Clock, *, paused: bool
     ) -> None:
         """The arguments are those of `SimLoop`."""
-        self.pacer = FixedStep()
-        self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
         self.goal: Goal | None = None  # that a program waits for
-        self.awaited: Callable[[AnySnapshot], bool] | None = None  # event at which it pauses
-        self.is_reached = False  # it happened in the last frame
-        self.taking = False  # the scene takes other forces: its parameters are the old or the new ones
+        self.awaited: AwaitedEvent | None = None
         self.number, self.left = 1, LeftRuns()  # of this run; those before it
         super().__init__(scene, audience, clock, effort, paused=paused)
 
@@ -57,9 +68,9 @@ class SceneRun(Snapshots):
             seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
         due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
         n = self.pacer.most(due, self.frame_interval)
-        self.capped = n < due or (seat.is_first and seat.clock.late)
+        self.pacer.capped = n < due or (seat.is_first and seat.clock.late)
         if n:
-            (self.advance_within_budget if self.cost_unknown and self.running else self.advance)(n)
+            (self.advance_within_budget if self.pacer.cost_unknown and self.running else self.advance)(n)
         return n > 0
 
     def obey(self, command: Take) -> None:
@@ -85,14 +96,13 @@ class SceneRun(Snapshots):
         if effect in (None, "look"):
             self.scene.params = params
             return
-        self.cost_unknown = True
+        self.pacer.cost_unknown = True
         if self.replay is not None:
             self.halt(self.replay.reason)
             self.replay = None
         if effect == "forces" and not self.unmade:
-            self.taking = True
-            self.guarded(lambda: self.scene.change_forces(params), else_anew=True)
-            self.scene.params, self.taking = params, False  # also where the scene failed, so that a reset has them
+            self.guarded(lambda: self.scene.change_forces(params), OTHER_FORCES)
+            self.scene.params = params  # also where the scene failed, so that a reset has them
         else:
             self.scene.params = params
             if self.seat is not None:
@@ -116,16 +126,9 @@ class SceneRun(Snapshots):
         else:
             goal.answer.set_result(self.scene.time)
 
-    def wait_for(self, reached: Callable[[AnySnapshot], bool]) -> None:
-        """Pause when an event begins; of one that happens just now, when it happens again."""
-        self.awaited, self.is_reached = reached, reached(self.latest)
-
     def pause_at_event(self) -> None:
         """Pause if the event that is awaited has begun since the last frame."""
-        if self.awaited is None or not self.running:
-            return
-        before, self.is_reached = self.is_reached, self.awaited(self.latest)
-        if self.is_reached and not before:
+        if self.awaited is not None and self.running and self.awaited.begins(self.latest):
             self.awaited, self.running = None, False
             self.publish()
 
@@ -156,9 +159,9 @@ class SceneRun(Snapshots):
             spent += self.advance(part)
             n -= part
             part = self.pacer.next_part(part, spent)
-        self.cost_unknown = False
+        self.pacer.cost_unknown = False
         if n > 0 and self.running:
-            self.capped, self.pacer.debt = True, 0.0
+            self.pacer.capped, self.pacer.debt = True, 0.0
             self.pacer.dropped += n if self.seat is None else 0
 
     def advance(self, n: int) -> float:
@@ -170,41 +173,33 @@ class SceneRun(Snapshots):
         self.counts["steps"] += n
         return seconds
 
-    def guarded(
-        self,
-        action: Callable[[], None],
-        activity: Activity = NOTHING,
-        *,
-        again: bool = False,
-        else_anew: bool = False,
-    ) -> None:
+    def guarded(self, action: Callable[[], None], activity: Activity = NOTHING) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
-        again: a beginning, to be done once more where it is ended early; where it fails there is no scene to run.
-        else_anew: where it is ended early the scene begins anew.
+        A beginning that is cancelled is done once more; after a cancelled change of forces the scene begins anew.
         """
-        self.activity = BEGINNING if again or else_anew else activity
+        self.activity, begins = activity, activity == BEGINNING
         try:
             action()
         except InterruptionError:
             self.counts["solves ended early"] += 1
-            if again or else_anew or self.request[STOP] == ABANDON:
-                self.unfinished = action if again else self.scene.reset
+            if begins or activity == OTHER_FORCES or self.request[STOP] == ABANDON:
+                self.unfinished = action if begins else self.scene.reset
         except DivergenceError as error:
-            self.unmade = again
+            self.unmade = begins
             if error.moments and self.running:
                 self.replay = Replay(error.moments, str(error))
             else:
                 self.halt(str(error))
         except Exception as error:
-            self.unmade = again
-            self.halt(failure_words(error, begins=again))
+            self.unmade = begins
+            self.halt(failure_words(error, begins=begins))
         finally:
             self.activity = NOTHING
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
         """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
-        self.capped = False
+        self.pacer.capped = False
         changed = replay.play(wall)
         if replay.ended:
             self.halt(replay.reason)
@@ -248,11 +243,11 @@ class SceneRun(Snapshots):
     def begin(self, reset: Callable[[], None]) -> None:
         """Begin the scene again; if that is cancelled, the next tick does it."""
         self.unfinished, self.unmade = None, False
-        self.guarded(reset, again=True)
+        self.guarded(reset, BEGINNING)
 
     def begin_with(self, params: BaseParams, left: LeftRun | None = None) -> None:
         """The scene from its start with these parameters, running; or as it was in a run that was left."""
-        self.scene.params, self.cost_unknown = params, True
+        self.scene.params, self.pacer.cost_unknown = params, True
         self.counts["starts"] += 1
         self.reset(self.scene.reset if left is None else lambda: self.return_to(left))
         self.running = not self.halted
@@ -292,7 +287,7 @@ class SceneRun(Snapshots):
     def resume(self, params: BaseParams, state: KeptState) -> None:
         """The scene from a state that was kept, with the parameters that it had then, running."""
         self.give_up(BEGUN)
-        self.scene.params, self.cost_unknown = params, True
+        self.scene.params, self.pacer.cost_unknown = params, True
         self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
         self.unmade = False
         self.history.clear()

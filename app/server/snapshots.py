@@ -4,13 +4,15 @@ import collections
 import threading
 import traceback
 from collections.abc import Callable
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from app.messages import KeptState, Pause, PlotRow, Snapshot, Status, where_not_finite
 from app.scenes.contract import AnyScene, AnySnapshot
 from app.scenes.moments import arrays_in
+from app.server.activity import NOTHING, STEPS, Activity
+from app.server.pacer import FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
 from sim.interruption import InterruptionError
@@ -25,19 +27,6 @@ MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond
 Clock: TypeAlias = Callable[[], float]  # [s]
 
 
-class Activity(NamedTuple):
-    """The solve of the simulation thread, and what may cancel it."""
-
-    steps: bool = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
-    may_end: bool = False  # cancelled by all that asks for another solve: steps, or a frame
-    may_begin: bool = False  # cancelled where the scene begins anew after it
-
-
-NOTHING = Activity()
-STEPS = Activity(steps=True, may_end=True)
-BEGINNING = Activity(may_begin=True)
-
-
 class Snapshots:
     """Owns a scene, its clock and the latest snapshot of it."""
 
@@ -48,13 +37,13 @@ class Snapshots:
         self.scene, self.audience, self.clock, self.effort = scene, audience, clock, effort
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
         self.activity = NOTHING
+        self.pacer = FixedStep()
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.unmade = False  # the scene could not begin: it waits for other values
         self.running = not paused
         self.halted = ""
         self.seat: Seat | None = None  # at a clock that other loops have too
         self.replay: Replay | None = None  # of a run that has just diverged
-        self.capped = False
         self.counts: collections.Counter[str] = collections.Counter()
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
         self.wall = 0.0
@@ -87,7 +76,7 @@ class Snapshots:
 
     def keep_state(self) -> KeptState | None:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""
-        if not self.running or self.activity.steps or self.replay is not None:
+        if not self.running or self.activity == STEPS or self.replay is not None:
             return None
         if self.wall < self.keep_at or not self.audience():
             return None
@@ -109,7 +98,7 @@ class Snapshots:
         serial, params = self.counts["snapshots"], self.scene.params
         last: AnySnapshot | None = getattr(self, "latest", None)
         if last is not None:
-            self.activity = Activity(may_end=self.clock() - self.whole_at < MAX_BLIND_TIME, may_begin=True)
+            self.activity = Activity("frame", may_end=self.clock() - self.whole_at < MAX_BLIND_TIME)
         try:
             if last is not None and (self.unfinished is not None or self.unmade):
                 self.is_shown = True  # all that there is of a scene that is not made
@@ -169,7 +158,7 @@ class Snapshots:
         while len(self.history) > 2 and self.history[0][0] < self.wall - RATE_WINDOW:
             self.history.popleft()
         elapsed = self.wall - self.history[0][0]
-        capped = self.capped and self.running
+        capped = self.pacer.capped and self.running
         return Status(
             running=self.running,
             time=simulated,

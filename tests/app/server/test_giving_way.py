@@ -11,8 +11,9 @@ from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
+from app.server.activity import BEGINNING, NOTHING, STEPS
 from app.server.loop import PATIENCE, SimLoop
-from app.server.snapshots import MAX_BLIND_TIME, Activity
+from app.server.snapshots import MAX_BLIND_TIME
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
@@ -32,7 +33,7 @@ def busy():
     scene = RopeScene(RopeParams(points=4))
     loop = SimLoop(scene, clock=lambda: 1.0)
     loop.busy_since = loop.turn_at = 1.0 - 2.0 * PATIENCE
-    loop.activity = Activity(steps=True, may_end=True)
+    loop.activity = STEPS
     return loop
 
 
@@ -69,7 +70,7 @@ def test_a_look_and_a_drag_show_in_the_middle_of_a_solve_and_nothing_new_does_no
 
 
 def test_in_the_middle_of_a_reset_the_last_frame_stays_with_the_new_parameters(busy):
-    busy.activity = Activity(may_begin=True)
+    busy.activity = BEGINNING
     busy.scene.params = dataclasses.replace(busy.scene.params, points=5)
     busy.scene.frame = None  # not asked for
     busy.give_turn()
@@ -185,7 +186,7 @@ def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy
         whole(params)
 
     ended, resets, reset, whole = [], [], busy.scene.reset, busy.scene.change_forces
-    busy.activity, busy.scene.change_forces = Activity(), change
+    busy.activity, busy.scene.change_forces = NOTHING, change
     busy.scene.reset = lambda: resets.append(reset())
     frame = busy.latest.frame
     busy.take(dataclasses.replace(busy.scene.params, stiffness=90.0))
@@ -199,7 +200,7 @@ def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy
 
 
 def test_where_nothing_may_be_ended_other_forces_are_answered_with_the_last_frame(busy):
-    busy.activity = Activity()
+    busy.activity = NOTHING
     first = busy.latest.frame
     params = ask(busy, stiffness=90.0)
     busy.give_turn()
@@ -242,7 +243,7 @@ def test_steps_that_are_kept_whole_are_abandoned_for_a_new_beginning(busy):
         use_request(np.array([0, 1, 0, 0]))
     assert resets == []
     assert busy.halted == ""
-    busy.activity, busy.request[STOP] = Activity(), 0
+    busy.activity, busy.request[STOP] = NOTHING, 0
     busy.tick(0.0)
     assert len(resets) == 1
     assert busy.halted == ""
@@ -254,7 +255,7 @@ def test_a_reset_that_takes_long_says_that_it_has_begun(busy):
         seen.append(busy.latest.status.starts)
         reset()
 
-    seen, reset, busy.activity = [], busy.scene.reset, Activity()
+    seen, reset, busy.activity = [], busy.scene.reset, NOTHING
     busy.scene.reset = long_reset
     busy.commands.put(Reset())
     busy.tick(0.0)
@@ -270,7 +271,7 @@ def test_a_reset_is_not_ended_by_other_forces_or_a_pause(busy):
         ended.append(int(busy.request[STOP]))
         reset()
 
-    ended, reset, busy.activity = [], busy.scene.reset, Activity()
+    ended, reset, busy.activity = [], busy.scene.reset, NOTHING
     busy.scene.reset = long_reset
     busy.commands.put(Reset())
     busy.tick(0.0)
@@ -351,7 +352,7 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
         return frame()
 
     ended, frame, earlier = [], busy.scene.frame, busy.latest.frame
-    busy.running, busy.activity, busy.scene.frame = False, Activity(), long_frame
+    busy.running, busy.activity, busy.scene.frame = False, NOTHING, long_frame
     params = ask(busy, points=5)
     busy.publish()
     assert (ended, busy.is_shown, busy.halted) == ([1], False, "")
@@ -369,7 +370,7 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
 
 
 def test_a_picture_that_was_ended_is_made_again_by_a_paused_lab(busy):
-    busy.running, busy.activity, busy.is_shown = False, Activity(), False
+    busy.running, busy.activity, busy.is_shown = False, NOTHING, False
     busy.tick(0.0)
     assert busy.latest.serial == 2
     busy.tick(0.0)
@@ -382,7 +383,7 @@ def test_a_look_that_is_taken_in_the_middle_of_a_picture_is_drawn_by_the_next(bu
         busy.give_turn()
         return found
 
-    frame, busy.running, busy.activity = busy.scene.frame, False, Activity()
+    frame, busy.running, busy.activity = busy.scene.frame, False, NOTHING
     busy.scene.frame = long_frame
     ask(busy, grid=False)
     busy.publish()

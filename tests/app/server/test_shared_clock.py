@@ -69,13 +69,13 @@ def test_where_one_cannot_keep_up_all_slow_down_and_no_step_is_lost():
     group = of_steps(1 / 240, 1 / 60)
     slow = group.loops[0]
     slow.pacer.learn = lambda steps, seconds: None  # type: ignore[method-assign]
-    slow.cost_unknown = False
+    slow.pacer.cost_unknown = False
     slow.pacer.cost = FRAME_INTERVAL / 2  # a frame takes one of its steps, of four that are due
     group.run(2.0)
     assert group.times[1] == pytest.approx(0.5, abs=0.1)
     assert group.spread() < LEAD + 2 / 60
     assert slow.pacer.dropped == 0
-    assert slow.capped
+    assert slow.pacer.capped
     assert slow.scene.time == pytest.approx(slow.counts["steps"] / 240)
 
 

@@ -38,18 +38,14 @@ from app.server.activity import NOTHING, OTHER_FORCES, STEPS
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
 from app.server.run import AwaitedEvent, Goal, SceneRun
 from app.server.shared_clock import Seat
-from app.server.snapshots import Clock
-from app.server.timer import TIMER_STEP, effort_clock, fine_timer
+from app.server.tick_clock import Clock, TickClock
+from app.server.timer import effort_clock, fine_timer
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 from sim.validation import DivergenceError
 
-PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
-LATE_FRAMES = 16.0  # ratio of the frame interval to the time by which sleeps end too late, at least
-MAX_FRAME_INTERVAL = 0.1  # [s] that a busy machine may lead to
 BREATH = 1e-3  # [s] between two ticks where the last sleep ended late: a tick at once would have no steps to take
-LATENESS_WEIGHT = 0.1  # of the last sleep in the mean
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
 
@@ -77,28 +73,13 @@ class SimLoop(SceneRun):
         sleep: for so long [s]. gives_way: whether frames become fewer where sleeps end late, as on a hub.
         """
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
-        self.admit, self.sleep, self.gives_way = admit, sleep, gives_way
-        self.is_late = False  # controls were answered in the middle of the last tick
-        self.turn_at = 0.0  # [s] of the clock, when controls were last answered
-        self.in_turn = False  # controls are being answered in the middle of a solve
-        self.lateness = 0.0  # [s] by which sleeps lately ended too late, as others had the processor
+        self.admit = admit
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
-        self.busy_since: float | None = None  # [s] of the clock, while a tick runs
-        self.tick_time = 0.0  # [s] that the last tick took
-        super().__init__(scene, audience, clock, effort, paused=paused)
-
-    @property
-    def frame_interval(self) -> float:
-        """Time [s] between frames: longer on a busy hub, whose processor all labs need for their controls."""
-        late = LATE_FRAMES * self.lateness if self.gives_way else 0.0
-        return max(self.scene.frame_interval, min(late, MAX_FRAME_INTERVAL))
+        super().__init__(scene, audience, TickClock(clock, effort, sleep, gives_way=gives_way), paused=paused)
 
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
-        self.wall += wall
-        was_late, self.is_late = self.is_late, False
-        self.busy_since = self.clock()
-        self.turn_at = self.busy_since - PATIENCE * was_late  # what ended the last tick has waited long enough
+        was_late = self.clock.begin_tick(wall)
         self.take_in()
         changed = self.handle_waiting() or not self.is_shown
         if changed and was_late:
@@ -114,7 +95,8 @@ class SimLoop(SceneRun):
         elif self.seat is not None and self.audience():
             changed |= self.follow(self.seat, wall)
         elif self.running and self.audience():
-            n = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
+            frame = self.clock.frame_interval(self.scene.frame_interval)
+            n = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, frame)
             if self.goal is not None:
                 n = min(n, steps_to(self.scene, self.goal.until))
             if n:
@@ -130,12 +112,7 @@ class SimLoop(SceneRun):
             self.pause_at_event()
         if self.goal is not None:
             self.settle(self.goal)
-        self.tick_time, self.busy_since = self.clock() - self.busy_since, None
-
-    @property
-    def takes_long(self) -> bool:
-        """True if controls may have to be answered in the middle of a tick soon."""
-        return self.busy_since is not None or self.tick_time > 0.5 * PATIENCE
+        self.clock.end_tick()
 
     def take_in(self, *taken: Command) -> None:
         """Have the commands wait that have come and can be handled. taken: out of the queue before."""
@@ -164,13 +141,9 @@ class SimLoop(SceneRun):
         except Exception as error:
             answer.set_exception(error)
 
-    def turn_is_due(self) -> bool:
-        """True if input has been pending for longer than PATIENCE."""
-        return self.busy_since is not None and not self.in_turn and self.clock() - self.turn_at >= PATIENCE
-
     def ask_for_turn(self) -> None:
         """Have controls answered in the middle of a solve that takes long; called from another thread."""
-        if self.turn_is_due():
+        if self.clock.turn_is_due():
             self.request[TURN] = 1
 
     def give_turn(self) -> None:
@@ -182,38 +155,38 @@ class SimLoop(SceneRun):
         answered with the last frame, and the next tick takes them. A turn has no turn within it: what it shows may
         need a solve of its own.
         """
-        if self.in_turn:
+        if self.clock.in_turn:
             return
-        self.in_turn, self.turn_at = True, self.clock()
-        # A turn that was due at the start of a short tick is no reason for one in the next.
-        self.is_late |= self.busy_since is not None and self.turn_at - self.busy_since >= PATIENCE
         try:
-            self.take_in()
-            params, effect = effect_of_takes(self.scene.params, self.waiting)
-            activity, whole = self.activity, is_kept_whole()
-            anew = any(map(begins_anew, self.waiting)) or effect == "start"
-            asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
-            if anew and activity != NOTHING:
-                self.request[STOP] = ABANDON if whole else 1
-                return
-            if asked and activity.may_end and not whole:
-                self.request[STOP] = 1
-                return
-            if effect == "look" and not asked and activity != OTHER_FORCES:
-                self.scene.params = params
-                self.waiting = [command for command in self.waiting if not isinstance(command, Take)]
-            within_steps = activity == STEPS and not whole
-            drags = self.drags_waiting() if within_steps else []
-            for command in drags:
-                self.scene.handle(command)
-            is_begun = self.latest.status.starts == self.counts["starts"]
-            if drags or self.latest.params != params or not is_begun:
-                self.pacer.capped = activity == STEPS
-                self.publish_in_solve(params, with_frame=within_steps)
+            with self.clock.turn():
+                self.handle_in_solve()
         except Exception:  # the solve knows nothing of it
             traceback.print_exc()
-        finally:
-            self.in_turn = False
+
+    def handle_in_solve(self) -> None:
+        """Cancel the solve for what has come, or answer that with a snapshot."""
+        self.take_in()
+        params, effect = effect_of_takes(self.scene.params, self.waiting)
+        activity, whole = self.activity, is_kept_whole()
+        anew = any(map(begins_anew, self.waiting)) or effect == "start"
+        asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
+        if anew and activity != NOTHING:
+            self.request[STOP] = ABANDON if whole else 1
+            return
+        if asked and activity.may_end and not whole:
+            self.request[STOP] = 1
+            return
+        if effect == "look" and not asked and activity != OTHER_FORCES:
+            self.scene.params = params
+            self.waiting = [command for command in self.waiting if not isinstance(command, Take)]
+        within_steps = activity == STEPS and not whole
+        drags = self.drags_waiting() if within_steps else []
+        for command in drags:
+            self.scene.handle(command)
+        is_begun = self.latest.status.starts == self.counts["starts"]
+        if drags or self.latest.params != params or not is_begun:
+            self.pacer.capped = activity == STEPS
+            self.publish_in_solve(params, with_frame=within_steps)
 
     def drags_waiting(self) -> list[GrabTo | Place | Release]:
         """The drags among the waiting commands; the others go on waiting for the next tick."""
@@ -292,20 +265,21 @@ class SimLoop(SceneRun):
 
     def run(self, stop: threading.Event) -> None:
         """Tick until `stop` is set, at the frame rate while there is something to do."""
-        use_request(self.request, self.give_turn, self.turn_is_due)
+        use_request(self.request, self.give_turn, self.clock.turn_is_due)
         with fine_timer():
             self.tick_until(stop)
 
     def tick_until(self, stop: threading.Event) -> None:
         """The loop of `run`."""
-        last = due = wanted = self.clock()  # wanted: when a sleep should have ended
+        clock = self.clock
+        last = due = wanted = clock.now()  # wanted: when a sleep should have ended
         while True:
             self.request[STOP] = self.request[TURN] = 0
             if stop.is_set():
                 return
             busy = self.running and (self.audience() > 0 or self.goal is not None)
-            now = self.clock()
-            self.lateness += LATENESS_WEIGHT * (max(0.0, now - wanted - TIMER_STEP) - self.lateness)
+            now = clock.now()
+            clock.end_sleep(now, wanted)
             try:
                 self.tick(now - last)
             except Exception as error:  # outside what `guarded` covers: the thread lives to say so
@@ -313,37 +287,38 @@ class SimLoop(SceneRun):
                 self.halt(f"The scene stopped with {type(error).__name__}: {error}")
                 with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
                     self.publish()
-                self.busy_since = None
+                clock.end_work()
             last = now
             idle = IDLE_INTERVAL if self.audience() else ALONE_INTERVAL
-            interval = self.frame_interval if busy else idle
+            interval = clock.frame_interval(self.scene.frame_interval) if busy else idle
             # A sleep that ended late makes the next one shorter; one that missed a whole frame is not made up for.
             due = interval + (due if now - due < interval else now)
-            wanted = max(due, self.clock())
-            rest = max(due - self.clock(), BREATH if self.tick_time < interval else 0.0)
+            wanted = max(due, clock.now())
+            rest = max(due - clock.now(), BREATH if clock.tick_time < interval else 0.0)
             if rest > 0:
                 self.wait(rest, stop)
 
     def take_answer(self, command: StudentAnswer) -> None:
         """Let the scene take an answer of the student's functions within a sleep; the next tick shows it."""
-        self.busy_since = self.turn_at = self.clock()
+        self.clock.begin_work()
         self.handle(command)
-        self.busy_since, self.is_shown = None, False
+        self.clock.end_work()
+        self.is_shown = False
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
         """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""
-        start, left = self.clock(), seconds
+        start, left = self.clock.now(), seconds
         while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
                 command = self.commands.get(timeout=MAX_DEAF_TIME if self.audience() else left)
                 if not isinstance(command, StudentAnswer):
                     self.take_in(command)
-                    stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # not more ticks than frames
+                    stop.wait(max(0.0, FRAME_INTERVAL - (self.clock.now() - start)))  # not more ticks than frames
                     return
                 self.take_answer(command)
             self.take_in()  # parameters that were held back may be ready
             if self.waiting:
                 return
-            left = seconds - (self.clock() - start)
+            left = seconds - (self.clock.now() - start)
         if left > 0.0:
-            self.sleep(min(left, MAX_DEAF_TIME))
+            self.clock.sleep(min(left, MAX_DEAF_TIME))

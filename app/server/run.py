@@ -15,7 +15,8 @@ from app.server.left_runs import LeftRun, LeftRuns
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from app.server.snapshots import Clock, Snapshots
+from app.server.snapshots import Snapshots
+from app.server.tick_clock import TickClock
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
@@ -50,14 +51,12 @@ class AwaitedEvent:
 class SceneRun(Snapshots):
     """Takes a scene's steps, and begins it again."""
 
-    def __init__(
-        self, scene: AnyScene, audience: Callable[[], int], clock: Clock, effort: Clock, *, paused: bool
-    ) -> None:
+    def __init__(self, scene: AnyScene, audience: Callable[[], int], clock: TickClock, *, paused: bool) -> None:
         """The arguments are those of `SimLoop`."""
         self.goal: Goal | None = None  # that a program waits for
         self.awaited: AwaitedEvent | None = None
         self.number, self.left = 1, LeftRuns()  # of this run; those before it
-        super().__init__(scene, audience, clock, effort, paused=paused)
+        super().__init__(scene, audience, clock, paused=paused)
 
     def follow(self, seat: Seat, wall: float) -> bool:
         """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
@@ -67,7 +66,7 @@ class SceneRun(Snapshots):
         if seat.is_first and self.running:
             seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
         due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
-        n = self.pacer.most(due, self.frame_interval)
+        n = self.pacer.most(due, self.clock.frame_interval(self.scene.frame_interval))
         self.pacer.capped = n < due or (seat.is_first and seat.clock.late)
         if n:
             (self.advance_within_budget if self.pacer.cost_unknown and self.running else self.advance)(n)
@@ -138,8 +137,8 @@ class SceneRun(Snapshots):
         Some scenes record what they draw, so there is a snapshot now and then.
         """
         most = max(1, int(FRAME_INTERVAL / self.scene.step * (1 + 1e-9)))
-        start = self.effort()
-        while self.running and self.replay is None and self.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
+        start = self.clock.effort()
+        while self.running and self.replay is None and self.clock.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
             left = steps_to(self.scene, until)
             if left == 0:
                 return
@@ -166,9 +165,9 @@ class SceneRun(Snapshots):
 
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
-        start = self.effort()
+        start = self.clock.effort()
         self.guarded(lambda: self.scene.advance(n), STEPS)
-        seconds = self.effort() - start
+        seconds = self.clock.effort() - start
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
@@ -269,7 +268,7 @@ class SceneRun(Snapshots):
         self.number, left = number, self.left.pop(number)
         self.begin_with(params, left)
         if left is None:
-            self.restarted_until = self.wall + RESTARTED_SHOWN
+            self.restarted_until = self.clock.wall + RESTARTED_SHOWN
             return
         self.running = left.running and not self.halted
         if self.seat is not None and not self.running:

@@ -17,8 +17,9 @@ from app.scenes import NAMES, view_named
 from app.scenes.compiling import describe
 from app.scenes.contract import AnyKind, AnyScene
 from app.server.compile_gate import CompileGate
-from app.server.loop import ALONE_INTERVAL, PATIENCE, SimLoop
+from app.server.loop import ALONE_INTERVAL, SimLoop
 from app.server.replay_file import replay_html
+from app.server.tick_clock import PATIENCE
 from sim.interruption import STOP
 
 if TYPE_CHECKING:
@@ -85,17 +86,17 @@ class ServedScene:
 
     def show_snapshots(self) -> None:
         """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
-        loop, recorder = self.loop, self.panel.recorder
-        shown_at = loop.clock()
+        loop, clock, recorder = self.loop, self.loop.clock, self.panel.recorder
+        shown_at = clock.now()
         while not self.stop.is_set():
             alone = not self.viewer.audience()
             beat = PLAYED_INTERVAL if recorder.playing else ALONE_HEARTBEAT if alone else HEARTBEAT
-            woken = loop.fresh.wait(min(beat, PATIENCE if loop.takes_long and not alone else ALONE_INTERVAL))
+            woken = loop.fresh.wait(min(beat, PATIENCE if clock.takes_long and not alone else ALONE_INTERVAL))
             loop.ask_for_turn()
-            if not woken and loop.clock() - shown_at < beat:
+            if not woken and clock.now() - shown_at < beat:
                 continue
             loop.fresh.clear()
-            shown_at = loop.clock()
+            shown_at = clock.now()
             if not self.stop.is_set():
                 self.show_latest()
 
@@ -103,8 +104,7 @@ class ServedScene:
         """Hand the latest snapshot over; without a new one only the panel."""
         loop, snapshot = self.loop, self.loop.latest
         rows = [loop.plot_rows.popleft() for _ in range(len(loop.plot_rows))]
-        since = loop.busy_since
-        busy = 0.0 if since is None else loop.clock() - since
+        busy = loop.clock.busy_time
         # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
         recorder = self.panel.recorder
         now = time.monotonic()

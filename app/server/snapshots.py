@@ -4,7 +4,6 @@ import collections
 import threading
 import traceback
 from collections.abc import Callable
-from typing import TypeAlias
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from app.server.activity import NOTHING, STEPS, Activity
 from app.server.pacer import FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
+from app.server.tick_clock import TickClock
 from sim.interruption import InterruptionError
 from sim.validation import DivergenceError
 
@@ -24,17 +24,13 @@ KEEP_SHARE = 0.003  # of a core that keeping states may take
 RATE_WINDOW = 1.0  # [s] over which rates are measured
 MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
 
-Clock: TypeAlias = Callable[[], float]  # [s]
-
 
 class Snapshots:
     """Owns a scene, its clock and the latest snapshot of it."""
 
-    def __init__(
-        self, scene: AnyScene, audience: Callable[[], int], clock: Clock, effort: Clock, *, paused: bool
-    ) -> None:
+    def __init__(self, scene: AnyScene, audience: Callable[[], int], clock: TickClock, *, paused: bool) -> None:
         """The arguments are those of `SimLoop`."""
-        self.scene, self.audience, self.clock, self.effort = scene, audience, clock, effort
+        self.scene, self.audience, self.clock = scene, audience, clock
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
         self.activity = NOTHING
         self.pacer = FixedStep()
@@ -46,21 +42,15 @@ class Snapshots:
         self.replay: Replay | None = None  # of a run that has just diverged
         self.counts: collections.Counter[str] = collections.Counter()
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
-        self.wall = 0.0
-        self.restarted_until = 0.0  # [s] of `wall`, while the panel says that an undo could only begin a run again
-        self.keep_at = 0.0  # [s] of `wall` from which a state is kept again
+        self.restarted_until = 0.0  # [s] of the ticks, while the panel says that an undo could only begin a run again
+        self.keep_at = 0.0  # [s] of the ticks from which a state is kept again
         self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
         self.published = 0.0  # [s] of simulated time, of the last snapshot
         self.is_shown = True  # the latest snapshot is of the scene as it is
-        self.whole_at = 0.0  # [s] of the clock, when one was
+        self.whole_at = 0.0  # [s] of the clock, when that was so last
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: AnySnapshot = self.snapshot()
-
-    @property
-    def frame_interval(self) -> float:
-        """Time [s] between pictures: a scene may ask for fewer."""
-        return self.scene.frame_interval
 
     @property
     def stopped_by(self) -> str:
@@ -78,12 +68,12 @@ class Snapshots:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""
         if not self.running or self.activity == STEPS or self.replay is not None:
             return None
-        if self.wall < self.keep_at or not self.audience():
+        if self.clock.wall < self.keep_at or not self.audience():
             return None
-        start = self.effort()
+        start = self.clock.effort()
         value = self.scene.keep()
         state = KeptState(value, arrays_in(value))
-        self.keep_at = self.wall + max(KEEP_INTERVAL, (self.effort() - start) / KEEP_SHARE)
+        self.keep_at = self.clock.wall + max(KEEP_INTERVAL, (self.clock.effort() - start) / KEEP_SHARE)
         return state
 
     def publish(self) -> None:
@@ -98,13 +88,13 @@ class Snapshots:
         serial, params = self.counts["snapshots"], self.scene.params
         last: AnySnapshot | None = getattr(self, "latest", None)
         if last is not None:
-            self.activity = Activity("frame", may_end=self.clock() - self.whole_at < MAX_BLIND_TIME)
+            self.activity = Activity("frame", may_end=self.clock.now() - self.whole_at < MAX_BLIND_TIME)
         try:
             if last is not None and (self.unfinished is not None or self.unmade):
                 self.is_shown = True  # all that there is of a scene that is not made
                 return self.without_frame(last)
             found = self.collect(serial)
-            self.is_shown, self.whole_at = self.scene.params is params, self.clock()
+            self.is_shown, self.whole_at = self.scene.params is params, self.clock.now()
             return found._replace(serial=self.counts["snapshots"])  # controls may have been answered with others
         except InterruptionError:
             assert last is not None
@@ -154,10 +144,10 @@ class Snapshots:
         """The clock and the rates."""
         moment = None if self.replay is None else self.replay.moment
         simulated = self.scene.time if moment is None else moment.time
-        self.history.append((self.wall, simulated))
-        while len(self.history) > 2 and self.history[0][0] < self.wall - RATE_WINDOW:
+        self.history.append((self.clock.wall, simulated))
+        while len(self.history) > 2 and self.history[0][0] < self.clock.wall - RATE_WINDOW:
             self.history.popleft()
-        elapsed = self.wall - self.history[0][0]
+        elapsed = self.clock.wall - self.history[0][0]
         capped = self.pacer.capped and self.running
         return Status(
             running=self.running,
@@ -171,6 +161,6 @@ class Snapshots:
             faster=self.scene.faster if capped else "",
             starts=self.counts["starts"],
             unmade=self.unmade,
-            restarted=self.wall < self.restarted_until,
+            restarted=self.clock.wall < self.restarted_until,
             replayed=None if moment is None else (moment.low, moment.high),
         )

@@ -29,7 +29,7 @@ def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:
         hammer.set(name, value)
     speed = hammer.parameters["speed"].high
     hammer.set("speed", speed)
-    hammer.loop.effort = lambda: 0.0  # as on a machine that always keeps up
+    hammer.loop.clock.effort = lambda: 0.0  # as on a machine that always keeps up
     hammer.loop.pacer.cost_unknown = True
     frames = round(HOUR / (speed * MAX_CATCH_UP))
     start = hammer.loop.scene.time
@@ -41,7 +41,7 @@ def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:
     assert hammer.loop.scene.time - start > 0.99 * HOUR
     tally.notes.append(f"{hammer.name}: an hour simulated in {frames:,} frames, {before:.0f} MB then {after:.0f} MB")
     assert after < GROWTH * before
-    hammer.loop.effort = time.thread_time
+    hammer.loop.clock.effort = time.thread_time
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -12,8 +12,9 @@ from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.server.activity import BEGINNING, NOTHING, STEPS
-from app.server.loop import PATIENCE, SimLoop
+from app.server.loop import SimLoop
 from app.server.snapshots import MAX_BLIND_TIME
+from app.server.tick_clock import PATIENCE
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
@@ -32,7 +33,7 @@ def busy():
     """A loop in the middle of a step that takes long."""
     scene = RopeScene(RopeParams(points=4))
     loop = SimLoop(scene, clock=lambda: 1.0)
-    loop.busy_since = loop.turn_at = 1.0 - 2.0 * PATIENCE
+    loop.clock.busy_since = loop.clock.turn_at = 1.0 - 2.0 * PATIENCE
     loop.activity = STEPS
     return loop
 
@@ -80,7 +81,7 @@ def test_in_the_middle_of_a_reset_the_last_frame_stays_with_the_new_parameters(b
 
 def test_a_turn_is_asked_for_after_a_while_and_not_of_an_idle_loop(busy):
     for since, turn_at, asked in ((None, 0.0, 0), (0.0, 1.0 - 0.5 * PATIENCE, 0), (0.0, 1.0 - 1.5 * PATIENCE, 1)):
-        busy.busy_since, busy.turn_at = since, turn_at
+        busy.clock.busy_since, busy.clock.turn_at = since, turn_at
         busy.ask_for_turn()
         assert busy.request[TURN] == asked
 
@@ -97,7 +98,7 @@ def test_one_tick_that_takes_long_makes_only_the_next_show_a_picture_more():
         raise_if_stopped()
 
     scene.advance, shown = slow, []
-    use_request(loop.request, loop.give_turn, loop.turn_is_due)
+    use_request(loop.request, loop.give_turn, loop.clock.turn_is_due)
     try:
         for _ in range(4):
             now[0] += 1 / 60
@@ -303,17 +304,17 @@ def test_what_a_turn_shows_may_need_a_solve_but_gives_no_further_turn(busy, monk
         return {}
 
     monkeypatch.setattr(busy.scene, "curves", curves)
-    monkeypatch.setattr(busy, "clock", lambda: 1.0 + 2.0 * PATIENCE * len(calls))  # each takes long
+    monkeypatch.setattr(busy.clock, "now", lambda: 1.0 + 2.0 * PATIENCE * len(calls))  # each takes long
 
     def try_out():
-        use_request(busy.request, busy.give_turn, busy.turn_is_due)
+        use_request(busy.request, busy.give_turn, busy.clock.turn_is_due)
         params = ask(busy, grid=False)
         raise_if_stopped()
         return params
 
     params = contextvars.copy_context().run(try_out)
     assert (len(calls), busy.latest.params) == (1, params)
-    assert busy.turn_is_due()
+    assert busy.clock.turn_is_due()
     assert capsys.readouterr().err == ""
 
 

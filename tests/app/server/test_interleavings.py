@@ -222,7 +222,7 @@ def held_at_the_clock(lab: Viewer, comparison: ComparedLabs, point: pytest.Monke
     loop, clock = lab.loop, comparison.clock
     if place == 0:
         looks = itertools.count()
-        held = Held(loop.audience, lambda: loop.busy_since is not None and next(looks) == 1)
+        held = Held(loop.audience, lambda: loop.clock.busy_since is not None and next(looks) == 1)
         point.setattr(loop, "audience", held)
         return held
     name = ("advance", "step_by_hand")[place - 1]

@@ -27,8 +27,9 @@ from app.messages import (
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, PATIENCE, SimLoop
+from app.server.loop import IDLE_INTERVAL, SimLoop
 from app.server.pacer import MAX_LONG_FRAME, SOLVE_SHARE, FixedStep
+from app.server.tick_clock import MAX_FRAME_INTERVAL, PATIENCE
 from sim.parameters import parameter
 from sim.validation import DivergenceError
 from tests.waiting import wait_for
@@ -324,16 +325,16 @@ def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> Non
 def test_whoever_shows_has_to_look_often_only_where_ticks_take_long() -> None:
     loop, scene = make()
     now, seen, spent = [0.0], [], iter((0.1 * PATIENCE, PATIENCE, 0.1 * PATIENCE))
-    loop.clock = lambda: now[0]
+    loop.clock.now = lambda: now[0]
 
     def advance(steps: int) -> None:
         now[0] += next(spent)
-        seen.append(loop.takes_long)
+        seen.append(loop.clock.takes_long)
 
     scene.advance = advance  # type: ignore[method-assign]
     for _ in range(3):
         loop.tick(FRAME_INTERVAL)
-        seen.append(loop.takes_long)
+        seen.append(loop.clock.takes_long)
     assert seen == [True, False, True, True, True, False]  # within a tick and after it
 
 
@@ -375,7 +376,7 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
 def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time(
     late: float, interval: float, apart: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.server.loop.TIMER_STEP", 0.0)
+    monkeypatch.setattr("app.server.tick_clock.TIMER_STEP", 0.0)
     loop, scene = make(gives_way=True)
     clock, stop, starts = scene.clock, threading.Event(), []
 
@@ -387,7 +388,7 @@ def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time
 
     loop.wait = sleep  # type: ignore[method-assign]
     contextvars.copy_context().run(loop.run, stop)
-    assert loop.frame_interval == pytest.approx(interval, rel=1e-3)
+    assert loop.clock.frame_interval(scene.frame_interval) == pytest.approx(interval, rel=1e-3)
     assert starts[-1] - starts[-2] == pytest.approx(apart, rel=1e-3)
     assert scene.time == pytest.approx(starts[-2], abs=interval + late + scene.step)
 

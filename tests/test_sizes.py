@@ -12,7 +12,7 @@ MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; att
 LARGE_OBJECTS = {"ClothScene", "FileScene", "MooringScene", "SimLoop"}
 MANY_ATTRIBUTES = {
     "FileScene", "FloatingBodies", "GuideTab", "LineScene", "MooringScene", "MooringView", "NonlinearSea", "Panel",
-    "RadialSea", "RadialSeaView", "RopeView", "SceneRun", "Sea", "SimLoop", "Snapshots", "SquareSeaScene",
+    "RadialSea", "RadialSeaView", "RopeView", "Sea", "SimLoop", "SquareSeaScene",
     "StudentCloth", "Viewer",
 }  # fmt: skip
 

@@ -16,7 +16,6 @@ from app.lab.process import ON_HUB
 from app.messages import (
     Advance,
     Ask,
-    BaseParams,
     Command,
     GrabTo,
     Halt,
@@ -32,7 +31,7 @@ from app.messages import (
     Take,
     TogglePlay,
 )
-from app.scenes.contract import FRAME_INTERVAL, AnyScene
+from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
 from app.server.activity import NOTHING, OTHER_FORCES, STEPS
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
@@ -41,7 +40,6 @@ from app.server.shared_clock import Seat
 from app.server.tick_clock import Clock, TickClock
 from app.server.timer import effort_clock, fine_timer
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
-from sim.validation import DivergenceError
 
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
@@ -77,13 +75,18 @@ class SimLoop(SceneRun):
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
         super().__init__(scene, audience, TickClock(clock, effort, sleep, gives_way=gives_way), paused=paused)
 
+    @property
+    def latest(self) -> AnySnapshot:
+        """The latest snapshot."""
+        return self.snapshots.latest
+
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
         was_late = self.clock.begin_tick(wall)
         self.take_in()
-        changed = self.handle_waiting() or not self.is_shown
+        changed = self.handle_waiting() or not self.snapshots.is_shown
         if changed and was_late:
-            self.publish()  # before steps that may take long
+            self.snapshots.publish()  # before steps that may take long
             changed = False
         if self.unfinished is not None:
             pass  # no steps of a scene that is not made
@@ -108,7 +111,7 @@ class SimLoop(SceneRun):
         if self.seat is not None:
             self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
         if changed:
-            self.publish()
+            self.snapshots.publish()
             self.pause_at_event()
         if self.goal is not None:
             self.settle(self.goal)
@@ -186,23 +189,13 @@ class SimLoop(SceneRun):
         is_begun = self.latest.status.starts == self.counts["starts"]
         if drags or self.latest.params != params or not is_begun:
             self.pacer.capped = activity == STEPS
-            self.publish_in_solve(params, with_frame=within_steps)
+            self.snapshots.publish_in_solve(params, with_frame=within_steps)
 
     def drags_waiting(self) -> list[GrabTo | Place | Release]:
         """The drags among the waiting commands; the others go on waiting for the next tick."""
         drags = [command for command in self.waiting if isinstance(command, GrabTo | Place | Release)]
         self.waiting = [command for command in self.waiting if not isinstance(command, GrabTo | Place | Release)]
         return drags
-
-    def publish_in_solve(self, params: BaseParams, *, with_frame: bool) -> None:
-        """Hand the viewer these parameters with the last whole step; without `with_frame`, with the last frame."""
-        self.counts["snapshots"] += 1
-        last = self.without_frame(self.latest)._replace(params=params)
-        try:
-            self.latest = self.collect(last.serial)._replace(params=params) if with_frame else last
-        except DivergenceError:  # the solve is about to find that out
-            self.latest = last
-        self.fresh.set()
 
     def handle_waiting(self) -> bool:
         """Handle the waiting commands once they are merged, after a reset that was cancelled, unless the first of them
@@ -286,7 +279,7 @@ class SimLoop(SceneRun):
                 traceback.print_exc()
                 self.halt(f"The scene stopped with {type(error).__name__}: {error}")
                 with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
-                    self.publish()
+                    self.snapshots.publish()
                 clock.end_work()
             last = now
             idle = IDLE_INTERVAL if self.audience() else ALONE_INTERVAL
@@ -303,7 +296,7 @@ class SimLoop(SceneRun):
         self.clock.begin_work()
         self.handle(command)
         self.clock.end_work()
-        self.is_shown = False
+        self.snapshots.is_shown = False
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
         """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""

@@ -6,23 +6,23 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import NamedTuple
 
+import numpy as np
+
 from app.messages import BaseParams, KeptState, Pause, Take
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
-from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
 from app.server.activity import BEGINNING, NOTHING, OTHER_FORCES, STEPS, Activity
 from app.server.left_runs import LeftRun, LeftRuns
-from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE
+from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from app.server.snapshots import Snapshots
+from app.server.snapshots import Snapshots, kept_state
 from app.server.tick_clock import TickClock
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
-RESTARTED_SHOWN = 8.0  # [s] of wall time for which the panel says that a run was not kept
 BEGUN = "the lab was begun again or went on from another moment"  # why the time that a program waits for does not come
 
 
@@ -48,15 +48,38 @@ class AwaitedEvent:
         return self.happens and not before
 
 
-class SceneRun(Snapshots):
+class SceneRun:
     """Takes a scene's steps, and begins it again."""
 
     def __init__(self, scene: AnyScene, audience: Callable[[], int], clock: TickClock, *, paused: bool) -> None:
         """The arguments are those of `SimLoop`."""
+        self.scene, self.audience, self.clock = scene, audience, clock
+        self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
+        self.activity = NOTHING
+        self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
+        self.unmade = False  # the scene could not begin: it waits for other values
+        self.running = not paused
+        self.halted = ""
+        self.pacer = FixedStep()
+        self.replay: Replay | None = None  # of a run that has just diverged
+        self.seat: Seat | None = None  # at a clock that other loops have too
         self.goal: Goal | None = None  # that a program waits for
         self.awaited: AwaitedEvent | None = None
         self.number, self.left = 1, LeftRuns()  # of this run; those before it
-        super().__init__(scene, audience, clock, paused=paused)
+        self.counts: collections.Counter[str] = collections.Counter()
+        self.snapshots = Snapshots(self)
+
+    @property
+    def stopped_by(self) -> str:
+        """Why the run can go no further, or ""; known before its last moments have been shown again."""
+        return self.halted if self.replay is None else self.replay.reason
+
+    def halt(self, reason: str) -> None:
+        """Pause, with all on the same clock, and keep the reason for the panel."""
+        if self.seat is not None:
+            self.seat.tell_others(Pause())
+        self.running = False
+        self.halted = reason
 
     def follow(self, seat: Seat, wall: float) -> bool:
         """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
@@ -116,7 +139,7 @@ class SceneRun(Snapshots):
             return
         if not reason and not goal.was_running:
             self.running = False
-            self.publish()  # the page says that it stands still
+            self.snapshots.publish()  # the page says that it stands still
         self.goal = None
         if not goal.answer.set_running_or_notify_cancel():
             return
@@ -127,9 +150,9 @@ class SceneRun(Snapshots):
 
     def pause_at_event(self) -> None:
         """Pause if the event that is awaited has begun since the last frame."""
-        if self.awaited is not None and self.running and self.awaited.begins(self.latest):
+        if self.awaited is not None and self.running and self.awaited.begins(self.snapshots.latest):
             self.awaited, self.running = None, False
-            self.publish()
+            self.snapshots.publish()
 
     def hurry(self, until: float) -> None:
         """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has.
@@ -143,8 +166,8 @@ class SceneRun(Snapshots):
             if left == 0:
                 return
             self.advance(min(most, left))
-            if self.scene.time - self.published >= HURRY_INTERVAL:
-                self.publish()
+            if self.scene.time - self.snapshots.published >= HURRY_INTERVAL:
+                self.snapshots.publish()
 
     def advance_within_budget(self, n: int) -> None:
         """Take up to n steps in growing parts while the frame's budget lasts.
@@ -256,8 +279,8 @@ class SceneRun(Snapshots):
         if number in (0, self.number):
             return
         if not (self.stopped_by or self.unmade or self.unfinished):
-            value = self.scene.keep()
-            self.left.add(LeftRun(self.number, KeptState(value, arrays_in(value)), tuple(self.kept_rows), self.running))
+            state = kept_state(self.scene)
+            self.left.add(LeftRun(self.number, state, tuple(self.snapshots.kept_rows), self.running))
         self.number = number
 
     def go_back(self, params: BaseParams, number: int) -> None:
@@ -268,7 +291,7 @@ class SceneRun(Snapshots):
         self.number, left = number, self.left.pop(number)
         self.begin_with(params, left)
         if left is None:
-            self.restarted_until = self.clock.wall + RESTARTED_SHOWN
+            self.snapshots.show_restarted()
             return
         self.running = left.running and not self.halted
         if self.seat is not None and not self.running:
@@ -277,8 +300,7 @@ class SceneRun(Snapshots):
     def return_to(self, left: LeftRun) -> None:
         """The scene from its start, then as it was in a run that was left, with its plots."""
         self.scene.reset()
-        self.plot_rows.extend([*self.scene.take_plot_rows(), *left.rows])
-        self.kept_rows = collections.deque(left.rows, maxlen=self.kept_rows.maxlen)
+        self.snapshots.bring_back(left.rows)
         self.scene.resume(left.state.value)
         if self.seat is not None:
             self.seat.go_on_from(self.scene.time)
@@ -289,7 +311,7 @@ class SceneRun(Snapshots):
         self.scene.params, self.pacer.cost_unknown = params, True
         self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
         self.unmade = False
-        self.history.clear()
+        self.snapshots.forget_rates()
         self.guarded(lambda: self.scene.resume(state.value))
         if self.seat is not None:
             self.seat.go_on_from(self.scene.time)

@@ -66,7 +66,7 @@ class ServedScene:
         self.panel = Panel(
             self.server, kind, self.view, params, self.commands.put, scenes=NAMES,
             open_scene=viewer.want, workbook=viewer.workbook, session=viewer.session,
-            wake=lambda: self.loop.fresh.set(), make_replay=replay_html, changed=viewer.share_parameters,
+            wake=lambda: self.loop.snapshots.fresh.set(), make_replay=replay_html, changed=viewer.share_parameters,
             changes=viewer.changes,
             beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
         )  # fmt: skip
@@ -86,25 +86,24 @@ class ServedScene:
 
     def show_snapshots(self) -> None:
         """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
-        loop, clock, recorder = self.loop, self.loop.clock, self.panel.recorder
+        fresh, clock, recorder = self.loop.snapshots.fresh, self.loop.clock, self.panel.recorder
         shown_at = clock.now()
         while not self.stop.is_set():
             alone = not self.viewer.audience()
             beat = PLAYED_INTERVAL if recorder.playing else ALONE_HEARTBEAT if alone else HEARTBEAT
-            woken = loop.fresh.wait(min(beat, PATIENCE if clock.takes_long and not alone else ALONE_INTERVAL))
-            loop.ask_for_turn()
+            woken = fresh.wait(min(beat, PATIENCE if clock.takes_long and not alone else ALONE_INTERVAL))
+            self.loop.ask_for_turn()
             if not woken and clock.now() - shown_at < beat:
                 continue
-            loop.fresh.clear()
+            fresh.clear()
             shown_at = clock.now()
             if not self.stop.is_set():
                 self.show_latest()
 
     def show_latest(self) -> None:
         """Hand the latest snapshot over; without a new one only the panel."""
-        loop, snapshot = self.loop, self.loop.latest
-        rows = [loop.plot_rows.popleft() for _ in range(len(loop.plot_rows))]
-        busy = loop.clock.busy_time
+        snapshot, busy = self.loop.latest, self.loop.clock.busy_time
+        rows = self.loop.snapshots.pop_rows()
         # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
         recorder = self.panel.recorder
         now = time.monotonic()

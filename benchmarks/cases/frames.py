@@ -26,7 +26,7 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
             start = time.thread_time()
             loop.advance(steps)
             solved = time.thread_time()
-            loop.latest = loop.snapshot()
+            loop.snapshots.publish()
             taken = time.thread_time()
             with viewer.transport.counted():
                 viewer.served.show_latest()

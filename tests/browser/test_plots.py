@@ -38,7 +38,7 @@ def test_a_line_is_not_drawn_over_a_gap(shown: tuple[Viewer, Tab]) -> None:
     rows = [(float(time), *[float(value)] * len(lab.panel.kind.series)) for time, value in zip(t, y, strict=True)]
     lab.panel.set("plot_tip", True)
     tab.wait(lambda: "plot_tip" in plots.open)
-    lab.loop.plot_rows.extend([(float("nan"),) * len(rows[0]), *rows])
+    lab.loop.snapshots.plot_rows.extend([(float("nan"),) * len(rows[0]), *rows])
 
     def drawn(first: float, last: float) -> float:
         found = tab.page.evaluate(DRAWN, [first, last])

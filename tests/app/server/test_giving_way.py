@@ -191,7 +191,7 @@ def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy
     busy.scene.reset = lambda: resets.append(reset())
     frame = busy.latest.frame
     busy.take(dataclasses.replace(busy.scene.params, stiffness=90.0))
-    busy.publish()
+    busy.snapshots.publish()
     assert ended == [ends]
     assert (busy.latest.frame is frame) == ends  # nothing is shown of what is half done
     busy.request[STOP] = 0
@@ -239,7 +239,7 @@ def test_steps_that_are_kept_whole_are_abandoned_for_a_new_beginning(busy):
     use_request(busy.request, busy.give_turn, lambda: True)
     try:
         busy.advance(1)
-        busy.publish()
+        busy.snapshots.publish()
     finally:
         use_request(np.array([0, 1, 0, 0]))
     assert resets == []
@@ -355,23 +355,23 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
     ended, frame, earlier = [], busy.scene.frame, busy.latest.frame
     busy.running, busy.activity, busy.scene.frame = False, NOTHING, long_frame
     params = ask(busy, points=5)
-    busy.publish()
-    assert (ended, busy.is_shown, busy.halted) == ([1], False, "")
+    busy.snapshots.publish()
+    assert (ended, busy.snapshots.is_shown, busy.halted) == ([1], False, "")
     assert busy.latest.frame is earlier
     busy.request[STOP] = 0
     busy.tick(0.0)
-    assert (ended, busy.is_shown) == ([1, 0], True)
+    assert (ended, busy.snapshots.is_shown) == ([1, 0], True)
     assert busy.latest.params is params
     assert len(busy.latest.frame.points) == 5
-    busy.whole_at -= MAX_BLIND_TIME
+    busy.snapshots.whole_at -= MAX_BLIND_TIME
     ask(busy, points=6)
-    busy.publish()
+    busy.snapshots.publish()
     assert ended == [1, 0, 0]
-    assert busy.is_shown
+    assert busy.snapshots.is_shown
 
 
 def test_a_picture_that_was_ended_is_made_again_by_a_paused_lab(busy):
-    busy.running, busy.activity, busy.is_shown = False, NOTHING, False
+    busy.running, busy.activity, busy.snapshots.is_shown = False, NOTHING, False
     busy.tick(0.0)
     assert busy.latest.serial == 2
     busy.tick(0.0)
@@ -387,7 +387,7 @@ def test_a_look_that_is_taken_in_the_middle_of_a_picture_is_drawn_by_the_next(bu
     frame, busy.running, busy.activity = busy.scene.frame, False, NOTHING
     busy.scene.frame = long_frame
     ask(busy, grid=False)
-    busy.publish()
+    busy.snapshots.publish()
     assert busy.latest.serial == 3  # the answer in between was the second
     assert busy.latest.frame.params.grid
     busy.tick(0.0)

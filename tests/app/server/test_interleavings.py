@@ -97,7 +97,7 @@ def test_a_scene_that_is_opened_during_a_slow_one_has_nothing_of_the_old_scene(
         assert not thread.is_alive()
         for _ in range(2):  # pictures
             assert updates.get(timeout=TIMEOUT) == (new.threads[1], params)
-        status = asked(watched, new.loop.status)
+        status = asked(watched, new.loop.snapshots.status)
         assert not status.halted
         assert status.running
 
@@ -207,7 +207,7 @@ def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
             assert held.begun.wait(TIMEOUT)
             comparison.end()
             held.free.set()
-            status = asked(watched, loop.status)
+            status = asked(watched, loop.snapshots.status)
         assert not status.halted
         assert loop.seat is None
         watched.commands.put(Pause())

@@ -47,7 +47,7 @@ def check_same(loop: SimLoop, arrays: dict[str, np.ndarray]) -> None:
 def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, change: str) -> None:
     kind = scene_named(name)
     loop, undisturbed = begun(name), begun(name)
-    params, time, before, rows = loop.scene.params, loop.scene.time, arrays_of(loop), tuple(loop.kept_rows)
+    params, time, before, rows = loop.scene.params, loop.scene.time, arrays_of(loop), tuple(loop.snapshots.kept_rows)
     assert time > 0.0
     other = make_setup(kind, list(kind.presets)[1]).params
     moment = Take(params, state=KeptState(loop.scene.keep(), {}), run=2)
@@ -60,8 +60,8 @@ def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, c
     assert (loop.scene.time, loop.running, loop.halted) == (time, False, "")
     assert loop.counts["starts"] == starts + 1  # so that the recording and the cameras are those of another run
     check_same(loop, before)
-    loop.publish()
-    assert tuple(loop.kept_rows)[: len(rows)] == rows
+    loop.snapshots.publish()
+    assert tuple(loop.snapshots.kept_rows)[: len(rows)] == rows
     for one in (loop, undisturbed):
         one.handle(StepOnce(5))
     check_same(loop, arrays_of(undisturbed))
@@ -74,9 +74,9 @@ def test_a_run_that_is_too_large_begins_again_and_the_panel_says_so(monkeypatch:
     loop.handle(Take(make_setup(scene_named("rope"), "Pendulum").params, start=True, run=2))
     assert (len(loop.left.runs), loop.left.memory.bytes) == (0, 0)
     loop.handle(Take(params, start=True, run=1, back=True))
-    assert (loop.scene.time, loop.running, loop.status().restarted) == (0.0, True, True)
+    assert (loop.scene.time, loop.running, loop.snapshots.status().restarted) == (0.0, True, True)
     loop.tick(10.0)
-    assert not loop.status().restarted
+    assert not loop.snapshots.status().restarted
 
 
 def test_memory_is_bounded_and_the_oldest_go_first(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -311,15 +311,15 @@ def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> Non
     told = []
     for _ in range(20):
         loop.tick(FRAME_INTERVAL)
-        told.append(loop.fresh.is_set())
-        loop.fresh.clear()
+        told.append(loop.snapshots.fresh.is_set())
+        loop.snapshots.fresh.clear()
     assert sum(told) == loop.latest.serial - 1
     loop.handle(Pause())
     loop.tick(FRAME_INTERVAL)
-    assert not loop.fresh.is_set()
+    assert not loop.snapshots.fresh.is_set()
     loop.commands.put(StepOnce())
     loop.tick(FRAME_INTERVAL)
-    assert loop.fresh.is_set()
+    assert loop.snapshots.fresh.is_set()
 
 
 def test_whoever_shows_has_to_look_often_only_where_ticks_take_long() -> None:
@@ -406,7 +406,7 @@ def test_a_coarse_timer_costs_neither_frames_nor_speed(cost: float) -> None:
     clock, stop, shown = CoarseClock(), threading.Event(), []
     scene = Scene(clock, cost)
     loop = SimLoop(scene, clock=clock, effort=clock, sleep=clock.sleep)
-    publish = loop.publish
+    publish = loop.snapshots.publish
 
     def count() -> None:
         shown.append(clock.now)
@@ -414,7 +414,7 @@ def test_a_coarse_timer_costs_neither_frames_nor_speed(cost: float) -> None:
             stop.set()
         publish()
 
-    loop.publish = count  # type: ignore[method-assign]
+    loop.snapshots.publish = count  # type: ignore[method-assign]
     contextvars.copy_context().run(loop.run, stop)
     assert len(shown) / clock.now == pytest.approx(1.0 / FRAME_INTERVAL, rel=0.02)
     assert scene.time / clock.now == pytest.approx(1.0, abs=0.01)
@@ -509,10 +509,11 @@ def test_single_steps_are_counted_and_bounded_by_the_frames_budget() -> None:
 def test_no_plot_row_is_lost_where_nobody_takes_the_snapshots() -> None:
     loop, scene = make()
     scene.take_plot_rows = lambda: ((scene.time, 1.0),)
-    loop.plot_rows.clear()
+    loop.snapshots.plot_rows.clear()
     for _ in range(30):
         loop.tick(FRAME_INTERVAL)
-    assert [row[0] for row in loop.plot_rows] == pytest.approx([FRAME_INTERVAL * k for k in range(1, 31)], abs=0.011)
+    times = [row[0] for row in loop.snapshots.plot_rows]
+    assert times == pytest.approx([FRAME_INTERVAL * k for k in range(1, 31)], abs=0.011)
 
 
 def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives(capsys: pytest.CaptureFixture) -> None:

@@ -32,10 +32,10 @@ from app.messages import (
     TogglePlay,
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
-from app.scenes.stepping import steps_to
 from app.server.activity import NOTHING, OTHER_FORCES, STEPS
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
-from app.server.run import AwaitedEvent, Goal, SceneRun
+from app.server.run import SceneRun
+from app.server.runs import Runs
 from app.server.shared_clock import Seat
 from app.server.tick_clock import Clock, TickClock
 from app.server.timer import effort_clock, fine_timer
@@ -47,7 +47,7 @@ BREATH = 1e-3  # [s] between two ticks where the last sleep ended late: a tick a
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
 
-class SimLoop(SceneRun):
+class SimLoop:
     """Runs a scene on a thread, by commands that come from others."""
 
     def __init__(
@@ -70,57 +70,40 @@ class SimLoop(SceneRun):
         machine that takes the processor away does not make the scene look expensive.
         sleep: for so long [s]. gives_way: whether frames become fewer where sleeps end late, as on a hub.
         """
+        self.scene, self.admit = scene, admit
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
-        self.admit = admit
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
-        super().__init__(scene, audience, TickClock(clock, effort, sleep, gives_way=gives_way), paused=paused)
+        self.clock = TickClock(clock, effort, sleep, gives_way=gives_way)
+        self.run = SceneRun(scene, audience, self.clock, paused=paused)
+        self.runs = Runs(self.run)
 
     @property
     def latest(self) -> AnySnapshot:
-        """The latest snapshot."""
-        return self.snapshots.latest
+        """The latest snapshot, for other threads too."""
+        return self.run.snapshots.latest
 
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
+        run, snapshots = self.run, self.run.snapshots
         was_late = self.clock.begin_tick(wall)
         self.take_in()
-        changed = self.handle_waiting() or not self.snapshots.is_shown
+        changed = self.handle_waiting() or not snapshots.is_shown
         if changed and was_late:
-            self.snapshots.publish()  # before steps that may take long
+            snapshots.publish()  # before steps that may take long
             changed = False
-        if self.unfinished is not None:
-            pass  # no steps of a scene that is not made
-        elif self.running and self.audience() and self.replay is not None:
-            changed |= self.play_replay(self.replay, wall)
-        elif self.goal is not None and self.running and not self.audience():
-            self.hurry(self.goal.until)
-            changed = True
-        elif self.seat is not None and self.audience():
-            changed |= self.follow(self.seat, wall)
-        elif self.running and self.audience():
-            frame = self.clock.frame_interval(self.scene.frame_interval)
-            n = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, frame)
-            if self.goal is not None:
-                n = min(n, steps_to(self.scene, self.goal.until))
-            if n:
-                (self.advance_within_budget if self.pacer.cost_unknown else self.advance)(n)
-                changed = True
-        else:
-            self.counts["idle ticks"] += 1
-        self.counts["ticks"] += 1
-        if self.seat is not None:
-            self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
+        changed |= run.go_on(wall)
+        run.counts["ticks"] += 1
+        run.note_place()
         if changed:
-            self.snapshots.publish()
-            self.pause_at_event()
-        if self.goal is not None:
-            self.settle(self.goal)
+            snapshots.publish()
+            run.pause_at_event()
+        run.settle()
         self.clock.end_tick()
 
     def take_in(self, *taken: Command) -> None:
         """Have the commands wait that have come and can be handled. taken: out of the queue before."""
         came = [*taken, *(self.commands.get_nowait() for _ in range(self.commands.qsize()))]  # nobody else takes
-        seat = self.seat
+        seat = self.run.seat
         self.waiting += [command if seat is None else seat.share(command) for command in self.admit(came)]
         if seat is not None:
             self.waiting += [seat.told.get_nowait() for _ in range(seat.told.qsize())]
@@ -130,10 +113,10 @@ class SimLoop(SceneRun):
 
         Called on the simulation thread, by an `Ask`.
         """
-        self.seat = seat
+        self.run.seat = seat
         if seat is not None:
             self.handle(seat.share(Reset()))
-            seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
+            self.run.note_place()
 
     def tell(self, read: Callable[[], object], answer: Future[object]) -> None:
         """Answer a program that asks."""
@@ -147,7 +130,7 @@ class SimLoop(SceneRun):
     def ask_for_turn(self) -> None:
         """Have controls answered in the middle of a solve that takes long; called from another thread."""
         if self.clock.turn_is_due():
-            self.request[TURN] = 1
+            self.run.request[TURN] = 1
 
     def give_turn(self) -> None:
         """Answer controls in the middle of a solve, which calls this on its own thread.
@@ -169,15 +152,15 @@ class SimLoop(SceneRun):
     def handle_in_solve(self) -> None:
         """Cancel the solve for what has come, or answer that with a snapshot."""
         self.take_in()
+        run, activity, whole = self.run, self.run.activity, is_kept_whole()
         params, effect = effect_of_takes(self.scene.params, self.waiting)
-        activity, whole = self.activity, is_kept_whole()
         anew = any(map(begins_anew, self.waiting)) or effect == "start"
         asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
         if anew and activity != NOTHING:
-            self.request[STOP] = ABANDON if whole else 1
+            run.cancel(ABANDON if whole else 1)
             return
         if asked and activity.may_end and not whole:
-            self.request[STOP] = 1
+            run.cancel()
             return
         if effect == "look" and not asked and activity != OTHER_FORCES:
             self.scene.params = params
@@ -186,10 +169,10 @@ class SimLoop(SceneRun):
         drags = self.drags_waiting() if within_steps else []
         for command in drags:
             self.scene.handle(command)
-        is_begun = self.latest.status.starts == self.counts["starts"]
+        is_begun = self.latest.status.starts == run.counts["starts"]
         if drags or self.latest.params != params or not is_begun:
-            self.pacer.capped = activity == STEPS
-            self.snapshots.publish_in_solve(params, with_frame=within_steps)
+            run.pacer.capped = activity == STEPS
+            run.snapshots.publish_in_solve(params, with_frame=within_steps)
 
     def drags_waiting(self) -> list[GrabTo | Place | Release]:
         """The drags among the waiting commands; the others go on waiting for the next tick."""
@@ -203,107 +186,96 @@ class SimLoop(SceneRun):
 
         Those that follow a cancelled one wait for the next tick, where what has cancelled it may supersede them.
         """
-        waiting, self.waiting = self.waiting, []
-        left, unfinished = merged(waiting, self.scene.params), self.unfinished
+        run, waiting, self.waiting = self.run, self.waiting, []
+        left, unfinished = merged(waiting, self.scene.params), run.unfinished
         if unfinished is not None:
             first = [command for command in left if not isinstance(command, Motion)][:1]
             if any(map(begins_anew, first)) or effect_of_takes(self.scene.params, first)[1] == "start":
-                self.unfinished = None
+                run.unfinished = None
             else:
-                self.begin(unfinished)
-        while left and self.unfinished is None:
+                run.begin(unfinished)
+        while left and run.unfinished is None:
             self.handle(left.pop(0))
         self.waiting[:0] = left
         return bool(waiting) or unfinished is not None
 
     def handle(self, command: Command) -> None:
         """Carry out one command. A scene that could not begin takes other values, and has nothing to run."""
+        run = self.run
         match command:
-            case _ if self.unmade and isinstance(command, SceneCommand | Play | StepOnce | TogglePlay | RunOn):
+            case _ if run.unmade and isinstance(command, SceneCommand | Play | StepOnce | TogglePlay | RunOn):
                 pass
             case Play():
-                self.running, self.halted = True, ""
-                if self.replay is not None and self.replay.ended:
-                    self.replay = None  # on from the last good state
+                run.play()
             case Pause():
-                self.running, self.awaited = False, None
-            case RunOn(reached):
-                self.handle(Play())
-                self.awaited = AwaitedEvent(reached, self.latest)
+                run.pause()
             case TogglePlay():
-                self.handle(Pause() if self.running else Play())
+                run.pause() if run.running else run.play()
+            case RunOn(reached):
+                run.run_on(reached)
             case StepOnce(steps):
-                self.running = False
-                if self.seat is None or self.replay is not None:
-                    self.step_by_hand(steps)
-                elif self.seat.is_first:
-                    self.seat.clock.step_by_hand(steps)
+                run.step_by_hand(steps)
             case Halt(reason):
-                self.halt(reason)
+                run.halt(reason)
             case Take():
-                self.obey(command)
-            case Reset(run):
-                self.awaited = None
-                self.leave_for(run)
-                self.counts["starts"] += 1
-                self.reset()
+                self.runs.obey(command)
+            case Reset(number):
+                self.runs.begin_again(number)
             case Ask(read, answer):
                 self.tell(read, answer)
             case Advance(seconds, answer):
-                self.give_up("another program waits for the lab")
-                self.goal = Goal(self.scene.time + seconds, answer, self.running)
-                self.running = not self.stopped_by
+                run.aim_at(seconds, answer)
             case _:
-                self.guarded(lambda: self.scene.handle(command))
-
-    def run(self, stop: threading.Event) -> None:
-        """Tick until `stop` is set, at the frame rate while there is something to do."""
-        use_request(self.request, self.give_turn, self.clock.turn_is_due)
-        with fine_timer():
-            self.tick_until(stop)
+                run.guarded(lambda: self.scene.handle(command))
 
     def tick_until(self, stop: threading.Event) -> None:
-        """The loop of `run`."""
-        clock = self.clock
-        last = due = wanted = clock.now()  # wanted: when a sleep should have ended
-        while True:
-            self.request[STOP] = self.request[TURN] = 0
-            if stop.is_set():
-                return
-            busy = self.running and (self.audience() > 0 or self.goal is not None)
-            now = clock.now()
-            clock.end_sleep(now, wanted)
-            try:
-                self.tick(now - last)
-            except Exception as error:  # outside what `guarded` covers: the thread lives to say so
-                traceback.print_exc()
-                self.halt(f"The scene stopped with {type(error).__name__}: {error}")
-                with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
-                    self.snapshots.publish()
-                clock.end_work()
-            last = now
-            idle = IDLE_INTERVAL if self.audience() else ALONE_INTERVAL
-            interval = clock.frame_interval(self.scene.frame_interval) if busy else idle
-            # A sleep that ended late makes the next one shorter; one that missed a whole frame is not made up for.
-            due = interval + (due if now - due < interval else now)
-            wanted = max(due, clock.now())
-            rest = max(due - clock.now(), BREATH if clock.tick_time < interval else 0.0)
-            if rest > 0:
-                self.wait(rest, stop)
+        """Tick until `stop` is set, at the frame rate while there is something to do."""
+        run, clock = self.run, self.clock
+        use_request(run.request, self.give_turn, clock.turn_is_due)
+        with fine_timer():
+            last = due = wanted = clock.now()  # wanted: when a sleep should have ended
+            while True:
+                run.request[STOP] = run.request[TURN] = 0
+                if stop.is_set():
+                    return
+                busy = run.running and (run.audience() > 0 or run.goal is not None)
+                now = clock.now()
+                clock.end_sleep(now, wanted)
+                self.tick_or_halt(now - last)
+                last = now
+                idle = IDLE_INTERVAL if run.audience() else ALONE_INTERVAL
+                interval = clock.frame_interval(self.scene.frame_interval) if busy else idle
+                # A sleep that ended late makes the next one shorter; one that missed a whole frame is not made up for.
+                due = interval + (due if now - due < interval else now)
+                wanted = max(due, clock.now())
+                rest = max(due - clock.now(), BREATH if clock.tick_time < interval else 0.0)
+                if rest > 0:
+                    self.wait(rest, stop)
+
+    def tick_or_halt(self, wall: float) -> None:
+        """A tick; whatever fails in it outside what `guarded` covers halts the run, and the thread lives to say so."""
+        try:
+            self.tick(wall)
+        except Exception as error:
+            traceback.print_exc()
+            self.run.halt(f"The scene stopped with {type(error).__name__}: {error}")
+            with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
+                self.run.snapshots.publish()
+            self.clock.end_work()
 
     def take_answer(self, command: StudentAnswer) -> None:
         """Let the scene take an answer of the student's functions within a sleep; the next tick shows it."""
         self.clock.begin_work()
         self.handle(command)
         self.clock.end_work()
-        self.snapshots.is_shown = False
+        self.run.snapshots.is_shown = False
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
         """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""
         start, left = self.clock.now(), seconds
         while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
-                command = self.commands.get(timeout=MAX_DEAF_TIME if self.audience() else left)
+                command = self.commands.get(timeout=MAX_DEAF_TIME if self.run.audience() else left)
                 if not isinstance(command, StudentAnswer):
                     self.take_in(command)
                     stop.wait(max(0.0, FRAME_INTERVAL - (self.clock.now() - start)))  # not more ticks than frames

@@ -277,7 +277,7 @@ def test_a_change_of_look_costs_nothing_and_leaves_the_accounts_alone():
     )
     for frame in range(60):
         if frame % 10 == 5:
-            loops[1].take(dataclasses.replace(changed.params, **looks[frame // 10 % len(looks)]))
+            loops[1].runs.take(dataclasses.replace(changed.params, **looks[frame // 10 % len(looks)]))
         for loop in loops:
             loop.tick(FRAME_INTERVAL)
     for one, other in zip(alone.race.entrants, changed.race.entrants, strict=True):

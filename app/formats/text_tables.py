@@ -31,20 +31,24 @@ def print_table(title: str, rows: Rows) -> None:
     from rich.table import Table
 
     console, names = Console(), columns(rows)
-    widths = {name: max(len(written(row.get(name))) for row in rows) for name in names}
-    # Headings are folded between words, values are not.
-    needed = 1 + sum(3 + max(widths[name], *map(len, name.split())) for name in names)
-    if needed > console.width:
+    # Headings are folded between words, values are not. Rich cuts digits where it folds headings.
+    cells = {name: [written(row.get(name)) for row in rows] for name in names}
+    widths = {name: max(map(len, [*cells[name], *name.split()])) for name in names}
+    left = console.width - 1 - sum(3 + width for width in widths.values())
+    if left < 0:
         lines = [*([title] if title else []), *(line for row in rows for line in ("", *lines_of(row)))]
         folded = [line for text in lines for line in fold(text, console.width) or [""]]
         console.print("\n".join(folded), markup=False, highlight=False, soft_wrap=True)
         return
     table = Table(title=escape(title) or None, title_justify="left")
     for name in names:
+        more = min(left, max(0, len(name) - widths[name]))
+        left -= more
+        heading = textwrap.fill(name, widths[name] + more, break_on_hyphens=False)
         is_number = any(isinstance(row.get(name), int | float) for row in rows)
-        table.add_column(escape(name), justify="right" if is_number else "left", min_width=widths[name])
-    for row in rows:
-        table.add_row(*(escape(written(row.get(name))) for name in names))
+        table.add_column(escape(heading), justify="right" if is_number else "left", no_wrap=True)
+    for row in zip(*cells.values(), strict=True):
+        table.add_row(*map(escape, row))
     console.print(table)
 
 

@@ -1,15 +1,22 @@
 """A real Chromium for the tests that look, rendering in software: slow, and the same everywhere."""
 
 import base64
+import contextlib
+import faulthandler
+import gc
 import os
 import shutil
+import sys
 import tempfile
+import threading
 import time
+import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
+import psutil
 import pytest
 
 from app.messages import Pause
@@ -63,6 +70,7 @@ HARMLESS_ERRORS = ("preventDefault inside passive",)
 # after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a
 # removal.
 LATE_UPDATE = "Tried to update non-existent component"
+STUCK = 0.6  # of the time of a test, after which its browser is ended
 
 
 def new_page(chromium: Any, width: int, height: int, drawn: bool | str, flat: str = "") -> Any:
@@ -83,6 +91,50 @@ def surroundings() -> dict[str, str]:
     return {**os.environ, "TMPDIR": "/tmp"} if is_long else {**os.environ}
 
 
+@pytest.fixture(autouse=True)
+def released_where_it_waits(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Print where a test waits for its browser, and end the browser, so that the test fails and is tried again.
+
+    A call of Playwright that waits for a page has no limit, and no traceback of threads shows greenlets.
+    """
+    greenlet = pytest.importorskip("greenlet", reason="playwright is not installed").greenlet
+    mark = request.node.get_closest_marker("timeout")
+    limit = float(mark.args[0] if mark else request.config.getini("timeout"))
+
+    def release() -> None:
+        with request.config.pluginmanager.getplugin("capturemanager").global_and_fixture_disabled():
+            print(f"{request.node.nodeid} waits:", file=sys.stderr)
+            for one in gc.get_objects():
+                if isinstance(one, greenlet) and one.gr_frame is not None:
+                    traceback.print_stack(one.gr_frame, limit=8, file=sys.stderr)
+            faulthandler.dump_traceback(file=sys.__stderr__)
+        for process in psutil.Process().children(recursive=True):
+            with contextlib.suppress(psutil.Error):
+                if "--remote-debugging-pipe" in process.cmdline():
+                    process.kill()
+
+    timer = threading.Timer(STUCK * limit, release)
+    timer.start()
+    yield
+    timer.cancel()
+
+
+class Chromium:
+    """A browser of Playwright's, with all its methods. One that has ended is started anew."""
+
+    def __init__(self, driver: Any) -> None:
+        self.driver = driver
+        self.browser = self.start()
+
+    def start(self) -> Any:
+        return self.driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=surroundings())
+
+    def __getattr__(self, name: str) -> Any:
+        if not self.browser.is_connected():
+            self.browser = self.start()
+        return getattr(self.browser, name)
+
+
 @pytest.fixture(scope="package")
 def chromium() -> Iterator[Any]:
     """A running Chromium; the test is skipped where there is none.
@@ -93,7 +145,7 @@ def chromium() -> Iterator[Any]:
     if CHROMIUM is None:
         pytest.skip("no Chromium on the search path")
     with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=surroundings())
+        browser = Chromium(driver)
         yield browser
         browser.close()
 
@@ -121,12 +173,18 @@ class Tab:
     ) -> None:
         """drawn, flat: as of `new_page`. address: of the page where a proxy shows it, with a "?". ratio: drawn pixels
         per pixel of the page, in each direction."""
-        self.page = new_page(chromium, width, height, drawn, flat)
-        self.errors: list[str] = []
+        self.new_page = lambda: new_page(chromium, width, height, drawn, flat)
+        self.address = f"{address or f'http://127.0.0.1:{port}/?'}&hideViserLogo&fixedDpr={ratio:g}{query}"
         self.followed = 0  # number of scenes that were opened for it
+        self.open()
+
+    def open(self) -> None:
+        """Open the page."""
+        self.page = self.new_page()
+        self.errors: list[str] = []
         self.page.on("console", self.note)
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self.page.goto(f"{address or f'http://127.0.0.1:{port}/?'}&hideViserLogo&fixedDpr={ratio:g}{query}")
+        self.page.goto(self.address)
 
     def note(self, message: Any) -> None:
         if message.type == "error" and not any(harmless in message.text for harmless in HARMLESS_ERRORS):
@@ -144,6 +202,8 @@ class Tab:
 
     def follow(self, viewer: Viewer, scene: str, params: Any = None) -> None:
         """Open a scene instead of the open one, and wait until the page has all of it, its keys too."""
+        if self.page.is_closed():
+            self.open()
         viewer.open(scene, params)
         self.wait_for_panel(viewer)
 

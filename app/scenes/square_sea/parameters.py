@@ -183,8 +183,8 @@ PRESETS: dict[str, dict[str, Any]] = {
         "order": 3, "start": "rogue", "spectrum": "sea_state", "hs": 8.4, "tp": 15.0, "second_height": 8.4,
         "second_period": 15.0, "wind_direction": -60.0, "second_direction": 60.0, "spreading": "cos2s",
         "spread_exponent": 25.0, "wind_speed": 20.0, "deep": False, "depth": 70.0, "length": 1200.0, "size": "128",
-        "seed": 1, "foam_by_wind": False, "foam_fade": 2.0, "speed": 2.0, "view": "platform", "clouds": 1.0,
-        "daylight": 0.7, "visibility": 3000.0,
+        "seed": 1, "foam_by_wind": False, "foam_threshold": 0.3, "foam_fade": 1.0, "speed": 2.0, "view": "platform",
+        "clouds": 1.0, "daylight": 0.7, "visibility": 3000.0,
     },
     "Steep storm": {
         "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",

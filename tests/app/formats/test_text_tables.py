@@ -92,6 +92,24 @@ def test_a_table_that_does_not_fit_is_printed_as_lines(
         assert "Title" in said
 
 
+def test_no_digit_and_no_border_is_cut_at_any_width(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    row = {"network": "rope, axial damping", "integrator": "implicit_midpoint", "step off at most [%]": 0.25,
+           "at damping [N s/m]": 1000.0}  # fmt: skip
+    heights = []
+    for width in range(60, 100):
+        monkeypatch.setenv("COLUMNS", str(width))
+        text_tables.print_table("", [row])
+        lines = capsys.readouterr().out.splitlines()
+        if lines[0].startswith("┏"):
+            assert {(len(line) <= width, line[-1]) for line in lines} <= {(True, mark) for mark in "┓┃┩│┘"}
+            assert re.findall(r"[^│ ][^│]*[^│ ]", lines[-2]) == [text_tables.written(value) for value in row.values()]
+            heights.append(len(lines))
+    assert heights == sorted(heights, reverse=True)  # headings are folded no more than they need
+    assert heights[-1] == 5
+
+
 def test_a_line_is_folded_between_words_and_indented_further() -> None:
     lines = text_tables.fold("  " + "word " * 9, 20)
     assert lines == ["  word word word", *["    word word word"] * 2]

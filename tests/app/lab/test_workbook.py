@@ -145,7 +145,7 @@ def test_what_is_seen_to_be_done_is_ticked_off_for_good(folder: Path) -> None:
     book.watch(DRAFT, thin)
     assert (folder / FILE).stat().st_mtime_ns == written
     assert Workbook(TASKS, folder).done(DRAFT) == {1}
-    (folder / FILE).write_text(f'[extra_draft]\n{DONE} = "x 99999999999 1 ²"\n')
+    (folder / FILE).write_text(f'[extra_draft]\n{DONE} = "x 99999999999 1 ²"\n', "utf-8")
     book.refresh()
     assert book.done(DRAFT) == {1}
 

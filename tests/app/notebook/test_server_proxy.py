@@ -28,9 +28,10 @@ def test_the_students_folder_is_made_once_and_run(
     end = ["--no-open", "--resume", "--port", "{port}"]
     monkeypatch.delenv(LAB_VARIABLE, raising=False)
     assert words() == ["app", *end]
-    monkeypatch.setenv("HOME", str(tmp_path))
+    for home in ("HOME", "USERPROFILE"):  # the latter on Windows
+        monkeypatch.setenv(home, str(tmp_path))
     monkeypatch.setenv(LAB_VARIABLE, "~/{mine}")
-    assert words() == ["app", "lab", f"{tmp_path}/{{{{mine}}}}", *end]
+    assert words() == ["app", "lab", str(tmp_path / "{{mine}}"), *end]
     readme = tmp_path / "{mine}" / "README.md"
     readme.write_text("changed")
     words()

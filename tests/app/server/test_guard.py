@@ -246,7 +246,6 @@ def test_a_busy_port_is_an_error_not_another_port() -> None:
         assert refused.value.errno in (errno.EADDRINUSE, errno.EACCES)
 
 
-@pytest.mark.timeout(20)
 def test_an_address_of_another_machine_is_an_error_at_once() -> None:
     with pytest.raises(OSError) as refused:  # noqa: PT011 - its words are those of the system
         open_server("192.0.2.1", 0)  # of RFC 5737: nobody has it

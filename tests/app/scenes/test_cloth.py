@@ -34,7 +34,7 @@ def marks_of(scene: ClothScene) -> dict[str, str]:
 
 def change(scene: ClothScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
+    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
 
 
 @pytest.mark.parametrize("preset", PRESETS)

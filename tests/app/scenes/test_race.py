@@ -50,7 +50,7 @@ def race(**changes) -> Any:
 
 def change(scene: RaceScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
+    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
 
 
 def run(scene: RaceScene, seconds: float) -> None:

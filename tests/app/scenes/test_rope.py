@@ -39,7 +39,7 @@ def run(scene: RopeScene, frames: int, steps: int) -> None:
 
 def change(scene: RopeScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
+    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
 
 
 @pytest.mark.parametrize("preset", [name for name in PRESETS if name != "Euler explodes"])

@@ -69,7 +69,7 @@ def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
         tab.drag(tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.4)))
         tab.release()
         tab.page.wait_for_timeout(500)
-        return lab.scene.handles[0].position[2] > pin[2] + 0.1
+        return lab.scene.pins.handles[0].position[2] > pin[2] + 0.1
 
     tab.wait(drag_up)  # again where a slow page had not yet noticed what the mouse was over
     tab.wait(lambda: lab.scene.state.x[2, 0, 0] > pin[2] + 0.1)

@@ -1,4 +1,4 @@
-"""The solve of a simulation thread, and what may cancel it."""
+"""The kinds of solves of a simulation thread, and the commands that cancel them."""
 
 from typing import Literal, NamedTuple
 

@@ -150,7 +150,7 @@ class SimLoop:
             traceback.print_exc()
 
     def handle_in_solve(self) -> None:
-        """Cancel the solve for what has come, or answer that with a snapshot."""
+        """Cancel the solve for the commands that have come, or answer them with a snapshot."""
         self.take_in()
         run, activity, whole = self.run, self.run.activity, is_kept_whole()
         params, effect = effect_of_takes(self.scene.params, self.waiting)
@@ -253,7 +253,7 @@ class SimLoop:
                     self.wait(rest, stop)
 
     def tick_or_halt(self, wall: float) -> None:
-        """A tick; whatever fails in it outside what `guarded` covers halts the run, and the thread lives to say so."""
+        """A tick; an error in it that `guarded` does not catch halts the run, and the thread lives to say so."""
         try:
             self.tick(wall)
         except Exception as error:

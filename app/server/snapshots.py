@@ -1,4 +1,4 @@
-"""The snapshots of a scene that the viewer shows, and what goes with them: plot rows, states, rates."""
+"""The snapshots of a scene that the viewer shows, with their plot rows, states and rates."""
 
 import collections
 import threading

@@ -21,7 +21,7 @@ class Pins:
 
     @property
     def targets(self) -> tuple[Vector, Vector]:
-        """Where the handles are going to [m]."""
+        """Targets of the two handles [m]."""
         first, last = self.handles
         return first.target, last.target
 

@@ -27,11 +27,11 @@ from app.server.viewer import Viewer
 viewer = Viewer("127.0.0.1", 0)
 viewer.open(sys.argv[1])
 viewer.served.stop_threads()
-viewer.loop.audience = lambda: 1
+viewer.loop.run.audience = lambda: 1
 for _ in range(20):
     viewer.loop.tick(1 / 60)
     viewer.served.show_latest()
-assert viewer.loop.counts["steps"] >= 20, viewer.loop.halted
+assert viewer.loop.run.counts["steps"] >= 20, viewer.loop.run.halted
 viewer.shut()
 """
 

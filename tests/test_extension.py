@@ -35,7 +35,7 @@ while viewer.served.drawn == 0 and time.monotonic() < end:
 assert viewer.served.drawn
 assert viewer.loop.latest.frame.bob[2] < 0.0
 assert set(viewer.panel.controls) == {"length", "gravity", "angle", "speed", "grid", "plot_swing"}
-assert not viewer.loop.halted
+assert not viewer.loop.run.halted
 
 viewer.open("radial_sea", RadialSeaParams(bodies=5))
 while not viewer.view.bodies and time.monotonic() < end:
@@ -43,7 +43,7 @@ while not viewer.view.bodies and time.monotonic() < end:
 assert "cone" in viewer.view.bodies
 assert "Cone" in readout_of(viewer.loop.latest)
 assert measures(viewer.scene)["cone_draft_at_rest"].value > 0.0
-assert not viewer.loop.halted
+assert not viewer.loop.run.halted
 viewer.shut()
 """
 MEASURED = """

@@ -11,10 +11,10 @@ MAX_FUNCTION, MAX_CLASS = 80, 300  # lines
 LONG_FUNCTIONS = {"sim/springs/integrators/embedded/march.py: march"}
 LONG_CLASSES: set[str] = set()
 MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; attributes that these assign to self
-LARGE_OBJECTS = {"ClothScene", "FileScene", "MooringScene", "SceneRun", "SimLoop"}
+LARGE_OBJECTS = {"FileScene", "MooringScene"}
 MANY_ATTRIBUTES = {
     "FileScene", "FloatingBodies", "GuideTab", "LineScene", "MooringScene", "MooringView", "NonlinearSea", "Panel",
-    "RadialSea", "RadialSeaView", "RopeView", "SceneRun", "Sea", "SimLoop", "Snapshots", "SquareSeaScene",
+    "RadialSea", "RadialSeaView", "RopeView", "Sea", "SquareSeaScene",
     "StudentCloth", "Viewer",
 }  # fmt: skip
 # Names that two packages of the library offer for different things. An entry goes as soon as they are one.

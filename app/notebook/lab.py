@@ -62,7 +62,7 @@ class Lab:
     @property
     def running(self) -> bool:
         """True if the clock runs. It stands still where no browser looks."""
-        return self._open.loop.running
+        return self._open.loop.run.running
 
     @property
     def link(self) -> str:
@@ -123,7 +123,7 @@ class Lab:
         """
         viewer, kind = self._open, self._kind
         loop, scene = viewer.loop, viewer.loop.scene
-        return self._asked(lambda: to_dataset(kind, scene, loop.kept_rows, self.link))
+        return self._asked(lambda: to_dataset(kind, scene, loop.run.snapshots.kept_rows, self.link))
 
     def picture(self, width: int = 960, height: int = 540) -> Still:
         """A picture [pixels] of a browser's view, which stays in the notebook.

@@ -45,7 +45,7 @@ class ComparedLabs:
                 pane = self.make_pane(number)
                 self.viewers = (*self.viewers, pane)
                 pane.comparison = self
-                pane.open(setup.scene, with_shared(setup.params, first.panel.params), paused=not first.loop.running)
+                pane.open(setup.scene, with_shared(setup.params, first.panel.params), paused=not first.loop.run.running)
                 if first.ended:
                     self.end()
                     return

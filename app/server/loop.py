@@ -16,7 +16,6 @@ from app.lab.process import ON_HUB
 from app.messages import (
     Advance,
     Ask,
-    BaseParams,
     Command,
     GrabTo,
     Halt,
@@ -32,27 +31,23 @@ from app.messages import (
     Take,
     TogglePlay,
 )
-from app.scenes.contract import FRAME_INTERVAL, AnyScene
-from app.scenes.stepping import steps_to
+from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
+from app.server.activity import NOTHING, OTHER_FORCES, STEPS
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
-from app.server.run import Goal, SceneRun
+from app.server.run import SceneRun
+from app.server.runs import Runs
 from app.server.shared_clock import Seat
-from app.server.snapshots import Clock
-from app.server.timer import TIMER_STEP, effort_clock, fine_timer
+from app.server.tick_clock import Clock, TickClock
+from app.server.timer import effort_clock, fine_timer
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
-from sim.validation import DivergenceError
 
-PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
-LATE_FRAMES = 16.0  # ratio of the frame interval to the time by which sleeps end too late, at least
-MAX_FRAME_INTERVAL = 0.1  # [s] that a busy machine may lead to
 BREATH = 1e-3  # [s] between two ticks where the last sleep ended late: a tick at once would have no steps to take
-LATENESS_WEIGHT = 0.1  # of the last sleep in the mean
 MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
 
-class SimLoop(SceneRun):
+class SimLoop:
     """Runs a scene on a thread, by commands that come from others."""
 
     def __init__(
@@ -75,71 +70,40 @@ class SimLoop(SceneRun):
         machine that takes the processor away does not make the scene look expensive.
         sleep: for so long [s]. gives_way: whether frames become fewer where sleeps end late, as on a hub.
         """
+        self.scene, self.admit = scene, admit
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
-        self.admit, self.sleep, self.gives_way = admit, sleep, gives_way
-        self.is_late = False  # controls were answered in the middle of the last tick
-        self.turn_at = 0.0  # [s] of the clock, when controls were last answered
-        self.in_turn = False  # controls are being answered in the middle of a solve
-        self.lateness = 0.0  # [s] by which sleeps lately ended too late, as others had the processor
         self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
-        self.busy_since: float | None = None  # [s] of the clock, while a tick runs
-        self.tick_time = 0.0  # [s] that the last tick took
-        super().__init__(scene, audience, clock, effort, paused=paused)
+        self.clock = TickClock(clock, effort, sleep, gives_way=gives_way)
+        self.run = SceneRun(scene, audience, self.clock, paused=paused)
+        self.runs = Runs(self.run)
 
     @property
-    def frame_interval(self) -> float:
-        """Time [s] between frames: longer on a busy hub, whose processor all labs need for their controls."""
-        late = LATE_FRAMES * self.lateness if self.gives_way else 0.0
-        return max(self.scene.frame_interval, min(late, MAX_FRAME_INTERVAL))
+    def latest(self) -> AnySnapshot:
+        """The latest snapshot, for other threads too."""
+        return self.run.snapshots.latest
 
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
-        self.wall += wall
-        was_late, self.is_late = self.is_late, False
-        self.busy_since = self.clock()
-        self.turn_at = self.busy_since - PATIENCE * was_late  # what ended the last tick has waited long enough
+        run, snapshots = self.run, self.run.snapshots
+        was_late = self.clock.begin_tick(wall)
         self.take_in()
-        changed = self.handle_waiting() or not self.is_shown
+        changed = self.handle_waiting() or not snapshots.is_shown
         if changed and was_late:
-            self.publish()  # before steps that may take long
+            snapshots.publish()  # before steps that may take long
             changed = False
-        if self.unfinished is not None:
-            pass  # no steps of a scene that is not made
-        elif self.running and self.audience() and self.replay is not None:
-            changed |= self.play_replay(self.replay, wall)
-        elif self.goal is not None and self.running and not self.audience():
-            self.hurry(self.goal.until)
-            changed = True
-        elif self.seat is not None and self.audience():
-            changed |= self.follow(self.seat, wall)
-        elif self.running and self.audience():
-            n, self.capped = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, self.frame_interval)
-            if self.goal is not None:
-                n = min(n, steps_to(self.scene, self.goal.until))
-            if n:
-                (self.advance_within_budget if self.cost_unknown else self.advance)(n)
-                changed = True
-        else:
-            self.counts["idle ticks"] += 1
-        self.counts["ticks"] += 1
-        if self.seat is not None:
-            self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
+        changed |= run.go_on(wall)
+        run.counts["ticks"] += 1
+        run.note_place()
         if changed:
-            self.publish()
-            self.pause_at_event()
-        if self.goal is not None:
-            self.settle(self.goal)
-        self.tick_time, self.busy_since = self.clock() - self.busy_since, None
-
-    @property
-    def takes_long(self) -> bool:
-        """True if controls may have to be answered in the middle of a tick soon."""
-        return self.busy_since is not None or self.tick_time > 0.5 * PATIENCE
+            snapshots.publish()
+            run.pause_at_event()
+        run.settle()
+        self.clock.end_tick()
 
     def take_in(self, *taken: Command) -> None:
         """Have the commands wait that have come and can be handled. taken: out of the queue before."""
         came = [*taken, *(self.commands.get_nowait() for _ in range(self.commands.qsize()))]  # nobody else takes
-        seat = self.seat
+        seat = self.run.seat
         self.waiting += [command if seat is None else seat.share(command) for command in self.admit(came)]
         if seat is not None:
             self.waiting += [seat.told.get_nowait() for _ in range(seat.told.qsize())]
@@ -149,10 +113,10 @@ class SimLoop(SceneRun):
 
         Called on the simulation thread, by an `Ask`.
         """
-        self.seat = seat
+        self.run.seat = seat
         if seat is not None:
             self.handle(seat.share(Reset()))
-            seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
+            self.run.note_place()
 
     def tell(self, read: Callable[[], object], answer: Future[object]) -> None:
         """Answer a program that asks."""
@@ -163,14 +127,10 @@ class SimLoop(SceneRun):
         except Exception as error:
             answer.set_exception(error)
 
-    def turn_is_due(self) -> bool:
-        """True if input has been pending for longer than PATIENCE."""
-        return self.busy_since is not None and not self.in_turn and self.clock() - self.turn_at >= PATIENCE
-
     def ask_for_turn(self) -> None:
         """Have controls answered in the middle of a solve that takes long; called from another thread."""
-        if self.turn_is_due():
-            self.request[TURN] = 1
+        if self.clock.turn_is_due():
+            self.run.request[TURN] = 1
 
     def give_turn(self) -> None:
         """Answer controls in the middle of a solve, which calls this on its own thread.
@@ -181,38 +141,38 @@ class SimLoop(SceneRun):
         answered with the last frame, and the next tick takes them. A turn has no turn within it: what it shows may
         need a solve of its own.
         """
-        if self.in_turn:
+        if self.clock.in_turn:
             return
-        self.in_turn, self.turn_at = True, self.clock()
-        # A turn that was due at the start of a short tick is no reason for one in the next.
-        self.is_late |= self.busy_since is not None and self.turn_at - self.busy_since >= PATIENCE
         try:
-            self.take_in()
-            params, effect = effect_of_takes(self.scene.params, self.waiting)
-            activity, whole = self.activity, is_kept_whole()
-            anew = any(map(begins_anew, self.waiting)) or effect == "start"
-            asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
-            if anew and (activity.steps or activity.may_begin):
-                self.request[STOP] = ABANDON if whole else 1
-                return
-            if asked and activity.may_end and not whole:
-                self.request[STOP] = 1
-                return
-            if effect == "look" and not (asked or self.taking):
-                self.scene.params = params
-                self.waiting = [command for command in self.waiting if not isinstance(command, Take)]
-            within_steps = activity.steps and not whole
-            drags = self.drags_waiting() if within_steps else []
-            for command in drags:
-                self.scene.handle(command)
-            is_begun = self.latest.status.starts == self.counts["starts"]
-            if drags or self.latest.params != params or not is_begun:
-                self.capped = activity.steps
-                self.publish_in_solve(params, with_frame=within_steps)
+            with self.clock.turn():
+                self.handle_in_solve()
         except Exception:  # the solve knows nothing of it
             traceback.print_exc()
-        finally:
-            self.in_turn = False
+
+    def handle_in_solve(self) -> None:
+        """Cancel the solve for the commands that have come, or answer them with a snapshot."""
+        self.take_in()
+        run, activity, whole = self.run, self.run.activity, is_kept_whole()
+        params, effect = effect_of_takes(self.scene.params, self.waiting)
+        anew = any(map(begins_anew, self.waiting)) or effect == "start"
+        asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
+        if anew and activity != NOTHING:
+            run.cancel(ABANDON if whole else 1)
+            return
+        if asked and activity.may_end and not whole:
+            run.cancel()
+            return
+        if effect == "look" and not asked and activity != OTHER_FORCES:
+            self.scene.params = params
+            self.waiting = [command for command in self.waiting if not isinstance(command, Take)]
+        within_steps = activity == STEPS and not whole
+        drags = self.drags_waiting() if within_steps else []
+        for command in drags:
+            self.scene.handle(command)
+        is_begun = self.latest.status.starts == run.counts["starts"]
+        if drags or self.latest.params != params or not is_begun:
+            run.pacer.capped = activity == STEPS
+            run.snapshots.publish_in_solve(params, with_frame=within_steps)
 
     def drags_waiting(self) -> list[GrabTo | Place | Release]:
         """The drags among the waiting commands; the others go on waiting for the next tick."""
@@ -220,129 +180,110 @@ class SimLoop(SceneRun):
         self.waiting = [command for command in self.waiting if not isinstance(command, GrabTo | Place | Release)]
         return drags
 
-    def publish_in_solve(self, params: BaseParams, *, with_frame: bool) -> None:
-        """Hand the viewer these parameters with the last whole step; without `with_frame`, with the last frame."""
-        self.counts["snapshots"] += 1
-        last = self.without_frame(self.latest)._replace(params=params)
-        try:
-            self.latest = self.collect(last.serial)._replace(params=params) if with_frame else last
-        except DivergenceError:  # the solve is about to find that out
-            self.latest = last
-        self.fresh.set()
-
     def handle_waiting(self) -> bool:
         """Handle the waiting commands once they are merged, after a reset that was cancelled, unless the first of them
         that concerns the scene begins it again; True where there was one.
 
         Those that follow a cancelled one wait for the next tick, where what has cancelled it may supersede them.
         """
-        waiting, self.waiting = self.waiting, []
-        left, unfinished = merged(waiting, self.scene.params), self.unfinished
+        run, waiting, self.waiting = self.run, self.waiting, []
+        left, unfinished = merged(waiting, self.scene.params), run.unfinished
         if unfinished is not None:
             first = [command for command in left if not isinstance(command, Motion)][:1]
             if any(map(begins_anew, first)) or effect_of_takes(self.scene.params, first)[1] == "start":
-                self.unfinished = None
+                run.unfinished = None
             else:
-                self.begin(unfinished)
-        while left and self.unfinished is None:
+                run.begin(unfinished)
+        while left and run.unfinished is None:
             self.handle(left.pop(0))
         self.waiting[:0] = left
         return bool(waiting) or unfinished is not None
 
     def handle(self, command: Command) -> None:
         """Carry out one command. A scene that could not begin takes other values, and has nothing to run."""
+        run = self.run
         match command:
-            case _ if self.unmade and isinstance(command, SceneCommand | Play | StepOnce | TogglePlay | RunOn):
+            case _ if run.unmade and isinstance(command, SceneCommand | Play | StepOnce | TogglePlay | RunOn):
                 pass
             case Play():
-                self.running, self.halted = True, ""
-                if self.replay is not None and self.replay.ended:
-                    self.replay = None  # on from the last good state
+                run.play()
             case Pause():
-                self.running, self.awaited = False, None
-            case RunOn(reached):
-                self.handle(Play())
-                self.wait_for(reached)
+                run.pause()
             case TogglePlay():
-                self.handle(Pause() if self.running else Play())
+                run.pause() if run.running else run.play()
+            case RunOn(reached):
+                run.run_on(reached)
             case StepOnce(steps):
-                self.running = False
-                if self.seat is None or self.replay is not None:
-                    self.step_by_hand(steps)
-                elif self.seat.is_first:
-                    self.seat.clock.step_by_hand(steps)
+                run.step_by_hand(steps)
             case Halt(reason):
-                self.halt(reason)
+                run.halt(reason)
             case Take():
-                self.obey(command)
-            case Reset(run):
-                self.awaited = None
-                self.leave_for(run)
-                self.counts["starts"] += 1
-                self.reset()
+                self.runs.obey(command)
+            case Reset(number):
+                self.runs.begin_again(number)
             case Ask(read, answer):
                 self.tell(read, answer)
             case Advance(seconds, answer):
-                self.give_up("another program waits for the lab")
-                self.goal = Goal(self.scene.time + seconds, answer, self.running)
-                self.running = not self.stopped_by
+                run.aim_at(seconds, answer)
             case _:
-                self.guarded(lambda: self.scene.handle(command))
-
-    def run(self, stop: threading.Event) -> None:
-        """Tick until `stop` is set, at the frame rate while there is something to do."""
-        use_request(self.request, self.give_turn, self.turn_is_due)
-        with fine_timer():
-            self.tick_until(stop)
+                run.guarded(lambda: self.scene.handle(command))
 
     def tick_until(self, stop: threading.Event) -> None:
-        """The loop of `run`."""
-        last = due = wanted = self.clock()  # wanted: when a sleep should have ended
-        while True:
-            self.request[STOP] = self.request[TURN] = 0
-            if stop.is_set():
-                return
-            busy = self.running and (self.audience() > 0 or self.goal is not None)
-            now = self.clock()
-            self.lateness += LATENESS_WEIGHT * (max(0.0, now - wanted - TIMER_STEP) - self.lateness)
-            try:
-                self.tick(now - last)
-            except Exception as error:  # outside what `guarded` covers: the thread lives to say so
-                traceback.print_exc()
-                self.halt(f"The scene stopped with {type(error).__name__}: {error}")
-                with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
-                    self.publish()
-                self.busy_since = None
-            last = now
-            idle = IDLE_INTERVAL if self.audience() else ALONE_INTERVAL
-            interval = self.frame_interval if busy else idle
-            # A sleep that ended late makes the next one shorter; one that missed a whole frame is not made up for.
-            due = interval + (due if now - due < interval else now)
-            wanted = max(due, self.clock())
-            rest = max(due - self.clock(), BREATH if self.tick_time < interval else 0.0)
-            if rest > 0:
-                self.wait(rest, stop)
+        """Tick until `stop` is set, at the frame rate while there is something to do."""
+        run, clock = self.run, self.clock
+        use_request(run.request, self.give_turn, clock.turn_is_due)
+        with fine_timer():
+            last = due = wanted = clock.now()  # wanted: when a sleep should have ended
+            while True:
+                run.request[STOP] = run.request[TURN] = 0
+                if stop.is_set():
+                    return
+                busy = run.running and (run.audience() > 0 or run.goal is not None)
+                now = clock.now()
+                clock.end_sleep(now, wanted)
+                self.tick_or_halt(now - last)
+                last = now
+                idle = IDLE_INTERVAL if run.audience() else ALONE_INTERVAL
+                interval = clock.frame_interval(self.scene.frame_interval) if busy else idle
+                # A sleep that ended late makes the next one shorter; one that missed a whole frame is not made up for.
+                due = interval + (due if now - due < interval else now)
+                wanted = max(due, clock.now())
+                rest = max(due - clock.now(), BREATH if clock.tick_time < interval else 0.0)
+                if rest > 0:
+                    self.wait(rest, stop)
+
+    def tick_or_halt(self, wall: float) -> None:
+        """A tick; an error in it that `guarded` does not catch halts the run, and the thread lives to say so."""
+        try:
+            self.tick(wall)
+        except Exception as error:
+            traceback.print_exc()
+            self.run.halt(f"The scene stopped with {type(error).__name__}: {error}")
+            with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
+                self.run.snapshots.publish()
+            self.clock.end_work()
 
     def take_answer(self, command: StudentAnswer) -> None:
         """Let the scene take an answer of the student's functions within a sleep; the next tick shows it."""
-        self.busy_since = self.turn_at = self.clock()
+        self.clock.begin_work()
         self.handle(command)
-        self.busy_since, self.is_shown = None, False
+        self.clock.end_work()
+        self.run.snapshots.is_shown = False
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
         """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""
-        start, left = self.clock(), seconds
+        start, left = self.clock.now(), seconds
         while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
-                command = self.commands.get(timeout=MAX_DEAF_TIME if self.audience() else left)
+                command = self.commands.get(timeout=MAX_DEAF_TIME if self.run.audience() else left)
                 if not isinstance(command, StudentAnswer):
                     self.take_in(command)
-                    stop.wait(max(0.0, FRAME_INTERVAL - (self.clock() - start)))  # not more ticks than frames
+                    stop.wait(max(0.0, FRAME_INTERVAL - (self.clock.now() - start)))  # not more ticks than frames
                     return
                 self.take_answer(command)
             self.take_in()  # parameters that were held back may be ready
             if self.waiting:
                 return
-            left = seconds - (self.clock() - start)
+            left = seconds - (self.clock.now() - start)
         if left > 0.0:
-            self.sleep(min(left, MAX_DEAF_TIME))
+            self.clock.sleep(min(left, MAX_DEAF_TIME))

@@ -14,22 +14,25 @@ class FixedStep:
     def __init__(self) -> None:
         self.debt = 0.0  # [s] of simulated time not yet stepped
         self.cost = 0.0  # [s] of processor time that a step takes, lately
+        self.cost_unknown = True  # with the parameters as they are
         self.dropped = 0  # steps that were due and never taken
+        self.capped = False  # time could not be made up lately
 
-    def steps(self, wall: float, speed: float, h: float, frame: float = FRAME_INTERVAL) -> tuple[int, bool]:
-        """(steps to take now, whether time was dropped) for `wall` seconds at `speed` with steps of h [s].
+    def steps(self, wall: float, speed: float, h: float, frame: float = FRAME_INTERVAL) -> int:
+        """Steps to take now, for `wall` seconds at `speed` with steps of h [s]; capped where time is dropped.
 
         frame: [s] between pictures; where that is longer, or the last sleep ended late, there is more time to solve in.
         """
         self.debt += min(wall, MAX_CATCH_UP) * speed
         due = int(self.debt / h * (1 + 1e-9))
         most = self.most(due, max(frame, min(wall, MAX_LONG_FRAME)))
-        if due > most:
+        self.capped = due > most
+        if self.capped:
             self.debt = 0.0
             self.dropped += due - most
-            return most, True
+            return most
         self.debt = max(0.0, self.debt - due * h)
-        return due, False
+        return due
 
     def most(self, due: int, frame: float) -> int:
         """How many of the steps that are due fit the budget of a frame of `frame` [s]."""

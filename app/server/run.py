@@ -1,4 +1,4 @@
-"""The run of a scene: its steps, within a frame's budget, its divergence, and its beginning again."""
+"""The run of a scene: its steps within the budget of a frame, its divergence, its start, and who waits for it."""
 
 import collections
 import traceback
@@ -6,21 +6,21 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import NamedTuple
 
-from app.messages import BaseParams, KeptState, Pause, Take
+import numpy as np
+
+from app.messages import Pause
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
-from app.scenes.moments import arrays_in
 from app.scenes.stepping import steps_to
-from app.server.left_runs import LeftRun, LeftRuns
+from app.server.activity import BEGINNING, NOTHING, OTHER_FORCES, STEPS, Activity
 from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
 from app.server.replay import Replay
 from app.server.shared_clock import Seat
-from app.server.snapshots import BEGINNING, NOTHING, STEPS, Activity, Clock, Snapshots
+from app.server.snapshots import Snapshots
+from app.server.tick_clock import TickClock
 from sim.interruption import ABANDON, STOP, InterruptionError
-from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
-RESTARTED_SHOWN = 8.0  # [s] of wall time for which the panel says that a run was not kept
 BEGUN = "the lab was begun again or went on from another moment"  # why the time that a program waits for does not come
 
 
@@ -31,22 +31,113 @@ class Goal(NamedTuple):
     answer: Future[float]
     was_running: bool
 
+    def end(self, found: float | Exception) -> None:
+        """Answer with the time [s], or raise there."""
+        if self.answer.set_running_or_notify_cancel():
+            if isinstance(found, Exception):
+                self.answer.set_exception(found)
+            else:
+                self.answer.set_result(found)
 
-class SceneRun(Snapshots):
+
+class AwaitedEvent:
+    """Event at whose beginning the run pauses; of one that happens just now, when it happens again."""
+
+    def __init__(self, reached: Callable[[AnySnapshot], bool], latest: AnySnapshot) -> None:
+        """reached: whether it happens in a snapshot."""
+        self.reached = reached
+        self.happens = reached(latest)
+
+    def begins(self, latest: AnySnapshot) -> bool:
+        """True if it happens in this snapshot and did not in the last one."""
+        before, self.happens = self.happens, self.reached(latest)
+        return self.happens and not before
+
+
+class SceneRun:
     """Takes a scene's steps, and begins it again."""
 
-    def __init__(
-        self, scene: AnyScene, audience: Callable[[], int], clock: Clock, effort: Clock, *, paused: bool
-    ) -> None:
+    def __init__(self, scene: AnyScene, audience: Callable[[], int], clock: TickClock, *, paused: bool) -> None:
         """The arguments are those of `SimLoop`."""
+        self.scene, self.audience, self.clock = scene, audience, clock
+        self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
+        self.activity = NOTHING
+        self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
+        self.unmade = False  # the scene could not begin: it waits for other values
+        self.running = not paused
+        self.halted = ""
         self.pacer = FixedStep()
-        self.cost_unknown = True  # the cost of a step with the parameters as they are is not known
+        self.replay: Replay | None = None  # of a run that has just diverged
+        self.seat: Seat | None = None  # at a clock that other loops have too
         self.goal: Goal | None = None  # that a program waits for
-        self.awaited: Callable[[AnySnapshot], bool] | None = None  # event at which it pauses
-        self.is_reached = False  # it happened in the last frame
-        self.taking = False  # the scene takes other forces: its parameters are the old or the new ones
-        self.number, self.left = 1, LeftRuns()  # of this run; those before it
-        super().__init__(scene, audience, clock, effort, paused=paused)
+        self.awaited: AwaitedEvent | None = None
+        self.counts: collections.Counter[str] = collections.Counter()
+        self.snapshots = Snapshots(self)
+
+    @property
+    def stopped_by(self) -> str:
+        """Why the run can go no further, or ""; known before its last moments have been shown again."""
+        return self.halted if self.replay is None else self.replay.reason
+
+    def cancel(self, how: int = 1) -> None:
+        """Cancel the solve that runs. how: ABANDON even where it is kept whole. Any thread may call it."""
+        self.request[STOP] = how
+
+    def play(self) -> None:
+        """Go on; after the last moments of a divergence from the last good state."""
+        self.running, self.halted = True, ""
+        if self.replay is not None and self.replay.ended:
+            self.replay = None
+
+    def pause(self) -> None:
+        """Stand still, and await no event."""
+        self.running, self.awaited = False, None
+
+    def run_on(self, reached: Callable[[AnySnapshot], bool]) -> None:
+        """Go on to an event."""
+        self.play()
+        self.awaited = AwaitedEvent(reached, self.snapshots.latest)
+
+    def halt(self, reason: str) -> None:
+        """Pause, with all on the same clock, and keep the reason for the panel."""
+        if self.seat is not None:
+            self.seat.tell_others(Pause())
+        self.running = False
+        self.halted = reason
+
+    def go_on(self, wall: float) -> bool:
+        """The part of a tick that takes steps or shows the last moments of a divergence; True where that shows.
+
+        wall: [s] since the last tick.
+        """
+        if self.unfinished is not None:
+            return False  # no steps of a scene that is not made
+        if self.running and self.audience() and self.replay is not None:
+            return self.play_replay(self.replay, wall)
+        if self.goal is not None and self.running and not self.audience():
+            self.hurry(self.goal.until)
+            return True
+        if self.seat is not None and self.audience():
+            return self.follow(self.seat, wall)
+        if self.running and self.audience():
+            return self.keep_time(wall)
+        self.counts["idle ticks"] += 1
+        return False
+
+    def keep_time(self, wall: float) -> bool:
+        """Take the steps that are due; True where there were any."""
+        frame = self.clock.frame_interval(self.scene.frame_interval)
+        n = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, frame)
+        if self.goal is not None:
+            n = min(n, steps_to(self.scene, self.goal.until))
+        if n:
+            (self.advance_within_budget if self.pacer.cost_unknown else self.advance)(n)
+        return n > 0
+
+    def note_place(self) -> None:
+        """Say at the clock of several loops where the run is."""
+        if self.seat is not None:
+            self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
 
     def follow(self, seat: Seat, wall: float) -> bool:
         """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
@@ -56,78 +147,34 @@ class SceneRun(Snapshots):
         if seat.is_first and self.running:
             seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
         due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
-        n = self.pacer.most(due, self.frame_interval)
-        self.capped = n < due or (seat.is_first and seat.clock.late)
+        n = self.pacer.most(due, self.clock.frame_interval(self.scene.frame_interval))
+        self.pacer.capped = n < due or (seat.is_first and seat.clock.late)
         if n:
-            (self.advance_within_budget if self.cost_unknown and self.running else self.advance)(n)
+            (self.advance_within_budget if self.pacer.cost_unknown and self.running else self.advance)(n)
         return n > 0
 
-    def obey(self, command: Take) -> None:
-        """Take a record of parameters: with another run, or according to the effect of the change."""
-        params, start, state, number, back = command
-        if not command.changes_only:
-            self.awaited = None
-        if back:
-            self.go_back(params, number)
-            return
-        if not command.changes_only or effect_of_change(self.scene.params, params) == "start":
-            self.leave_for(number)
-        if start:
-            self.begin_with(params)
-        elif state is not None:
-            self.resume(params, state)
-        else:
-            self.take(params)
+    def aim_at(self, seconds: float, answer: Future[float]) -> None:
+        """Go on for so long, and then answer the program that waits, with the time."""
+        self.give_up("another program waits for the lab")
+        self.goal = Goal(self.scene.time + seconds, answer, self.running)
+        self.running = not self.stopped_by
 
-    def take(self, params: BaseParams) -> None:
-        """Take parameters according to the effect of their change."""
-        effect = effect_of_change(self.scene.params, params)
-        if effect in (None, "look"):
-            self.scene.params = params
-            return
-        self.cost_unknown = True
-        if self.replay is not None:
-            self.halt(self.replay.reason)
-            self.replay = None
-        if effect == "forces" and not self.unmade:
-            self.taking = True
-            self.guarded(lambda: self.scene.change_forces(params), else_anew=True)
-            self.scene.params, self.taking = params, False  # also where the scene failed, so that a reset has them
-        else:
-            self.scene.params = params
-            if self.seat is not None:
-                self.seat.begin_others()
-            self.reset()
-
-    def settle(self, goal: Goal) -> None:
+    def settle(self) -> None:
         """Answer the program that waits, where the run has come to the time or can come no further."""
-        reason = self.stopped_by
-        arrived = steps_to(self.scene, goal.until) == 0
-        if not (arrived or reason or goal.answer.cancelled()):
+        goal, reason = self.goal, self.stopped_by
+        if goal is None or not (reason or steps_to(self.scene, goal.until) == 0 or goal.answer.cancelled()):
             return
         if not reason and not goal.was_running:
             self.running = False
-            self.publish()  # the page says that it stands still
+            self.snapshots.publish()  # the page says that it stands still
         self.goal = None
-        if not goal.answer.set_running_or_notify_cancel():
-            return
-        if reason:
-            goal.answer.set_exception(DivergenceError(reason))
-        else:
-            goal.answer.set_result(self.scene.time)
-
-    def wait_for(self, reached: Callable[[AnySnapshot], bool]) -> None:
-        """Pause when an event begins; of one that happens just now, when it happens again."""
-        self.awaited, self.is_reached = reached, reached(self.latest)
+        goal.end(DivergenceError(reason) if reason else self.scene.time)
 
     def pause_at_event(self) -> None:
         """Pause if the event that is awaited has begun since the last frame."""
-        if self.awaited is None or not self.running:
-            return
-        before, self.is_reached = self.is_reached, self.awaited(self.latest)
-        if self.is_reached and not before:
+        if self.awaited is not None and self.running and self.awaited.begins(self.snapshots.latest):
             self.awaited, self.running = None, False
-            self.publish()
+            self.snapshots.publish()
 
     def hurry(self, until: float) -> None:
         """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has.
@@ -135,14 +182,14 @@ class SceneRun(Snapshots):
         Some scenes record what they draw, so there is a snapshot now and then.
         """
         most = max(1, int(FRAME_INTERVAL / self.scene.step * (1 + 1e-9)))
-        start = self.effort()
-        while self.running and self.replay is None and self.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
+        start = self.clock.effort()
+        while self.running and self.replay is None and self.clock.effort() - start < SOLVE_SHARE * FRAME_INTERVAL:
             left = steps_to(self.scene, until)
             if left == 0:
                 return
             self.advance(min(most, left))
-            if self.scene.time - self.published >= HURRY_INTERVAL:
-                self.publish()
+            if self.scene.time - self.snapshots.published >= HURRY_INTERVAL:
+                self.snapshots.publish()
 
     def advance_within_budget(self, n: int) -> None:
         """Take up to n steps in growing parts while the frame's budget lasts.
@@ -156,61 +203,61 @@ class SceneRun(Snapshots):
             spent += self.advance(part)
             n -= part
             part = self.pacer.next_part(part, spent)
-        self.cost_unknown = False
+        self.pacer.cost_unknown = False
         if n > 0 and self.running:
-            self.capped, self.pacer.debt = True, 0.0
+            self.pacer.capped, self.pacer.debt = True, 0.0
             self.pacer.dropped += n if self.seat is None else 0
 
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
-        start = self.effort()
+        start = self.clock.effort()
         self.guarded(lambda: self.scene.advance(n), STEPS)
-        seconds = self.effort() - start
+        seconds = self.clock.effort() - start
         self.pacer.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
 
-    def guarded(
-        self,
-        action: Callable[[], None],
-        activity: Activity = NOTHING,
-        *,
-        again: bool = False,
-        else_anew: bool = False,
-    ) -> None:
+    def guarded(self, action: Callable[[], None], activity: Activity = NOTHING) -> None:
         """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
 
-        again: a beginning, to be done once more where it is ended early; where it fails there is no scene to run.
-        else_anew: where it is ended early the scene begins anew.
+        A beginning that is cancelled is done once more; after a cancelled change of forces the scene begins anew.
         """
-        self.activity = BEGINNING if again or else_anew else activity
+        self.activity, begins = activity, activity == BEGINNING
         try:
             action()
         except InterruptionError:
             self.counts["solves ended early"] += 1
-            if again or else_anew or self.request[STOP] == ABANDON:
-                self.unfinished = action if again else self.scene.reset
+            if begins or activity == OTHER_FORCES or self.request[STOP] == ABANDON:
+                self.unfinished = action if begins else self.scene.reset
         except DivergenceError as error:
-            self.unmade = again
+            self.unmade = begins
             if error.moments and self.running:
                 self.replay = Replay(error.moments, str(error))
             else:
                 self.halt(str(error))
         except Exception as error:
-            self.unmade = again
-            self.halt(failure_words(error, begins=again))
+            self.unmade = begins
+            self.halt(failure_words(error, begins=begins))
         finally:
             self.activity = NOTHING
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
         """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
-        self.capped = False
+        self.pacer.capped = False
         changed = replay.play(wall)
         if replay.ended:
             self.halt(replay.reason)
         return changed or replay.ended
 
     def step_by_hand(self, count: int) -> None:
+        """Pause and take single steps: with all on the same clock, or as many as a frame allows."""
+        self.running = False
+        if self.seat is None or self.replay is not None:
+            self.take_single_steps(count)
+        elif self.seat.is_first:
+            self.seat.clock.step_by_hand(count)
+
+    def take_single_steps(self, count: int) -> None:
         """Take up to `count` single steps, at least one, while the frame's budget lasts; the rest is dropped.
 
         The last moments of a run that diverged are shown first, one for each step.
@@ -232,15 +279,19 @@ class SceneRun(Snapshots):
     def give_up(self, reason: str) -> None:
         """Tell the program that waits, if any, why the time that it waits for does not come."""
         goal, self.goal = self.goal, None
-        if goal is not None and goal.answer.set_running_or_notify_cancel():
-            goal.answer.set_exception(RuntimeError(reason))
+        if goal is not None:
+            goal.end(RuntimeError(reason))
+
+    def clear(self) -> None:
+        """Forget how the run went, before the scene goes on from its start or from another moment."""
+        self.give_up(BEGUN)
+        self.halted, self.replay, self.unfinished, self.unmade = "", None, None, False
+        self.pacer.debt = 0.0
 
     def reset(self, action: Callable[[], None] | None = None) -> None:
         """The scene from its start, or by another action; a run that had halted goes on."""
-        self.give_up(BEGUN)
-        self.running, self.halted = self.running or bool(self.halted), ""
-        self.pacer.debt = 0.0
-        self.replay = None
+        self.running |= bool(self.halted)
+        self.clear()
         if self.seat is not None:
             self.seat.begin()
         self.begin(action or self.scene.reset)
@@ -248,58 +299,7 @@ class SceneRun(Snapshots):
     def begin(self, reset: Callable[[], None]) -> None:
         """Begin the scene again; if that is cancelled, the next tick does it."""
         self.unfinished, self.unmade = None, False
-        self.guarded(reset, again=True)
-
-    def begin_with(self, params: BaseParams, left: LeftRun | None = None) -> None:
-        """The scene from its start with these parameters, running; or as it was in a run that was left."""
-        self.scene.params, self.cost_unknown = params, True
-        self.counts["starts"] += 1
-        self.reset(self.scene.reset if left is None else lambda: self.return_to(left))
-        self.running = not self.halted
-
-    def leave_for(self, number: int) -> None:
-        """Keep this run as it is for an undo, before the one of that number. A run that has halted is not kept."""
-        if number in (0, self.number):
-            return
-        if not (self.stopped_by or self.unmade or self.unfinished):
-            value = self.scene.keep()
-            self.left.add(LeftRun(self.number, KeptState(value, arrays_in(value)), tuple(self.kept_rows), self.running))
-        self.number = number
-
-    def go_back(self, params: BaseParams, number: int) -> None:
-        """Go back to the run of that number, as it was when it was left; from its start if it is not kept."""
-        if number == self.number:  # the one that would have followed has not begun
-            self.take(params)
-            return
-        self.number, left = number, self.left.pop(number)
-        self.begin_with(params, left)
-        if left is None:
-            self.restarted_until = self.wall + RESTARTED_SHOWN
-            return
-        self.running = left.running and not self.halted
-        if self.seat is not None and not self.running:
-            self.seat.tell_others(Pause())
-
-    def return_to(self, left: LeftRun) -> None:
-        """The scene from its start, then as it was in a run that was left, with its plots."""
-        self.scene.reset()
-        self.plot_rows.extend([*self.scene.take_plot_rows(), *left.rows])
-        self.kept_rows = collections.deque(left.rows, maxlen=self.kept_rows.maxlen)
-        self.scene.resume(left.state.value)
-        if self.seat is not None:
-            self.seat.go_on_from(self.scene.time)
-
-    def resume(self, params: BaseParams, state: KeptState) -> None:
-        """The scene from a state that was kept, with the parameters that it had then, running."""
-        self.give_up(BEGUN)
-        self.scene.params, self.cost_unknown = params, True
-        self.halted, self.replay, self.unfinished, self.pacer.debt = "", None, None, 0.0
-        self.unmade = False
-        self.history.clear()
-        self.guarded(lambda: self.scene.resume(state.value))
-        if self.seat is not None:
-            self.seat.go_on_from(self.scene.time)
-        self.running = not self.halted
+        self.guarded(reset, BEGINNING)
 
 
 def failure_words(error: Exception, *, begins: bool) -> str:

@@ -17,9 +17,9 @@ from app.scenes import NAMES, view_named
 from app.scenes.compiling import describe
 from app.scenes.contract import AnyKind, AnyScene
 from app.server.compile_gate import CompileGate
-from app.server.loop import ALONE_INTERVAL, PATIENCE, SimLoop
+from app.server.loop import ALONE_INTERVAL, SimLoop
 from app.server.replay_file import replay_html
-from sim.interruption import STOP
+from app.server.tick_clock import PATIENCE
 
 if TYPE_CHECKING:
     from app.server.viewer import Viewer
@@ -65,7 +65,7 @@ class ServedScene:
         self.panel = Panel(
             self.server, kind, self.view, params, self.commands.put, scenes=NAMES,
             open_scene=viewer.want, workbook=viewer.workbook, session=viewer.session,
-            wake=lambda: self.loop.fresh.set(), make_replay=replay_html, changed=viewer.share_parameters,
+            wake=lambda: self.loop.run.snapshots.fresh.set(), make_replay=replay_html, changed=viewer.share_parameters,
             changes=viewer.changes,
             beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
         )  # fmt: skip
@@ -77,7 +77,7 @@ class ServedScene:
     def start(self) -> None:
         """Run the threads."""
         self.threads = [
-            threading.Thread(target=self.loop.run, args=(self.stop,), name="simulation", daemon=True),
+            threading.Thread(target=self.loop.tick_until, args=(self.stop,), name="simulation", daemon=True),
             threading.Thread(target=self.show_snapshots, name="viewer", daemon=True),
         ]
         for thread in self.threads:
@@ -85,26 +85,24 @@ class ServedScene:
 
     def show_snapshots(self) -> None:
         """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
-        loop, recorder = self.loop, self.panel.recorder
-        shown_at = loop.clock()
+        fresh, clock, recorder = self.loop.run.snapshots.fresh, self.loop.clock, self.panel.recorder
+        shown_at = clock.now()
         while not self.stop.is_set():
             alone = not self.viewer.audience()
             beat = PLAYED_INTERVAL if recorder.playing else ALONE_HEARTBEAT if alone else HEARTBEAT
-            woken = loop.fresh.wait(min(beat, PATIENCE if loop.takes_long and not alone else ALONE_INTERVAL))
-            loop.ask_for_turn()
-            if not woken and loop.clock() - shown_at < beat:
+            woken = fresh.wait(min(beat, PATIENCE if clock.takes_long and not alone else ALONE_INTERVAL))
+            self.loop.ask_for_turn()
+            if not woken and clock.now() - shown_at < beat:
                 continue
-            loop.fresh.clear()
-            shown_at = loop.clock()
+            fresh.clear()
+            shown_at = clock.now()
             if not self.stop.is_set():
                 self.show_latest()
 
     def show_latest(self) -> None:
         """Hand the latest snapshot over; without a new one only the panel."""
-        loop, snapshot = self.loop, self.loop.latest
-        rows = [loop.plot_rows.popleft() for _ in range(len(loop.plot_rows))]
-        since = loop.busy_since
-        busy = 0.0 if since is None else loop.clock() - since
+        snapshot, busy = self.loop.latest, self.loop.clock.busy_time
+        rows = self.loop.run.snapshots.pop_rows()
         # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
         recorder = self.panel.recorder
         now = time.monotonic()
@@ -142,7 +140,7 @@ class ServedScene:
         try:
             action()
         except Exception as error:
-            if not self.loop.halted:
+            if not self.loop.run.halted:
                 traceback.print_exc()
                 self.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
 
@@ -160,7 +158,7 @@ class ServedScene:
         nodes while it draws, and those of the next scene may have the same names.
         """
         self.stop.set()
-        self.loop.request[STOP] = 1
+        self.loop.run.cancel()
         for thread, longest in zip(self.threads, (MAX_JOIN_TIME, picture_time), strict=False):
             thread.join(longest)
         self.threads = []

@@ -1,142 +1,96 @@
-"""A scene on the simulation thread, and the snapshot of it that the viewer shows."""
+"""The snapshots of a scene that the viewer shows, with their plot rows, states and rates."""
 
 import collections
 import threading
 import traceback
-from collections.abc import Callable
-from typing import NamedTuple, TypeAlias
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from app.messages import KeptState, Pause, PlotRow, Snapshot, Status, where_not_finite
+from app.messages import BaseParams, KeptState, PlotRow, Snapshot, Status, where_not_finite
 from app.scenes.contract import AnyScene, AnySnapshot
 from app.scenes.moments import arrays_in
-from app.server.replay import Replay
-from app.server.shared_clock import Seat
+from app.server.activity import NOTHING, STEPS, Activity
 from sim.interruption import InterruptionError
 from sim.validation import DivergenceError
+
+if TYPE_CHECKING:
+    from app.server.run import SceneRun
 
 MAX_BLIND_TIME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
 KEEP_SHARE = 0.003  # of a core that keeping states may take
 RATE_WINDOW = 1.0  # [s] over which rates are measured
+RESTARTED_SHOWN = 8.0  # [s] of wall time for which the panel says that a run was not kept
 MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
-
-Clock: TypeAlias = Callable[[], float]  # [s]
-
-
-class Activity(NamedTuple):
-    """The solve of the simulation thread, and what may cancel it."""
-
-    steps: bool = False  # the scene takes steps: its frame is that of a whole step, also in the middle of one
-    may_end: bool = False  # cancelled by all that asks for another solve: steps, or a frame
-    may_begin: bool = False  # cancelled where the scene begins anew after it
-
-
-NOTHING = Activity()
-STEPS = Activity(steps=True, may_end=True)
-BEGINNING = Activity(may_begin=True)
 
 
 class Snapshots:
-    """Owns a scene, its clock and the latest snapshot of it."""
+    """Makes and publishes the snapshots of a run, on its thread."""
 
-    def __init__(
-        self, scene: AnyScene, audience: Callable[[], int], clock: Clock, effort: Clock, *, paused: bool
-    ) -> None:
-        """The arguments are those of `SimLoop`."""
-        self.scene, self.audience, self.clock, self.effort = scene, audience, clock, effort
-        self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
-        self.activity = NOTHING
-        self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
-        self.unmade = False  # the scene could not begin: it waits for other values
-        self.running = not paused
-        self.halted = ""
-        self.seat: Seat | None = None  # at a clock that other loops have too
-        self.replay: Replay | None = None  # of a run that has just diverged
-        self.capped = False
-        self.counts: collections.Counter[str] = collections.Counter()
+    def __init__(self, run: "SceneRun") -> None:
+        self.run = run
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
-        self.wall = 0.0
-        self.restarted_until = 0.0  # [s] of `wall`, while the panel says that an undo could only begin a run again
-        self.keep_at = 0.0  # [s] of `wall` from which a state is kept again
+        self.restarted_until = 0.0  # [s] of the ticks, while the panel says that an undo could only begin a run again
+        self.keep_at = 0.0  # [s] of the ticks from which a state is kept again
         self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
         self.published = 0.0  # [s] of simulated time, of the last snapshot
         self.is_shown = True  # the latest snapshot is of the scene as it is
-        self.whole_at = 0.0  # [s] of the clock, when one was
+        self.whole_at = run.clock.now()  # [s], when that was so last
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
-        self.latest: AnySnapshot = self.snapshot()
+        self.latest: AnySnapshot = self.collect(self.next_serial())
 
-    @property
-    def frame_interval(self) -> float:
-        """Time [s] between pictures: a scene may ask for fewer."""
-        return self.scene.frame_interval
-
-    @property
-    def stopped_by(self) -> str:
-        """Why the run can go no further, or ""; known before its last moments have been shown again."""
-        return self.halted if self.replay is None else self.replay.reason
-
-    def halt(self, reason: str) -> None:
-        """Pause, with all on the same clock, and keep the reason for the panel."""
-        if self.seat is not None:
-            self.seat.tell_others(Pause())
-        self.running = False
-        self.halted = reason
-
-    def keep_state(self) -> KeptState | None:
-        """The state of a running scene, a few times a second; seldom where copying it takes long."""
-        if not self.running or self.activity.steps or self.replay is not None:
-            return None
-        if self.wall < self.keep_at or not self.audience():
-            return None
-        start = self.effort()
-        value = self.scene.keep()
-        state = KeptState(value, arrays_in(value))
-        self.keep_at = self.wall + max(KEEP_INTERVAL, (self.effort() - start) / KEEP_SHARE)
-        return state
+    def next_serial(self) -> int:
+        """Number of a new snapshot, from 1."""
+        self.run.counts["snapshots"] += 1
+        return self.run.counts["snapshots"]
 
     def publish(self) -> None:
         """Publish the present state for the viewer."""
         self.latest = self.snapshot()
-        self.published = self.scene.time
+        self.published = self.run.scene.time
+        self.fresh.set()
+
+    def publish_in_solve(self, params: BaseParams, *, with_frame: bool) -> None:
+        """Publish these parameters with the last whole step; without `with_frame`, with the last frame."""
+        self.next_serial()
+        last = self.without_frame()._replace(params=params)
+        try:
+            self.latest = self.collect(last.serial)._replace(params=params) if with_frame else last
+        except DivergenceError:  # the solve is about to find that out
+            self.latest = last
         self.fresh.set()
 
     def snapshot(self) -> AnySnapshot:
         """Frame to show now; the last good one if the scene has none or controls cancel it."""
-        self.counts["snapshots"] += 1
-        serial, params = self.counts["snapshots"], self.scene.params
-        last: AnySnapshot | None = getattr(self, "latest", None)
-        if last is not None:
-            self.activity = Activity(may_end=self.clock() - self.whole_at < MAX_BLIND_TIME, may_begin=True)
+        run, serial = self.run, self.next_serial()
+        params = run.scene.params
+        run.activity = Activity("frame", may_end=run.clock.now() - self.whole_at < MAX_BLIND_TIME)
         try:
-            if last is not None and (self.unfinished is not None or self.unmade):
+            if run.unfinished is not None or run.unmade:
                 self.is_shown = True  # all that there is of a scene that is not made
-                return self.without_frame(last)
+                return self.without_frame()
             found = self.collect(serial)
-            self.is_shown, self.whole_at = self.scene.params is params, self.clock()
-            return found._replace(serial=self.counts["snapshots"])  # controls may have been answered with others
+            self.is_shown, self.whole_at = run.scene.params is params, run.clock.now()
+            return found._replace(serial=run.counts["snapshots"])  # controls may have been answered with others
         except InterruptionError:
-            assert last is not None
-            self.counts["pictures ended early"] += 1
+            run.counts["pictures ended early"] += 1
             self.is_shown = False
-            return self.without_frame(last)
+            return self.without_frame()
         except Exception as error:
-            if last is None:
-                raise  # nothing to show instead: the scene cannot be opened
             if not isinstance(error, DivergenceError):
                 traceback.print_exc()
                 error = DivergenceError(f"The scene stopped with {type(error).__name__}: {error}")
-            self.halt(str(error))
-            return self.without_frame(last)
+            run.halt(str(error))
+            return self.without_frame()
         finally:
-            self.activity = NOTHING
+            run.activity = NOTHING
 
-    def without_frame(self, last: AnySnapshot) -> AnySnapshot:
+    def without_frame(self) -> AnySnapshot:
         """The last snapshot with parameters and clock as they are now."""
-        serial = self.counts["snapshots"]
-        return last._replace(serial=serial, status=self.status(), params=self.scene.params, state=None)
+        run = self.run
+        serial = run.counts["snapshots"]
+        return self.latest._replace(serial=serial, status=self.status(), params=run.scene.params, state=None)
 
     def collect(self, serial: int) -> AnySnapshot:
         """The scene's frame, readings, parameters and curves; hands its plot rows over.
@@ -144,13 +98,17 @@ class Snapshots:
         While the last moments before a divergence are shown again, the frame is of one of them.
         Raises DivergenceError where the frame holds a number that is not finite.
         """
-        scene = self.scene
-        frame = scene.frame() if self.replay is None else self.replay.moment.frame
+        scene, replay = self.run.scene, self.run.replay
+        frame = scene.frame() if replay is None else replay.moment.frame
         where = where_not_finite(frame)
         if where:
             raise DivergenceError(f"What is to be drawn is not finite ({where}). Reset, or take a smaller step.")
         readings, curves = scene.readings(), scene.curves()
-        rows = scene.take_plot_rows()
+        self.hand_over(scene.take_plot_rows())
+        return Snapshot(serial, frame, self.status(), readings, scene.params, curves, self.keep_state())
+
+    def hand_over(self, rows: Sequence[PlotRow]) -> None:
+        """Let the viewer take new plot rows, and keep them as far as they are of this run."""
         self.plot_rows.extend(rows)
         for row in rows:
             if row[0] != row[0]:  # a NaN time: the run starts over
@@ -159,29 +117,64 @@ class Snapshots:
             while self.kept_rows and self.kept_rows[-1][0] >= row[0]:  # it has gone on from an earlier moment
                 self.kept_rows.pop()
             self.kept_rows.append(row)
-        return Snapshot(serial, frame, self.status(), readings, scene.params, curves, self.keep_state())
+
+    def pop_rows(self) -> list[PlotRow]:
+        """The rows that have come since the last call; the viewer thread calls it."""
+        return [self.plot_rows.popleft() for _ in range(len(self.plot_rows))]
+
+    def bring_back(self, rows: Sequence[PlotRow]) -> None:
+        """Plot the rows of a run that comes back, after those of its start."""
+        self.plot_rows.extend([*self.run.scene.take_plot_rows(), *rows])
+        self.kept_rows = collections.deque(rows, maxlen=MAX_PLOT_ROWS)
+
+    def keep_state(self) -> KeptState | None:
+        """The state of a running scene, a few times a second; seldom where copying it takes long."""
+        run, clock = self.run, self.run.clock
+        if not run.running or run.activity == STEPS or run.replay is not None:
+            return None
+        if clock.wall < self.keep_at or not run.audience():
+            return None
+        start = clock.effort()
+        state = kept_state(run.scene)
+        self.keep_at = clock.wall + max(KEEP_INTERVAL, (clock.effort() - start) / KEEP_SHARE)
+        return state
 
     def status(self) -> Status:
         """The clock and the rates."""
-        moment = None if self.replay is None else self.replay.moment
-        simulated = self.scene.time if moment is None else moment.time
-        self.history.append((self.wall, simulated))
-        while len(self.history) > 2 and self.history[0][0] < self.wall - RATE_WINDOW:
-            self.history.popleft()
-        elapsed = self.wall - self.history[0][0]
-        capped = self.capped and self.running
+        run, history, wall = self.run, self.history, self.run.clock.wall
+        moment = None if run.replay is None else run.replay.moment
+        simulated = run.scene.time if moment is None else moment.time
+        history.append((wall, simulated))
+        while len(history) > 2 and history[0][0] < wall - RATE_WINDOW:
+            history.popleft()
+        elapsed = wall - history[0][0]
+        capped = run.pacer.capped and run.running
         return Status(
-            running=self.running,
+            running=run.running,
             time=simulated,
-            steps=self.counts["steps"],
-            speed=self.scene.params.speed,
-            actual_speed=max(0.0, (simulated - self.history[0][1]) / elapsed) if elapsed > 0 and self.running else 0.0,
+            steps=run.counts["steps"],
+            speed=run.scene.params.speed,
+            actual_speed=max(0.0, (simulated - history[0][1]) / elapsed) if elapsed > 0 and run.running else 0.0,
             capped=capped,
-            frame_rate=(len(self.history) - 1) / elapsed if elapsed > 0 else 0.0,
-            halted=self.halted,
-            faster=self.scene.faster if capped else "",
-            starts=self.counts["starts"],
-            unmade=self.unmade,
-            restarted=self.wall < self.restarted_until,
+            frame_rate=(len(history) - 1) / elapsed if elapsed > 0 else 0.0,
+            halted=run.halted,
+            faster=run.scene.faster if capped else "",
+            starts=run.counts["starts"],
+            unmade=run.unmade,
+            restarted=wall < self.restarted_until,
             replayed=None if moment is None else (moment.low, moment.high),
         )
+
+    def forget_rates(self) -> None:
+        """Measure speed and frame rate from now on."""
+        self.history.clear()
+
+    def show_restarted(self) -> None:
+        """Have the panel say for a while that an undo could only begin a run again."""
+        self.restarted_until = self.run.clock.wall + RESTARTED_SHOWN
+
+
+def kept_state(scene: AnyScene) -> KeptState:
+    """The state of a scene, to go on from."""
+    value = scene.keep()
+    return KeptState(value, arrays_in(value))

@@ -24,9 +24,9 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
         times = []
         for _ in range(frames):
             start = time.thread_time()
-            loop.advance(steps)
+            loop.run.advance(steps)
             solved = time.thread_time()
-            loop.latest = loop.snapshot()
+            loop.run.snapshots.publish()
             taken = time.thread_time()
             with viewer.transport.counted():
                 viewer.served.show_latest()

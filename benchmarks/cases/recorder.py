@@ -26,8 +26,8 @@ def record(name: str, duration: float) -> dict[str, Any]:
     wall = noting = keeping = 0.0
     kept = 0
     while wall < duration:
-        loop.tick(loop.frame_interval)
-        wall += loop.frame_interval
+        loop.tick(scene.frame_interval)
+        wall += scene.frame_interval
         start = time.thread_time()
         recorder.note(loop.latest, wall)
         noting += time.thread_time() - start

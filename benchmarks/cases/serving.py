@@ -30,7 +30,7 @@ def scene_rows(name: str, browser: Any, seconds: float) -> list[dict[str, Any]]:
         start = time.perf_counter()
         page = browser.new_page(viewport={"width": 480, "height": 320})
         page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=1")
-        while viewer.loop.counts["steps"] < 10:
+        while viewer.loop.run.counts["steps"] < 10:
             page.wait_for_timeout(20)
         found.append({"what": f"{name}: from the page's address to its running", "s": time.perf_counter() - start})
         page.wait_for_timeout(2000)

@@ -268,7 +268,7 @@ def shown(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Itera
     viewer, tab = one_page
     tab.errors.clear()
     tab.follow(viewer, request.module.SCENE, getattr(request.module, "PARAMS", None))
-    tab.wait(lambda: viewer.loop.counts["steps"] > 0)
+    tab.wait(lambda: viewer.loop.run.counts["steps"] > 0)
     yield viewer, tab
     viewer.loop.commands.put(Pause())  # so that it takes no processor time from tests with pages of their own
 

@@ -84,12 +84,12 @@ def test_folders_and_sliders_obey_the_keyboard(one_page: tuple[Viewer, Tab]) -> 
     folder.focus()
     tab.page.keyboard.press("Enter")
     tab.wait(lambda: folder.get_attribute("aria-expanded") == "true")
-    tab.wait(lambda: viewer.loop.running)
+    tab.wait(lambda: viewer.loop.run.running)
     tab.page.get_by_role("button", name="Pause").focus()
     tab.page.keyboard.press("Space")  # presses the button, and is not also the key that plays
-    tab.wait(lambda: not viewer.loop.running)
+    tab.wait(lambda: not viewer.loop.run.running)
     tab.page.wait_for_timeout(500)
-    assert not viewer.loop.running
+    assert not viewer.loop.run.running
 
 
 def scroll(tab: Tab, by: float) -> None:

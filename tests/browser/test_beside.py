@@ -51,14 +51,14 @@ def test_two_ropes_on_one_clock_with_linked_cameras(pair: Viewer, open_tab: Any)
 
     # The buttons and keys act on both, and once they stand still both show the same time.
     page.click("#play")
-    tab.wait(lambda: not pair.loop.running and not second.loop.running)
+    tab.wait(lambda: not pair.loop.run.running and not second.loop.run.running)
     tab.wait(lambda: abs(pair.scene.time - second.scene.time) < max(pair.scene.step, second.scene.step))
     page.click("#reset")
     tab.wait(lambda: pair.scene.time == second.scene.time == 0.0)
     page.click("#step")
     tab.wait(lambda: pair.scene.time > 0.0 and second.scene.time > 0.0)
     page.keyboard.press("Space")
-    tab.wait(lambda: pair.loop.running and second.loop.running)
+    tab.wait(lambda: pair.loop.run.running and second.loop.run.running)
 
     # A panel opens where it is asked for, and the picture stays as large.
     assert left.evaluate(SHOWN_PANELS) == 0

@@ -19,7 +19,7 @@ def test_every_preset_is_drawn_and_moves_without_console_errors(shown: tuple[Vie
         first = tab.vertices("/cloth")
         tab.wait(lambda first=first: np.abs(tab.vertices("/cloth") - first).max() > 0.02)
         assert np.isfinite(tab.vertices("/cloth")).all()
-    assert not lab.loop.halted
+    assert not lab.loop.run.halted
     assert tab.errors == []
 
 
@@ -69,7 +69,7 @@ def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
         tab.drag(tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.4)))
         tab.release()
         tab.page.wait_for_timeout(500)
-        return lab.scene.handles[0].position[2] > pin[2] + 0.1
+        return lab.scene.pins.handles[0].position[2] > pin[2] + 0.1
 
     tab.wait(drag_up)  # again where a slow page had not yet noticed what the mouse was over
     tab.wait(lambda: lab.scene.state.x[2, 0, 0] > pin[2] + 0.1)
@@ -81,7 +81,7 @@ def test_the_sphere_moves_by_its_vertices_like_the_cloth(shown: tuple[Viewer, Ta
     lab.panel.load("Trampoline")
     tab.wait(lambda: lab.loop.latest.frame.sphere is not None and lab.scene.time > 0.3)
     lab.loop.commands.put(Pause())
-    tab.wait(lambda: not lab.loop.running and lab.served.shown == lab.loop.latest.serial)
+    tab.wait(lambda: not lab.loop.run.running and lab.served.shown == lab.loop.latest.serial)
     *centre, radius = lab.loop.latest.frame.sphere
 
     def drawn() -> bool:

@@ -28,7 +28,7 @@ def paused(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> tupl
     lab, tab = one_page
     tab.errors.clear()
     tab.follow(lab, request.param)
-    tab.wait(lambda: lab.loop.counts["steps"] > 10)
+    tab.wait(lambda: lab.loop.run.counts["steps"] > 10)
     lab.loop.commands.put(Pause())
     tab.page.evaluate(COUNT)
     tab.wait(lambda: drawn_while(tab, 1500) == 0)

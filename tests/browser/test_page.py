@@ -110,9 +110,9 @@ def test_without_viser_s_inner_object_the_page_still_works(chromium: Any) -> Non
         page.goto(f"http://127.0.0.1:{viewer.port}/")
         page.get_by_role("button", name="Pause", exact=True).click()
         until = time.monotonic() + 30.0
-        while viewer.loop.running and time.monotonic() < until:
+        while viewer.loop.run.running and time.monotonic() < until:
             page.wait_for_timeout(50)
-        assert not viewer.loop.running
+        assert not viewer.loop.run.running
         assert errors == []
         page.close()
     finally:

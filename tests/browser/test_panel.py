@@ -51,13 +51,13 @@ def test_a_number_is_taken_as_it_is_typed(shown: tuple[Viewer, Tab]) -> None:
 def test_the_simulation_never_sees_a_number_that_is_half_typed(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     seen: set[float] = set()
-    take = lab.loop.take
+    take = lab.loop.runs.take
 
     def watched(params):
         seen.add(params.time_step)
         return take(params)
 
-    lab.loop.take = watched
+    lab.loop.runs.take = watched
     type_into(lab, tab, "time_step", "0.005", delay=150)
     tab.wait(lambda: lab.scene.params.time_step == 0.005, 10)
     assert seen == {0.005}
@@ -108,16 +108,16 @@ def test_the_preset_that_is_shown_is_chosen_again_and_begins_again(shown: tuple[
     preset = tab.page.get_by_label("Preset")
     name = preset.input_value()
     viewer.loop.commands.put(Pause())
-    tab.wait(lambda: not viewer.loop.running)
-    starts = viewer.loop.counts["starts"]
+    tab.wait(lambda: not viewer.loop.run.running)
+    starts = viewer.loop.run.counts["starts"]
     preset.click()
     tab.page.get_by_role("option", name=name, exact=True).click()
-    tab.wait(lambda: viewer.loop.counts["starts"] > starts and viewer.loop.running)
+    tab.wait(lambda: viewer.loop.run.counts["starts"] > starts and viewer.loop.run.running)
     assert preset.input_value() == name
     preset.click()
     tab.page.get_by_role("option", name="Pendulum", exact=True).click()
     tab.wait(lambda: viewer.panel.loaded == "Pendulum")
-    tab.wait(lambda: viewer.loop.counts["starts"] == starts + 2)
+    tab.wait(lambda: viewer.loop.run.counts["starts"] == starts + 2)
     assert not tab.errors
 
 
@@ -125,10 +125,10 @@ def test_keys_go_to_the_lab_after_a_list_was_used(shown: tuple[Viewer, Tab]) -> 
     lab, tab = shown
     tab.page.get_by_label("Preset").click()
     tab.page.get_by_role("option", name="Pendulum", exact=False).first.click()
-    tab.wait(lambda: lab.loop.counts["starts"] > 0, 10)
-    tab.wait(lambda: lab.loop.running, 10)
+    tab.wait(lambda: lab.loop.run.counts["starts"] > 0, 10)
+    tab.wait(lambda: lab.loop.run.running, 10)
     tab.page.keyboard.press("Space")
-    tab.wait(lambda: not lab.loop.running, 10)
+    tab.wait(lambda: not lab.loop.run.running, 10)
 
 
 def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab]) -> None:
@@ -137,7 +137,7 @@ def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab])
 
     def says(word: str, button: str) -> None:
         tab.wait(lambda: panel.inner_text().startswith(word), 5)
-        assert lab.loop.running == (word == "Running")
+        assert lab.loop.run.running == (word == "Running")
         tab.wait(lambda: tab.page.get_by_role("button", name=button, exact=True).count() == 1, 5)
 
     says("Running", "Pause")

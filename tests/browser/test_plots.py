@@ -31,14 +31,14 @@ DRAWN = """([first, last]) => Object.values(window.__viserTestpoints?.uplots ?? 
 def test_a_line_is_not_drawn_over_a_gap(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     lab.loop.commands.put(Pause())
-    tab.wait(lambda: not lab.loop.running)
+    tab.wait(lambda: not lab.loop.run.running)
     t = np.linspace(0.0, 10.0, 101)
     y = np.where((t > 4.0) & (t < 6.0), np.nan, np.sin(t))
     plots: Plots = lab.panel.plots
     rows = [(float(time), *[float(value)] * len(lab.panel.kind.series)) for time, value in zip(t, y, strict=True)]
     lab.panel.set("plot_tip", True)
     tab.wait(lambda: "plot_tip" in plots.open)
-    lab.loop.plot_rows.extend([(float("nan"),) * len(rows[0]), *rows])
+    lab.loop.run.snapshots.plot_rows.extend([(float("nan"),) * len(rows[0]), *rows])
 
     def drawn(first: float, last: float) -> float:
         found = tab.page.evaluate(DRAWN, [first, last])

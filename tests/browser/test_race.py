@@ -54,7 +54,7 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(
         named = energies["labels"][1:]
         assert named == errors["labels"][2:]
         assert [label.split()[0] for label in named] == [str(number + 1) for number in range(ropes)]
-    assert not lab.loop.halted
+    assert not lab.loop.run.halted
     assert tab.errors == []
 
 

@@ -62,7 +62,7 @@ def test_every_preset_is_drawn_as_water_without_console_errors(shown: tuple[View
         first = tab.vertices("/sea")
         tab.wait(lambda first=first: np.abs(tab.vertices("/sea") - first).max() > 0.02)
         assert np.isfinite(tab.vertices("/sea")).all()
-        assert lab.loop.halted == "", preset
+        assert lab.loop.run.halted == "", preset
         assert [error for error in tab.errors if LATE_UPDATE not in error] == [], preset
 
 
@@ -88,7 +88,7 @@ def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Vie
         return float(np.abs(np.asarray(client.camera.position)[:2] - wanted).max())
 
     lab.loop.commands.put(Pause())
-    tab.wait(lambda: not lab.loop.running)
+    tab.wait(lambda: not lab.loop.run.running)
     fleet = lab.scene.bodies.fleet
     before = fleet.position[0, :2].copy()
     fleet.velocity[0] = (3.0, 2.0, 0.0)

@@ -22,16 +22,16 @@ def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_t
 
 
 def test_nothing_steps_until_somebody_looks(lab: Viewer, open_tab) -> None:
-    assert lab.loop.counts["steps"] == 0
+    assert lab.loop.run.counts["steps"] == 0
     tab = open_tab(lab.port)
-    tab.wait(lambda: lab.loop.counts["steps"] > 10)
+    tab.wait(lambda: lab.loop.run.counts["steps"] > 10)
     tab.page.close()
     while lab.audience():
         lab.served.stop.wait(0.01)
     lab.served.stop.wait(0.5)  # what was under way ends
-    steps = lab.loop.counts["steps"]
+    steps = lab.loop.run.counts["steps"]
     lab.served.stop.wait(0.5)
-    assert lab.loop.counts["steps"] == steps
+    assert lab.loop.run.counts["steps"] == steps
 
 
 def test_dragging_the_arrows_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
@@ -84,10 +84,10 @@ def test_a_number_typed_in_the_panel_reaches_the_simulation(shown: tuple[Viewer,
 def test_keys_play_pause_and_load_presets(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.page.keyboard.press("Space")
-    tab.wait(lambda: not lab.loop.running)
-    steps = lab.loop.counts["steps"]
+    tab.wait(lambda: not lab.loop.run.running)
+    steps = lab.loop.run.counts["steps"]
     tab.page.keyboard.press("n")
-    tab.wait(lambda: lab.loop.counts["steps"] == steps + 1)
+    tab.wait(lambda: lab.loop.run.counts["steps"] == steps + 1)
     tab.page.keyboard.press("2")
     tab.wait(lambda: lab.scene.params.points == 50)
 
@@ -97,19 +97,19 @@ def test_an_explosion_pauses_with_a_finite_picture_and_says_why(shown: tuple[Vie
     tab.page.keyboard.press("3")
     tab.wait(lambda: lab.scene.params.integrator == "explicit_euler")
     lab.panel.set("speed", 4.0)  # until the last second before the bounds, which is in slow motion
-    tab.wait(lambda: lab.loop.halted)
-    assert "explicit Euler" in lab.loop.halted
-    assert "hω" in lab.loop.halted
+    tab.wait(lambda: lab.loop.run.halted)
+    assert "explicit Euler" in lab.loop.run.halted
+    assert "hω" in lab.loop.run.halted
     tab.wait(lambda: tab.page.get_by_text("became unstable at").count() > 0)
     assert np.isfinite(tab.vertices("/rope")).all()
-    assert not lab.loop.running
+    assert not lab.loop.run.running
 
 
 def test_reload_and_a_second_tab_show_the_same_rope(shown: tuple[Viewer, Tab], open_tab) -> None:
     lab, first = shown
     first.wait(lambda: lab.scene.time > 1)
     lab.loop.commands.put(Pause())
-    first.wait(lambda: not lab.loop.running and lab.served.shown == lab.loop.latest.serial)
+    first.wait(lambda: not lab.loop.run.running and lab.served.shown == lab.loop.latest.serial)
     second = open_tab(lab.port)
     second.wait(lambda: len(second.vertices("/rope")) > 0)
     # A slow page may still have frames to draw from before the pause.

@@ -34,7 +34,7 @@ def place_of(tab: Tab, moment: float) -> tuple[float, float]:
 
 def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
-    recorder, starts = lab.panel.recorder, lab.loop.counts["starts"]
+    recorder, starts = lab.panel.recorder, lab.loop.run.counts["starts"]
     lab.panel.set("speed", 10.0)
     lab.loop.commands.put(Play())
     tab.wait(lambda: recorder.span()[1] > 24.0, 60)
@@ -51,11 +51,11 @@ def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Vi
     tab.drag((line["right"] - THUMB / 2, y), (x, y), 10)
     tab.release()
     tab.wait(lambda: recorder.shown is not None and abs(recorder.shown.time - back) < 1.5, 20)
-    tab.wait(lambda: not lab.loop.running, 10)
+    tab.wait(lambda: not lab.loop.run.running, 10)
     assert tab.page.locator("#springtide-time output").is_visible()
     tab.page.get_by_role("button", name="Continue from here").click()
-    tab.wait(lambda: lab.loop.running and recorder.shown is None, 20)
-    assert lab.loop.counts["starts"] == starts
+    tab.wait(lambda: lab.loop.run.running and recorder.shown is None, 20)
+    assert lab.loop.run.counts["starts"] == starts
     assert lab.loop.scene.time < high - 10.0
     tab.wait(lambda: recorder.span()[1] < high - 10.0, 10)
     tab.wait(lambda: not tab.page.locator("#springtide-time output").is_visible(), 10)
@@ -75,7 +75,7 @@ def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
     for key in ("ArrowLeft", "ArrowLeft", "ArrowRight"):
         other.page.keyboard.press(key)
         other.page.wait_for_timeout(100)
-    other.wait(lambda: recorder.position == len(recorder.frames) - 2 and not lab.loop.running, 20)
+    other.wait(lambda: recorder.position == len(recorder.frames) - 2 and not lab.loop.run.running, 20)
     moment = recorder.shown
     assert moment is not None
     words = f"t = {moment.time:.2f} s"
@@ -91,7 +91,7 @@ def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
     other.page.keyboard.press("Home")
     other.wait(lambda: recorder.position == 0, 20)
     other.page.get_by_role("button", name="Live", exact=True).click()
-    tab.wait(lambda: recorder.shown is None and lab.loop.running, 20)
+    tab.wait(lambda: recorder.shown is None and lab.loop.run.running, 20)
     tab.wait(lambda: tab.page.locator("#springtide-time").inner_text().endswith("Live"), 20)
 
 

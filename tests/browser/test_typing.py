@@ -184,7 +184,7 @@ def test_the_panel_is_right_after_every_pause_play_and_step(scene: str, one_page
     tab.follow(lab, scene)
     rng, late = random.Random(3), []
     for number in range(CHANGES):
-        running = lab.loop.running
+        running = lab.loop.run.running
         action = rng.choice(("space", "button", "N", "Step"))
         wanted = not running if action in ("space", "button") else False
         match action:

@@ -64,7 +64,7 @@ class Hammer:
         self.server.queue_message = self.look_through  # type: ignore[method-assign]
         self.viewer.open(name)
         self.viewer.served.stop_threads()  # from here on this thread does their work
-        self.viewer.loop.audience = lambda: 1
+        self.viewer.loop.run.audience = lambda: 1
         self.viewer.served.attempt = lambda what, action: action()  # what goes wrong is to be seen
         self.longest = 0.0  # [s] of processor time in a frame
 
@@ -118,11 +118,11 @@ class Hammer:
 
     def go_on(self) -> None:
         """After a halt: reset, and where the parameters cannot hold, the defaults; then it must run."""
-        if self.loop.halted:
+        if self.loop.run.halted:
             self.tally.counts[self.name]["halts"] += 1
             self.loop.commands.put(Reset())
             self.frame()
-            if self.loop.halted:
+            if self.loop.run.halted:
                 self.calm()
 
     def calm(self) -> None:
@@ -131,10 +131,10 @@ class Hammer:
         panel.load(next(iter(panel.kind.presets)))
         self.loop.commands.put(Play())
         self.frame(2)
-        assert not self.loop.halted, self.loop.halted
+        assert not self.loop.run.halted, self.loop.run.halted
         before = self.loop.scene.time
         self.frame(3)
-        assert self.loop.running
+        assert self.loop.run.running
         assert self.loop.scene.time > before
 
     def shut(self) -> None:

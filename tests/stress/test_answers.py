@@ -40,7 +40,7 @@ def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tal
     prepare(name)
     viewer.open(name)
     loop, panel = viewer.loop, viewer.panel
-    loop.audience = lambda: 1
+    loop.run.audience = lambda: 1
     rng = random.Random(f"answers {name}")
     thread = next(thread for thread in viewer.served.threads if thread.name == "simulation")
     assert thread.ident is not None
@@ -58,14 +58,14 @@ def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tal
     changes = 0
     while changes < CHANGES:
         time.sleep(rng.uniform(0.0, PAUSE))
-        starts = loop.counts["starts"]
+        starts = loop.run.counts["starts"]
         since, worked = time.monotonic(), time.clock_gettime(processor)
         for _ in range(rng.randint(1, AT_ONCE)):
             chosen = rng.choice(list(panel.controls))
             parameter = parameters_of(panel.params)[chosen]
             panel.set(chosen, rng.choice(ends(parameter)) if rng.random() < 0.4 else anywhere(parameter, rng))
             changes += 1
-        if rng.random() < 0.2 or loop.halted:
+        if rng.random() < 0.2 or loop.run.halted:
             loop.commands.put(Reset())
             loop.commands.put(Play())
             starts += 1
@@ -73,7 +73,7 @@ def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tal
     longest, _, unusual = max(waits, key=lambda wait: wait[0])
     share = sorted(wait for wait, *_ in waits)[math.ceil(0.99 * len(waits)) - 1]
     work = max(work for _, work, _ in waits)
-    early = loop.counts["solves ended early"]
+    early = loop.run.counts["solves ended early"]
     tally.notes.append(
         f"{name}: {changes} changes, longest wait for an answer {longest:.3f} s, 99 of 100 below {share:.3f} s; most "
         f"own work in a wait {work:.3f} s; {early} solves ended; longest with {unusual}"

@@ -46,7 +46,7 @@ def runs(viewer: Viewer) -> None:
     viewer.loop.commands.put(Play())
     before, shown = viewer.loop.scene.time, viewer.served.shown
     until(lambda: viewer.loop.scene.time > before and viewer.served.shown > shown + 2, "the scene runs on")
-    assert not viewer.loop.halted
+    assert not viewer.loop.run.halted
     assert all(thread.is_alive() for thread in viewer.served.threads)
 
 

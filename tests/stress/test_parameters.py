@@ -50,6 +50,6 @@ def test_random_walk_over_all_parameters(hammer: Hammer) -> None:
             hammer.loop.commands.put(some_command(rng))
         hammer.frame()
         hammer.go_on()
-        if not hammer.loop.running and not hammer.loop.halted:
+        if not hammer.loop.run.running and not hammer.loop.run.halted:
             hammer.loop.commands.put(Play())
     hammer.calm()

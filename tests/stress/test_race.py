@@ -45,7 +45,7 @@ def test_each_parameter_of_a_race_at_both_ends(rule: str, six: Hammer) -> None:
         for value in ends(parameter):
             six.set(name, value)
             six.frame(FRAMES)
-            assert not six.loop.halted, six.unusual()
+            assert not six.loop.run.halted, six.unusual()
             check_results(six.loop.latest.readings, MAX_ROPES)
         six.set(name, before)
     six.frame()
@@ -60,7 +60,7 @@ def test_any_methods_and_steps_side_by_side(six: Hammer, tally: Tally) -> None:
             for name in names:
                 six.set(name, anywhere(six.parameters[name], rng))
             six.frame(9)  # longer than the longest step
-            assert not six.loop.halted, six.unusual()
+            assert not six.loop.run.halted, six.unusual()
             assert six.loop.scene.time > 0.0, six.unusual()
             check_results(six.loop.latest.readings, MAX_ROPES)
 
@@ -75,7 +75,7 @@ def test_the_number_of_ropes_changes_while_one_is_dragged(six: Hammer, tally: Ta
             assert six.loop.latest.frame.grab is not None
             six.set("ropes", max(1, ropes - 1))
             six.frame(FRAMES)
-            assert not six.loop.halted
+            assert not six.loop.run.halted
             six.loop.commands.put(Release())
             six.loop.commands.put(Reset())
             six.frame()

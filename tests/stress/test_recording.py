@@ -22,7 +22,7 @@ def test_two_minutes_of_a_sea_are_kept_and_gone_on_from_to_the_last_bit(name: st
     for tick in range(DURATION * RATE):
         loop.tick(1 / RATE)
         recorder.note(loop.latest, tick / RATE)
-        steps[loop.scene.time] = loop.counts["steps"]
+        steps[loop.scene.time] = loop.run.counts["steps"]
         assert recorder.memory.bytes <= MAX_BYTES
     arrays: dict[int, int] = {}
     for kept in recorder.frames:

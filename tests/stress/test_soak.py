@@ -29,19 +29,19 @@ def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:
         hammer.set(name, value)
     speed = hammer.parameters["speed"].high
     hammer.set("speed", speed)
-    hammer.loop.effort = lambda: 0.0  # as on a machine that always keeps up
-    hammer.loop.cost_unknown = True
+    hammer.loop.clock.effort = lambda: 0.0  # as on a machine that always keeps up
+    hammer.loop.run.pacer.cost_unknown = True
     frames = round(HOUR / (speed * MAX_CATCH_UP))
     start = hammer.loop.scene.time
     hammer.frame(frames // 5, wall=MAX_CATCH_UP)
     before = resident()
     hammer.frame(frames - frames // 5, wall=MAX_CATCH_UP)
     after = resident()
-    assert not hammer.loop.halted, hammer.loop.halted
+    assert not hammer.loop.run.halted, hammer.loop.run.halted
     assert hammer.loop.scene.time - start > 0.99 * HOUR
     tally.notes.append(f"{hammer.name}: an hour simulated in {frames:,} frames, {before:.0f} MB then {after:.0f} MB")
     assert after < GROWTH * before
-    hammer.loop.effort = time.thread_time
+    hammer.loop.clock.effort = time.thread_time
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -68,7 +68,7 @@ def test_served_while_clients_come_and_go(name: str, tally: Tally) -> None:
             if not before and time.monotonic() > half:
                 before = resident()
         after = resident()
-        assert not viewer.loop.halted
+        assert not viewer.loop.run.halted
         shown, got = viewer.served.shown, clients.received[stays]
         until(lambda: viewer.served.shown > shown and clients.received[stays] > got, "still served")
     viewer.shut()

@@ -134,7 +134,7 @@ def test_hulls_in_places_where_no_hull_belongs(wind: float, spill: str, tally: T
         loop.commands.put(Reset())
         for _ in range(30):
             loop.tick(FRAME_INTERVAL)
-        assert loop.running
+        assert loop.run.running
         float_for(scene, 1.0)
 
 

@@ -13,6 +13,7 @@ from app.scenes.charts import PlotAxes
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.live_values import live_values
 from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, ClothParams, hidden
+from app.scenes.cloth.pins import Pins
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.springs.divergence import holding_step
@@ -28,7 +29,6 @@ from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
 from sim.springs.integrator_fallback import integrator_or_fallback
-from sim.springs.net import PinPath
 from sim.springs.stability import Mode, gauge, gauge_of, gershgorin
 from sim.springs.state import State, advance, energy
 
@@ -84,9 +84,7 @@ def needs(params: ClothParams) -> tuple[str, ...]:
 class ClothScene(NetScene[ClothParams]):
     """The cloth on the simulation thread."""
 
-    CHANGING = (
-        "net", "state", "account", "account_kept", "sphere", "handles", "ends", "anchors", "corrections",
-    )  # fmt: skip
+    CHANGING = ("net", "state", "account", "account_kept", "sphere", "pins", "corrections")
     ASSESSMENT_INTERVAL = 1.0
     frame_interval = FRAME_INTERVAL
     max_reach = MAX_DISTANCE
@@ -127,7 +125,7 @@ class ClothScene(NetScene[ClothParams]):
         self.place_at_rest(build(self.params, self.sphere.position))
         self.account_kept = self.with_account
         self.grab.clear()
-        self.place_handles()
+        self.pins = Pins(self.net, self.state)
         self.assess_stability()
         if self.student is not None:
             self.student.start(self.params, self.state)
@@ -144,16 +142,9 @@ class ClothScene(NetScene[ClothParams]):
     def hold_pins(self, before: Net) -> None:
         """Hold the pins where they are, and still, if the net before had others."""
         if (self.net.shape, self.net.pinned) != (before.shape, before.pinned):
-            self.place_handles()
+            self.pins = Pins(self.net, self.state)
             for i, j in self.net.pinned:
                 self.state.v[:, i, j] = 0.0
-
-    def place_handles(self) -> None:
-        """Put a handle at each end of the first row, and hold the pinned particles where they are."""
-        x = self.state.x
-        self.ends = [x[:, 0, 0].copy(), x[:, 0, -1].copy()]
-        self.handles = [CriticallyDampedTracker(tuple(float(c) for c in end)) for end in self.ends]  # type: ignore[arg-type]
-        self.anchors = {pin: x[:, pin[0], pin[1]].copy() for pin in self.net.pinned}
 
     def change_forces(self, params: ClothParams) -> None:
         """Take new parameters. The motion goes on, interpolated where the grid changes."""
@@ -168,9 +159,9 @@ class ClothScene(NetScene[ClothParams]):
         """Move pins or sphere, pull a particle, or let go of it."""
         match command:
             case Place("pin a", position):
-                self.handles[0].target = position
+                self.pins.handles[0].target = position
             case Place("pin b", position):
-                self.handles[1].target = position
+                self.pins.handles[1].target = position
             case Place("sphere", position):
                 self.sphere.target = position
             case GrabTo(index, target, client) if 0 <= index < self.particles:
@@ -228,7 +219,7 @@ class ClothScene(NetScene[ClothParams]):
             grab = Grab(row, col, hand.position, stiffness, damping, self.params.pull)
         return dataclasses.replace(
             self.net,
-            pin_paths=self.pin_paths(t, duration),
+            pin_paths=self.pins.paths(t, duration),
             sphere=(*before, self.params.sphere_radius) if self.params.sphere else None,
             sphere_velocity=tuple((b - a) / duration for a, b in zip(before, after, strict=True)),
             epoch=t,
@@ -247,27 +238,6 @@ class ClothScene(NetScene[ClothParams]):
         """Centre of the sphere at time t [m]."""
         x, y, z = self.sphere.position
         return x, y, z + self.params.bob * math.sin(BOB_RATE * t)
-
-    def pin_paths(self, t: float, duration: float) -> tuple[tuple[tuple[int, int], PinPath], ...]:
-        """The motion of each pinned particle: that of the two handles, by its place along the first row, and less the
-        farther down it is."""
-        starts = [handle.position for handle in self.handles]
-        moves = [handle.advance(t, duration) for handle in self.handles]
-        if moves == [None, None]:
-            return ()
-        still = ((0.0, 0.0, 0.0),) * 3
-        cubics = [
-            np.array(move.coefficients if move else (start, *still)) for move, start in zip(moves, starts, strict=True)
-        ]
-        for cubic, end in zip(cubics, self.ends, strict=True):
-            cubic[0] -= end
-        found = []
-        for (i, j), anchor in self.anchors.items():
-            along, down = j / (self.params.cols - 1), 1.0 - i / (self.params.rows - 1)
-            c = down * ((1.0 - along) * cubics[0] + along * cubics[1])
-            c[0] += anchor
-            found.append(((i, j), PinPath(t, tuple(tuple(row) for row in c.tolist()))))  # type: ignore[arg-type]
-        return tuple(found)
 
     def assess_stability(self) -> None:
         """Compare the step with its limit: at the state as it is where that is quick, else by a bound for all."""
@@ -315,7 +285,7 @@ class ClothScene(NetScene[ClothParams]):
             params=params,
             points=np.ascontiguousarray(np.moveaxis(x, 0, -1), dtype=np.float32),
             strain=structural_strain(self.net, x).astype(np.float32),
-            pins=None if params.pinned == "free" else (self.handles[0].target, self.handles[1].target),
+            pins=None if params.pinned == "free" else self.pins.targets,
             sphere=(*self.sphere_at(self.time), params.sphere_radius) if params.sphere else None,
             sphere_home=self.sphere.target,
             grab=grab,

@@ -288,7 +288,7 @@ def test_the_guide_says_the_errors_of_a_race_as_its_table_does(monkeypatch: pyte
     viewer = opened(Workbook(TASKS), "race")
     try:
         show(viewer, "compare_methods")
-        viewer.loop.audience = lambda: 1
+        viewer.loop.run.audience = lambda: 1
         wait_for(lambda: len({tuple(now) for now, _ in seen}) >= 6)
     finally:
         viewer.shut()

@@ -49,7 +49,7 @@ def test_a_preset_starts_running(lab: Viewer) -> None:
     lab.loop.handle(Pause())
     lab.panel.load("Lab scene: 50 points")
     lab.loop.tick(0.0)
-    assert lab.loop.running
+    assert lab.loop.run.running
 
 
 def test_a_preset_and_a_change_can_be_undone(lab: Viewer) -> None:

@@ -34,7 +34,7 @@ def marks_of(scene: ClothScene) -> dict[str, str]:
 
 def change(scene: ClothScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
+    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
 
 
 @pytest.mark.parametrize("preset", PRESETS)
@@ -169,13 +169,13 @@ def test_one_step_a_frame_is_taken_while_it_takes_longer_than_a_frame_and_droppe
     params = dataclasses.replace(SMALL, integrator="implicit_euler", time_step=1 / 240, stiffness=1e5)
     loop = Loop(ExpensiveScene(params), effort=lambda: spent)
     for _ in range(12):
-        before = loop.counts["steps"]
+        before = loop.run.counts["steps"]
         loop.tick(0.3)
-        assert loop.counts["steps"] - before <= 1
+        assert loop.run.counts["steps"] - before <= 1
     assert loop.latest.status.capped
     assert "slower than real time" in status_line(loop.latest)
     assert "Faster: fewer rows and columns" in status_line(loop.latest)
-    assert loop.pacer.dropped > 100
+    assert loop.run.pacer.dropped > 100
     assert "Newton iterations a step" in ClothView.readout(object.__new__(ClothView), loop.latest)
 
 
@@ -213,7 +213,7 @@ def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit_and_costs_
         if frame % 9 == 5:
             with monkeypatch.context() as patch:
                 patch.setattr("app.scenes.cloth.scene.gauge", None)  # a call would fail
-                loops[1].take(dataclasses.replace(changed.params, **LOOKS[frame // 9 % len(LOOKS)]))
+                loops[1].runs.take(dataclasses.replace(changed.params, **LOOKS[frame // 9 % len(LOOKS)]))
         for loop, account in zip(loops, accounts, strict=True):
             loop.tick(1 / 60)
             scene, state = loop.scene, loop.scene.state

@@ -207,7 +207,7 @@ def test_a_run_that_begins_with_lines_that_are_too_short_blames_them_and_no_step
     for _ in range(60):
         loop.tick(1 / 60)
     said = "40 m cannot reach an anchor 80 m away in 40 m of water: at least 84.5 m."
-    assert loop.halted == said
+    assert loop.run.halted == said
     assert kind.remedy(loop.latest) == Advice("length", 84.5, "84.5 m")
 
 

@@ -133,7 +133,7 @@ def test_a_shorter_step_is_advised_only_if_the_start_is_not_at_fault(monkeypatch
     loop = SimLoop(scene_with(length=40.0), effort=lambda: 0.0)
     for _ in range(3):
         loop.tick(1 / 60)
-    assert loop.halted.startswith("40 m cannot reach")
+    assert loop.run.halted.startswith("40 m cannot reach")
 
 
 def test_a_fault_is_that_of_the_place_of_a_dragged_anchor():

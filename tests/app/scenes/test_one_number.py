@@ -22,7 +22,7 @@ def numbers_after(name: str, frames: int, **changes: object) -> tuple[dict[str, 
     for _ in range(frames):
         loop.tick(1 / 60)
     measures = kind.measures(loop.scene) if kind.measures else {}
-    loop.publish()
+    loop.run.snapshots.publish()
     return measures, kind.live_values(loop.latest) if kind.live_values else {}
 
 

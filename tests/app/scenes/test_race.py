@@ -50,7 +50,7 @@ def race(**changes) -> Any:
 
 def change(scene: RaceScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
+    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
 
 
 def run(scene: RaceScene, seconds: float) -> None:
@@ -281,7 +281,7 @@ def test_a_change_of_look_costs_nothing_and_leaves_the_accounts_alone():
     )
     for frame in range(60):
         if frame % 10 == 5:
-            loops[1].take(dataclasses.replace(changed.params, **looks[frame // 10 % len(looks)]))
+            loops[1].runs.take(dataclasses.replace(changed.params, **looks[frame // 10 % len(looks)]))
         for loop in loops:
             loop.tick(FRAME_INTERVAL)
     for one, other in zip(alone.race.entrants, changed.race.entrants, strict=True):

@@ -39,7 +39,7 @@ def run(scene: RopeScene, frames: int, steps: int) -> None:
 
 def change(scene: RopeScene, **changes: object) -> None:
     """Change parameters as the simulation loop does, by what they affect."""
-    Loop(scene, paused=True).take(dataclasses.replace(scene.params, **changes))
+    Loop(scene, paused=True).runs.take(dataclasses.replace(scene.params, **changes))
 
 
 @pytest.mark.parametrize("preset", [name for name in PRESETS if name != "Euler explodes"])
@@ -240,7 +240,7 @@ def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit(integrator
     accounts: list[dict[int, tuple[float, ...]]] = [{}, {}]
     for frame in range(90):
         if frame % 10 == 5:
-            loops[1].take(dataclasses.replace(changed.params, **LOOKS[frame // 10 % len(LOOKS)]))
+            loops[1].runs.take(dataclasses.replace(changed.params, **LOOKS[frame // 10 % len(LOOKS)]))
         for loop, account in zip(loops, accounts, strict=True):
             loop.tick(FRAME_INTERVAL)
             scene, state = loop.scene, loop.scene.state

@@ -125,10 +125,10 @@ def test_a_sea_that_is_too_steep_stops_with_words_and_keeps_its_last_state() -> 
     loop = SimLoop(scene)
     for _ in range(200):
         loop.tick(1 / 10)
-        if loop.halted:
+        if loop.run.halted:
             break
-    assert "cannot be followed beyond" in loop.halted
-    assert "lower order" in loop.halted
+    assert "cannot be followed beyond" in loop.run.halted
+    assert "lower order" in loop.run.halted
     assert np.isfinite(loop.latest.frame.vertices).all()
     with pytest.raises(DivergenceError):
         scene.advance(60)
@@ -196,7 +196,7 @@ def test_a_run_goes_on_until_an_event_begins() -> None:
     for _ in range(2):
         for _ in range(100):
             loop.tick(1 / 30)
-            if not loop.running:
+            if not loop.run.running:
                 break
         ends.append(loop.latest.status.time)
         assert not loop.latest.status.running
@@ -208,7 +208,7 @@ def test_a_run_goes_on_until_an_event_begins() -> None:
         loop.handle(Play())
         for _ in range(3):
             loop.tick(1 / 30)
-        assert loop.running
+        assert loop.run.running
 
 
 def test_the_event_is_a_crest_of_1_25_hs(draupner: Any) -> None:
@@ -239,12 +239,12 @@ def test_steep_seas_at_the_ends_of_all_sliders_go_on_or_stop_with_words(order: i
         loop = SimLoop(Scene(params))
         for _ in range(20):
             loop.tick(1.0 / max(params.speed, 0.05) if name != "speed" else 0.2)
-            if loop.halted:
+            if loop.run.halted:
                 break
         frame = loop.latest.frame
         assert np.isfinite(frame.vertices).all(), (name, value)
-        if loop.halted:
-            assert "cannot be followed" in loop.halted, (name, value, loop.halted)
+        if loop.run.halted:
+            assert "cannot be followed" in loop.run.halted, (name, value, loop.run.halted)
             stopped.append((name, value))
         elif loop.latest.readings.report is not None and loop.latest.readings.report.heights is not None:
             lost = loop.latest.readings.report.heights.lost

@@ -129,7 +129,7 @@ def test_another_scene_in_a_pane_keeps_the_clock() -> None:
         second.open("cloth", read_query("?scene=cloth&rows=8&cols=8").params)
         assert len(viewer.comparison.clock.seats) == 3
         seats = viewer.comparison.clock.seats
-        wait_for(lambda: second.loop.seat is seats[1])
+        wait_for(lambda: second.loop.run.seat is seats[1])
         assert [pane.heading.split(" · ")[0] for pane in viewer.pane_words()] == ["Rope", "Cloth", "Rope"]
         wait_for(lambda: second.panel.params.grid is False)
         with pytest.raises(ValueError, match="nothing"):

@@ -11,8 +11,10 @@ from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
-from app.server.loop import PATIENCE, SimLoop
-from app.server.snapshots import MAX_BLIND_TIME, Activity
+from app.server.activity import BEGINNING, NOTHING, STEPS
+from app.server.loop import SimLoop
+from app.server.snapshots import MAX_BLIND_TIME
+from app.server.tick_clock import PATIENCE
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
@@ -31,8 +33,8 @@ def busy():
     """A loop in the middle of a step that takes long."""
     scene = RopeScene(RopeParams(points=4))
     loop = SimLoop(scene, clock=lambda: 1.0)
-    loop.busy_since = loop.turn_at = 1.0 - 2.0 * PATIENCE
-    loop.activity = Activity(steps=True, may_end=True)
+    loop.clock.busy_since = loop.clock.turn_at = 1.0 - 2.0 * PATIENCE
+    loop.run.activity = STEPS
     return loop
 
 
@@ -42,14 +44,14 @@ def busy():
 def test_a_solve_ends_for_what_begins_anew_and_not_for_a_drag(busy, command, ends):
     busy.commands.put(command)
     busy.give_turn()
-    assert busy.request[STOP] == ends
+    assert busy.run.request[STOP] == ends
 
 
 @pytest.mark.parametrize(("change", "ends"), [({"stiffness": 90.0}, 1), ({"points": 5}, 1), ({"speed": 0.5}, 0)])
 def test_a_solve_ends_for_other_forces_and_not_for_the_look(busy, change, ends):
     ask(busy, **change)
     busy.give_turn()
-    assert busy.request[STOP] == ends
+    assert busy.run.request[STOP] == ends
 
 
 def test_a_look_and_a_drag_show_in_the_middle_of_a_solve_and_nothing_new_does_not(busy):
@@ -69,7 +71,7 @@ def test_a_look_and_a_drag_show_in_the_middle_of_a_solve_and_nothing_new_does_no
 
 
 def test_in_the_middle_of_a_reset_the_last_frame_stays_with_the_new_parameters(busy):
-    busy.activity = Activity(may_begin=True)
+    busy.run.activity = BEGINNING
     busy.scene.params = dataclasses.replace(busy.scene.params, points=5)
     busy.scene.frame = None  # not asked for
     busy.give_turn()
@@ -79,9 +81,9 @@ def test_in_the_middle_of_a_reset_the_last_frame_stays_with_the_new_parameters(b
 
 def test_a_turn_is_asked_for_after_a_while_and_not_of_an_idle_loop(busy):
     for since, turn_at, asked in ((None, 0.0, 0), (0.0, 1.0 - 0.5 * PATIENCE, 0), (0.0, 1.0 - 1.5 * PATIENCE, 1)):
-        busy.busy_since, busy.turn_at = since, turn_at
+        busy.clock.busy_since, busy.clock.turn_at = since, turn_at
         busy.ask_for_turn()
-        assert busy.request[TURN] == asked
+        assert busy.run.request[TURN] == asked
 
 
 def test_one_tick_that_takes_long_makes_only_the_next_show_a_picture_more():
@@ -96,14 +98,14 @@ def test_one_tick_that_takes_long_makes_only_the_next_show_a_picture_more():
         raise_if_stopped()
 
     scene.advance, shown = slow, []
-    use_request(loop.request, loop.give_turn, loop.turn_is_due)
+    use_request(loop.run.request, loop.give_turn, loop.clock.turn_is_due)
     try:
         for _ in range(4):
             now[0] += 1 / 60
             loop.commands.put(StudentAnswer())  # as a student's rope has one for each tick
-            before = loop.counts["snapshots"]
+            before = loop.run.counts["snapshots"]
             loop.tick(1 / 60)
-            shown.append(loop.counts["snapshots"] - before)
+            shown.append(loop.run.counts["snapshots"] - before)
     finally:
         use_request(np.array([0, 1, 0, 0]))
     assert shown == [1, 2, 1, 1]
@@ -124,17 +126,17 @@ def test_a_reset_that_was_ended_early_is_done_again_and_a_step_is_not(busy):
     busy.scene.reset = ended_once("reset", busy.scene.reset)
     busy.commands.put(Reset())
     busy.tick(0.0)
-    assert busy.unfinished is not None
+    assert busy.run.unfinished is not None
     busy.commands.put(GrabTo(1, (0.0, 0.0, 0.0)))  # what else is asked for does not make it forget that
     busy.tick(0.0)
     assert calls == ["reset", "reset"]
-    assert busy.unfinished is None
+    assert busy.run.unfinished is None
     busy.scene.advance = ended_once("advance", busy.scene.advance)
     busy.tick(0.1)
-    assert busy.running
-    assert not busy.halted
-    assert busy.unfinished is None
-    assert busy.counts["solves ended early"] == 2
+    assert busy.run.running
+    assert not busy.run.halted
+    assert busy.run.unfinished is None
+    assert busy.run.counts["solves ended early"] == 2
 
 
 @pytest.fixture
@@ -159,7 +161,7 @@ def test_other_forces_after_a_reset_that_was_ended_early_follow_it(busy, ended_o
     assert [type(command) for command in busy.waiting] == [Take]  # of a scene that is not made
     busy.tick(0.0)
     assert ended_once == [800.0, 800.0]
-    assert (busy.unfinished, busy.halted, busy.scene.params.stiffness) == (None, "", 90.0)
+    assert (busy.run.unfinished, busy.run.halted, busy.scene.params.stiffness) == (None, "", 90.0)
 
 
 def test_a_preset_that_was_ended_early_for_another_leaves_nothing_of_itself(busy, ended_once):
@@ -170,7 +172,7 @@ def test_a_preset_that_was_ended_early_for_another_leaves_nothing_of_itself(busy
     busy.commands.put(Take(second, start=True))
     busy.tick(0.0)
     assert ended_once == [90.0, 70.0]
-    assert (busy.unfinished, busy.scene.params, busy.waiting) == (None, second, [])
+    assert (busy.run.unfinished, busy.scene.params, busy.waiting) == (None, second, [])
 
 
 @pytest.mark.parametrize(("command", "ends"), [(Reset(), 1), (Pause(), 0)])
@@ -178,32 +180,32 @@ def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy
     def change(params):
         busy.commands.put(command)
         busy.give_turn()
-        ended.append(int(busy.request[STOP]))
-        if busy.request[STOP]:
+        ended.append(int(busy.run.request[STOP]))
+        if busy.run.request[STOP]:
             busy.scene.net = None  # half of the change
             raise InterruptionError
         whole(params)
 
     ended, resets, reset, whole = [], [], busy.scene.reset, busy.scene.change_forces
-    busy.activity, busy.scene.change_forces = Activity(), change
+    busy.run.activity, busy.scene.change_forces = NOTHING, change
     busy.scene.reset = lambda: resets.append(reset())
     frame = busy.latest.frame
-    busy.take(dataclasses.replace(busy.scene.params, stiffness=90.0))
-    busy.publish()
+    busy.runs.take(dataclasses.replace(busy.scene.params, stiffness=90.0))
+    busy.run.snapshots.publish()
     assert ended == [ends]
     assert (busy.latest.frame is frame) == ends  # nothing is shown of what is half done
-    busy.request[STOP] = 0
+    busy.run.request[STOP] = 0
     busy.tick(0.0)
     assert len(resets) == ends
-    assert (busy.unfinished, busy.halted, busy.scene.params.stiffness) == (None, "", 90.0)
+    assert (busy.run.unfinished, busy.run.halted, busy.scene.params.stiffness) == (None, "", 90.0)
 
 
 def test_where_nothing_may_be_ended_other_forces_are_answered_with_the_last_frame(busy):
-    busy.activity = Activity()
+    busy.run.activity = NOTHING
     first = busy.latest.frame
     params = ask(busy, stiffness=90.0)
     busy.give_turn()
-    assert busy.request[STOP] == 0
+    assert busy.run.request[STOP] == 0
     assert busy.latest.params is params
     assert busy.latest.frame is first
     assert busy.scene.params is not params  # which the next tick gives it
@@ -218,11 +220,11 @@ def test_steps_that_are_kept_whole_are_neither_ended_nor_shown_half_done(busy):
     busy.scene.frame = None  # not asked for
     with kept_whole():
         busy.give_turn()
-    assert busy.request[STOP] == 0
+    assert busy.run.request[STOP] == 0
     assert busy.latest.params is params
     assert busy.waiting == [Take(params), Pause(), GrabTo(1, (0.0, 0.0, 0.0))]
     busy.give_turn()
-    assert busy.request[STOP] == 1
+    assert busy.run.request[STOP] == 1
 
 
 def test_steps_that_are_kept_whole_are_abandoned_for_a_new_beginning(busy):
@@ -234,18 +236,18 @@ def test_steps_that_are_kept_whole_are_abandoned_for_a_new_beginning(busy):
 
     resets, reset = [], busy.scene.reset
     busy.scene.advance, busy.scene.reset = half_a_step, lambda: resets.append(reset())
-    use_request(busy.request, busy.give_turn, lambda: True)
+    use_request(busy.run.request, busy.give_turn, lambda: True)
     try:
-        busy.advance(1)
-        busy.publish()
+        busy.run.advance(1)
+        busy.run.snapshots.publish()
     finally:
         use_request(np.array([0, 1, 0, 0]))
     assert resets == []
-    assert busy.halted == ""
-    busy.activity, busy.request[STOP] = Activity(), 0
+    assert busy.run.halted == ""
+    busy.run.activity, busy.run.request[STOP] = NOTHING, 0
     busy.tick(0.0)
     assert len(resets) == 1
-    assert busy.halted == ""
+    assert busy.run.halted == ""
 
 
 def test_a_reset_that_takes_long_says_that_it_has_begun(busy):
@@ -254,12 +256,12 @@ def test_a_reset_that_takes_long_says_that_it_has_begun(busy):
         seen.append(busy.latest.status.starts)
         reset()
 
-    seen, reset, busy.activity = [], busy.scene.reset, Activity()
+    seen, reset, busy.run.activity = [], busy.scene.reset, NOTHING
     busy.scene.reset = long_reset
     busy.commands.put(Reset())
     busy.tick(0.0)
     assert seen == [1]
-    assert busy.request[STOP] == 0
+    assert busy.run.request[STOP] == 0
 
 
 def test_a_reset_is_not_ended_by_other_forces_or_a_pause(busy):
@@ -267,18 +269,18 @@ def test_a_reset_is_not_ended_by_other_forces_or_a_pause(busy):
         ask(busy, stiffness=90.0)
         busy.commands.put(Pause())
         busy.give_turn()
-        ended.append(int(busy.request[STOP]))
+        ended.append(int(busy.run.request[STOP]))
         reset()
 
-    ended, reset, busy.activity = [], busy.scene.reset, Activity()
+    ended, reset, busy.run.activity = [], busy.scene.reset, NOTHING
     busy.scene.reset = long_reset
     busy.commands.put(Reset())
     busy.tick(0.0)
     assert ended == [0]
-    assert busy.unfinished is None
+    assert busy.run.unfinished is None
     busy.tick(0.0)
     assert busy.scene.params.stiffness == 90.0
-    assert not busy.running
+    assert not busy.run.running
 
 
 def test_a_turn_that_is_due_is_given_though_nobody_asks():
@@ -302,17 +304,17 @@ def test_what_a_turn_shows_may_need_a_solve_but_gives_no_further_turn(busy, monk
         return {}
 
     monkeypatch.setattr(busy.scene, "curves", curves)
-    monkeypatch.setattr(busy, "clock", lambda: 1.0 + 2.0 * PATIENCE * len(calls))  # each takes long
+    monkeypatch.setattr(busy.clock, "now", lambda: 1.0 + 2.0 * PATIENCE * len(calls))  # each takes long
 
     def try_out():
-        use_request(busy.request, busy.give_turn, busy.turn_is_due)
+        use_request(busy.run.request, busy.give_turn, busy.clock.turn_is_due)
         params = ask(busy, grid=False)
         raise_if_stopped()
         return params
 
     params = contextvars.copy_context().run(try_out)
     assert (len(calls), busy.latest.params) == (1, params)
-    assert busy.turn_is_due()
+    assert busy.clock.turn_is_due()
     assert capsys.readouterr().err == ""
 
 
@@ -325,12 +327,12 @@ def test_a_cloth_gives_turns_within_a_step_and_shows_the_last_whole_one(changes)
 
     def turn():
         loop.give_turn()
-        loop.request[TURN] = len(seen) < 5
+        loop.run.request[TURN] = len(seen) < 5
         seen.append((scene.time, scene.state.x.copy()))
 
-    use_request(loop.request, turn)
+    use_request(loop.run.request, turn)
     try:
-        loop.request[TURN] = 1
+        loop.run.request[TURN] = 1
         start = scene.state.x.copy()
         scene.advance(1)
     finally:
@@ -345,31 +347,31 @@ def test_a_cloth_gives_turns_within_a_step_and_shows_the_last_whole_one(changes)
 def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(busy):
     def long_frame():
         busy.give_turn()
-        ended.append(int(busy.request[STOP]))
-        if busy.request[STOP]:
+        ended.append(int(busy.run.request[STOP]))
+        if busy.run.request[STOP]:
             raise InterruptionError
         return frame()
 
     ended, frame, earlier = [], busy.scene.frame, busy.latest.frame
-    busy.running, busy.activity, busy.scene.frame = False, Activity(), long_frame
+    busy.run.running, busy.run.activity, busy.scene.frame = False, NOTHING, long_frame
     params = ask(busy, points=5)
-    busy.publish()
-    assert (ended, busy.is_shown, busy.halted) == ([1], False, "")
+    busy.run.snapshots.publish()
+    assert (ended, busy.run.snapshots.is_shown, busy.run.halted) == ([1], False, "")
     assert busy.latest.frame is earlier
-    busy.request[STOP] = 0
+    busy.run.request[STOP] = 0
     busy.tick(0.0)
-    assert (ended, busy.is_shown) == ([1, 0], True)
+    assert (ended, busy.run.snapshots.is_shown) == ([1, 0], True)
     assert busy.latest.params is params
     assert len(busy.latest.frame.points) == 5
-    busy.whole_at -= MAX_BLIND_TIME
+    busy.run.snapshots.whole_at -= MAX_BLIND_TIME
     ask(busy, points=6)
-    busy.publish()
+    busy.run.snapshots.publish()
     assert ended == [1, 0, 0]
-    assert busy.is_shown
+    assert busy.run.snapshots.is_shown
 
 
 def test_a_picture_that_was_ended_is_made_again_by_a_paused_lab(busy):
-    busy.running, busy.activity, busy.is_shown = False, Activity(), False
+    busy.run.running, busy.run.activity, busy.run.snapshots.is_shown = False, NOTHING, False
     busy.tick(0.0)
     assert busy.latest.serial == 2
     busy.tick(0.0)
@@ -382,10 +384,10 @@ def test_a_look_that_is_taken_in_the_middle_of_a_picture_is_drawn_by_the_next(bu
         busy.give_turn()
         return found
 
-    frame, busy.running, busy.activity = busy.scene.frame, False, Activity()
+    frame, busy.run.running, busy.run.activity = busy.scene.frame, False, NOTHING
     busy.scene.frame = long_frame
     ask(busy, grid=False)
-    busy.publish()
+    busy.run.snapshots.publish()
     assert busy.latest.serial == 3  # the answer in between was the second
     assert busy.latest.frame.params.grid
     busy.tick(0.0)

@@ -125,10 +125,10 @@ def test_hostile_messages_leave_the_server_running_and_the_state_finite(lab: Vie
     cuts = coroutines.run(say(lab.port, messages))
     assert cuts < count / 4
     assert sum(lab.screen.refused.values()) > count / 6  # what was on its way when a connection was cut is lost
-    lab.loop.audience = lambda: 1
-    ticks = lab.loop.counts["ticks"]
-    wait_for(lambda: lab.loop.counts["ticks"] >= ticks + 30)
-    assert np.isfinite(lab.scene.state.x).all() or lab.loop.halted
+    lab.loop.run.audience = lambda: 1
+    ticks = lab.loop.run.counts["ticks"]
+    wait_for(lambda: lab.loop.run.counts["ticks"] >= ticks + 30)
+    assert np.isfinite(lab.scene.state.x).all() or lab.loop.run.halted
     assert np.isfinite(lab.loop.latest.frame.points).all()
     params = lab.panel.params
     for name, control in lab.panel.controls.items():

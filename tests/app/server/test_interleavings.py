@@ -97,7 +97,7 @@ def test_a_scene_that_is_opened_during_a_slow_one_has_nothing_of_the_old_scene(
         assert not thread.is_alive()
         for _ in range(2):  # pictures
             assert updates.get(timeout=TIMEOUT) == (new.threads[1], params)
-        status = asked(watched, new.loop.status)
+        status = asked(watched, new.loop.run.snapshots.status)
         assert not status.halted
         assert status.running
 
@@ -159,18 +159,18 @@ def test_a_preset_that_is_undone_while_it_is_compiled_never_begins(
     reset = scene.reset
     monkeypatch.setattr(scene, "reset", lambda: (begun.append(scene.params), reset()))
     for number in range(times):
-        before, starts = panel.params, watched.loop.counts["starts"]
+        before, starts = panel.params, watched.loop.run.counts["starts"]
         panel.load_params(RopeParams(integrator="rk4", gravity=9.0), undone)
         assert asked(watched, lambda: scene.params) == before
         panel.undo()
         assert asked(watched, lambda: scene.params) == before
         panel.set("gravity", 1.0 + number % 7)
         assert asked(watched, lambda: scene.params.gravity) == 1.0 + number % 7  # type: ignore[attr-defined]
-        assert watched.loop.counts["starts"] == starts
-        assert not watched.loop.halted
+        assert watched.loop.run.counts["starts"] == starts
+        assert not watched.loop.run.halted
         if number % 5 == 4:
             panel.load_params(RopeParams(gravity=2.0), ready)
-            assert asked(watched, lambda: watched.loop.counts["starts"]) == starts + 1
+            assert asked(watched, lambda: watched.loop.run.counts["starts"]) == starts + 1
     assert all(params.integrator != "rk4" for params in begun)
     assert len(begun) == times // 5
 
@@ -187,9 +187,9 @@ def test_a_preset_that_settles_late_is_not_lost(watched: Viewer, monkeypatch: py
         panel.load_params(RopeParams(integrator="rk4", gravity=1.0 + number), preset)
         for _ in range(8):  # ticks
             asked(watched, lambda: None)
-        assert watched.loop.counts["starts"] == number + 1
+        assert watched.loop.run.counts["starts"] == number + 1
         assert watched.scene.params is panel.params
-        assert not watched.loop.halted
+        assert not watched.loop.run.halted
 
 
 @TIMES
@@ -201,15 +201,15 @@ def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
     for number in range(times):
         comparison = ComparedLabs(watched, lambda _: pane)
         comparison.begin([setup], resume=False)
-        assert asked(watched, lambda: loop.seat) is comparison.seats[watched]
+        assert asked(watched, lambda: loop.run.seat) is comparison.seats[watched]
         with monkeypatch.context() as point:
             held = held_at_the_clock(watched, comparison, point, number % 3)
             assert held.begun.wait(TIMEOUT)
             comparison.end()
             held.free.set()
-            status = asked(watched, loop.status)
+            status = asked(watched, loop.run.snapshots.status)
         assert not status.halted
-        assert loop.seat is None
+        assert loop.run.seat is None
         watched.commands.put(Pause())
         time = asked(watched, lambda: loop.scene.time)
         watched.commands.put(StepOnce())
@@ -222,8 +222,8 @@ def held_at_the_clock(lab: Viewer, comparison: ComparedLabs, point: pytest.Monke
     loop, clock = lab.loop, comparison.clock
     if place == 0:
         looks = itertools.count()
-        held = Held(loop.audience, lambda: loop.busy_since is not None and next(looks) == 1)
-        point.setattr(loop, "audience", held)
+        held = Held(loop.run.audience, lambda: loop.clock.busy_since is not None and next(looks) == 1)
+        point.setattr(loop.run, "audience", held)
         return held
     name = ("advance", "step_by_hand")[place - 1]
     held = Held(getattr(clock, name))

@@ -47,7 +47,8 @@ def check_same(loop: SimLoop, arrays: dict[str, np.ndarray]) -> None:
 def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, change: str) -> None:
     kind = scene_named(name)
     loop, undisturbed = begun(name), begun(name)
-    params, time, before, rows = loop.scene.params, loop.scene.time, arrays_of(loop), tuple(loop.kept_rows)
+    params, time, before = loop.scene.params, loop.scene.time, arrays_of(loop)
+    rows = tuple(loop.run.snapshots.kept_rows)
     assert time > 0.0
     other = make_setup(kind, list(kind.presets)[1]).params
     moment = Take(params, state=KeptState(loop.scene.keep(), {}), run=2)
@@ -55,13 +56,13 @@ def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, c
     loop.handle(changes[change])
     loop.handle(Play())
     run(loop)
-    starts = loop.counts["starts"]
+    starts = loop.run.counts["starts"]
     loop.handle(Take(params, start=True, run=1, back=True))
-    assert (loop.scene.time, loop.running, loop.halted) == (time, False, "")
-    assert loop.counts["starts"] == starts + 1  # so that the recording and the cameras are those of another run
+    assert (loop.scene.time, loop.run.running, loop.run.halted) == (time, False, "")
+    assert loop.run.counts["starts"] == starts + 1  # so that the recording and the cameras are those of another run
     check_same(loop, before)
-    loop.publish()
-    assert tuple(loop.kept_rows)[: len(rows)] == rows
+    loop.run.snapshots.publish()
+    assert tuple(loop.run.snapshots.kept_rows)[: len(rows)] == rows
     for one in (loop, undisturbed):
         one.handle(StepOnce(5))
     check_same(loop, arrays_of(undisturbed))
@@ -72,29 +73,29 @@ def test_a_run_that_is_too_large_begins_again_and_the_panel_says_so(monkeypatch:
     loop = begun("rope")
     params = loop.scene.params
     loop.handle(Take(make_setup(scene_named("rope"), "Pendulum").params, start=True, run=2))
-    assert (len(loop.left.runs), loop.left.memory.bytes) == (0, 0)
+    assert (len(loop.runs.left.runs), loop.runs.left.memory.bytes) == (0, 0)
     loop.handle(Take(params, start=True, run=1, back=True))
-    assert (loop.scene.time, loop.running, loop.status().restarted) == (0.0, True, True)
+    assert (loop.scene.time, loop.run.running, loop.run.snapshots.status().restarted) == (0.0, True, True)
     loop.tick(10.0)
-    assert not loop.status().restarted
+    assert not loop.run.snapshots.status().restarted
 
 
 def test_memory_is_bounded_and_the_oldest_go_first(monkeypatch: pytest.MonkeyPatch) -> None:
     loop = begun("rope")
     loop.handle(Reset(2))
-    size = loop.left.memory.bytes
-    assert size == sum(loop.left.runs[0].arrays.values()) > 0
+    size = loop.runs.left.memory.bytes
+    assert size == sum(loop.runs.left.runs[0].arrays.values()) > 0
     monkeypatch.setattr(left_runs, "MAX_BYTES", 3.5 * size)
     for number in range(3, 30):
         loop.handle(Reset(number))
-        assert loop.left.memory.bytes <= 3.5 * size
-    assert loop.left.runs[-1].number == 28
-    assert loop.left.pop(1) is None
-    kept = [run.number for run in loop.left.runs]
+        assert loop.runs.left.memory.bytes <= 3.5 * size
+    assert loop.runs.left.runs[-1].number == 28
+    assert loop.runs.left.pop(1) is None
+    kept = [run.number for run in loop.runs.left.runs]
     assert kept == list(range(kept[0], 29))
     for number in kept:
-        assert loop.left.pop(number) is not None
-    assert loop.left.memory.bytes == 0
+        assert loop.runs.left.pop(number) is not None
+    assert loop.runs.left.memory.bytes == 0
 
 
 def test_a_run_that_never_began_leaves_the_one_before_untouched() -> None:
@@ -102,7 +103,7 @@ def test_a_run_that_never_began_leaves_the_one_before_untouched() -> None:
     loop = begun("rope")
     time = loop.scene.time
     loop.handle(Take(loop.scene.params, start=True, run=1, back=True))
-    assert (loop.scene.time, loop.counts["starts"]) == (time, 0)
+    assert (loop.scene.time, loop.run.counts["starts"]) == (time, 0)
 
 
 @pytest.mark.parametrize("change", [lambda lab: lab.panel.load("Pendulum"), lambda lab: lab.panel.reset()])
@@ -110,17 +111,17 @@ def test_undo_gives_back_the_screen(lab: Viewer, change: Callable[[Viewer], None
     """As a user meets it: a rope over the sphere, another preset or a reset, one step, undo."""
     lab.visitors = lambda: 1  # type: ignore[method-assign]
     lab.panel.load("Over the sphere")
-    wait_for(lambda: lab.loop.scene.time > 0.5 and lab.loop.running)
+    wait_for(lambda: lab.loop.scene.time > 0.5 and lab.loop.run.running)
     lab.panel.post(Pause())
-    wait_for(lambda: not lab.loop.running)
+    wait_for(lambda: not lab.loop.run.running)
     time, before = lab.loop.scene.time, arrays_of(lab.loop)
-    starts = lab.loop.counts["starts"]
+    starts = lab.loop.run.counts["starts"]
     change(lab)
     lab.panel.post(StepOnce())
-    wait_for(lambda: lab.loop.counts["starts"] > starts and not lab.loop.running)
+    wait_for(lambda: lab.loop.run.counts["starts"] > starts and not lab.loop.run.running)
     lab.panel.undo()
     # Its snapshot comes once the whole run is back.
     wait_for(lambda: (status := lab.loop.latest.status).starts == starts + 2 and status.time == time)
     check_same(lab.loop, before)
-    assert not lab.loop.running
+    assert not lab.loop.run.running
     assert lab.panel.head.preset.value == "Over the sphere"

@@ -27,8 +27,9 @@ from app.messages import (
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.server.loop import IDLE_INTERVAL, MAX_FRAME_INTERVAL, PATIENCE, SimLoop
+from app.server.loop import IDLE_INTERVAL, SimLoop
 from app.server.pacer import MAX_LONG_FRAME, SOLVE_SHARE, FixedStep
+from app.server.tick_clock import MAX_FRAME_INTERVAL, PATIENCE
 from sim.parameters import parameter
 from sim.validation import DivergenceError
 from tests.waiting import wait_for
@@ -130,13 +131,15 @@ def test_simulated_time_follows_wall_time_at_the_speed_that_is_set(speed: float)
 
 def test_steps_are_whole_and_owe_less_than_one() -> None:
     pacer = FixedStep()
-    taken = sum(pacer.steps(0.007, 1.0, 0.01)[0] for _ in range(1000))
+    taken = sum(pacer.steps(0.007, 1.0, 0.01) for _ in range(1000))
     assert taken == 700 or (taken == 699 and pacer.debt < 0.01 * (1 + 1e-9))
 
 
 def test_a_sleep_that_ended_late_is_made_up_for_up_to_half_a_second() -> None:
-    assert FixedStep().steps(0.4, 1.0, 0.01) == (40, False)
-    assert FixedStep().steps(5.0, 1.0, 0.01) == (50, False)
+    for wall, steps in ((0.4, 40), (5.0, 50)):
+        pacer = FixedStep()
+        assert pacer.steps(wall, 1.0, 0.01) == steps
+        assert not pacer.capped
 
 
 def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
@@ -144,10 +147,10 @@ def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
     for _ in range(100):
         loop.tick(FRAME_INTERVAL)
     assert loop.latest.status.capped
-    assert loop.pacer.debt <= scene.step
+    assert loop.run.pacer.debt <= scene.step
     assert scene.time <= 100 * scene.step * 1.01
     scene.cost = 0.0
-    loop.pacer.cost = 0.0
+    loop.run.pacer.cost = 0.0
     before = scene.time
     loop.tick(FRAME_INTERVAL)
     assert scene.time - before <= 2 * scene.step  # no catching up
@@ -157,8 +160,8 @@ def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
 def test_a_frame_never_solves_longer_than_its_budget_allows(wall: float, frame: float) -> None:
     pacer = FixedStep()
     pacer.learn(10, 0.01)
-    steps, capped = pacer.steps(wall, 8.0, 1e-5)
-    assert capped
+    steps = pacer.steps(wall, 8.0, 1e-5)
+    assert pacer.capped
     assert steps == int(SOLVE_SHARE * frame / 0.001)
 
 
@@ -180,7 +183,7 @@ def test_a_loop_that_rests_takes_no_step_and_publishes_nothing(options: dict[str
         loop.tick(FRAME_INTERVAL)
     assert scene.seen == []
     assert loop.latest is shown
-    assert loop.counts["idle ticks"] == 50
+    assert loop.run.counts["idle ticks"] == 50
 
 
 def test_commands_play_pause_step_and_reset() -> None:
@@ -190,15 +193,15 @@ def test_commands_play_pause_step_and_reset() -> None:
     assert scene.time == pytest.approx(scene.step)
     loop.commands.put(Play())
     loop.tick(FRAME_INTERVAL)
-    assert loop.running
+    assert loop.run.running
     loop.commands.put(TogglePlay())
     loop.tick(FRAME_INTERVAL)
-    assert not loop.running
+    assert not loop.run.running
     loop.commands.put(Play())
     loop.commands.put(Pause())
     loop.commands.put(Reset())
     loop.tick(FRAME_INTERVAL)
-    assert not loop.running
+    assert not loop.run.running
     assert scene.resets == 1
 
 
@@ -209,12 +212,12 @@ def test_what_goes_wrong_pauses_the_run_and_is_said(error: Exception, capsys: py
     good = loop.latest.frame
     scene.fails = error
     loop.tick(FRAME_INTERVAL)
-    assert not loop.running
+    assert not loop.run.running
     assert str(error) in loop.latest.status.halted
     assert loop.latest.frame == good
     loop.commands.put(Reset())
     loop.tick(FRAME_INTERVAL)
-    assert loop.running
+    assert loop.run.running
     assert loop.latest.status.halted == ""
     capsys.readouterr()
 
@@ -231,7 +234,7 @@ def test_parameters_that_the_scene_cannot_take_pause_the_run_and_are_tried_once(
     assert capsys.readouterr().err.count("Traceback") == 1
     loop.commands.put(Reset())
     loop.tick(FRAME_INTERVAL)
-    assert loop.running
+    assert loop.run.running
     assert scene.starts == [values]
 
 
@@ -240,7 +243,7 @@ def test_a_step_that_became_a_thousand_times_as_expensive_does_not_hold_up_the_f
     scene.params, scene.step = Params(speed=8.0), 1e-5
     for _ in range(10):
         loop.tick(FRAME_INTERVAL)
-    assert loop.counts["steps"] > 10_000
+    assert loop.run.counts["steps"] > 10_000
     loop.commands.put(Take(Params(speed=8.0, stiffness=2.0)))
     scene.cost = 1e-4
     before = scene.clock.now
@@ -279,11 +282,11 @@ def test_a_frame_that_cannot_be_shown_pauses_the_run_and_the_last_good_one_stays
         patch.setattr(scene, "frame", fault)
         loop.tick(FRAME_INTERVAL)
     assert loop.latest.frame == good
-    assert not loop.running
+    assert not loop.run.running
     assert "not finite" in loop.latest.status.halted or "division" in loop.latest.status.halted
     loop.commands.put(Reset())
     loop.tick(FRAME_INTERVAL)
-    assert loop.running
+    assert loop.run.running
     capsys.readouterr()
 
 
@@ -298,9 +301,9 @@ def test_a_halt_from_outside_is_said() -> None:
 def test_a_scene_of_fewer_pictures_has_as_much_time_to_solve_in() -> None:
     every, other = FixedStep(), FixedStep()
     every.cost = other.cost = 0.5 * FRAME_INTERVAL * SOLVE_SHARE  # two steps fill a frame
-    assert every.steps(FRAME_INTERVAL, 1.0, FRAME_INTERVAL / 3) == (2, True)
-    assert other.steps(2 * FRAME_INTERVAL, 1.0, FRAME_INTERVAL / 3, 2 * FRAME_INTERVAL) == (4, True)
-    assert other.steps(2 * FRAME_INTERVAL, 1.0, FRAME_INTERVAL / 2, 2 * FRAME_INTERVAL) == (4, False)
+    assert (every.steps(FRAME_INTERVAL, 1.0, FRAME_INTERVAL / 3), every.capped) == (2, True)
+    for step, capped in ((FRAME_INTERVAL / 3, True), (FRAME_INTERVAL / 2, False)):
+        assert (other.steps(2 * FRAME_INTERVAL, 1.0, step, 2 * FRAME_INTERVAL), other.capped) == (4, capped)
 
 
 def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> None:
@@ -308,30 +311,30 @@ def test_whoever_shows_is_told_of_each_new_snapshot_and_of_nothing_else() -> Non
     told = []
     for _ in range(20):
         loop.tick(FRAME_INTERVAL)
-        told.append(loop.fresh.is_set())
-        loop.fresh.clear()
+        told.append(loop.run.snapshots.fresh.is_set())
+        loop.run.snapshots.fresh.clear()
     assert sum(told) == loop.latest.serial - 1
     loop.handle(Pause())
     loop.tick(FRAME_INTERVAL)
-    assert not loop.fresh.is_set()
+    assert not loop.run.snapshots.fresh.is_set()
     loop.commands.put(StepOnce())
     loop.tick(FRAME_INTERVAL)
-    assert loop.fresh.is_set()
+    assert loop.run.snapshots.fresh.is_set()
 
 
 def test_whoever_shows_has_to_look_often_only_where_ticks_take_long() -> None:
     loop, scene = make()
     now, seen, spent = [0.0], [], iter((0.1 * PATIENCE, PATIENCE, 0.1 * PATIENCE))
-    loop.clock = lambda: now[0]
+    loop.clock.now = lambda: now[0]
 
     def advance(steps: int) -> None:
         now[0] += next(spent)
-        seen.append(loop.takes_long)
+        seen.append(loop.clock.takes_long)
 
     scene.advance = advance  # type: ignore[method-assign]
     for _ in range(3):
         loop.tick(FRAME_INTERVAL)
-        seen.append(loop.takes_long)
+        seen.append(loop.clock.takes_long)
     assert seen == [True, False, True, True, True, False]  # within a tick and after it
 
 
@@ -361,7 +364,7 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
     assert sleep.is_alive()
     stop.set()
     sleep.join(10.0)
-    loop.running, serial = False, loop.latest.serial
+    loop.run.running, serial = False, loop.latest.serial
     loop.tick(0.0)
     assert loop.latest.serial == serial + 1
 
@@ -373,7 +376,7 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
 def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time(
     late: float, interval: float, apart: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.server.loop.TIMER_STEP", 0.0)
+    monkeypatch.setattr("app.server.tick_clock.TIMER_STEP", 0.0)
     loop, scene = make(gives_way=True)
     clock, stop, starts = scene.clock, threading.Event(), []
 
@@ -384,8 +387,8 @@ def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time
             stop.set()
 
     loop.wait = sleep  # type: ignore[method-assign]
-    contextvars.copy_context().run(loop.run, stop)
-    assert loop.frame_interval == pytest.approx(interval, rel=1e-3)
+    contextvars.copy_context().run(loop.tick_until, stop)
+    assert loop.clock.frame_interval(scene.frame_interval) == pytest.approx(interval, rel=1e-3)
     assert starts[-1] - starts[-2] == pytest.approx(apart, rel=1e-3)
     assert scene.time == pytest.approx(starts[-2], abs=interval + late + scene.step)
 
@@ -403,7 +406,7 @@ def test_a_coarse_timer_costs_neither_frames_nor_speed(cost: float) -> None:
     clock, stop, shown = CoarseClock(), threading.Event(), []
     scene = Scene(clock, cost)
     loop = SimLoop(scene, clock=clock, effort=clock, sleep=clock.sleep)
-    publish = loop.publish
+    publish = loop.run.snapshots.publish
 
     def count() -> None:
         shown.append(clock.now)
@@ -411,11 +414,11 @@ def test_a_coarse_timer_costs_neither_frames_nor_speed(cost: float) -> None:
             stop.set()
         publish()
 
-    loop.publish = count  # type: ignore[method-assign]
-    contextvars.copy_context().run(loop.run, stop)
+    loop.run.snapshots.publish = count  # type: ignore[method-assign]
+    contextvars.copy_context().run(loop.tick_until, stop)
     assert len(shown) / clock.now == pytest.approx(1.0 / FRAME_INTERVAL, rel=0.02)
     assert scene.time / clock.now == pytest.approx(1.0, abs=0.01)
-    assert not loop.capped
+    assert not loop.run.pacer.capped
 
 
 @pytest.mark.parametrize("seconds", [IDLE_INTERVAL, 4 * FRAME_INTERVAL])
@@ -463,7 +466,7 @@ def test_a_preset_starts_from_exactly_its_record_and_what_is_changed_after_it_fo
     loop.tick(FRAME_INTERVAL)
     assert scene.starts == [preset]
     assert (scene.params.stiffness, scene.changes) == (6.0, 1)
-    assert loop.running
+    assert loop.run.running
     assert loop.latest.status.starts == 1
 
 
@@ -483,7 +486,7 @@ def test_states_are_kept_while_the_run_goes_on_and_gone_on_from_without_a_new_st
     loop.commands.put(Take(Params(stiffness=3.0), state=state))
     loop.tick(0.0)
     assert (scene.time, scene.params.stiffness, scene.resets) == (time, 3.0, 0)
-    assert loop.running
+    assert loop.run.running
     assert loop.latest.status.starts == starts
 
 
@@ -492,7 +495,7 @@ def test_single_steps_are_counted_and_bounded_by_the_frames_budget() -> None:
     for _ in range(5):
         loop.commands.put(StepOnce())
     loop.tick(FRAME_INTERVAL)
-    assert loop.counts["steps"] == 5
+    assert loop.run.counts["steps"] == 5
     scene.cost = SOLVE_SHARE * FRAME_INTERVAL / 3
     for _ in range(20_000):
         loop.commands.put(StepOnce())
@@ -500,16 +503,17 @@ def test_single_steps_are_counted_and_bounded_by_the_frames_budget() -> None:
     loop.tick(FRAME_INTERVAL)
     assert scene.clock.now - before <= FRAME_INTERVAL
     loop.tick(FRAME_INTERVAL)
-    assert loop.counts["steps"] == 5 + 4  # and none is owed
+    assert loop.run.counts["steps"] == 5 + 4  # and none is owed
 
 
 def test_no_plot_row_is_lost_where_nobody_takes_the_snapshots() -> None:
     loop, scene = make()
     scene.take_plot_rows = lambda: ((scene.time, 1.0),)
-    loop.plot_rows.clear()
+    loop.run.snapshots.plot_rows.clear()
     for _ in range(30):
         loop.tick(FRAME_INTERVAL)
-    assert [row[0] for row in loop.plot_rows] == pytest.approx([FRAME_INTERVAL * k for k in range(1, 31)], abs=0.011)
+    times = [row[0] for row in loop.run.snapshots.plot_rows]
+    assert times == pytest.approx([FRAME_INTERVAL * k for k in range(1, 31)], abs=0.011)
 
 
 def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives(capsys: pytest.CaptureFixture) -> None:
@@ -523,7 +527,7 @@ def test_a_scene_that_fails_outside_its_guard_halts_the_run_and_the_thread_lives
         return list(commands)
 
     loop.admit = fail_once
-    thread = threading.Thread(target=loop.run, args=(stop,), daemon=True)
+    thread = threading.Thread(target=loop.tick_until, args=(stop,), daemon=True)
     thread.start()
     stop.wait(0.1)
     assert thread.is_alive()
@@ -543,7 +547,7 @@ def test_what_a_program_waits_for_ends_at_the_whole_step_and_leaves_the_clock_as
             while not answer.done():
                 loop.tick(FRAME_INTERVAL)
             assert answer.result() == scene.time == pytest.approx(1.0)
-            assert loop.running is loop.latest.status.running is not paused
+            assert loop.run.running is loop.latest.status.running is not paused
             assert loop.latest.status.time == scene.time
 
 
@@ -553,7 +557,7 @@ def test_without_an_audience_a_program_does_not_wait_for_the_clock() -> None:
     loop.commands.put(Advance(1.0, answer))
     loop.tick(FRAME_INTERVAL)
     assert loop.scene.time >= 0.5  # 100 steps take 10 ms
-    assert loop.pacer.dropped == 0
+    assert loop.run.pacer.dropped == 0
 
 
 def test_a_program_that_waits_is_told_why_the_time_does_not_come() -> None:
@@ -574,7 +578,7 @@ def test_a_program_that_waits_is_told_why_the_time_does_not_come() -> None:
         loop.tick(FRAME_INTERVAL)
         with pytest.raises(kind, match=words):
             answer.result(0)
-    assert loop.goal is None
+    assert loop.run.goal is None
     scene.fails = DivergenceError("too far")
     loop.handle(Play())
     answer = Future()

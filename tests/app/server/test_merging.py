@@ -147,13 +147,13 @@ class Lane:
     def handled(self, state: tuple[Any, ...], command: Command) -> tuple[Any, ...]:
         """The state after a command; the answers to programs are part of it."""
         loop, scene = self.loop, self.scene
-        scene.state, loop.running, loop.halted, shown, goal, starts, answers = state
-        loop.replay = None if shown is None else Replay(MOMENTS, "it diverged")
-        if loop.replay is not None:
-            loop.replay.number, loop.replay.shown_for = shown
+        scene.state, loop.run.running, loop.run.halted, shown, goal, starts, answers = state
+        loop.run.replay = None if shown is None else Replay(MOMENTS, "it diverged")
+        if loop.run.replay is not None:
+            loop.run.replay.number, loop.run.replay.shown_for = shown
         waiting: Future[float] = Future()
-        loop.goal = None if goal is None else Goal(goal[0], waiting, goal[1])
-        loop.counts["starts"] = starts
+        loop.run.goal = None if goal is None else Goal(goal[0], waiting, goal[1])
+        loop.run.counts["starts"] = starts
         match command:
             case Ask():
                 answers = (*answers, scene.state)
@@ -164,10 +164,10 @@ class Lane:
         if waiting.done():
             answers = (*answers, str(waiting.exception()))
         return (
-            scene.state, loop.running, loop.halted,
-            None if loop.replay is None else (loop.replay.number, loop.replay.shown_for),
-            None if loop.goal is None else (loop.goal.until, loop.goal.was_running),
-            loop.counts["starts"] > 0, answers,
+            scene.state, loop.run.running, loop.run.halted,
+            None if loop.run.replay is None else (loop.run.replay.number, loop.run.replay.shown_for),
+            None if loop.run.goal is None else (loop.run.goal.until, loop.run.goal.was_running),
+            loop.run.counts["starts"] > 0, answers,
         )  # fmt: skip
 
 
@@ -236,7 +236,7 @@ def test_a_rope_is_left_by_merged_commands_as_by_all_in_order(first: int) -> Non
             for command in (*done, StepOnce(20)):
                 loop.handle(command)
             state = loop.scene.state
-            assert not loop.halted
+            assert not loop.run.halted
             ends.append((loop.scene.params, loop.scene.time, state.x, state.v))
         assert ends[0][:2] == ends[1][:2], sequence
         assert np.array_equal(ends[0][2], ends[1][2]), sequence

@@ -21,7 +21,7 @@ def diverged(**changes: object) -> SimLoop:
     loop = SimLoop(RopeScene(check_record(RopeParams, {**PRESETS["Euler explodes"], **changes})))
     for _ in range(1000):
         loop.tick(FRAME_INTERVAL)
-        if loop.replay is not None:
+        if loop.run.replay is not None:
             return loop
     pytest.fail("it did not diverge")
 
@@ -43,15 +43,15 @@ def test_every_moment_is_shown_once_whatever_the_ticks_are() -> None:
 
 def test_the_explosion_is_shown_slowly_up_to_beyond_its_bounds_and_then_said() -> None:
     loop = diverged()
-    assert loop.running
-    assert not loop.halted
-    first, spreads, times = loop.replay, [], []
+    assert loop.run.running
+    assert not loop.run.halted
+    first, spreads, times = loop.run.replay, [], []
     assert len(first.moments) == 60
     ticks = 0
-    while loop.running:
+    while loop.run.running:
         loop.tick(FRAME_INTERVAL)
         ticks += 1
-        assert loop.replay is first
+        assert loop.run.replay is first
         assert loop.latest.status.replayed is not None
         spreads.append(spread(loop))
         times.append(loop.latest.status.time)
@@ -60,51 +60,51 @@ def test_the_explosion_is_shown_slowly_up_to_beyond_its_bounds_and_then_said() -
     assert times[-1] - times[0] == pytest.approx(59 / 60, abs=0.01)
     assert spreads[0] < 3.5
     assert spreads[-1] > loop.scene.max_reach
-    assert "became unstable" in loop.halted
-    assert loop.latest.status.halted == loop.halted
+    assert "became unstable" in loop.run.halted
+    assert loop.latest.status.halted == loop.run.halted
 
 
 def test_a_divergence_within_a_frame_is_shown_step_by_step() -> None:
     loop = diverged(time_step=2e-4, stiffness=3e6, damping=10.0)
-    times = np.diff([moment.time for moment in loop.replay.moments])
+    times = np.diff([moment.time for moment in loop.run.replay.moments])
     assert times[-5:] == pytest.approx(2e-4)
-    low, high = np.array([loop.replay.moment.low, loop.replay.moment.high])
+    low, high = np.array([loop.run.replay.moment.low, loop.run.replay.moment.high])
     assert (low <= high).all()
 
 
 def test_pause_stops_the_replay_and_step_shows_the_next_moment() -> None:
     loop = diverged()
     loop.tick(2 * MOMENT_INTERVAL)
-    number = loop.replay.number
+    number = loop.run.replay.number
     loop.commands.put(Pause())
     for _ in range(20):
         loop.tick(FRAME_INTERVAL)
-    assert loop.replay.number == number
+    assert loop.run.replay.number == number
     loop.commands.put(StepOnce())
     loop.tick(FRAME_INTERVAL)
-    assert loop.replay.number == number + 1
+    assert loop.run.replay.number == number + 1
     loop.commands.put(Play())
     loop.tick(MOMENT_INTERVAL)
-    assert loop.replay.number == number + 2
+    assert loop.run.replay.number == number + 2
 
 
 def test_a_reset_ends_the_replay_and_other_forces_halt_at_the_last_good_state() -> None:
     loop = diverged()
     loop.commands.put(Reset())
     loop.tick(FRAME_INTERVAL)
-    assert loop.replay is None
+    assert loop.run.replay is None
     assert loop.latest.status.replayed is None
-    assert loop.running
+    assert loop.run.running
     loop = diverged()
     params = check_record(RopeParams, {**PRESETS["Euler explodes"], "stiffness": 10.0})
     loop.commands.put(Take(params))
     loop.tick(FRAME_INTERVAL)
-    assert loop.replay is None
-    assert "became unstable" in loop.halted
+    assert loop.run.replay is None
+    assert "became unstable" in loop.run.halted
     loop.commands.put(Play())
     for _ in range(20):
         loop.tick(FRAME_INTERVAL)
-    assert loop.running
+    assert loop.run.running
 
 
 def test_a_step_by_hand_that_diverges_halts_at_once() -> None:
@@ -112,10 +112,10 @@ def test_a_step_by_hand_that_diverges_halts_at_once() -> None:
     for _ in range(400):
         loop.commands.put(StepOnce())
         loop.tick(FRAME_INTERVAL)
-        if loop.halted:
+        if loop.run.halted:
             break
-    assert "became unstable" in loop.halted
-    assert loop.replay is None
+    assert "became unstable" in loop.run.halted
+    assert loop.run.replay is None
 
 
 class Client:

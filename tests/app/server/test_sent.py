@@ -80,12 +80,12 @@ def test_closed_charts_are_not_drawn(still: Any):
     plots.sent_at = -1e9
     plots.update(still.loop.latest, [])
     assert plots.drawn == drawn
-    still.loop.plot_rows.clear()
+    still.loop.run.snapshots.plot_rows.clear()
     scene.params = type(scene.params)(plot_tip=True)
     for _ in range(3):
         scene.advance(3)
-    snapshot: Snapshot = still.loop.snapshot()
-    rows = list(still.loop.plot_rows)
+    snapshot: Snapshot = still.loop.run.snapshots.snapshot()
+    rows = list(still.loop.run.snapshots.plot_rows)
     assert len(rows) >= 2
     for new in (rows, []):  # the second time there is nothing new
         plots.sent_at = -1e9

@@ -60,7 +60,7 @@ def test_loops_of_other_steps_and_frame_rates_keep_the_same_time():
     assert min(group.times) == pytest.approx(3.0, abs=0.12)  # and keep pace with the wall clock
     group.loops[1].commands.put(Pause())
     group.run(0.2)
-    assert not any(loop.running for loop in group.loops)
+    assert not any(loop.run.running for loop in group.loops)
     assert group.spread() < max(STEPS)
     assert all(group.clock.time - time < step + 1e-9 for time, step in zip(group.times, STEPS, strict=True))
 
@@ -68,15 +68,15 @@ def test_loops_of_other_steps_and_frame_rates_keep_the_same_time():
 def test_where_one_cannot_keep_up_all_slow_down_and_no_step_is_lost():
     group = of_steps(1 / 240, 1 / 60)
     slow = group.loops[0]
-    slow.pacer.learn = lambda steps, seconds: None  # type: ignore[method-assign]
-    slow.cost_unknown = False
-    slow.pacer.cost = FRAME_INTERVAL / 2  # a frame takes one of its steps, of four that are due
+    slow.run.pacer.learn = lambda steps, seconds: None  # type: ignore[method-assign]
+    slow.run.pacer.cost_unknown = False
+    slow.run.pacer.cost = FRAME_INTERVAL / 2  # a frame takes one of its steps, of four that are due
     group.run(2.0)
     assert group.times[1] == pytest.approx(0.5, abs=0.1)
     assert group.spread() < LEAD + 2 / 60
-    assert slow.pacer.dropped == 0
-    assert slow.capped
-    assert slow.scene.time == pytest.approx(slow.counts["steps"] / 240)
+    assert slow.run.pacer.dropped == 0
+    assert slow.run.pacer.capped
+    assert slow.scene.time == pytest.approx(slow.run.counts["steps"] / 240)
 
 
 def test_a_browser_that_is_missing_stops_the_clock_for_all():
@@ -84,7 +84,7 @@ def test_a_browser_that_is_missing_stops_the_clock_for_all():
     group.run(0.5)
     before = group.times
     for loop in group.loops:
-        loop.audience = lambda: 0
+        loop.run.audience = lambda: 0
     group.run(0.5)
     assert group.times == before
 
@@ -94,7 +94,7 @@ def test_play_pause_step_and_reset_of_one_act_on_all():
     group.run(0.5)
     group.loops[2].commands.put(TogglePlay())
     group.run(0.1)
-    assert not any(loop.running for loop in group.loops)
+    assert not any(loop.run.running for loop in group.loops)
     before = group.times
     group.loops[1].commands.put(StepOnce(3))
     group.run(0.1)
@@ -134,14 +134,14 @@ def test_a_change_that_begins_one_run_again_begins_all():
 def test_a_run_that_diverges_stops_all_and_a_reset_lets_all_go_on():
     group = Group(rope(integrator="explicit_euler", time_step=1 / 60, stiffness=1e5), rope(integrator="rk4"))
     group.run(20.0)
-    assert group.loops[0].halted
-    assert not group.loops[0].running
-    assert not group.loops[1].running
+    assert group.loops[0].run.halted
+    assert not group.loops[0].run.running
+    assert not group.loops[1].run.running
     assert group.spread() < LEAD + 2 / 60
     group.loops[1].commands.put(Reset())
     group.run(0.1)
-    assert group.loops[1].running
-    assert not group.loops[0].halted
+    assert group.loops[1].run.running
+    assert not group.loops[0].run.halted
 
 
 def test_a_run_that_goes_on_from_an_earlier_moment_advances_as_the_others_do():

@@ -36,21 +36,21 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
         assert loop.latest.frame.reference is None
         (folder / "rope.py").write_text(RIGHT)
         wait_for(lambda: loop.latest.frame.reference is not None)
-        assert loop.counts["starts"] == 1  # both ropes began again
+        assert loop.run.counts["starts"] == 1  # both ropes began again
         (folder / "rope.py").write_text(RIGHT.replace("    r = np", "    while True: pass\n    r = np"))
         wait_for(lambda: session.state.version == 3)
-        ticks, started = loop.counts["ticks"], time.monotonic()
+        ticks, started = loop.run.counts["ticks"], time.monotonic()
         wait_for(lambda: session.state.error is not None)
         waited = time.monotonic() - started
         assert session.state.error is not None
         assert session.state.error.kind == "endless"
-        assert loop.counts["ticks"] - ticks > 3 * waited  # the loop of the scene goes on meanwhile
-        assert not loop.halted
+        assert loop.run.counts["ticks"] - ticks > 3 * waited  # the loop of the scene goes on meanwhile
+        assert not loop.run.halted
         assert loop.latest.frame.reference is not None
         viewer.make_scene(scene_named("race"), RaceParams(), viewer.commands.put)  # which runs nothing of the student's
         (folder / "rope.py").write_text(RIGHT + "\n# once more\n")
         wait_for(lambda: taken(session) == 4)
-        assert loop.counts["starts"] == 1
+        assert loop.run.counts["starts"] == 1
     finally:
         viewer.shut()
         session.close()

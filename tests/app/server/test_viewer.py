@@ -28,8 +28,8 @@ def test_a_picture_that_cannot_be_drawn_halts_the_run_once_and_the_threads_live(
 
     monkeypatch.setattr(lab.view, "show", fail)
     lab.commands.put(StepOnce())
-    wait_for(lambda: lab.loop.halted)
-    assert lab.loop.halted == "The picture could not be drawn, ValueError: no such colour"
+    wait_for(lambda: lab.loop.run.halted)
+    assert lab.loop.run.halted == "The picture could not be drawn, ValueError: no such colour"
     wait_for(lambda: lab.served.shown == lab.loop.latest.serial)
     assert all(thread.is_alive() for thread in lab.served.threads)
     assert capsys.readouterr().err.count("Traceback") == 1
@@ -81,8 +81,8 @@ def test_a_browser_that_goes_lets_go_of_what_it_held_and_of_nothing_else(lab: Vi
     lab.commands.put(GrabTo(5, (0.0, 0.0, 2.0), client=1))
     wait_for(lambda: scene.handles.grab.grabbed is not None)
     coroutines.run(lab.release(Client(2)))  # type: ignore[arg-type]
-    ticks = lab.loop.counts["ticks"]
-    wait_for(lambda: lab.loop.counts["ticks"] > ticks + 3)
+    ticks = lab.loop.run.counts["ticks"]
+    wait_for(lambda: lab.loop.run.counts["ticks"] > ticks + 3)
     assert scene.handles.grab.grabbed is not None
     coroutines.run(lab.release(Client(1)))  # type: ignore[arg-type]
     wait_for(lambda: scene.handles.grab.grabbed is None)
@@ -145,23 +145,23 @@ def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_
     panel = lab.panel
     assert panel.params == wrong
     assert panel.controls["stiffness"].field.value == "1234"
-    wait_for(lambda: lab.loop.halted)
+    wait_for(lambda: lab.loop.run.halted)
     said = "The scene cannot begin with these values. stiffness: 1234 is not allowed; allowed: another one"
     for command in (Play(), TogglePlay(), StepOnce(), GrabTo(3, (0.0, 0.0, 0.0)), Reset()):
         lab.commands.put(command)
         wait_for(lambda: lab.commands.empty() and not lab.loop.waiting)
-        assert lab.loop.halted == said
-        assert not lab.loop.running
+        assert lab.loop.run.halted == said
+        assert not lab.loop.run.running
     wait_for(lambda: said in panel.head.status.content)
     assert lab.loop.latest.status.unmade
     assert not panel.head.remedy.button.visible  # a shorter step does not help
     panel.set("damping", 3.0)  # which alone would let the motion go on
     wait_for(lambda: lab.scene.params.damping == 3.0)
-    assert lab.loop.halted == said
+    assert lab.loop.run.halted == said
     panel.set("stiffness", 500.0)
-    wait_for(lambda: lab.loop.running and len(lab.loop.latest.frame.points) == 5)
+    wait_for(lambda: lab.loop.run.running and len(lab.loop.latest.frame.points) == 5)
     assert lab.loop.latest.status.time < 5.0
-    assert (lab.scene.params.stiffness, lab.loop.halted) == (500.0, "")
+    assert (lab.scene.params.stiffness, lab.loop.run.halted) == (500.0, "")
     assert "Traceback" not in capsys.readouterr().err
 
 
@@ -188,7 +188,7 @@ def test_of_several_scenes_asked_for_only_the_last_is_opened(lab: Viewer, monkey
 def test_ending_does_not_wait_for_a_long_solve(monkeypatch: pytest.MonkeyPatch) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("rope")
-    viewer.loop.audience = lambda: 1
+    viewer.loop.run.audience = lambda: 1
     solving, ended = threading.Event(), threading.Event()
     monkeypatch.setattr(viewer.scene, "advance", lambda steps: (solving.set(), ended.wait(10.0)))
     assert solving.wait(10.0)
@@ -254,7 +254,7 @@ def test_the_first_scene_covers_the_page_until_it_is_compiled(monkeypatch: pytes
 
 def test_plot_rows_of_snapshots_that_were_never_shown_reach_the_charts(lab: Viewer) -> None:
     lab.served.stop_threads()
-    lab.loop.audience = lambda: 1
+    lab.loop.run.audience = lambda: 1
     lab.panel.set("plot_tip", True)
     for _ in range(30):
         lab.loop.tick(1 / 60)
@@ -271,7 +271,7 @@ def test_plot_rows_of_snapshots_that_were_never_shown_reach_the_charts(lab: View
 def test_a_long_solve_is_said_in_the_status(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     said = threading.Event()
     monkeypatch.setattr(lab.scene, "advance", lambda steps: said.wait(30.0))
-    lab.loop.audience = lambda: 1
+    lab.loop.run.audience = lambda: 1
     wait_for(lambda: "This step has taken" in lab.panel.head.status.content)
     said.set()
 
@@ -279,7 +279,7 @@ def test_a_long_solve_is_said_in_the_status(lab: Viewer, monkeypatch: pytest.Mon
 @pytest.mark.parametrize("count", [100, pytest.param(1000, marks=pytest.mark.stress)])
 def test_presets_under_load_each_start_on_exactly_their_own_record(lab: Viewer, count: int) -> None:
     """Presets and sliders at once, as fast as they can be put, while the simulation runs."""
-    lab.loop.audience = lambda: 1
+    lab.loop.run.audience = lambda: 1
     starts: list[Any] = []
     scene: Any = lab.scene
     reset = scene.reset

@@ -8,8 +8,8 @@ from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, i
 from app.scenes.measured_sea import measured_text
 from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
-from app.scenes.square_sea.live_values import spectrum_conditions
 from app.scenes.square_sea.parameters import SquareSeaParams, gravity, marches, solved_points
+from app.scenes.square_sea.quantities import spectrum_conditions
 from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from app.scenes.quantities import measured
 from app.scenes.radial_sea.bodies import LINE_REACH
-from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams
 from app.scenes.radial_sea.report import forces_html
-from app.scenes.radial_sea.scene import RadialSeaScene
+from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
 from app.scenes.radial_sea.well_blowout import JetTotal
 from app.server.loop import SimLoop
 from sim.floating import equilibrium_draft, submerged
@@ -146,7 +146,7 @@ def test_weights_and_forces_are_on_screen_and_in_sweeps() -> None:
     box = loop.latest.readings.bodies[2]
     for shown in (f"{box.mass:,.0f}", "wet in oil", "in water", "mean upward force"):
         assert shown.replace(",", "") in text.replace("\u202f", "").replace(",", ""), shown
-    found = measures(loop.scene)
+    found = measured(SCENE, loop.scene)
     assert found["box_mass"].value == pytest.approx(box.density * box.volume)
     assert found["box_wet_volume_below"].value == box.wet_volume[1] != box.wet_volume[0]
     loop = SimLoop(scene_with(**CALM))

@@ -7,7 +7,7 @@ import pytest
 
 from app.scenes.quantities import measured
 from app.scenes.radial_sea.bodies import LINE_REACH
-from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams
+from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, weathered_oil
 from app.scenes.radial_sea.report import forces_html
 from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
 from app.scenes.radial_sea.well_blowout import JetTotal
@@ -149,6 +149,12 @@ def test_weights_and_forces_are_on_screen_and_in_sweeps() -> None:
     found = measured(SCENE, loop.scene)
     assert found["box_mass"].value == pytest.approx(box.density * box.volume)
     assert found["box_wet_volume_below"].value == box.wet_volume[1] != box.wet_volume[0]
+    spill = weathered_oil(loop.scene.params)
+    for name, value in {
+        "evaporated": spill.evaporated, "dispersed": spill.dispersed, "water_content": spill.water_content,
+        "slick_area": spill.area,
+    }.items():  # fmt: skip
+        assert found[name].value == value
     loop = SimLoop(scene_with(**CALM))
     loop.tick(0.1)
     text = forces_html(loop.latest.readings)

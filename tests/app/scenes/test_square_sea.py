@@ -13,6 +13,7 @@ from app.scenes.square_sea import scene as square_sea
 from app.scenes.square_sea.parameters import PRESETS, SquareSeaParams, conditions, rain_settings
 from app.scenes.square_sea.rainfall import RING_STEEPNESS, SeaRain
 from app.scenes.square_sea.scene import SCENE, SquareSeaScene
+from app.scenes.square_sea.statistics import theory
 from app.server.loop import SimLoop
 from sim.ocean import Sea
 from sim.ocean.foam import pace, whitecaps
@@ -428,3 +429,9 @@ def test_a_sweep_records_the_highest_crest_and_the_waves_about_the_peak():
     length = 9.81 * found["expected_period"] ** 2 / (2.0 * math.pi)  # of deep water
     assert found["wave_length"] == pytest.approx(length, rel=0.1)
     assert found["wave_speed"] == pytest.approx(found["wave_length"] / found["expected_period"], rel=1e-9)
+    stated = theory(scene.sea, scene.time, scene.params)
+    expected = {
+        "expected_height": stated.statistics.significant_height, "expected_slope": stated.statistics.mean_square_slope,
+        "height_scatter": stated.scatter, "endless_height": stated.whole,
+    }  # fmt: skip
+    assert {name: found[name] for name in expected} == expected

@@ -3,7 +3,7 @@
 numba does not notice an edit in a *callee's* file, so the cache folder of a module's kernels is named by a hash of the
 code of the module and of all modules of ours that it imports: an edit in one of them makes a new folder, an edit of
 comments and docstrings does not. Kernels are looked for in the user's folder, then in those of `sim/cache.py` that are
-only read. What is in none of them is compiled into the user's folder; if that is not writable, at each start.
+only read. A kernel that none of them has is compiled into the user's folder, or at each start if that is not writable.
 """
 
 import atexit

@@ -1,7 +1,9 @@
-"""A function fits a screen or two, a class has one job, and a name of a class means one class."""
+"""A function fits a screen or two, a class has one job, and a name means one class, or one thing of a package."""
 
 import ast
+import importlib
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parent.parent
 MAX_FUNCTION, MAX_CLASS = 80, 300  # lines
@@ -15,6 +17,8 @@ MANY_ATTRIBUTES = {
     "RadialSea", "RadialSeaView", "RopeView", "SceneRun", "Sea", "SimLoop", "Snapshots", "SquareSeaScene",
     "StudentCloth", "Viewer",
 }  # fmt: skip
+# Names that two packages of the library offer for different things. An entry goes as soon as they are one.
+NAMES_OF_TWO = {"critical_step": {"sim.mooring", "sim.springs"}, "simulate": {"sim.mooring", "sim.springs"}}
 
 
 def classes_below(*tops: str) -> list[tuple[Path, ast.ClassDef]]:
@@ -46,6 +50,18 @@ def test_a_name_of_a_class_means_one_class() -> None:
     for path, node in classes_below("app", "sim"):
         places.setdefault(node.name, []).append(f"{path.relative_to(ROOT).as_posix()}:{node.lineno}")
     assert {name: where for name, where in places.items() if len(where) > 1} == {}
+
+
+def test_a_name_that_packages_of_the_library_offer_means_one_thing() -> None:
+    """Two packages may offer one thing, but no two things under one name."""
+    offers: dict[str, list[tuple[str, Any]]] = {}
+    for path in sorted((ROOT / "sim").rglob("__init__.py")):
+        package = importlib.import_module(".".join(path.relative_to(ROOT).parent.parts))
+        for name in getattr(package, "__all__", ()):
+            offers.setdefault(name, []).append((package.__name__, getattr(package, name)))
+    assert {"rope", "Sea", "float_in", "moored", "INTEGRATORS"} <= offers.keys()
+    of_two = {name: found for name, found in offers.items() if any(one is not found[0][1] for _, one in found)}
+    assert {name: {package for package, _ in found} for name, found in of_two.items()} == NAMES_OF_TWO
 
 
 def test_none_is_longer_but_those_that_are_known() -> None:

@@ -16,7 +16,7 @@ from app.experiments.tables import MARKERS
 from app.scenes.charts import PALETTE
 from sim.ocean import Sea
 from sim.ocean.query import sample
-from sim.ocean.wave_sum import add_waves
+from sim.ocean.wave_sum import Bands, VertexSums, add_waves, wave_rows
 
 LENGTH = 500.0  # [m] of the tile
 T = 5.0  # [s]
@@ -88,21 +88,17 @@ def by_sum(sea: Sea, count: int) -> Callable[[], np.ndarray]:
     order = np.argsort(-np.abs(h0), axis=None)[:count]
     i, j = np.unravel_index(order, h0.shape)
     kx, ky, h = sea.k[i], sea.k[j], h0[i, j]
-    a, k = 2.0 * np.abs(h), np.hypot(sea.k[i], sea.k[j])
     turns = (np.angle(h) - sea.frequencies[i, j] * T) / (2.0 * np.pi)
-    ex, ey = kx / k, ky / k
-    wave = np.column_stack([
-        kx / (2.0 * np.pi), ky / (2.0 * np.pi), turns - np.rint(turns), a, -ex * a, -ey * a, -kx * a, -ky * a,
-        -ex * kx * a, -ey * ky * a, -ex * ky * a,
-    ]).astype(np.float32).reshape(-1)  # fmt: skip
+    waves = wave_rows(kx, ky, turns, 2.0 * np.abs(h), 1.0, count)
     x = np.arange(COMPARED_SIDE) * LENGTH / COMPARED_SIDE
     X, Y = (grid.astype(np.float32).ravel() for grid in np.meshgrid(x, x, indexing="ij"))
     start, active = np.array([0, X.size], np.uint64), np.array([count], np.uint64)
-    weight, sums = np.ones(count, np.float32), np.zeros((8, X.size), np.float32)
+    bands = Bands(X, Y, start, active, np.ones((1, count), np.float32))
+    sums = np.zeros((8, X.size), np.float32)
 
     def run() -> np.ndarray:
         sums[...] = 0.0
-        add_waves(X, Y, start, active, weight, np.uint64(count), wave, *(sums[m] for m in range(8)))
+        add_waves(bands, waves, VertexSums(*sums))
         return sums[0].reshape(COMPARED_SIDE, COMPARED_SIDE)
 
     return run

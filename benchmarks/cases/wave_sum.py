@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.native.build import build
 from benchmarks.timing import median_times
-from sim.ocean.wave_sum import add_waves
+from sim.ocean.wave_sum import WAVE, Bands, VertexSums, add_waves
 
 WAVES, RINGS, SPOKES = 64, 128, 128
 
@@ -24,14 +24,14 @@ def bare_row(repeats: int) -> dict[str, Any]:
     x, y = random.uniform(-50.0, 50.0, (2, n)).astype(np.float32)
     wave = random.uniform(-0.1, 0.1, (WAVES, 11)).astype(np.float32)
     start = (np.arange(RINGS + 1) * block).astype(np.uint64)
-    active, weight = np.full(RINGS, WAVES, np.uint64), np.ones(RINGS * WAVES, np.float32)
+    bands = Bands(x, y, start, np.full(RINGS, WAVES, np.uint64), np.ones((RINGS, WAVES), np.float32))
     ours, theirs = np.zeros((8, n), np.float32), np.zeros((8, n), np.float32)
-    sums = [ours[i] for i in range(8)]
+    waves, sums = wave.view(WAVE).reshape(-1), VertexSums(*ours)
     library = build("radial")
     pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (x, y, wave, theirs)]
 
     def numba() -> None:
-        add_waves(x, y, start, active, weight, np.uint64(WAVES), wave.reshape(-1), *sums)
+        add_waves(bands, waves, sums)
 
     def c() -> None:
         if library is not None:

@@ -16,7 +16,7 @@ import numpy as np
 from sim.floating.body import Body, Fleet
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers
 from sim.floating.hydrodynamics import DIRECTIONS, afloat
-from sim.floating.rigid import heading_of
+from sim.floating.rotation import axes_of, four, heading_angle, heading_of
 from sim.interruption import raise_if_stopped
 from sim.jit import kernel
 from sim.ocean.gerstner import widened
@@ -103,8 +103,8 @@ class WaveExcitation:
         """Raises ValueError for a hull with coefficients of one heading, in waves of another."""
         bearing = np.arctan2(ky, kx)[amplitude > 0.0]
         for b, q in enumerate(self.kind):
-            heading, (c, s) = self.kinds[q].heading, heading_of(fleet.rotation, b)
-            away = np.abs(np.angle(np.exp(1j * (bearing - math.atan2(s, c) - heading))))
+            heading = self.kinds[q].heading
+            away = np.abs(np.angle(np.exp(1j * (bearing - heading_angle(fleet.rotation[b]) - heading))))
             if (away > HEADING_TOLERANCE).any():  # False for nan: all headings
                 given = (
                     f"a hull with a dataset of {heading:.4g} rad only, in waves up to {away.max():.3g} rad from that"
@@ -135,7 +135,7 @@ def set_responses(
     spacing = 2.0 * math.pi / count
     D = np.empty(6, np.complex128)
     for b in range(kind.size):
-        c, s = heading_of(rotation, b)
+        c, s = heading_of(axes_of(four(rotation, b)))
         yaw = 0.0 if is_round[kind[b]] else math.atan2(s, c)
         turned = yaw - heading[b]
         if abs(math.atan2(math.sin(turned), math.cos(turned))) < HEADING_TOLERANCE and np.isfinite(heading[b]):

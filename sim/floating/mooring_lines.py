@@ -1,8 +1,8 @@
 """Four elastic lines a body, for many bodies at once: ropes as heavy as water, straight while taut, without a state.
 
-T = EA (l/L - 1) while taut, 0 while slack: the catenary (Jonkman 2007) of a line without weight. Lines that are just
-taut at rest do not pull there, and one of each opposite two pulls elsewhere. So a body is held by K = EA/L cos^2 of
-their slope, alike in all level directions. Mass and drag of the lines are left out.
+T = EA (l/L - 1) while taut, 0 while slack: a link that only pulls, and no catenary, as nothing bends it. Lines that are
+just taut at rest do not pull there, and one of each opposite two pulls elsewhere. So a body is held by
+K = EA/L cos^2 of their slope, alike in all level directions. Mass and drag of the lines are left out.
 """
 
 import math
@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.floating.rotation import body_z_axes
+from sim.floating.rigid import set_six
+from sim.floating.rotation import axes_of, body_z_axes, cross, dot, four, plus, scaled, three
 from sim.jit import kernel
 
 Array = NDArray[np.float64]
@@ -46,20 +47,14 @@ def fairleads(lines: MooringLines, position: Array, rotation: Array) -> Array:
 def set_pulls(lines, position, rotation, force, tension):
     """Set force (n, 6) [N, N m] and tension (n, 4) [N]: see `pulls`."""
     for i in range(position.shape[0]):
-        w, x, y, z = rotation[i, 0], rotation[i, 1], rotation[i, 2], rotation[i, 3]
-        lever = lines.fairlead[i]  # [m] along the z axis of the body, (a, b, c) in the world
-        a, b, c = lever * 2.0 * (x * z + w * y), lever * 2.0 * (y * z - w * x), lever * (1.0 - 2.0 * (x * x + y * y))
-        fx, fy, fz = 0.0, 0.0, 0.0
+        arm = scaled(lines.fairlead[i], axes_of(four(rotation, i))[2])
+        fairlead, pull = plus(three(position, i), 1.0, arm), (0.0, 0.0, 0.0)
         for k in range(lines.length.shape[1]):
-            dx = lines.anchors[i, k, 0] - position[i, 0] - a
-            dy = lines.anchors[i, k, 1] - position[i, 1] - b
-            dz = lines.anchors[i, k, 2] - position[i, 2] - c
-            distance = math.sqrt(dx * dx + dy * dy + dz * dz)
+            way = plus(three(lines.anchors[i], k), -1.0, fairlead)
+            distance = math.sqrt(dot(way, way))
             tension[i, k] = lines.stiffness[i] * max(distance / lines.length[i, k] - 1.0, 0.0)
-            share = tension[i, k] / distance
-            fx, fy, fz = fx + share * dx, fy + share * dy, fz + share * dz
-        force[i, 0], force[i, 1], force[i, 2] = fx, fy, fz
-        force[i, 3], force[i, 4], force[i, 5] = b * fz - c * fy, c * fx - a * fz, a * fy - b * fx
+            pull = plus(pull, tension[i, k] / distance, way)
+        set_six(force[i], pull, cross(arm, pull))
 
 
 def pulls(lines: MooringLines, position: Array, rotation: Array) -> tuple[Array, Array]:

@@ -48,13 +48,27 @@ from sim.floating.fluid_state import FluidState
 from sim.floating.hydrostatics import add_pressure
 from sim.floating.rigid import (
     add_pull,
-    after_drag,
+    angular_part,
     drift,
     factorise,
-    heading_of,
-    make_scratch,
-    set_rotation,
+    linear_part,
+    set_six,
     solve_factorised,
+)
+from sim.floating.rotation import (
+    columns,
+    dot,
+    from_heading,
+    heading_of,
+    plus,
+    scaled,
+    set_three,
+    squares,
+    three,
+    to_heading,
+    turn,
+    turn_back,
+    turn_matrix,
 )
 from sim.jit import kernel
 from sim.validation import argument_error, check_kind, check_positive, check_within, is_whole_number
@@ -64,6 +78,7 @@ from sim.validation import argument_error, check_kind, check_positive, check_wit
 MAX_PHASE = 0.4  # of omega h in a substep: periods are within 0.7 %, and waves may add to gravity
 ENTRY_SHARE = 0.5  # of the area wet at rest, up to which a hull that gets wetter counts as entering the water
 MAX_SUBSTEPS = 512  # of a body in one call of `step`
+WORLD = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))  # its axes
 
 
 class MotionCoefficients(NamedTuple):
@@ -161,23 +176,56 @@ def step(
     return collide(fleet, float(coefficients.restitution))
 
 
+class Scratch(NamedTuple):
+    """Arrays that the kernels of one body write before they read them; allocated once for all bodies."""
+
+    mass: np.ndarray  # (6, 6) [kg, kg m, kg m2] of the solid with added mass, in the axes of the heading
+    factor: np.ndarray  # (6, 6) lower Cholesky factor of it
+    wet: np.ndarray  # (6,) wet fraction of the body for each motion: 1 as at rest, 0 in air
+    felt: np.ndarray  # (6,) factor on the force of waves: `wet`, less if the body is below the surface
+    made: np.ndarray  # (6,) its root: factor on the velocity that makes waves, and on their force on the body
+    V: np.ndarray  # (6,) [m/s, rad/s] velocities, in the axes of the heading
+    U: np.ndarray  # (6,) [m/s, rad/s] those of the fluid, which does not rotate
+    load: np.ndarray  # (6,) [N, N m] of all forces, and what they change
+    substep: np.ndarray  # (s,) [s] for which decay and gain hold, of each linear hull
+    decay: np.ndarray  # (s, p) complex: what a substep leaves of the memory
+    gain: np.ndarray  # (s, p) [s] complex: what a substep adds of a unit velocity
+    pressure: np.ndarray  # (9,) [kg, kg m, kg/m] sums of `add_pressure`, along the axes of the body
+    depth: np.ndarray  # (2, v) [m] of the vertices of all hulls below the surface and below the interface
+
+
+@kernel
+def make_scratch(hulls, poles, vertices):
+    """Arrays for the kernels of one body, of so many linear hulls with so many poles; all but substep uninitialised."""
+    return Scratch(
+        np.empty((6, 6)), np.empty((6, 6)), np.empty(6), np.empty(6), np.empty(6), np.empty(6), np.empty(6),
+        np.empty(6), np.zeros(hulls), np.empty((hulls, poles), np.complex128), np.empty((hulls, poles), np.complex128),
+        np.empty(9), np.empty((2, vertices)),
+    )  # fmt: skip
+
+
+class Pose(NamedTuple):
+    """The axes in which the forces on a body are; a sphere has those of the world."""
+
+    axes: tuple  # of the body, in the world
+    heading: tuple  # its cosine and sine
+    own: tuple  # the axes of the body, in those of the heading
+    pulled: tuple  # (3) [m] the pulled point, in the axes of the heading
+
+
 @kernel
 def advance(fleet, water, coefficients, counts, duration):
     """Advance every body by `duration` [s] on its own, each in as many substeps as counts (n,) says."""
-    depth = np.empty((2, fleet.hulls.x.shape[1]))
-    scratch = make_scratch(fleet.linear.poles.shape[0], fleet.memory.shape[1])
+    scratch = make_scratch(fleet.linear.poles.shape[0], fleet.memory.shape[1], fleet.hulls.x.shape[1])
     for i in range(fleet.mass.size):
         h = duration / counts[i]
         set_memory_step(fleet, i, h, coefficients.gravity, scratch)
         fleet.lift[i] = 0.0
         for s in range(counts[i]):
-            set_rotation(fleet.rotation, i, scratch.R)
-            drift(fleet, i, h / 2.0, scratch)
-            set_axes(fleet, i, scratch)
-            set_load(fleet, water, i, (s + 0.5) * h, coefficients.gravity, depth, scratch)
-            kick(fleet, water, coefficients, i, h, 1.0 / counts[i], scratch)
-            set_rotation(fleet.rotation, i, scratch.R)
-            drift(fleet, i, h / 2.0, scratch)
+            pose = pose_of(fleet, i, drift(fleet, i, h / 2.0))
+            top = set_pressure(fleet, water, i, pose.axes, (s + 0.5) * h, scratch)
+            kick(fleet, water, coefficients, i, pose, top, h, 1.0 / counts[i], scratch)
+            drift(fleet, i, h / 2.0)
 
 
 @kernel(inline=True)
@@ -194,43 +242,29 @@ def set_memory_step(fleet, i, h, gravity, scratch):
 
 
 @kernel(inline=True)
-def set_axes(fleet, i, scratch):
-    """Set the axes of body i: R from its own to the world, T from its own to its heading's, H from those to the world.
-
-    A sphere has the axes of the world.
-    """
-    R, T, H, p = scratch.R, scratch.T, scratch.H, fleet.pull_point[i]
-    for c in range(3):
-        scratch.pull_point[c] = R[c, 0] * p[0] + R[c, 1] * p[1] + R[c, 2] * p[2]
-    cosine, sine = 1.0, 0.0
+def pose_of(fleet, i, axes):
+    """The pose of body i with these axes."""
+    pulled = turn(axes, three(fleet.pull_point, i))
+    heading = (1.0, 0.0)
     if fleet.hulls.is_round[fleet.hull[i]]:
-        for c in range(3):
-            for d in range(3):
-                R[c, d] = 1.0 if c == d else 0.0
+        axes = WORLD
     else:
-        cosine, sine = heading_of(fleet.rotation, i)
-    for c in range(3):
-        T[0, c] = cosine * R[0, c] + sine * R[1, c]
-        T[1, c] = cosine * R[1, c] - sine * R[0, c]
-        T[2, c] = R[2, c]
-        for d in range(3):
-            H[c, d] = 0.0
-    H[0, 0], H[0, 1], H[1, 0], H[1, 1], H[2, 2] = cosine, -sine, sine, cosine, 1.0
-    x, y = scratch.pull_point[0], scratch.pull_point[1]
-    scratch.pull_point[0], scratch.pull_point[1] = cosine * x + sine * y, cosine * y - sine * x
+        heading = heading_of(axes)
+    a, b, c = axes
+    own = to_heading(heading, a), to_heading(heading, b), to_heading(heading, c)
+    return Pose(axes, heading, own, to_heading(heading, pulled))
 
 
 @kernel(inline=True)
-def set_load(fleet, water, i, t, gravity, depth, scratch):
-    """Set force and moment (3,) of the fluids' pressure on body i, in the axes of its heading, and wetted (3,).
+def set_pressure(fleet, water, i, axes, t, scratch):
+    """Set the integrals of `add_pressure` over the wet hull of body i, times density.
 
-    t [s] is the time since the step began: the surface rises meanwhile as the fluid does. depth (2, n) is scratch.
+    t [s] is the time since the step began: the surface rises meanwhile as the fluid does. Returns the height [m] of the
+    surface above the body's centre.
     """
-    hulls, q, R, pressure = fleet.hulls, fleet.hull[i], scratch.R, scratch.pressure
+    hulls, q, pressure, depth = fleet.hulls, fleet.hull[i], scratch.pressure, scratch.depth
     first, last = hulls.vertex_start[q], hulls.vertex_start[q + 1]
     first_face, last_face = hulls.face_start[q], hulls.face_start[q + 1]
-    for e in range(3):
-        scratch.force[e] = scratch.moment[e] = scratch.wetted[e] = 0.0
     for e in range(pressure.shape[0]):
         pressure[e] = 0.0
     fleet.wet_volume[i] = 0.0
@@ -238,24 +272,23 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
     sx, sy = water.slope[i, 0], water.slope[i, 1]
     # kinematic condition at the surface: d eta/dt = w - u . slope
     rise = water.velocity[i, 2] - water.velocity[i, 0] * sx - water.velocity[i, 1] * sy
-    top = water.height[i] + sx * dx + sy * dy + rise * (t - water.lead) - fleet.position[i, 2]
-    set_share(fleet, i, top, scratch)
+    surface = water.height[i] + sx * dx + sy * dy + rise * (t - water.lead) - fleet.position[i, 2]
     level = water.relief.size == 0 and water.interface_relief.size == 0
-    if level and top < -hulls.radius[q] * np.sqrt(1.0 + sx * sx + sy * sy):
-        return  # the body is in the air
-    set_depth(hulls.x, first, last, R, top, sx, sy, depth[0])
+    if level and surface < -hulls.radius[q] * np.sqrt(1.0 + sx * sx + sy * sy):
+        return surface  # the body is in the air
+    set_depth(hulls.x, first, last, axes, surface, sx, sy, depth[0])
     start = fleet.vertex_start[i] - first
     if water.relief.size > 0:
         for v in range(first, last):
             depth[0, v] += water.relief[start + v]
     add_pressure(hulls.x, hulls.faces, hulls.area, first_face, last_face, depth[0], water.upper, pressure)
     # int d n_z dA over the wet surface is the volume below the surface, with the sign of the outward normal
-    upper = -(R[2, 0] * pressure[0] + R[2, 1] * pressure[1] + R[2, 2] * pressure[2])
+    upper = -turn(axes, linear_part(pressure))[2]
     fleet.wet_volume[i, 0] = upper / water.upper
     if water.lower > water.upper:
         sx, sy = water.interface_slope[i, 0], water.interface_slope[i, 1]
         top = water.interface[i] + sx * dx + sy * dy + water.interface_rise[i] * (t - water.lead) - fleet.position[i, 2]
-        set_depth(hulls.x, first, last, R, top, sx, sy, depth[1])
+        set_depth(hulls.x, first, last, axes, top, sx, sy, depth[1])
         if water.interface_relief.size > 0:
             for v in range(first, last):
                 depth[1, v] += water.interface_relief[start + v]
@@ -263,103 +296,54 @@ def set_load(fleet, water, i, t, gravity, depth, scratch):
             depth[1, v] = min(depth[1, v], depth[0, v])
         difference = water.lower - water.upper
         add_pressure(hulls.x, hulls.faces, hulls.area, first_face, last_face, depth[1], difference, pressure)
-        both = -(R[2, 0] * pressure[0] + R[2, 1] * pressure[1] + R[2, 2] * pressure[2])
+        both = -turn(axes, linear_part(pressure))[2]
         fleet.wet_volume[i, 1] = (both - upper) / difference
         fleet.wet_volume[i, 0] -= fleet.wet_volume[i, 1]
-    T = scratch.T
-    for c in range(3):
-        scratch.force[c] = -gravity * (T[c, 0] * pressure[0] + T[c, 1] * pressure[1] + T[c, 2] * pressure[2])
-        scratch.moment[c] = -gravity * (T[c, 0] * pressure[3] + T[c, 1] * pressure[4] + T[c, 2] * pressure[5])
-        scratch.wetted[c] = pressure[6 + c]
+    return surface
 
 
 @kernel(noalias=True)
-def set_depth(x, first, last, R, top, sx, sy, depth):
-    """Set depth (n,) [m] of vertices first to last of x (3, n) below a plane.
+def set_depth(x, first, last, axes, top, sx, sy, depth):
+    """Set depth (n,) [m] of vertices first to last of x (3, n), in a body's axes, below a plane.
 
-    The plane has slope (sx, sy) and is `top` [m] above the body's centre; R (3, 3) takes x to world axes.
+    The plane has slope (sx, sy) and is `top` [m] above the body's centre.
     """
     # eta - z = top + (sx, sy, -1) . R x
-    gx = sx * R[0, 0] + sy * R[1, 0] - R[2, 0]
-    gy = sx * R[0, 1] + sy * R[1, 1] - R[2, 1]
-    gz = sx * R[0, 2] + sy * R[1, 2] - R[2, 2]
+    gx, gy, gz = turn_back(axes, (sx, sy, -1.0))
     for v in range(first, last):
         depth[v] = top + gx * x[0, v] + gy * x[1, v] + gz * x[2, v]
 
 
 @kernel(inline=True)
-def set_share(fleet, i, top, scratch):
-    """Set share (6,) of body i below a surface `top` [m] above its centre, as far as depth reduces it."""
-    depth = top - fleet.hulls.half[fleet.hull[i], 2]  # [m] of water over the body
-    share = math.exp(-max(depth, 0.0) / fleet.linear.decay_length[fleet.linear_hull[i]])
-    for c in range(6):
-        scratch.share[c] = share
+def kick(fleet, water, coefficients, i, pose, top, h, share_of_step, scratch):
+    """Change velocity and spin of body i by the forces of one substep of h [s], that share of the whole step.
 
-
-@kernel(inline=True)
-def kick(fleet, water, coefficients, i, h, share_of_step, scratch):
-    """Change velocity and spin of body i by the forces of one substep of h [s], that share of the whole step."""
-    H, v, w, load = scratch.H, scratch.v, scratch.w, scratch.load
-    before, mass = fleet.velocity[i, 2], fleet.mass[i]
-    buoyancy, density = scratch.force[2], fluid_density(fleet, water, i)
-    set_mass(fleet, water, coefficients, i, density, scratch)
+    top [m]: height of the surface above the body's centre.
+    """
+    V, U, load, heading = scratch.V, scratch.U, scratch.load, pose.heading
+    before, mass, density = fleet.velocity[i, 2], fleet.mass[i], fluid_density(fleet, water, i)
+    set_six(V, to_heading(heading, three(fleet.velocity, i)), to_heading(heading, three(fleet.spin, i)))
+    set_six(U, to_heading(heading, three(water.velocity, i)), (0.0, 0.0, 0.0))
+    set_wet(fleet, i, density, pose.own, top, scratch)
+    set_mass(fleet, coefficients, i, density, pose.own, scratch)
     factorise(scratch.mass, scratch.factor)
-    set_velocities(fleet, water, i, scratch)
     share_momentum(fleet, coefficients, i, density, scratch)
     update_memory(fleet, water, i, scratch)
-    waves = set_forces(fleet, water, coefficients, i, density, scratch)
+    buoyancy, waves = set_forces(fleet, water, coefficients, i, density, pose, scratch)
     solve_factorised(scratch.factor, load)
-    for c in range(3):
-        v[c] += h * load[c]
-        w[c] += h * load[3 + c]
-    drag = apply_drag(fleet, water, coefficients, i, h, scratch)
+    for c in range(6):
+        V[c] += h * load[c]
+    drag = apply_drag(fleet, coefficients, i, pose.own, h, scratch)
     if fleet.pull_limit[i] > 0.0:
-        add_pull(fleet, i, h, coefficients.pull_rate, scratch)
-    for c in range(3):
-        fleet.velocity[i, c] = H[c, 0] * v[0] + H[c, 1] * v[1] + H[c, 2] * v[2]
-        fleet.spin[i, c] = H[c, 0] * w[0] + H[c, 1] * w[1] + H[c, 2] * w[2]
+        add_pull(fleet, i, h, coefficients.pull_rate, scratch.factor, heading, pose.pulled, load, V)
+    set_three(fleet.velocity, i, from_heading(heading, linear_part(V)))
+    set_three(fleet.spin, i, from_heading(heading, angular_part(V)))
     change = mass * ((fleet.velocity[i, 2] - before) / h + coefficients.gravity)
     fleet.buoyancy[i] = buoyancy
     fleet.lift[i, 0] += share_of_step * buoyancy
     fleet.lift[i, 1] += share_of_step * waves
     fleet.lift[i, 2] += share_of_step * drag
     fleet.lift[i, 3] += share_of_step * (change - buoyancy - waves - drag)
-
-
-@kernel(inline=True)
-def set_mass(fleet, water, coefficients, i, density, scratch):
-    """Set mass (6, 6), wet (6,) and share (6,) of body i.
-
-    wet: for each motion the wet area over half of that at rest, at most 1; share: its root.
-
-    The coefficients are those at rest while at least half of that is wet: a scale that followed each small motion
-    would push the body up or down on average, which linear theory does not know.
-    """
-    s, wet = fleet.linear_hull[i], scratch.wet
-    T, own, inertia = scratch.T, scratch.inertia, fleet.hulls.inertia[fleet.hull[i]]
-    for c in range(3):
-        wet[c] = 0.0
-        for d in range(3):
-            full = ENTRY_SHARE * density * fleet.linear.wet_area[s, d]
-            wet[c] += T[c, d] * T[c, d] * (min(scratch.wetted[d] / full, 1.0) if full > 0.0 else 0.0)
-    for c in range(3):
-        wet[3 + c] = (wet[(c + 1) % 3] + wet[(c + 2) % 3]) / 2.0
-    L = fleet.linear.added_factor
-    for c in range(6):
-        scratch.share[c] *= np.sqrt(wet[c])
-        for d in range(c + 1):
-            added = 0.0
-            for k in range(d + 1):
-                added += L[s, c, k] * wet[k] * L[s, d, k]
-            scratch.mass[c, d] = scratch.mass[d, c] = coefficients.added_mass * density * added
-    for c in range(3):
-        scratch.mass[c, c] += fleet.mass[i]
-        for d in range(3):
-            own[c, d] = inertia[c, 0] * T[d, 0] + inertia[c, 1] * T[d, 1] + inertia[c, 2] * T[d, 2]
-    for c in range(3):
-        for d in range(3):
-            turned = T[c, 0] * own[0, d] + T[c, 1] * own[1, d] + T[c, 2] * own[2, d]
-            scratch.mass[3 + c, 3 + d] += fleet.density[i] * turned
 
 
 @kernel(inline=True)
@@ -370,15 +354,47 @@ def fluid_density(fleet, water, i):
 
 
 @kernel(inline=True)
-def set_velocities(fleet, water, i, scratch):
-    """Set v and w (3,) of body i, and the flow (3,), in the axes of its heading."""
-    H, v, w, flow = scratch.H, scratch.v, scratch.w, scratch.flow
+def wet_across(wetted, at_rest):
+    """Wetted area over half of that at rest, at most 1."""
+    return min(wetted / (ENTRY_SHARE * at_rest), 1.0) if at_rest > 0.0 else 0.0
+
+
+@kernel(inline=True)
+def set_wet(fleet, i, density, own, top, scratch):
+    """Set wet, felt and made (6,) of body i with these axes, under a surface `top` [m] above its centre.
+
+    The coefficients are those at rest while at least half of that is wet: a scale that followed each small motion
+    would push the body up or down on average, which linear theory does not know.
+    """
+    s, wet, pressure, (a, b, c) = fleet.linear_hull[i], scratch.wet, scratch.pressure, own
+    x, y, z = scaled(density, three(fleet.linear.wet_area, s))
+    across = wet_across(pressure[6], x), wet_across(pressure[7], y), wet_across(pressure[8], z)
+    x, y, z = turn((squares(a), squares(b), squares(c)), across)
+    set_six(wet, (x, y, z), ((y + z) / 2.0, (z + x) / 2.0, (x + y) / 2.0))
+    depth = top - fleet.hulls.half[fleet.hull[i], 2]  # [m] of water over the body
+    reduction = math.exp(-max(depth, 0.0) / fleet.linear.decay_length[s])
+    for e in range(6):
+        scratch.made[e] = reduction * np.sqrt(wet[e])
+        scratch.felt[e] = scratch.made[e] * scratch.made[e]
+
+
+@kernel(inline=True)
+def set_mass(fleet, coefficients, i, density, own, scratch):
+    """Set mass (6, 6) of body i, with the added mass of what is wet."""
+    s, L, wet, mass = fleet.linear_hull[i], fleet.linear.added_factor, scratch.wet, scratch.mass
+    for c in range(6):
+        for d in range(c + 1):
+            added = 0.0
+            for k in range(d + 1):
+                added += L[s, c, k] * wet[k] * L[s, d, k]
+            mass[c, d] = mass[d, c] = coefficients.added_mass * density * added
+    solid = turn_matrix(own, columns(fleet.hulls.inertia, fleet.hull[i]))
     for c in range(3):
-        flow[c] = v[c] = w[c] = 0.0
-        for d in range(3):
-            flow[c] += H[d, c] * water.velocity[i, d]
-            v[c] += H[d, c] * fleet.velocity[i, d]
-            w[c] += H[d, c] * fleet.spin[i, d]
+        mass[c, c] += fleet.mass[i]
+        x, y, z = scaled(fleet.density[i], solid[c])
+        mass[3, 3 + c] += x
+        mass[4, 3 + c] += y
+        mass[5, 3 + c] += z
 
 
 @kernel(inline=True)
@@ -388,8 +404,7 @@ def share_momentum(fleet, coefficients, i, density, scratch):
     (M + A)(V - U) stays while c grows in A = L diag(c) L^T: V changes by -(M + A)^-1 L diag(dc) L^T (V - U), with the A
     of the greater c.
     """
-    v, w, flow, change, L = scratch.v, scratch.w, scratch.flow, scratch.load, fleet.linear.added_factor
-    s = fleet.linear_hull[i]
+    V, U, change, L, s = scratch.V, scratch.U, scratch.load, fleet.linear.added_factor, fleet.linear_hull[i]
     enters = False
     for c in range(6):
         change[c] = 0.0
@@ -401,14 +416,13 @@ def share_momentum(fleet, coefficients, i, density, scratch):
         enters = True
         momentum = 0.0
         for c in range(k, 6):
-            momentum += L[s, c, k] * (v[c] - flow[c] if c < 3 else w[c - 3])
+            momentum += L[s, c, k] * (V[c] - U[c])
         for c in range(k, 6):
             change[c] -= coefficients.added_mass * (now - before) * L[s, c, k] * momentum
     if enters:
         solve_factorised(scratch.factor, change)
-        for c in range(3):
-            v[c] += change[c]
-            w[c] += change[3 + c]
+        for c in range(6):
+            V[c] += change[c]
 
 
 @kernel(inline=True)
@@ -417,97 +431,102 @@ def update_memory(fleet, water, i, scratch):
 
     They are those against the fluid where no excitation is given, which would hold the fluid's part.
     """
-    s = fleet.linear_hull[i]
+    s, flows = fleet.linear_hull[i], 1.0 if water.excitation.shape[0] == 0 else 0.0
     for c in range(6):
-        speed = scratch.v[c] if c < 3 else scratch.w[c - 3]
-        if c < 3 and water.excitation.shape[0] == 0:
-            speed -= scratch.flow[c]
-        speed *= scratch.share[c]
+        speed = scratch.made[c] * (scratch.V[c] - flows * scratch.U[c])
         for p in range(fleet.memory.shape[1]):
             fleet.memory[i, p, c] = scratch.decay[s, p] * fleet.memory[i, p, c] + scratch.gain[s, p] * speed
 
 
 @kernel(inline=True)
-def set_forces(fleet, water, coefficients, i, density, scratch):
+def set_forces(fleet, water, coefficients, i, density, pose, scratch):
     """Set load (6,): all forces and moments on body i but the drag and the pull.
 
-    Returns the upward force [N] of the waves.
+    Returns the upward forces [N] of the pressure and of the waves.
     """
-    H, load, share = scratch.H, scratch.load, scratch.share
-    s, m = fleet.linear_hull[i], fleet.mass[i]
-    a, sx, sy = max(water.acceleration[i], -coefficients.gravity), water.slope[i, 0], water.slope[i, 1]
-    for c in range(6):
-        load[c] = 0.0
+    load, heading, s, m = scratch.load, pose.heading, fleet.linear_hull[i], fleet.mass[i]
+    a = max(water.acceleration[i], -coefficients.gravity)
+    sx, sy, _ = to_heading(heading, (water.slope[i, 0], water.slope[i, 1], 0.0))
     # Of the volume at rest: the change by a wave is of second order, and would lift the body on average.
-    carried = min(m, density * m / fleet.density[i]) * share[2] * share[2]
-    for c in range(2):
-        load[c] = -carried * a * (H[0, c] * sx + H[1, c] * sy)
+    carried = min(m, density * m / fleet.density[i]) * scratch.felt[2]
     if water.excitation.shape[0] > 0:
         given = water.excitation[i]
+        set_six(load, to_heading(heading, linear_part(given)), to_heading(heading, angular_part(given)))
         for c in range(6):
-            first = 3 * (c // 3)
-            along = H[0, c - first] * given[first] + H[1, c - first] * given[first + 1]
-            along += H[2, c - first] * given[first + 2]
-            load[c] += density * share[c] * share[c] * along
+            load[c] *= density * scratch.felt[c]
     else:
-        load[2] = carried * a
-        g = coefficients.gravity + a
-        for d in range(3):
-            along = H[2, d] * a - g * (H[0, d] * sx + H[1, d] * sy)
-            for c in range(6):
-                load[c] += scratch.mass[c, d] * along
-            load[d] -= m * along
-    waves = load[2]
-    for c in range(3):
-        load[c] += scratch.force[c] - m * coefficients.gravity * H[2, c]
-        load[3 + c] += scratch.moment[c]
-        for d in range(3):
-            load[c] += H[d, c] * fleet.mooring[i, d]
-            load[3 + c] += H[d, c] * fleet.mooring[i, 3 + d]
-    scale = 2.0 * density * coefficients.gravity * coefficients.radiation
+        ax, ay, az = -(coefficients.gravity + a) * sx, -(coefficients.gravity + a) * sy, a
+        for c in range(6):  # of what the fluid's acceleration does to the added mass
+            load[c] = scratch.mass[c, 0] * ax + scratch.mass[c, 1] * ay + scratch.mass[c, 2] * az
+        set_six(load, plus(linear_part(load), -m, (ax, ay, az)), angular_part(load))
+        load[2] += carried * a
+    load[0] -= carried * a * sx
+    load[1] -= carried * a * sy
+    waves, g = load[2], coefficients.gravity
+    force, moment = turn(pose.own, linear_part(scratch.pressure)), turn(pose.own, angular_part(scratch.pressure))
+    lines = to_heading(heading, linear_part(fleet.mooring[i])), to_heading(heading, angular_part(fleet.mooring[i]))
+    set_six(
+        load,
+        plus(plus(linear_part(load), -g, force), 1.0, lines[0]),
+        plus(plus(angular_part(load), -g, moment), 1.0, lines[1]),
+    )
+    load[2] -= m * g
+    scale = 2.0 * density * g * coefficients.radiation
     for n in range(fleet.linear.coupled_count[s]):
         c, d = fleet.linear.coupled[s, n, 0], fleet.linear.coupled[s, n, 1]
         total = 0.0
         for p in range(fleet.memory.shape[1]):
             residue, state = fleet.linear.residues[s, n, p], fleet.memory[i, p, d]
             total += residue.real * state.real - residue.imag * state.imag
-        load[c] -= scale * share[c] * total
-    return waves
+        load[c] -= scale * scratch.made[c] * total
+    return -g * force[2], waves
+
+
+@kernel
+def after_drag(v, linear, quadratic, h):
+    """v after h [s] of dv/dt = -linear v - quadratic |v| v, exactly: e v/(1 + quadratic |v| (1 - e)/linear).
+
+    With e = exp(-linear h). v is a number; linear [1/s], quadratic [1/m].
+    """
+    if linear <= 0.0:
+        return v / (1.0 + quadratic * abs(v) * h)
+    decay = math.exp(-linear * h)
+    integral = -math.expm1(-linear * h) / linear if linear * h > 1e-9 else h
+    return v * decay / (1.0 + quadratic * abs(v) * integral)
 
 
 @kernel(inline=True)
-def apply_drag(fleet, water, coefficients, i, h, scratch):
-    """Let drag slow v and w (3,) of body i for h [s], each of its own axes alone and exactly.
+def apply_drag(fleet, coefficients, i, own, h, scratch):
+    """Let drag slow body i for h [s], each of its own axes alone and exactly.
 
     Returns the upward force [N] of that.
     """
-    T, v, w, flow, wetted, mass = scratch.T, scratch.v, scratch.w, scratch.flow, scratch.wetted, scratch.mass
-    q, b, C = fleet.hull[i], coefficients.linear_drag, coefficients.quadratic_drag / 2.0
+    V, pressure, mass = scratch.V, scratch.pressure, scratch.mass
+    q, b, C, flow = fleet.hull[i], coefficients.linear_drag, coefficients.quadratic_drag / 2.0, linear_part(scratch.U)
     lift = 0.0
     for c in range(3):
-        inertia, turning = along_axis(mass, 0, T, c), along_axis(mass, 3, T, c)
-        drag = wetted[c] / 2.0 / inertia
-        speed = T[0, c] * (v[0] - flow[0]) + T[1, c] * (v[1] - flow[1]) + T[2, c] * (v[2] - flow[2])
+        axis, v, w = own[c], linear_part(V), angular_part(V)
+        inertia, turning = along_axis(mass, 0, axis), along_axis(mass, 3, axis)
+        drag = pressure[6 + c] / 2.0 / inertia
+        speed = dot(axis, plus(v, -1.0, flow))
         change = after_drag(speed, b * drag, C * drag, h) - speed
-        lift += T[2, c] * inertia * change / h
+        lift += axis[2] * inertia * change / h
         # a face wet over S that rotates about an axis at radius r: drag S r^2 w, S r^3 |w| w
         d, e = (c + 1) % 3, (c + 2) % 3
         rd, re = fleet.hulls.radius_of_gyration[q, d], fleet.hulls.radius_of_gyration[q, e]
-        linear = (wetted[d] * re * re + wetted[e] * rd * rd) / 2.0 / turning
-        quadratic = (wetted[d] * re**3 + wetted[e] * rd**3) / 2.0 / turning
-        spin = T[0, c] * w[0] + T[1, c] * w[1] + T[2, c] * w[2]
+        linear = (pressure[6 + d] * re * re + pressure[6 + e] * rd * rd) / 2.0 / turning
+        quadratic = (pressure[6 + d] * re**3 + pressure[6 + e] * rd**3) / 2.0 / turning
+        spin = dot(axis, w)
         spin_change = after_drag(spin, b * linear, C * quadratic, h) - spin
-        for a in range(3):
-            v[a] += T[a, c] * change
-            w[a] += T[a, c] * spin_change
+        set_six(V, plus(v, change, axis), plus(w, spin_change, axis))
     return lift
 
 
 @kernel(inline=True)
-def along_axis(mass, first, T, c):
-    """The inertia along column c of T (3, 3), of the three rows and columns of mass (6, 6) from `first`."""
-    total = 0.0
-    for a in range(3):
-        for b in range(3):
-            total += T[a, c] * mass[first + a, first + b] * T[b, c]
-    return total
+def along_axis(mass, k, axis):
+    """The inertia along an axis, of the three rows and columns of mass (6, 6) from k; its other half is not read."""
+    x, y, z = axis
+    return (
+        mass[k, k] * x * x + mass[k + 1, k + 1] * y * y + mass[k + 2, k + 2] * z * z
+        + 2.0 * (mass[k + 1, k] * x * y + mass[k + 2, k] * x * z + mass[k + 2, k + 1] * y * z)
+    )  # fmt: skip

@@ -26,8 +26,7 @@ from sim.floating.closed_mesh import area_vectors
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.hull import Hull
 from sim.floating.hydrostatics import add_displaced
-from sim.floating.rigid import heading_of
-from sim.floating.rotation import rotation_matrix
+from sim.floating.rotation import heading_angle, product, quaternion_by_vector, rotation_matrix
 from sim.validation import ConvergenceError, argument_error, as_array, is_whole_number
 
 if TYPE_CHECKING:
@@ -237,19 +236,7 @@ def settled(loaded: Loaded, start: Balance, over: Callable[[np.ndarray], np.ndar
 
 def tilted(tilt: np.ndarray) -> Quaternion:
     """The quaternion of a rotation vector (tilt, 0) [rad] about x and y."""
-    angle = float(np.hypot(*tilt))
-    share = math.sin(angle / 2.0) / angle if angle > 0.0 else 0.5
-    return math.cos(angle / 2.0), share * float(tilt[0]), share * float(tilt[1]), 0.0
-
-
-def product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """The rotation b followed by a."""
-    return (
-        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
-    )
+    return quaternion_by_vector((float(tilt[0]), float(tilt[1]), 0.0))
 
 
 def without_heading(rotation: Quaternion) -> Quaternion:
@@ -261,7 +248,4 @@ def without_heading(rotation: Quaternion) -> Quaternion:
 
 def with_heading(turn: Quaternion, rotation: Quaternion) -> Quaternion:
     """`turn` after a turn about the vertical by the heading of another rotation."""
-    q = np.array([rotation], dtype=float)
-    cosine, sine = heading_of(q / np.linalg.norm(q), 0)
-    angle = math.atan2(sine, cosine)
-    return product((math.cos(angle / 2.0), 0.0, 0.0, math.sin(angle / 2.0)), turn)
+    return product(quaternion_by_vector((0.0, 0.0, heading_angle(np.array(rotation)))), turn)

@@ -16,7 +16,7 @@ from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import declared_stiffness, forces_on_free, links_at, moved, moves_on_free, six_of
 from sim.springs.acceleration import set_rest_forces
 from sim.springs.forces.bending import BEND_STIFFNESS
-from sim.springs.line_arrays import BED_AREA, DISPLACED, HEIGHT, STIFFNESS, LineArrays
+from sim.springs.line_arrays import STIFFNESS, LineArrays
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ class Pieces(NamedTuple):
 
 def pieces_at(x: Array, p: LineArrays) -> Pieces:
     """Those of positions x (3, n)."""
-    z, top = x[2, p.places[:, 0]], 0.5 * p.parts[:, HEIGHT]
+    z, top = x[2, p.places[:, 0]], 0.5 * p.parts["height"]
     return Pieces(z <= p.bed, z < top, np.abs(z) < top)
 
 
@@ -55,8 +55,8 @@ class Laws:
 
     def __init__(self, p: LineArrays) -> None:
         self.p, self.elastic = p, Elastic(p)
-        self.node, self.height = p.places[:, 0], p.parts[:, HEIGHT]
-        self.bed, self.lift = p.parts[:, BED_AREA] * p.bed_stiffness, p.parts[:, DISPLACED] * -p.gz
+        self.node, self.height = p.places[:, 0], p.parts["height"]
+        self.bed, self.lift = p.parts["bed_area"] * p.bed_stiffness, p.parts["displaced"] * -p.gz
 
     def upward(self, z: Array, on: Pieces) -> Array:
         """Forces (parts,) [N] of bed and buoyancy at heights z, each on its piece wherever that ends."""
@@ -129,7 +129,7 @@ def what_is_left(x: Array, p: LineArrays) -> tuple[float, bool]:
     # Round-off of the force of a link, of a bend or of the bed, and of all that a body sums, with its arms.
     stiffest = max(
         float(p.links[:, 1].max()),
-        p.bed_stiffness * float(p.parts[:, BED_AREA].max(initial=0.0)),
+        p.bed_stiffness * float(p.parts["bed_area"].max(initial=0.0)),
         LARGEST_BEND * float(p.bends[:, BEND_STIFFNESS].max(initial=0.0)),
     )
     summed = max(1.0, float(np.maximum(np.abs(p.arms).max(axis=1, initial=0.0), 1.0).sum()))

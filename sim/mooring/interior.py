@@ -33,7 +33,7 @@ from sim.mooring.cones import (
 from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import forces_on_free, is_declared, moved, moves_on_free, others
 from sim.springs.acceleration import set_rest_forces
-from sim.springs.line_arrays import BED_AREA, DISPLACED, HEIGHT, MASS, STIFFNESS, LineArrays
+from sim.springs.line_arrays import STIFFNESS, LineArrays
 
 Array = NDArray[np.float64]
 
@@ -87,11 +87,11 @@ class Pairs:
         self.p = p
         self.start, self.end = p.ends.T
         self.rest, self.stiffness = p.links[:, 0], p.links[:, 1]
-        node, self.weight = p.places[:, 0], p.parts[:, MASS] * -p.gz
-        bed, lift = p.parts[:, BED_AREA] * p.bed_stiffness, p.parts[:, DISPLACED] * -p.gz
+        node, self.weight = p.places[:, 0], p.parts["mass"] * -p.gz
+        bed, lift = p.parts["bed_area"] * p.bed_stiffness, p.parts["displaced"] * -p.gz
         self.has_bed, self.has_lift = bed > 0.0, lift > 0.0
         self.node, self.on_bed, self.afloat = node, node[bed > 0.0], node[lift > 0.0]
-        self.bed, self.whole, self.height = bed[bed > 0.0], lift[lift > 0.0], p.parts[lift > 0.0, HEIGHT]
+        self.bed, self.whole, self.height = bed[bed > 0.0], lift[lift > 0.0], p.parts["height"][lift > 0.0]
         self.count = len(self.rest) + len(self.bed) + 2 * len(self.whole)
         self.load = float(np.abs(lift - self.weight).sum() + np.abs(p.loads).sum())  # [N]
         self.elastic, self.others = Elastic(p), others(p)

@@ -27,6 +27,7 @@ from sim.springs.line_arrays import (
     DECAY_RATES,
     DECAY_SHAPES,
     INVERSE_MASS,
+    PART,
     PLACE,
     STIFFNESS,
     LineArrays,
@@ -258,37 +259,14 @@ class System:
 
     @functools.cached_property
     def _unit_step_view(self) -> LineArrays:
+        """`kernel_view` for a step of 1 s: a system does not change."""
         nodes, bodies = self.node_count, len(self.bodies)
         n = nodes + 2 * bodies
-        mass = np.zeros(n)
-        ends, links, places, parts = [], [], [], []
         curves = Curves(line.type for line in self.lines)
-        for line in self.lines:
-            kind, at = line.type, self.nodes_of[line.id]
-            length = line.length / line.segments
-            damping = kind.damping
-            if damping < 0.0:
-                damping = -damping * length * math.sqrt(kind.stiffness * kind.mass)
-            drag = 0.5 * self.density * kind.diameter
-            for i in range(line.segments):
-                ends.append((at[i], at[i + 1]))
-                links.append((length, kind.stiffness / length, damping / length, *curves.rows_of(kind)))
-            for i in range(line.segments + 1):
-                share = 0.5 * length if i in (0, line.segments) else length
-                places.append((at[i], at[max(i - 1, 0)], at[min(i + 1, line.segments)]))
-                parts.append((
-                    share * kind.mass, share * self.density * kind.volume, kind.added_across, kind.added_along,
-                    share * drag * kind.drag_across, share * drag * math.pi * kind.drag_along, share * kind.diameter,
-                    volume_height(kind.volume, kind.diameter),
-                ))  # fmt: skip
-                mass[at[i]] += share * kind.mass
-        for i, point in enumerate(self.points):
-            mass[i] += point.mass
-            if point.mass > 0.0 or point.volume > 0.0 or point.drag_area > 0.0:
-                places.append((i, i, i))
-                added, drag = point.added_mass, 0.5 * self.density * point.drag_area
-                height = volume_height(point.volume, math.pi / 4.0 * (6.0 * point.volume / math.pi) ** (2 / 3))
-                parts.append((point.mass, self.density * point.volume, added, added, drag, 0.0, 0.0, height))
+        ends, links = link_tables(self, curves)
+        places, parts = part_tables(self)
+        mass = np.zeros(n)
+        np.add.at(mass, places[:, 0], parts["mass"])
         inverse = self.inverse_masses(mass)
         moved = [i for i, point in enumerate(self.points) if point.kind == "coupled"]
         paths = np.zeros((len(moved), 5, 3))
@@ -314,10 +292,10 @@ class System:
             loads=self.loads(n),
             bends=bends_of(self),
             curves=curves.table,
-            ends=np.array(ends, dtype=np.int64),
-            links=np.array(links, dtype=np.float64),
-            places=np.array(places, dtype=np.int64),
-            parts=np.array(parts, dtype=np.float64),
+            ends=ends,
+            links=links,
+            places=places,
+            parts=parts,
             bed=-float(self.depth),
             bed_stiffness=float(self.bed_stiffness),
             bed_damping=float(self.bed_damping),
@@ -399,6 +377,43 @@ class System:
             np.array(arms, dtype=np.float64).reshape(-1, 3),
             rows,
         )
+
+
+def link_tables(system: System, curves: Curves) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """`ends` and `links` of the kernels' view."""
+    ends, links = [], []
+    for line in system.lines:
+        kind, at, length = line.type, system.nodes_of[line.id], line.length / line.segments
+        damping = kind.damping
+        if damping < 0.0:
+            damping = -damping * length * math.sqrt(kind.stiffness * kind.mass)
+        ends.append(np.column_stack((at[:-1], at[1:])))
+        row = (length, kind.stiffness / length, damping / length, *curves.rows_of(kind))
+        links.append(np.tile(np.array(row, dtype=np.float64), (line.segments, 1)))
+    return np.concatenate(ends), np.concatenate(links)
+
+
+def part_tables(system: System) -> tuple[NDArray[np.int64], NDArray[np.void]]:
+    """`places` and `parts` of the kernels' view: those of the lines, then the masses and floats at points."""
+    places, parts = [], []
+    for line in system.lines:
+        kind, at, last = line.type, system.nodes_of[line.id], line.segments
+        drag, height = 0.5 * system.density * kind.diameter, volume_height(kind.volume, kind.diameter)
+        for i in range(last + 1):
+            length = (0.5 if i in (0, last) else 1.0) * line.length / last
+            places.append((at[i], at[max(i - 1, 0)], at[min(i + 1, last)]))
+            parts.append((
+                length * kind.mass, length * system.density * kind.volume, kind.added_across, kind.added_along,
+                length * drag * kind.drag_across, length * drag * math.pi * kind.drag_along, length * kind.diameter,
+                height,
+            ))  # fmt: skip
+    for i, point in enumerate(system.points):
+        if point.mass > 0.0 or point.volume > 0.0 or point.drag_area > 0.0:
+            places.append((i, i, i))
+            added, drag = point.added_mass, 0.5 * system.density * point.drag_area
+            height = volume_height(point.volume, math.pi / 4.0 * (6.0 * point.volume / math.pi) ** (2 / 3))
+            parts.append((point.mass, system.density * point.volume, added, added, drag, 0.0, 0.0, height))
+    return np.array(places, dtype=np.int64), np.array(parts, dtype=PART)
 
 
 def volume_height(volume: float, area: float) -> float:

@@ -29,7 +29,7 @@ from sim.ocean.gerstner import widened
 from sim.ocean.query import WaveFields, find_labels
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import SlickCover
-from sim.ocean.wave_sum import add_waves, calm_waves, set_mesh
+from sim.ocean.wave_sum import Bands, Calm, VertexSums, add_waves, calm_waves, set_mesh, wave_rows
 from sim.validation import argument_error, as_array, check_finite, check_kind, check_not_negative, check_positions
 from sim.water import SAME_WATER, Water
 from sim.waves import RESPONSES, Kinematics, Waves, sums_at
@@ -201,32 +201,23 @@ class RadialSea:
         loss = np.zeros(len(kx)) if self.slick is None else self.losses(waves.k)
         kx, ky, a = kx[order], ky[order], amplitude[order]
         k = np.maximum(np.hypot(kx, ky), 1e-30)
-        ex, ey = self.choppiness * kx / k, self.choppiness * ky / k
         turns = phase[order] + (kx * centre[0] + ky * centre[1]) / (2.0 * math.pi)
-        wave = np.zeros((weight.shape[1], 11), np.float32)
-        wave[: len(a)] = np.column_stack([
-            kx / (2.0 * math.pi), ky / (2.0 * math.pi), turns - np.rint(turns), a, -ex * a, -ey * a, -kx * a, -ky * a,
-            -ex * kx * a, -ey * ky * a, -ex * ky * a,
-        ])  # fmt: skip
-        n = len(grid)
-        sums = np.zeros((8, n), np.float32)
+        n, count = len(grid), weight.shape[1]
+        rows = wave_rows(kx, ky, turns, a, self.choppiness, count)
+        bands, sums = Bands(grid.x, grid.y, grid.start, active, weight), VertexSums(*np.zeros((8, n), np.float32))
         mean = 0.5 * self.choppiness * np.square(weight[:, : len(a)] * a) @ k
-        sums[0] = np.repeat(mean, np.diff(grid.start.astype(np.int64)))
-        rows = [sums[i] for i in range(8)]
-        add_waves(grid.x, grid.y, grid.start, active, weight.reshape(-1), np.uint64(weight.shape[1]), wave.reshape(-1),
-                  *rows)  # fmt: skip
+        sums.z[:] = np.repeat(mean, np.diff(grid.start.astype(np.int64)))
+        add_waves(bands, rows, sums)
         if self.slick is not None:
-            (x, y), count = self.slick.centre, weight.shape[1]
             place = np.zeros((3, count), np.float32)
             place[:, : len(k)] = kx / k, ky / k, loss[order]
-            calm_waves(grid.x, grid.y, grid.start, active, weight.reshape(-1), np.uint64(count), wave.reshape(-1),
-                       place[0], place[1], place[2], np.float32(x - centre[0]), np.float32(y - centre[1]),
-                       np.float32(self.slick.radius), *rows)  # fmt: skip
+            x, y, radius = np.array([*self.slick.centre, self.slick.radius]) - (*centre, 0.0)
+            calm_waves(bands, rows, Calm(np.float32(x), np.float32(y), np.float32(radius), *place), sums)
         self.evaluated += self._pairs
         self.skipped += n * len(a) - self._pairs
         vertices, slope = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
         jacobian = np.empty(n, np.float32)
-        set_mesh(grid.x, grid.y, *rows, vertices.reshape(-1), slope.reshape(-1), jacobian)
+        set_mesh(grid.x, grid.y, sums, vertices.reshape(-1), slope.reshape(-1), jacobian)
         if centre != (0.0, 0.0):
             vertices[:, 0] += np.float32(centre[0])
             vertices[:, 1] += np.float32(centre[1])

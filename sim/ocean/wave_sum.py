@@ -10,110 +10,170 @@ does not grow with time.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.jit import kernel
 from sim.turns import single_cos_sin_turns
 
+Array = NDArray[np.float32]
+# Of a wave: its wavenumber [turns/m], its phase at the centre [turns], and what each sum is multiplied by.
+WAVE = np.dtype([(name, np.float32) for name in ("kx", "ky", "phase", "z", "X", "Y", "hx", "hy", "xx", "yy", "xy")])
+
+
+class Bands(NamedTuple):
+    """Vertices in bands that show the same waves."""
+
+    x: Array  # (n,) [m]
+    y: Array  # (n,) [m]
+    start: NDArray[np.uint64]  # (bands + 1,) first vertex of each, and n
+    active: NDArray[np.uint64]  # (bands,) how many waves it shows, the first of all: an even number
+    weight: Array  # (bands, waves) factor on each
+
+
+class VertexSums(NamedTuple):
+    """The sums at the vertices, (n,) each."""
+
+    z: Array  # [m]
+    X: Array  # [m] displacement
+    Y: Array
+    hx: Array  # slope of z along labels
+    hy: Array
+    xx: Array  # strains
+    yy: Array
+    xy: Array
+
+
+class Calm(NamedTuple):
+    """A round slick that calms waves."""
+
+    x: np.float32  # [m] centre
+    y: np.float32
+    radius: np.float32  # [m]
+    ex: Array  # (waves,) direction of each wave
+    ey: Array
+    loss: Array  # (waves,) [1/m] of each under the slick
+
+
+def wave_rows(
+    kx: NDArray[np.float64], ky: NDArray[np.float64], turns: NDArray[np.float64], a: NDArray[np.float64],
+    choppiness: float, count: int,
+) -> NDArray[np.void]:  # fmt: skip
+    """Rows (count,) of WAVE of waves of amplitudes a (n,) [m], kx, ky [rad/m] and phases at the centre, then zeros."""
+    k, found = np.maximum(np.hypot(kx, ky), 1e-30), np.zeros(count, WAVE)
+    ex, ey = choppiness * kx / k, choppiness * ky / k
+    values = {
+        "kx": kx / (2.0 * math.pi), "ky": ky / (2.0 * math.pi), "phase": turns - np.rint(turns),
+        "z": a, "X": -ex * a, "Y": -ey * a, "hx": -kx * a, "hy": -ky * a,
+        "xx": -ex * kx * a, "yy": -ey * ky * a, "xy": -ex * ky * a,
+    }  # fmt: skip
+    for name, value in values.items():
+        found[name][: len(a)] = value
+    return found
+
+
+class Factors(NamedTuple):
+    """Of a wave, times its weight; its cosine or sine at a vertex is multiplied by these for each of the sums."""
+
+    z: np.float32
+    X: np.float32
+    Y: np.float32
+    hx: np.float32
+    hy: np.float32
+    xx: np.float32
+    yy: np.float32
+    xy: np.float32
+
+
+@kernel(inline=True)
+def factors_of(w, a):
+    """The factors of a wave of WAVE with weight a."""
+    return Factors(a * w.z, a * w.X, a * w.Y, a * w.hx, a * w.hy, a * w.xx, a * w.yy, a * w.xy)
+
+
+@kernel(noalias=True, inline=True)
+def add_pair(bands, band, w, waves, sums):
+    """Add waves w and w + 1 to the vertices of a band; two at a time halve the traffic of the eight sums.
+
+    Inlined, as a call copies the records.
+    """
+    one = np.uint64(1)
+    u, v = waves[w], waves[w + one]
+    f, g = factors_of(u, bands.weight[band, w]), factors_of(v, bands.weight[band, w + one])
+    kx, ky, phase, other_kx, other_ky, other_phase = u.kx, u.ky, u.phase, v.kx, v.ky, v.phase
+    for i in range(bands.start[band], bands.start[band + one]):
+        cos, sin = single_cos_sin_turns(kx * bands.x[i] + ky * bands.y[i] + phase)
+        other_cos, other_sin = single_cos_sin_turns(other_kx * bands.x[i] + other_ky * bands.y[i] + other_phase)
+        sums.z[i] += f.z * cos + g.z * other_cos
+        sums.X[i] += f.X * sin + g.X * other_sin
+        sums.Y[i] += f.Y * sin + g.Y * other_sin
+        sums.hx[i] += f.hx * sin + g.hx * other_sin
+        sums.hy[i] += f.hy * sin + g.hy * other_sin
+        sums.xx[i] += f.xx * cos + g.xx * other_cos
+        sums.yy[i] += f.yy * cos + g.yy * other_cos
+        sums.xy[i] += f.xy * cos + g.xy * other_cos
+
 
 @kernel(noalias=True, allocates=False)
-def add_pair(x, y, first, last, w, wave, scale0, scale1, z, X, Y, hx, hy, xx, yy, xy):
-    """Add waves w and w + 1 to vertices first to last; two at a time halve the traffic of the eight sums.
-
-    wave (flat): kx, ky [turns/m], phase [turns], a, bx, by, sx, sy, xx, yy, xy a wave: what each sum is multiplied by.
-    """
-    q = np.uint64(11) * w
-    k0, l0, p0 = wave[q], wave[q + 1], wave[q + 2]
-    a0, b0, c0, d0 = wave[q + 3] * scale0, wave[q + 4] * scale0, wave[q + 5] * scale0, wave[q + 6] * scale0
-    e0, f0, g0, h0 = wave[q + 7] * scale0, wave[q + 8] * scale0, wave[q + 9] * scale0, wave[q + 10] * scale0
-    q += np.uint64(11)
-    k1, l1, p1 = wave[q], wave[q + 1], wave[q + 2]
-    a1, b1, c1, d1 = wave[q + 3] * scale1, wave[q + 4] * scale1, wave[q + 5] * scale1, wave[q + 6] * scale1
-    e1, f1, g1, h1 = wave[q + 7] * scale1, wave[q + 8] * scale1, wave[q + 9] * scale1, wave[q + 10] * scale1
-    for i in range(first, last):
-        cos0, sin0 = single_cos_sin_turns(k0 * x[i] + l0 * y[i] + p0)
-        cos1, sin1 = single_cos_sin_turns(k1 * x[i] + l1 * y[i] + p1)
-        z[i] += a0 * cos0 + a1 * cos1
-        X[i] += b0 * sin0 + b1 * sin1
-        Y[i] += c0 * sin0 + c1 * sin1
-        hx[i] += d0 * sin0 + d1 * sin1
-        hy[i] += e0 * sin0 + e1 * sin1
-        xx[i] += f0 * cos0 + f1 * cos1
-        yy[i] += g0 * cos0 + g1 * cos1
-        xy[i] += h0 * cos0 + h1 * cos1
+def add_waves(bands, waves, sums):
+    """Add to each band the waves (count,) of WAVE that it shows, each times its weight."""
+    for band in range(np.uint64(0), np.uint64(bands.active.size)):
+        for w in range(np.uint64(0), bands.active[band], np.uint64(2)):
+            add_pair(bands, band, w, waves, sums)
 
 
 @kernel(noalias=True, allocates=False)
-def add_waves(x, y, start, active, weight, waves, wave, z, X, Y, hx, hy, xx, yy, xy):
-    """Add to each band the waves it shows: the first active[band] of them, an even number, each times its weight.
-
-    weight: flat (bands, waves); sums as in `add_pair`, one array each, that the caller has set to 0.
-    """
-    one, two = np.uint64(1), np.uint64(2)
-    for band in range(np.uint64(0), np.uint64(active.size)):
-        row = band * waves
-        for w in range(np.uint64(0), active[band], two):
-            add_pair(x, y, start[band], start[band + one], w, wave, weight[row + w], weight[row + w + one],
-                     z, X, Y, hx, hy, xx, yy, xy)  # fmt: skip
-
-
-@kernel(noalias=True, allocates=False)
-def calm_waves(x, y, start, active, weight, waves, wave, ex, ey, loss, cx, cy, radius, z, X, Y, hx, hy, xx, yy, xy):
-    """Subtract from the sums of `add_waves` the losses of the waves under a round slick before they reach a vertex.
-
-    ex, ey (waves,): direction of each wave; loss (waves,) [1/m]; cx, cy, radius [m] of the slick, single precision.
-    """
-    zero, one, two = np.float32(0.0), np.float32(1.0), np.float32(2.0)
-    for band in range(np.uint64(0), np.uint64(active.size)):
-        row = band * waves
-        for w in range(np.uint64(0), active[band]):
-            scale = weight[row + w]
-            if loss[w] * radius < np.float32(1e-3) or scale == zero:
+def calm_waves(bands, waves, calm, sums):
+    """Subtract from the sums of `add_waves` the losses of the waves under a slick before they reach a vertex."""
+    zero, one, two, radius = np.float32(0.0), np.float32(1.0), np.float32(2.0), calm.radius
+    for band in range(np.uint64(0), np.uint64(bands.active.size)):
+        for w in range(np.uint64(0), bands.active[band]):
+            scale, ex, ey, loss, wave = bands.weight[band, w], calm.ex[w], calm.ey[w], calm.loss[w], waves[w]
+            if loss * radius < np.float32(1e-3) or scale == zero:
                 continue
-            q = np.uint64(11) * w
             # The wave's part of the mean height, choppiness k a^2/2: xx + yy is -choppiness k a.
-            mean = np.float32(-0.5) * scale * scale * wave[q + np.uint64(3)]
-            mean *= wave[q + np.uint64(8)] + wave[q + np.uint64(9)]
-            for i in range(start[band], start[band + np.uint64(1)]):
-                u, v = x[i] - cx, y[i] - cy
-                across = u * ey[w] - v * ex[w]
+            mean = np.float32(-0.5) * scale * scale * wave.z * (wave.xx + wave.yy)
+            for i in range(bands.start[band], bands.start[band + np.uint64(1)]):
+                u, v = bands.x[i] - calm.x, bands.y[i] - calm.y
+                across = u * ey - v * ex
                 square = radius * radius - across * across
                 if square <= zero:
                     continue
                 half = math.sqrt(square)
-                path = min(max(u * ex[w] + v * ey[w] + half, zero), two * half)
+                path = min(max(u * ex + v * ey + half, zero), two * half)
                 if path == zero:
                     continue
-                kept = math.exp(-loss[w] * path)
+                kept = math.exp(-loss * path)
                 lost = scale * (one - kept)
-                cos, sin = single_cos_sin_turns(wave[q] * x[i] + wave[q + np.uint64(1)] * y[i] + wave[q + np.uint64(2)])
+                cos, sin = single_cos_sin_turns(wave.kx * bands.x[i] + wave.ky * bands.y[i] + wave.phase)
                 cos, sin = cos * lost, sin * lost
-                z[i] -= wave[q + np.uint64(3)] * cos + mean * (one - kept * kept)
-                X[i] -= wave[q + np.uint64(4)] * sin
-                Y[i] -= wave[q + np.uint64(5)] * sin
-                hx[i] -= wave[q + np.uint64(6)] * sin
-                hy[i] -= wave[q + np.uint64(7)] * sin
-                xx[i] -= wave[q + np.uint64(8)] * cos
-                yy[i] -= wave[q + np.uint64(9)] * cos
-                xy[i] -= wave[q + np.uint64(10)] * cos
+                sums.z[i] -= wave.z * cos + mean * (one - kept * kept)
+                sums.X[i] -= wave.X * sin
+                sums.Y[i] -= wave.Y * sin
+                sums.hx[i] -= wave.hx * sin
+                sums.hy[i] -= wave.hy * sin
+                sums.xx[i] -= wave.xx * cos
+                sums.yy[i] -= wave.yy * cos
+                sums.xy[i] -= wave.xy * cos
 
 
 @kernel(noalias=True, allocates=False)
-def set_mesh(x, y, z, X, Y, hx, hy, xx, yy, xy, vertices, slopes, jacobian):
+def set_mesh(x, y, sums, vertices, slopes, jacobian):
     """vertices (flat n x 3) [m], slopes (flat n x 2) of the displaced surface, and the Jacobian J (n,).
 
     (dz/dx, dz/dy) (I + grad D) = (hx, hy), so dz/dx = (hx (1 + Dyy) - hy Dxy)/J.
     """
     one, least = np.float32(1.0), np.float32(0.1)
     for i in range(np.uint64(0), np.uint64(x.size)):
-        a, b, c = one + xx[i], one + yy[i], xy[i]
+        a, b, c = one + sums.xx[i], one + sums.yy[i], sums.xy[i]
         J = a * b - c * c
         jacobian[i] = J
         inverse = one / max(J, least)
-        slopes[np.uint64(2) * i] = (hx[i] * b - hy[i] * c) * inverse
-        slopes[np.uint64(2) * i + np.uint64(1)] = (hy[i] * a - hx[i] * c) * inverse
+        slopes[np.uint64(2) * i] = (sums.hx[i] * b - sums.hy[i] * c) * inverse
+        slopes[np.uint64(2) * i + np.uint64(1)] = (sums.hy[i] * a - sums.hx[i] * c) * inverse
         j = np.uint64(3) * i
-        vertices[j] = x[i] + X[i]
-        vertices[j + np.uint64(1)] = y[i] + Y[i]
-        vertices[j + np.uint64(2)] = z[i]
+        vertices[j] = x[i] + sums.X[i]
+        vertices[j + np.uint64(1)] = y[i] + sums.Y[i]
+        vertices[j + np.uint64(2)] = sums.z[i]

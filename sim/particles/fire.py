@@ -7,6 +7,7 @@ Limits: no gas dynamics between parcels.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,31 @@ from sim.validation import argument_error, check_not_negative, check_positive, c
 LEAST_LIFE, LIFE_RANGE = 0.12, 2.64  # of the mean life: most parcels are flame, few are old smoke
 LONGEST_LIFE = LEAST_LIFE + LIFE_RANGE  # of the mean life
 MEANDER = 0.5  # of the plume's widening, by which puffs move parcels
+
+
+class Parcels(NamedTuple):
+    """The arrays of a fire that a step changes: see `Fire`."""
+
+    position: NDArray[np.float32]
+    age: NDArray[np.float32]
+    life: NDArray[np.float32]
+    heat: NDArray[np.float32]
+    spread: NDArray[np.float32]
+    turn: NDArray[np.uint32]
+
+
+class Flame(NamedTuple):
+    """The numbers of a fire, in single precision where the parcels are."""
+
+    x: np.float32  # [m] of its middle
+    y: np.float32
+    z: np.float32
+    radius: np.float32  # [m]
+    wind_x: np.float32  # [m/s]
+    wind_y: np.float32
+    mean_life: np.float32  # [s]
+    eddies: np.float32
+    puffs: float  # [1/s]
 
 
 class Fire:
@@ -64,14 +90,11 @@ class Fire:
     def step(self, dt: float) -> None:
         """Let dt [s] pass. Raises ValueError for a negative or infinite one."""
         dt = check_not_negative("dt", dt, "s")
-        x, y, z = self.place
         self.time += dt
-        self.started += burn(
-            self.position, self.age, self.life, self.heat, self.spread, self.turn, np.float32(dt), self.time,
-            np.float32(x), np.float32(y), np.float32(z), np.float32(0.5 * self.diameter), np.float32(self.wind[0]),
-            np.float32(self.wind[1]), np.float32(self.track.step), self.track.height, self.track.radius,
-            self.track.heat, np.float32(self.mean_life), np.float32(self.eddies), self.puffs,
-        )  # fmt: skip
+        numbers = (*self.place, 0.5 * self.diameter, *self.wind, self.mean_life, self.eddies)
+        flame = Flame(*map(np.float32, numbers), puffs=self.puffs)
+        parcels = Parcels(self.position, self.age, self.life, self.heat, self.spread, self.turn)
+        self.started += burn(parcels, self.track, flame, np.float32(dt), self.time)
 
     @property
     def burning(self) -> np.ndarray:
@@ -86,11 +109,11 @@ def share_left(along: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 @kernel(noalias=True)
-def burn(
-    position, age, life, heat, spread, turn, dt, now, x, y, z, radius, wind_x, wind_y, step, heights, radii, heats,
-    mean_life, eddies, puffs,
-):  # fmt: skip
-    """One step of all parcels to the time `now`; returns how many started again."""
+def burn(parcels, track, flame, dt, now):
+    """One step of all parcels, along the plume's track, to the time `now`; returns how many started again."""
+    position, age, life, heat, spread, turn = parcels
+    x, y, z, radius, wind_x, wind_y, mean_life, eddies, puffs = flame
+    step, heights, radii, heats = np.float32(track.step), track.height, track.radius, track.heat
     tau, one, half = np.float32(DRAG_TIME), np.float32(1.0), np.float32(0.5)
     circle, last = np.float32(2.0 * math.pi), heights.size - 2
     started = 0

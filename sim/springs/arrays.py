@@ -17,7 +17,7 @@ class RopeArrays(NamedTuple):
     rows: int  # 1
     cols: int
     inverse_masses: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
-    mass: Any  # [kg] of every point; of any other net (rows cols,) of each
+    mass: Any  # [kg] one number for all points; an array (rows cols,) in the records of other nets
     drag: float  # [N s/m] per point
     gx: float  # gravity [m/s^2]
     gy: float

@@ -11,8 +11,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-# Columns of `parts`.
-MASS, DISPLACED, ACROSS, ALONG, DRAG_ACROSS, DRAG_ALONG, BED_AREA, HEIGHT = range(8)
+PART = np.dtype([
+    ("mass", "f8"),  # [kg]
+    ("displaced", "f8"),  # [kg] of water
+    ("added_across", "f8"),  # added masses over the displaced one
+    ("added_along", "f8"),
+    ("drag_across", "f8"),  # [kg/m] drag over the square of the speed
+    ("drag_along", "f8"),
+    ("bed_area", "f8"),  # [m^2]
+    ("height", "f8"),  # [m] of its volume
+])  # fmt: skip
 # Where a row of `bodies` holds its (6, 6) matrices, flat, and its place. With its mass M and damping B,
 # M^-1 B = DECAY_SHAPES diag(DECAY_RATES) DECAY_PARTS.
 INVERSE_MASS, BODY_MASS, STIFFNESS, DAMPING, PLACE = 0, 36, 72, 108, 144
@@ -43,8 +51,7 @@ class LineArrays(NamedTuple):
     bends: NDArray[np.float64]  # (bends, 12): see `sim.springs.forces.bending`
     loads: NDArray[np.float64]  # (n, 3) [N] steady forces on nodes, or (0, 3) without any
     places: NDArray[np.int64]  # (parts, 3): node, and the nodes before and after it along the line
-    # (parts, 8): mass, displaced mass [kg], added masses and drags over speed, bed area, height [m] of its volume
-    parts: NDArray[np.float64]
+    parts: NDArray[np.void]  # (parts,) of PART
     bed: float  # height [m]
     bed_stiffness: float  # [Pa/m]
     bed_damping: float  # [Pa s/m]

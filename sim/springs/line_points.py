@@ -12,7 +12,7 @@ import math
 
 from sim.jit import kernel
 from sim.springs.arrays import span
-from sim.springs.line_arrays import ACROSS, ALONG, DISPLACED, INVERSE_MASS, PLACE
+from sim.springs.line_arrays import INVERSE_MASS, PLACE
 from sim.springs.pins import set_paths
 
 TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction
@@ -113,8 +113,8 @@ def set_inverse_masses(x, p):
     for i in range(p.places.shape[0]):
         j = p.places[i, 0]
         qx, qy, qz = tangent_at(x, p, i)
-        across = p.parts[i, DISPLACED] * p.parts[i, ACROSS]
-        s = p.parts[i, DISPLACED] * p.parts[i, ALONG] - across
+        across = p.parts[i].displaced * p.parts[i].added_across
+        s = p.parts[i].displaced * p.parts[i].added_along - across
         w[j] += across + s * qx * qx
         w[n + j] += s * qx * qy
         w[2 * n + j] += s * qx * qz

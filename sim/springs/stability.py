@@ -23,10 +23,10 @@ from numpy.typing import NDArray
 from sim.interruption import raise_if_stopped
 from sim.springs.analysis.strain import strain_range
 from sim.springs.forces import OWN
-from sim.springs.forces.matrices import DAMPING, STIFFEST, TRANSVERSE
+from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
 from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.integrators.implicit.tangent import quotients, set_lanczos
+from sim.springs.integrators.implicit.tangent import quotients, set_lanczos, set_tangent
 from sim.springs.laws import largest_stiffness
 from sim.springs.net import Net
 from sim.springs.state import State, check_net, check_state
@@ -165,22 +165,6 @@ def across(net: Net, x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
     return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
 
 
-def along_surfaces(x: NDArray[np.float64], u: NDArray[np.float64], t: float, p: Any) -> NDArray[np.float64]:
-    """The part of vectors u (..., 3 rows cols) that slides on floor or sphere; 0 where nothing touches them."""
-    place, moved = x.reshape(3, -1), u.reshape(*u.shape[:-1], 3, -1)
-    normal = np.zeros_like(place)
-    if p.has_floor:
-        normal[2, place[2] < p.floor] = 1.0
-    if p.has_sphere:
-        centre = np.array((p.sx, p.sy, p.sz)) + (t - p.epoch) * np.array((p.svx, p.svy, p.svz))
-        outwards = place - centre[:, None]
-        distance = np.sqrt((outwards * outwards).sum(axis=0))
-        touches = (distance < p.sr) & (distance > 0.0)
-        normal[:, touches] = outwards[:, touches] / distance[touches]
-    along = moved - normal * (normal * moved).sum(axis=-2, keepdims=True)
-    return (along * normal.any(axis=0)).reshape(u.shape)
-
-
 def ritz(
     x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any, part: int, stiff: float = 0.0
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
@@ -233,13 +217,19 @@ def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float,
 
     The stiffest of all may stand upright on the surface, where friction does not reach it.
     """
-    begin = along_surfaces(x, start, t, p)
+    begin = np.empty_like(x)
+    set_tangent(x, start, t, p, FRICTION, 0.0, begin)
     if not begin.any():
         return None
     values, vectors, basis = ritz(x, begin / np.linalg.norm(begin), t, p, STIFFEST)
-    modes = vectors.T @ basis
-    share = (along_surfaces(x, modes, t, p) ** 2).sum(axis=1)
-    return modes[int((values * share).argmax())]
+    found, largest = None, 0.0
+    for value, mode in zip(values[::-1], vectors.T[::-1] @ basis, strict=True):
+        if value <= largest:
+            break  # no mode slides by more than all of it
+        slides = value * quotients(x, mode, t, p)[3]
+        if slides > largest:
+            found, largest = mode, slides
+    return found
 
 
 def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) -> list[Mode]:

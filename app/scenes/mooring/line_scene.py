@@ -20,6 +20,7 @@ from app.scenes.mooring.tensions import Tensions
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.speed_advice import faster_steps
+from sim.floating.rotation import quaternion_by_vector
 from sim.mooring import System, at_rest
 from sim.mooring.gauge import modes
 from sim.mooring.simulate import LineState
@@ -274,14 +275,11 @@ class LineScene(abc.ABC):
     def frame(self) -> MooringFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
         p = self.params
-        x, y, z = self.rotation().tolist()
-        half = 0.5 * math.hypot(x, y, z)
-        share = math.sin(half) / (2.0 * half) if half > 0.0 else 0.5
         frame = MooringFrame(
             params=p,
             time=self.time,
             body=self.body_place().astype(np.float32),
-            rotation=np.array([math.cos(half), share * x, share * y, share * z], np.float32),
+            rotation=np.array(quaternion_by_vector(self.rotation()), np.float32),
             points=self.points.astype(np.float32),
             tension=self.tension.astype(np.float32),
             full_scale=MAX_TENSION_SCALE * self.rest_scale,

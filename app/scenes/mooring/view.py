@@ -25,6 +25,7 @@ from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
 from app.scenes.springs.html import simple_drawing
 from app.scenes.springs.view import compile_tube
+from sim.floating.rotation import heading_angle, rotation_matrix
 
 SIDES = 6  # of a tube
 RING_COUNT = 90  # rings of a line, about
@@ -253,16 +254,13 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
 
     def body_place(self, frame: MooringFrame) -> dict[str, Any]:
         """Places and rotations of the slices of the body."""
-        w, x, y, z = frame.rotation
-        axis = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
-        places = frame.body + self.slices[:, None] * axis
+        places = frame.body + self.slices[:, None] * rotation_matrix(frame.rotation)[:, 2]
         turns = np.tile(frame.rotation, (len(places), 1))
         return {"batched_positions": places.astype(np.float32), "batched_wxyzs": turns}
 
     def open_water(self, frame: MooringFrame) -> NDArray[np.float64]:
         """Rows for `js/open_water.js`: the water (3,) [m], and the body seen from above (2, 3)."""
-        w, _, _, z = frame.rotation.tolist()
-        place = (*frame.body[:2].tolist(), 2.0 * math.atan2(z, w))
+        place = (*frame.body[:2].tolist(), heading_angle(frame.rotation))
         return np.array([(0.5 * frame.side, depth_of(frame.params), extent(frame.params)), place, self.outline])
 
     def shape_tube(self, frame: MooringFrame, i: int) -> None:

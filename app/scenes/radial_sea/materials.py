@@ -12,6 +12,7 @@ from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
 from sim.floating import Hull
+from sim.floating.rotation import heading_angle
 from sim.ocean.fluid_column import FluidColumn
 from sim.particles.plume import flame_height, radiated_light
 
@@ -89,15 +90,14 @@ def waterlines_of(frame: RadialFrame) -> list[Waterline]:
     """Upright positions of the rig's legs and the first bodies in the water; then the rig's decks."""
     lines = list(LEGS) if frame.params.rig else []
     room = MAX_WATERLINES - len(lines) - 1  # for bodies
-    for kind, position, turn in zip(frame.kinds, frame.positions.tolist(), frame.rotations.tolist(), strict=True):
+    for kind, position, rotation in zip(frame.kinds, frame.positions.tolist(), frame.rotations, strict=True):
         if room == 0:
             break
         room -= 1
         sides, corner, height = footprint(frame.hulls[kind])
-        w, i, j, k = turn
-        heading = math.atan2(2.0 * (w * k + i * j), 1.0 - 2.0 * (j * j + k * k))
         colour = colour_of(MIRROR_COLOURS.get(kind, HULL_COLOUR))
-        lines.append(Waterline((position[0], position[1]), heading, sides, corner, position[2] + height, color=colour))
+        place, heading = (position[0], position[1]), heading_angle(rotation)
+        lines.append(Waterline(place, heading, sides, corner, position[2] + height, color=colour))
     if frame.params.rig:
         lines.append(DECKS)
     return lines

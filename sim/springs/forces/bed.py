@@ -9,7 +9,6 @@ from sim.jit import kernel
 from sim.springs.arrays import is_moving, push
 from sim.springs.forces.matrices import DAMPING, STIFFEST, STIFFNESS
 from sim.springs.forces.record import LINES, Force
-from sim.springs.line_arrays import BED_AREA, MASS
 from sim.springs.line_points import TINY, kick, mobility
 
 
@@ -20,12 +19,12 @@ def bed_force(x, v, p, i, j, with_damping):
     depth = p.bed - x[2 * n + j]
     fx = fy = fz = 0.0
     if depth > 0.0:
-        area = p.parts[i, BED_AREA]
+        area = p.parts[i].bed_area
         fz = area * p.bed_stiffness * depth
         if with_damping:
             if p.friction > 0.0:
                 speed = math.sqrt(v[j] * v[j] + v[n + j] * v[n + j] + TINY)
-                s = min(p.friction * fz / speed, p.parts[i, MASS] * p.stop_rate)
+                s = min(p.friction * fz / speed, p.parts[i].mass * p.stop_rate)
                 fx, fy = -s * v[j], -s * v[n + j]
             fz -= area * p.bed_damping * v[2 * n + j]
     return fx, fy, fz
@@ -46,7 +45,7 @@ def damp_part(x, v, s, p, i):
     depth = p.bed - x[2 * n + j]
     if depth <= 0.0:
         return
-    area = p.parts[i, BED_AREA]
+    area = p.parts[i].bed_area
     over = mobility(p, j, 0.0, 0.0, 1.0)
     if over > 0.0:
         impulse = math.expm1(-area * p.bed_damping * over * s) / over * v[2 * n + j]
@@ -76,7 +75,7 @@ def energy(x, t, p):
         j = p.places[i, 0]
         if is_moving(p, j):
             depth = max(0.0, p.bed - x[2 * p.cols + j])
-            total += 0.5 * p.parts[i, BED_AREA] * p.bed_stiffness * depth * depth
+            total += 0.5 * p.parts[i].bed_area * p.bed_stiffness * depth * depth
     return total
 
 
@@ -101,7 +100,7 @@ def tangent(x, u, t, p, part, longest, out):
     for i in range(p.places.shape[0]):
         j = p.places[i, 0]
         if x[2 * n + j] <= p.bed:
-            out[2 * n + j] += resistance * p.parts[i, BED_AREA] * u[2 * n + j]
+            out[2 * n + j] += resistance * p.parts[i].bed_area * u[2 * n + j]
 
 
 FORCE = Force(

@@ -36,8 +36,13 @@ def clear(f, o, n):
 
 
 @kernel(noalias=True, inline=True)
-def sum_row(f, w, mass, v, a, o, ow, n, g, c, f01, f10, g10, f11, g11, f1m, g1m, f02, f20, g20):
-    """a = w (m g - c v + pull of the links that begin here - pull of those that end here)."""
+def sum_row(f, links, w, mass, v, a, o, ow, n, g, c):
+    """a = w (m g - c v + pull of the links that begin here - pull of those that end here).
+
+    links: where in f the rows of the families (0, 1), (1, 0), (1, 1), (1, -1), (0, 2) and (2, 0) begin, f.., and for
+    those that reach other rows the rows of the links that end here, g...
+    """
+    f01, (f10, g10), (f11, g11), (f1m, g1m), f02, (f20, g20) = links
     one, two = np.uint64(1), np.uint64(2)
     for j in range(n):
         along = f[f01 + j] - f[f01 + j - one] + f[f10 + j] - f[g10 + j]
@@ -110,15 +115,15 @@ def accelerate_rows(x, v, p, law, b, c, f, o, a, start, stop):
         for e in range(3):
             g = p.gx if e == 0 else p.gy if e == 1 else p.gz
             s = o + np.uint64(e) * m
-            sum_row(
-                f, p.inverse_masses, p.mass, v, a, np.uint64(e) * n + row, row, cols, g, c,
+            links = (  # the row before is two later in the ring, and the one before that is the next
                 place(0, i, width) + s,
-                place(1, i, width) + s, place(1, i + 2, width) + s,
-                place(2, i, width) + s, place(2, i + 2, width) + s,
-                place(3, i, width) + s, place(3, i + 2, width) + s,
+                (place(1, i, width) + s, place(1, i + 2, width) + s),
+                (place(2, i, width) + s, place(2, i + 2, width) + s),
+                (place(3, i, width) + s, place(3, i + 2, width) + s),
                 place(4, i, width) + s,
-                place(5, i, width) + s, place(5, i + 1, width) + s,
-            )  # fmt: skip
+                (place(5, i, width) + s, place(5, i + 1, width) + s),
+            )
+            sum_row(f, links, p.inverse_masses, p.mass, v, a, np.uint64(e) * n + row, row, cols, g, c)
 
 
 @kernel(parallel=True)

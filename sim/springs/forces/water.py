@@ -20,7 +20,6 @@ from sim.jit import kernel
 from sim.springs.arrays import is_moving, push
 from sim.springs.forces.matrices import STIFFEST, STIFFNESS
 from sim.springs.forces.record import LINES, Force
-from sim.springs.line_arrays import ACROSS, ALONG, DISPLACED, DRAG_ACROSS, DRAG_ALONG, HEIGHT
 from sim.springs.line_points import kick, mobility, tangent_at
 from sim.waves import AMPLITUDE, sums_at
 
@@ -40,7 +39,7 @@ def water_at(x, t, p, j):
 @kernel(inline=True)
 def submerged(p, i, z):
     """Submerged fraction of part i, of which the middle is z [m] over the water's surface."""
-    return min(max(0.5 - z / p.parts[i, HEIGHT], 0.0), 1.0)
+    return min(max(0.5 - z / p.parts[i].height, 0.0), 1.0)
 
 
 @kernel(inline=True)
@@ -50,16 +49,16 @@ def push_of(x, v, t, p, i, j, with_damping):
     qx, qy, qz = tangent_at(x, p, i)
     u, w, s, du, dw, ds, z = water_at(x, t, p, j)
     wet, lost = submerged(p, i, z), 0.0
-    m = wet * p.parts[i, DISPLACED]
+    m = wet * p.parts[i].displaced
     along = du * qx + dw * qy + ds * qz
-    c, d = m * (1.0 + p.parts[i, ACROSS]), m * (p.parts[i, ALONG] - p.parts[i, ACROSS]) * along
+    c, d = m * (1.0 + p.parts[i].added_across), m * (p.parts[i].added_along - p.parts[i].added_across) * along
     fx, fy, fz = c * du + d * qx, c * dw + d * qy, c * ds + d * qz - m * p.gz
     if with_damping:
         u, w, s = u - v[j], w - v[n + j], s - v[2 * n + j]
         along = u * qx + w * qy + s * qz
         nx, ny, nz = u - along * qx, w - along * qy, s - along * qz
         across = math.sqrt(nx * nx + ny * ny + nz * nz)
-        c, d = wet * p.parts[i, DRAG_ACROSS] * across, wet * p.parts[i, DRAG_ALONG] * abs(along) * along
+        c, d = wet * p.parts[i].drag_across * across, wet * p.parts[i].drag_along * abs(along) * along
         fx, fy, fz = fx + c * nx + d * qx, fy + c * ny + d * qy, fz + c * nz + d * qz
         lost = c * across * across + d * along
     return fx, fy, fz, lost
@@ -96,9 +95,9 @@ def damp_part(x, v, t, s, p, i, reverse):
         rx, ry, rz = u - v[j], w - v[n + j], c - v[2 * n + j]
         along = rx * qx + ry * qy + rz * qz
         if (turn == 0) != reverse:
-            drag_along(v, s, p, j, wet * p.parts[i, DRAG_ACROSS], rx - along * qx, ry - along * qy, rz - along * qz)
+            drag_along(v, s, p, j, wet * p.parts[i].drag_across, rx - along * qx, ry - along * qy, rz - along * qz)
         else:
-            drag_along(v, s, p, j, wet * p.parts[i, DRAG_ALONG], along * qx, along * qy, along * qz)
+            drag_along(v, s, p, j, wet * p.parts[i].drag_along, along * qx, along * qy, along * qz)
 
 
 @kernel(allocates=False)
@@ -118,7 +117,7 @@ def energy(x, t, p):
         if is_moving(p, j):
             z = x[2 * p.cols + j]
             wet = submerged(p, i, z)
-            total += p.gz * p.parts[i, DISPLACED] * (z if wet == 1.0 else -0.5 * p.parts[i, HEIGHT] * wet * wet)
+            total += p.gz * p.parts[i].displaced * (z if wet == 1.0 else -0.5 * p.parts[i].height * wet * wet)
     return total
 
 
@@ -131,7 +130,7 @@ def power(x, v, t, p, with_damping):
         fx, fy, fz, taken = push_of(x, v, t, p, i, j, with_damping)
         lost += taken
         if is_moving(p, j):
-            fz += submerged(p, i, x[2 * n + j]) * p.parts[i, DISPLACED] * p.gz
+            fz += submerged(p, i, x[2 * n + j]) * p.parts[i].displaced * p.gz
             work += fx * v[j] + fy * v[n + j] + fz * v[2 * n + j]
     return lost, lost + work
 
@@ -147,8 +146,8 @@ def inertia_power(x, v, a, p):
             of_v = v[j] * qx + v[n + j] * qy + v[2 * n + j] * qz
             of_a = a[j] * qx + a[n + j] * qy + a[2 * n + j] * qz
             both = v[j] * a[j] + v[n + j] * a[n + j] + v[2 * n + j] * a[2 * n + j]
-            across, along = p.parts[i, ACROSS], p.parts[i, ALONG]
-            total += p.parts[i, DISPLACED] * (across * both + (along - across) * of_v * of_a)
+            across, along = p.parts[i].added_across, p.parts[i].added_along
+            total += p.parts[i].displaced * (across * both + (along - across) * of_v * of_a)
     return total
 
 
@@ -157,9 +156,9 @@ def tangent(x, u, t, p, part, longest, out):
     """K of buoyancy at the surface of still water, upright; no drag acts at rest."""
     n = p.cols
     for i in range(p.places.shape[0] if part in (STIFFNESS, STIFFEST) else 0):
-        j, height = p.places[i, 0], p.parts[i, HEIGHT]
+        j, height = p.places[i, 0], p.parts[i].height
         if abs(x[2 * n + j]) < 0.5 * height:
-            out[2 * n + j] -= p.gz * p.parts[i, DISPLACED] / height * u[2 * n + j]
+            out[2 * n + j] -= p.gz * p.parts[i].displaced / height * u[2 * n + j]
 
 
 FORCE = Force(

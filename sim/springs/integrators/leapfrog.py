@@ -13,9 +13,10 @@ import numpy as np
 from sim.jit import kernel
 from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
-from sim.springs.damping import cross_gap, damp, gaps_merge, is_odd, make_decay, make_gap
+from sim.springs.damping import damp, is_odd, make_decay
 from sim.springs.forces.air import air_scratch_size, drift
 from sim.springs.integrators import Integrator
+from sim.springs.rope_gap import cross_gap, gaps_merge, make_gap
 from sim.springs.vector_ops import add_scaled
 
 

@@ -82,7 +82,7 @@ def test_energy_of_buoyancy_ends_above_the_water():
         energies_of(one_float(z)[1], v, 0.0, low.kernel_view(1.0))[2] - 300.0 * 9.81 * z for z in (-9.0, 3.0, 4.0)
     ]
     assert energies == pytest.approx([9.0 * 1025.0 * 0.6 * 9.81, 0.0, 0.0], abs=1e-3)
-    assert high.kernel_view(1.0).parts[:, -1] == pytest.approx([0.0, 0.0, HEIGHT], abs=1e-8)
+    assert high.kernel_view(1.0).parts["height"] == pytest.approx([0.0, 0.0, HEIGHT], abs=1e-8)
     assert x[-1] == 3.0
 
 

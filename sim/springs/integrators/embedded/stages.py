@@ -101,66 +101,59 @@ def make_stages(method, x, p):
     return Stages(k, stride, np.zeros(size), np.zeros(size), np.zeros(size), make_scratch(p))
 
 
-@kernel(noalias=True, inline=True)
-def set_two(x, v, o, d, k, k0, k1, a0, a1, g0, g1, n, s, xs, vs):
-    for j in range(n):
-        q0, q1 = k[k0 + j], k[k1 + j]
-        xs[s + j] = x[o + j] + d * v[o + j] + (g0 * q0 + g1 * q1)
-        vs[s + j] = v[o + j] + (a0 * q0 + a1 * q1)
+@kernel(inline=True)
+def terms_at(method, i, q, h, m, o):
+    """Four terms of row i from q on: places in k, weights in the velocity times h and in the position times h^2."""
+    t, a, g, hh = method.terms, method.a, method.g, h * h
+    return (
+        (t[i, q] * m + o, t[i, q + 1] * m + o, t[i, q + 2] * m + o, t[i, q + 3] * m + o),
+        (h * a[i, q], h * a[i, q + 1], h * a[i, q + 2], h * a[i, q + 3]),
+        (hh * g[i, q], hh * g[i, q + 1], hh * g[i, q + 2], hh * g[i, q + 3]),
+    )
 
 
 @kernel(noalias=True, inline=True)
-def set_four(x, v, o, d, k, k0, k1, k2, k3, a0, a1, a2, a3, g0, g1, g2, g3, n, s, xs, vs):
+def set_terms(x, v, o, d, k, at, a, g, n, s, xs, vs):
+    """Set the state to x + d v and v, and the sums of some terms: as many as `at` has, which LLVM unrolls."""
     for j in range(n):
-        q0, q1, q2, q3 = k[k0 + j], k[k1 + j], k[k2 + j], k[k3 + j]
-        xs[s + j] = x[o + j] + d * v[o + j] + (g0 * q0 + g1 * q1 + g2 * q2 + g3 * q3)
-        vs[s + j] = v[o + j] + (a0 * q0 + a1 * q1 + a2 * q2 + a3 * q3)
+        dx = dv = 0.0
+        for q in range(len(at)):
+            one = k[at[q] + j]
+            dx += g[q] * one
+            dv += a[q] * one
+        xs[s + j] = x[o + j] + d * v[o + j] + dx
+        vs[s + j] = v[o + j] + dv
 
 
 @kernel(noalias=True, inline=True)
-def set_six(x, v, o, d, k, k0, k1, k2, k3, k4, k5, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5, n, s, xs, vs):
+def add_terms(k, at, a, g, n, s, xs, vs):
+    """Add the sums of four terms more."""
     for j in range(n):
-        q0, q1, q2, q3, q4, q5 = k[k0 + j], k[k1 + j], k[k2 + j], k[k3 + j], k[k4 + j], k[k5 + j]
-        xs[s + j] = x[o + j] + d * v[o + j] + (g0 * q0 + g1 * q1 + g2 * q2 + g3 * q3 + g4 * q4 + g5 * q5)
-        vs[s + j] = v[o + j] + (a0 * q0 + a1 * q1 + a2 * q2 + a3 * q3 + a4 * q4 + a5 * q5)
-
-
-@kernel(noalias=True, inline=True)
-def add_four(k, k0, k1, k2, k3, a0, a1, a2, a3, g0, g1, g2, g3, n, s, xs, vs):
-    for j in range(n):
-        q0, q1, q2, q3 = k[k0 + j], k[k1 + j], k[k2 + j], k[k3 + j]
-        xs[s + j] += g0 * q0 + g1 * q1 + g2 * q2 + g3 * q3
-        vs[s + j] += a0 * q0 + a1 * q1 + a2 * q2 + a3 * q3
+        dx = dv = 0.0
+        for q in range(len(at)):
+            one = k[at[q] + j]
+            dx += g[q] * one
+            dv += a[q] * one
+        xs[s + j] += dx
+        vs[s + j] += dv
 
 
 @kernel(noalias=True, inline=True)
 def set_stage(method, i, x, v, h, k, m, o, n, s, xs, vs):
     """Row i: x + c h v + h^2 sum g k and v + h sum a k of n numbers from o on, to xs, vs from s on; m numbers a row."""
-    t, hh, d = method.terms, h * h, method.c[i] * h
-    a, g = method.a, method.g
-    count = method.counts[i]
-    k0, k1, k2, k3, k4, k5 = (
-        t[i, 0] * m + o, t[i, 1] * m + o, t[i, 2] * m + o, t[i, 3] * m + o, t[i, 4] * m + o, t[i, 5] * m + o
-    )  # fmt: skip
-    a0, a1, a2, a3, a4, a5 = h * a[i, 0], h * a[i, 1], h * a[i, 2], h * a[i, 3], h * a[i, 4], h * a[i, 5]
-    g0, g1, g2, g3, g4, g5 = hh * g[i, 0], hh * g[i, 1], hh * g[i, 2], hh * g[i, 3], hh * g[i, 4], hh * g[i, 5]
-    done = 6
+    d, count, done = method.c[i] * h, method.counts[i], 6
+    at, a, g = terms_at(method, i, 0, h, m, o)
     if count == 2:
-        set_two(x, v, o, d, k, k0, k1, a0, a1, g0, g1, n, s, xs, vs)
+        set_terms(x, v, o, d, k, at[:2], a[:2], g[:2], n, s, xs, vs)
     elif count == 4 or count == 8:
-        set_four(x, v, o, d, k, k0, k1, k2, k3, a0, a1, a2, a3, g0, g1, g2, g3, n, s, xs, vs)
+        set_terms(x, v, o, d, k, at, a, g, n, s, xs, vs)
         done = 4
     else:
-        set_six(
-            x, v, o, d, k, k0, k1, k2, k3, k4, k5, a0, a1, a2, a3, a4, a5, g0, g1, g2, g3, g4, g5, n, s, xs, vs
-        )  # fmt: skip
+        more, b, c = terms_at(method, i, 4, h, m, o)
+        set_terms(x, v, o, d, k, at + more[:2], a + b[:2], g + c[:2], n, s, xs, vs)
     while done < count:
-        k0, k1, k2, k3 = (
-            t[i, done] * m + o, t[i, done + 1] * m + o, t[i, done + 2] * m + o, t[i, done + 3] * m + o
-        )  # fmt: skip
-        a0, a1, a2, a3 = h * a[i, done], h * a[i, done + 1], h * a[i, done + 2], h * a[i, done + 3]
-        g0, g1, g2, g3 = hh * g[i, done], hh * g[i, done + 1], hh * g[i, done + 2], hh * g[i, done + 3]
-        add_four(k, k0, k1, k2, k3, a0, a1, a2, a3, g0, g1, g2, g3, n, s, xs, vs)
+        at, a, g = terms_at(method, i, done, h, m, o)
+        add_terms(k, at, a, g, n, s, xs, vs)
         done += 4
 
 

@@ -19,7 +19,6 @@ from sim.ocean.spectra import Conditions, Spectrum
 from sim.ocean.statistics import open_sea_height
 
 if TYPE_CHECKING:
-    from app.scenes.square_sea.frame import SeaFrame
     from app.scenes.square_sea.rainfall import RainReadings
     from app.scenes.square_sea.scene import SquareSeaScene
 
@@ -88,24 +87,34 @@ def open_sea(params: SquareSeaParams, wind_speed: float, g: float) -> OpenSea:
     return OpenSea(open_sea_height(spectrum, c), peak_speed(spectrum, c))
 
 
-def here(frame: "SeaFrame") -> OpenSea:
+def here(p: SquareSeaParams) -> OpenSea:
     """The open sea in this wind, here."""
-    return open_sea(frame.params, frame.params.wind_speed, gravity(frame.params))
+    return open_sea(p, p.wind_speed, gravity(p))
 
 
-def in_twice_the_wind(frame: "SeaFrame") -> OpenSea:
+def in_twice_the_wind(p: SquareSeaParams) -> OpenSea:
     """The open sea in twice this wind, here."""
-    return open_sea(frame.params, 2.0 * frame.params.wind_speed, gravity(frame.params))
+    return open_sea(p, 2.0 * p.wind_speed, gravity(p))
 
 
-def on_earth(frame: "SeaFrame") -> OpenSea:
+def on_earth(p: SquareSeaParams) -> OpenSea:
     """The open sea in this wind, on the Earth."""
-    return open_sea(frame.params, frame.params.wind_speed, EARTH_GRAVITY)
+    return open_sea(p, p.wind_speed, EARTH_GRAVITY)
 
 
 def ratio(a: float, b: float) -> float:
     """The ratio of two heights [m]; NaN for that to a level sea."""
     return a / b if b else math.nan
+
+
+def height_over_earth(now: Any) -> float:
+    """Height of the open sea here over that on the Earth."""
+    return ratio(here(now.frame.params).height, on_earth(now.frame.params).height)
+
+
+def height_by_wind(now: Any) -> float:
+    """Height of the open sea in twice the wind over that in this one."""
+    return ratio(in_twice_the_wind(now.frame.params).height, here(now.frame.params).height)
 
 
 def of_report(value: Callable[[Report], float]) -> Callable[[Any], float | None]:
@@ -121,7 +130,7 @@ def of_rain(value: "Callable[[RainReadings], float]") -> Callable[[Any], float |
 def measured_over_earth(now: Any) -> float | None:
     """Height as drawn over that on the Earth; None before the sea has been measured."""
     report = now.readings.report
-    return None if report is None else ratio(report.measured.significant_height, on_earth(now.frame).height)
+    return None if report is None else ratio(report.measured.significant_height, on_earth(now.frame.params).height)
 
 
 QUANTITIES: Quantities = {
@@ -160,29 +169,27 @@ QUANTITIES: Quantities = {
     "gravity_here": for_tasks("m/s²", "Gravity", lambda now: gravity(now.frame.params)),
     "gravity_light": for_tasks("m/s²", "Gravity of 1/100 Earth mass", lambda now: gravity_of(LIGHT, "same_density")),
     "gravity_heavy": for_tasks("m/s²", "Gravity of 100 Earth masses", lambda now: gravity_of(HEAVY, "same_density")),
-    "open_height": for_tasks("m", "Significant height of an open sea", lambda now: here(now.frame).height),
-    "open_speed": for_tasks("m/s", "Speed of its peak waves", lambda now: here(now.frame).speed),
+    "open_height": for_tasks("m", "Significant height of an open sea", lambda now: here(now.frame.params).height),
+    "open_speed": for_tasks("m/s", "Speed of its peak waves", lambda now: here(now.frame.params).speed),
     "twice_wind": for_tasks("m/s", "Twice the wind", lambda now: 2.0 * now.frame.params.wind_speed),
     "twice_height": for_tasks(
-        "m", "Significant height in twice the wind", lambda now: in_twice_the_wind(now.frame).height
+        "m", "Significant height in twice the wind", lambda now: in_twice_the_wind(now.frame.params).height
     ),
     "twice_speed": for_tasks(
-        "m/s", "Speed of the peak waves in twice the wind", lambda now: in_twice_the_wind(now.frame).speed
+        "m/s", "Speed of the peak waves in twice the wind", lambda now: in_twice_the_wind(now.frame.params).speed
     ),
     "earth_height": for_tasks(
-        "m", "Significant height on the Earth, same wind", lambda now: on_earth(now.frame).height
+        "m", "Significant height on the Earth, same wind", lambda now: on_earth(now.frame.params).height
     ),
     "earth_speed": for_tasks(
-        "m/s", "Speed of the peak waves on the Earth, same wind", lambda now: on_earth(now.frame).speed
+        "m/s", "Speed of the peak waves on the Earth, same wind", lambda now: on_earth(now.frame.params).speed
     ),
     "height_over_earth": for_tasks(
-        "1", "Height over that on the Earth", lambda now: ratio(here(now.frame).height, on_earth(now.frame).height)
-    ),
-    "height_by_wind": for_tasks(
         "1",
-        "Height in twice the wind over this one",
-        lambda now: ratio(in_twice_the_wind(now.frame).height, here(now.frame).height),
+        "Height over that on the Earth",
+        height_over_earth,
     ),
+    "height_by_wind": for_tasks("1", "Height in twice the wind over this one", height_by_wind),
     "measured_over_earth": for_tasks("1", "Height as drawn over that on the Earth", measured_over_earth),
     "damping_so_far": for_tasks(
         "m", "Length l of the decay by viscosity so far", lambda now: 2.0 * math.sqrt(now.readings.viscous_area)

@@ -54,12 +54,12 @@ class SceneInstant:
 
 
 def for_tasks(unit: str, meaning: str, value: Callable[[Any], float | None]) -> Quantity:
-    """A quantity that tasks name, and that no sweep records: it depends on nothing but parameters, or needs a frame."""
+    """A quantity that tasks name and no sweep records."""
     return Quantity(unit, meaning, value, recorded=False)
 
 
 def for_sweeps(unit: str, meaning: str, value: Callable[[Any], float | None]) -> Quantity:
-    """A quantity that only the scene itself can compute."""
+    """A quantity that a snapshot lacks: only the scene itself can compute it."""
     return Quantity(unit, meaning, value, shown=False)
 
 

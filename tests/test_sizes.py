@@ -18,7 +18,7 @@ MANY_ATTRIBUTES = {
     "StudentCloth", "Viewer",
 }  # fmt: skip
 # Names that two packages of the library offer for different things. An entry goes as soon as they are one.
-NAMES_OF_TWO = {"critical_step": {"sim.mooring", "sim.springs"}, "simulate": {"sim.mooring", "sim.springs"}}
+NAMES_OF_TWO = {"simulate": {"sim.mooring", "sim.springs"}}
 
 
 def classes_below(*tops: str) -> list[tuple[Path, ast.ClassDef]]:

@@ -24,9 +24,10 @@ from rich.progress import track
 from app.experiments.tables import front
 from benchmarks.reference import RESOLUTION, Positions, Reference, largest_distances
 from benchmarks.timing import processor_time
+from sim.frames import steps_for
 from sim.springs import INTEGRATORS, Net, cloth
 from sim.springs.stability import critical_step
-from sim.springs.state import State, advance, steps_for
+from sim.springs.state import State, advance
 
 DURATION = 0.25  # [s]
 STEP_LADDER = (0.95, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.025)  # time steps over the critical step

@@ -16,8 +16,8 @@ from benchmarks.labs import connected, served
 STEPS = {
     "numpy and numba alone": "import numpy, numba",
     "sim.springs": "import sim.springs",
-    "first frame, leapfrog": "from sim.springs import rope, simulate; simulate(rope(), 'leapfrog', 1/1200, 1/60, 2)",
-    "first frame, rk4": "from sim.springs import rope, simulate; simulate(rope(), 'rk4', 1/1200, 1/60, 2)",
+    "first frame, leapfrog": "from sim.springs import rope, simulate; simulate(rope(), 1/60, 2, 1/1200, 'leapfrog')",
+    "first frame, rk4": "from sim.springs import rope, simulate; simulate(rope(), 1/60, 2, 1/1200, 'rk4')",
     "first critical step": (
         "from sim.springs import rope; from sim.springs.stability import critical_step; critical_step(rope(), 'rk4')"
     ),

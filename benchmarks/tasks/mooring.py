@@ -25,6 +25,7 @@ from benchmarks.peers.ladder import RATIO
 from benchmarks.peers.record import is_installed
 from sim.mooring import Line, LineType, Point, System, critical_step, simulate, write_moordyn
 from sim.mooring.statics import Rest
+from sim.springs import State
 
 CHAIN = LineType("chain", 0.09, 80.0, 5e7, -0.8, 1.0, 1.6, 0.0, 0.1)
 END = 20.0  # [s]
@@ -57,7 +58,15 @@ def fairlead(t: float) -> tuple[float, float, float]:
 def our_run(system: System, start: Rest, method: str, step: float) -> Measured:
     """A run of ours."""
     begin = time.process_time()
-    run = simulate(system, {2: fairlead}, END, 2, step, integrator=method, start=start)
+    run = simulate(
+        system,
+        duration=END,
+        frames=2,
+        step=step,
+        integrator=method,
+        start=State.still(start.nodes),
+        motion={2: fairlead},
+    )
     return Measured(run.x[1][-1], time.process_time() - begin)
 
 
@@ -119,7 +128,7 @@ def compared(system: System, quick: bool) -> Rows:
     finest, theirs = our_run(system, rest, "rk4", FINEST), their_run(system, FINEST)
     runs = []
     for method in OUR_METHODS:
-        limit = critical_step(system, method, rest)
+        limit = critical_step(system, method, State.still(rest.nodes))
         for fraction in OUR_FRACTIONS:
             run = functools.partial(our_run, system, rest, method, fraction * limit)
             found = run()

@@ -15,9 +15,10 @@ from benchmarks.peers.ladder import Task, tables
 from benchmarks.peers.own_runs import OwnRun, OwnRuns
 from benchmarks.peers.rope import PEERS
 from benchmarks.reference import Positions, Reference
+from sim.frames import steps_for
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.stability import critical_step
-from sim.springs.state import State, advance, steps_for
+from sim.springs.state import State, advance
 
 FIXED_STEP_METHODS = ("symplectic_euler", "leapfrog_lagged", "leapfrog", "rk4", "dop853", "rkn8")
 STEP_LADDER = (0.95, 0.8, 0.6, 0.4, 0.3, 0.2, 0.1, 0.05, 0.025, 0.0125)  # time steps over the critical step

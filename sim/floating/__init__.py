@@ -3,7 +3,7 @@
 from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices
 from sim.floating.dataset import with_dataset
 from sim.floating.equilibrium import equilibrium_draft
-from sim.floating.float_in import FloatRun, float_in
+from sim.floating.float_in import FloatRun, FloatState, float_in
 from sim.floating.fluid_state import FluidState, make_water, still_water
 from sim.floating.heave_meter import HeaveMeter
 from sim.floating.hull import Hull, shape_from_file
@@ -16,7 +16,7 @@ from sim.floating.shapes import SHAPES, Shape
 from sim.floating.stability import metacentric_height, righting_arm
 
 __all__ = [
-    "SHAPES", "Body", "Fleet", "FloatRun", "FluidState", "HeaveMeter", "Hull", "HydrostaticPrediction",
+    "SHAPES", "Body", "Fleet", "FloatRun", "FloatState", "FluidState", "HeaveMeter", "Hull", "HydrostaticPrediction",
     "MotionCoefficients", "Shape", "Submerged", "equilibrium_draft", "float_in", "heave_period", "lowest",
     "make_fleet", "make_water", "metacentric_height", "predict", "pressure_force", "pull", "response_amplitude",
     "righting_arm", "roll_period", "shape_from_file", "step", "still_water", "submerged", "vertices", "with_dataset",

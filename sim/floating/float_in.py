@@ -1,4 +1,4 @@
-"""Bodies in a sea for a time: the loop of water, wave forces and `step`, with the frames kept.
+"""Bodies in a sea: water, wave forces and `step`, from outside step by step, or for a time with frames.
 
 >>> from sim.floating import Body, Hull
 >>> from sim.ocean import Sea
@@ -23,13 +23,16 @@ from sim.floating.fluid_state import make_water
 from sim.floating.hydrodynamics import check_water_depth
 from sim.floating.motion import STANDARD, MotionCoefficients, step
 from sim.floating.stability import Loaded, is_stable, near_upright
+from sim.frames import Progress, frame_times, run_frames, steps_for
 from sim.interruption import raise_if_stopped
 from sim.ocean import Sea
 from sim.ocean.nonlinear import NonlinearSea
 from sim.ocean.radial import RadialSea, SurfaceAt
-from sim.validation import argument_error, check_kind, check_positive, is_whole_number
+from sim.validation import argument_error, check_kind, check_number, is_whole_number
 
 LONGEST_STEP = 1 / 60  # [s]
+
+AnySea = Sea | NonlinearSea | RadialSea
 
 
 class FloatRun(NamedTuple):
@@ -45,66 +48,129 @@ class FloatRun(NamedTuple):
     surface: np.ndarray  # (frames, n) [m] height of the water at the bodies, in the middle of the last step
 
 
+class FloatState:
+    """Bodies in a sea at time t [s]: `advance` takes them on, with the pulls in `fleet.mooring` (n, 6) [N, N m].
+
+    >>> from sim.floating import Body, FloatState, Hull
+    >>> from sim.ocean import Sea
+    >>> sea = Sea(64, 128.0, "regular", wave_height=0.5, wave_period=6.0, wind_speed=0.0)
+    >>> state = FloatState(sea, [Body(Hull.box(4.0, 2.0, 1.0), density=500.0).afloat()])
+    >>> for _ in range(6):
+    ...     state.fleet.mooring[0, 0] = -200.0 * state.fleet.velocity[0, 0]  # [N] of a damper
+    ...     state.advance(1 / 60, steps=1)
+    >>> round(state.t, 6), state.fleet.position.shape
+    (0.1, (1, 3))
+    """
+
+    def __init__(self, sea: AnySea, bodies: Sequence[Body], coefficients: MotionCoefficients = STANDARD) -> None:
+        """At the sea's time 0, where the bodies are. Raises ValueError as `float_in`."""
+        check_kind("sea", sea, AnySea, "a Sea, a NonlinearSea or a RadialSea")
+        check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
+        self.sea, self.layers = sea, layers_of(sea)
+        self.gravity = sea.column.gravity if isinstance(sea, RadialSea) else sea.conditions.gravity
+        self.coefficients = coefficients._replace(gravity=self.gravity)
+        self.fleet = make_fleet(bodies, self.layers)
+        for i, body in enumerate(bodies):
+            check_water_depth(f"bodies[{i}]", body.hull, sea.conditions.depth if isinstance(sea, Sea) else math.inf)
+        self.widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
+        self.excitation = WaveExcitation(bodies, self.widths, self.layers) if isinstance(sea, RadialSea) else None
+        self.t = 0.0
+        self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water in the last steps, of h [s]
+        self.h = 0.0
+        # (n,) [m] height of the water at the bodies, in the middle of the last step
+        self.surface = sea.at(self.fleet.position[:, :2], 0.0, self.widths).height if len(bodies) else np.zeros(0)
+
+    def advance(self, h: float, steps: int) -> None:
+        """Go on by `steps` steps of h [s], of 1/60 s at most. Raises FloatingPointError as `step`."""
+        check_number("h", h, 0, LONGEST_STEP * (1.0 + 1e-9), "s", above=True)
+        if not is_whole_number(steps) or steps < 0:
+            raise argument_error("steps", steps, "a whole number from 0")
+        if h != self.h:  # rates of change are those over equal steps
+            self.h, self.rises = h, ()
+            if self.excitation is not None:
+                self.excitation.impulses = ()
+        begin = self.t
+        for i in range(steps if len(self.fleet.mass) else 0):
+            raise_if_stopped()
+            self.take_step(begin + (i + 0.5) * h, h)
+            self.t = begin + (i + 1) * h
+
+    def take_step(self, middle: float, h: float) -> None:
+        """A step of h [s] with the water of its middle [s]."""
+        sea, fleet = self.sea, self.fleet
+        at = sea.at(fleet.position[:, :2], middle, self.widths)
+        forces, acceleration = None, at.acceleration
+        if isinstance(sea, RadialSea) and self.excitation is not None:
+            forces = self.excitation.forces(fleet, at.label, sea.waves_at(middle), middle, h)
+        else:  # along the way of the bodies, so that it has no mean (excitation.py)
+            self.rises = (at.velocity[:, 2].copy(), *self.rises[: len(LAST_RATES)])
+            if len(self.rises) > len(LAST_RATES):
+                acceleration = np.clip(rate_of_change(self.rises, h), -self.gravity, self.gravity)
+        interface = {} if len(self.layers) == 1 else interface_of(at, self.layers[0][1])
+        water = make_water(
+            fleet, self.layers, at.height, slope=at.slope, velocity=at.velocity, acceleration=acceleration,
+            excitation=forces, lead=h / 2, **interface,
+        )  # fmt: skip
+        step(fleet, water, h, self.coefficients)
+        self.surface = at.height
+
+
+class FloatFrames:
+    """Bodies on their way from frame to frame, with the results of each."""
+
+    def __init__(self, state: FloatState, t: np.ndarray, h: float, steps: int) -> None:
+        fleet = state.fleet
+        self.state, self.t, self.h, self.steps = state, t, h, steps
+        self.arrays = (fleet.position, fleet.rotation, fleet.velocity, fleet.spin, fleet.lift)
+        self.results = [np.empty((len(t), *array.shape)) for array in self.arrays]
+        self.surface = np.empty((len(t), len(fleet.mass)))
+
+    def advance(self, frame: int) -> None:
+        """Go on to a frame from the one before."""
+        self.state.t = float(self.t[frame - 1])
+        self.state.advance(self.h, self.steps)
+
+    @property
+    def is_bounded(self) -> bool:
+        """True: `step` raises an error for a state that is not finite."""
+        return True
+
+    def sample(self, frame: int) -> None:
+        """Keep the state as that of a frame."""
+        for result, array in zip(self.results, self.arrays, strict=True):
+            result[frame] = array
+        self.surface[frame] = self.state.surface
+
+
 def float_in(
-    sea: Sea | NonlinearSea | RadialSea,
+    sea: AnySea,
     bodies: Sequence[Body],
     duration: float,
     frames: int = 61,
+    step: float = LONGEST_STEP,
+    *,
     coefficients: MotionCoefficients = STANDARD,
+    progress: Progress = None,
 ) -> FloatRun:
     """Let bodies float in a sea from its time 0 for a duration [s]; `Body.afloat` lets them begin at rest.
 
     On a sum of waves they feel linear wave forces; on the tiles those of waves long beside the hull (motion.py). The
-    gravity is the sea's. A step is 1/60 s, or shorter to divide the frames. A UserWarning gives the GM of a body that
-    is not stable upright. Raises ValueError for a value that is not allowed, for a hull with a dataset of another depth
-    or heading than the sea's, and as `make_fleet`, `RadialSea.at` and `step`.
+    gravity is the sea's.
+    step: [s], 1/60 s at most, shortened equally so that it divides a frame interval.
+    progress: called with (frames done, frames).
+    A UserWarning gives the GM of a body that is not stable upright. Raises ValueError for a value that is not allowed,
+    for a hull with a dataset of another depth or heading than the sea's, and as `make_fleet` and `RadialSea.at`.
     """
-    check_kind("sea", sea, Sea | NonlinearSea | RadialSea, "a Sea, a NonlinearSea or a RadialSea")
-    check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
-    duration = check_positive("duration", duration, "s")
-    if not is_whole_number(frames) or frames < 2:
-        raise argument_error("frames", frames, "a whole number from 2")
-    layers = layers_of(sea)
-    gravity = sea.column.gravity if isinstance(sea, RadialSea) else sea.conditions.gravity
-    coefficients = coefficients._replace(gravity=gravity)
-    fleet = make_fleet(bodies, layers)
-    for i, body in enumerate(bodies):
-        check_water_depth(f"bodies[{i}]", body.hull, sea.conditions.depth if isinstance(sea, Sea) else math.inf)
-    for words in unstable(bodies, layers):
+    t = frame_times(duration, frames, step, progress)
+    check_number("step", step, 0, LONGEST_STEP, "s", above=True)
+    state = FloatState(sea, bodies, coefficients)
+    for words in unstable(bodies, state.layers):
         warnings.warn(words, UserWarning, stacklevel=2)
-    widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
-    excitation = WaveExcitation(bodies, widths, layers) if isinstance(sea, RadialSea) else None
-    each = math.ceil(duration / (frames - 1) / LONGEST_STEP * (1.0 - 1e-9))
-    h, n = duration / (frames - 1) / each, len(fleet.mass)
-    shown = (fleet.position, fleet.rotation, fleet.velocity, fleet.spin, fleet.lift)
-    kept = [np.empty((frames, *array.shape)) for array in shown]
-    surface, rises = np.empty((frames, n)), ()
-    surface[0] = sea.at(fleet.position[:, :2], 0.0, widths).height if n else 0.0
-    for frame in range(frames):
-        for out, array in zip(kept, shown, strict=True):
-            out[frame] = array
-        if frame == frames - 1 or n == 0:
-            continue
-        for i in range(each):
-            raise_if_stopped()
-            middle = (frame * each + i + 0.5) * h
-            at = sea.at(fleet.position[:, :2], middle, widths)
-            forces, acceleration = None, at.acceleration
-            if isinstance(sea, RadialSea) and excitation is not None:
-                forces = excitation.forces(fleet, at.label, sea.waves_at(middle), middle, h)
-            else:  # along the way of the bodies, so that it has no mean (excitation.py)
-                rises = (at.velocity[:, 2].copy(), *rises[: len(LAST_RATES)])
-                if len(rises) > len(LAST_RATES):
-                    acceleration = np.clip(rate_of_change(rises, h), -gravity, gravity)
-            interface = {} if len(layers) == 1 else interface_of(at, layers[0][1])
-            water = make_water(
-                fleet, layers, at.height, slope=at.slope, velocity=at.velocity, acceleration=acceleration,
-                excitation=forces, lead=h / 2, **interface,
-            )  # fmt: skip
-            step(fleet, water, h, coefficients)
-            surface[frame + 1] = at.height
-    x, rotation, velocity, spin, lift = kept
-    return FloatRun(np.linspace(0.0, duration, frames), x, rotation, velocity, spin, lift, surface)
+    steps = steps_for(float(t[1]), step)
+    kept = FloatFrames(state, t, float(t[1]) / steps, steps)
+    run_frames(kept, len(t), progress)
+    x, rotation, velocity, spin, lift = kept.results
+    return FloatRun(t, x, rotation, velocity, spin, lift, kept.surface)
 
 
 def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:
@@ -120,7 +186,7 @@ def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:
     return [words for words in found.values() if words]
 
 
-def layers_of(sea: Sea | NonlinearSea | RadialSea) -> Layers:
+def layers_of(sea: AnySea) -> Layers:
     """(density [kg/m3], thickness [m]) of the fluids of a sea, from the top."""
     return sea.column.layers if isinstance(sea, RadialSea) else ((sea.conditions.density, math.inf),)
 

@@ -1,96 +1,53 @@
-"""`simulate`: a mooring in time, by any explicit integrator of ropes."""
+"""`simulate`: a mooring in time, by any explicit integrator of ropes; and its coupling with a vessel.
+
+`sim.springs.state.advance` moves a `State` of a mooring, along `paths_to` places of the coupled points, and
+`point_forces` are the forces at them.
+"""
 
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from sim.interruption import raise_if_stopped
-from sim.mooring.gauge import critical_step
-from sim.mooring.statics import Rest, at_rest
-from sim.mooring.system import System
-from sim.springs import INTEGRATORS
-from sim.springs.acceleration import set_acceleration
+from sim.frames import Progress, check_steps, frame_times, run_frames, steps_for, warn_of_divergence
+from sim.mooring.statics import at_rest
+from sim.mooring.system import Point, System
+from sim.springs.acceleration import set_node_forces
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import EnergyHistory, energy_history
 from sim.springs.forces.bending import set_line_tensions
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.line_arrays import LineArrays
-from sim.validation import argument_error, check_number, check_vector, is_whole_number
+from sim.springs.stability import critical_step
+from sim.springs.state import State, advance, check_state, velocities
+from sim.validation import argument_error, check_kind, check_number, check_vector
 
-SAFETY = 0.5  # of the critical step at rest
+SAFETY = 0.5  # of the critical step at the start
 PIECE = 0.05  # [s] of a moved point's path that is one cubic
 DIFFERENCE = 1e-4  # [s] either side, of a motion without a velocity of its own
 MOST_STEPS = 1e9
-MOST_FRAMES = 1_000_000
 FARTHEST = 1e6  # [m]: a node that is farther has diverged
 
+Array = NDArray[np.float64]
 Motion = Callable[[float], Any]
 
 
 class MooringRun(NamedTuple):
     """A simulated motion."""
 
-    t: NDArray[np.float64]  # (frames,) [s]
-    x: dict[int, NDArray[np.float64]]  # by line: (frames, segments + 1, 3) [m]
-    tension: dict[int, NDArray[np.float64]]  # by line: (frames, segments) [N], internal damping included
-    bodies: dict[int, NDArray[np.float64]]  # by body: (frames, 6) [m, rad] from its place
+    t: Array  # (frames,) [s]
+    x: dict[int, Array]  # by line: (frames, segments + 1, 3) [m]
+    v: dict[int, Array]  # by line: (frames, segments + 1, 3) [m/s]
+    tension: dict[int, Array]  # by line: (frames, segments) [N], internal damping included
+    force: dict[int, Array]  # by fixed or coupled point: (frames, 3) [N] on what holds it, see `point_forces`
+    bodies: dict[int, Array]  # by body: (frames, 6) [m, rad] from its place
+    bodies_v: dict[int, Array]  # by body: (frames, 6) [m/s, rad/s]
     energy: EnergyHistory  # by name, (frames,) each [J]; `contact` is the bed's
     force_evals: int
     diverged_at: float | None  # [s]
     step: float  # [s] that was taken
     integrator: str
-
-
-class LineState:
-    """Positions and velocities (3, n) of a system at time t [s], and the sums of the energy account [J]."""
-
-    def __init__(self, system: System, rest: Rest) -> None:
-        self.system = system
-        self.x = rest.nodes.copy()
-        self.v = np.zeros_like(self.x)
-        self.t = 0.0
-        self.lag = 0.0
-        self.ledger = np.zeros(2)
-        self.force_evals = 0
-
-    @property
-    def is_bounded(self) -> bool:
-        """False once anything is not finite or is out of any sane bound."""
-        return bool(np.abs(self.x).max() < FARTHEST)
-
-    def advance(
-        self,
-        integrator: Integrator,
-        h: float,
-        steps: int,
-        paths: NDArray[np.float64],
-        with_account: bool = False,
-        driven: Mapping[str, NDArray[np.float64]] | None = None,
-    ) -> None:
-        """Advance by `steps` steps of h [s]; coupled points follow `paths`, (coupled points, 5, 3) of `PinPath`s.
-
-        driven: other fields of `LineArrays` that a caller changes as time passes, as `steady` or `waves`.
-        """
-        p = self.system.kernel_view(h)._replace(paths=paths, **(driven or {}))
-        x, lag = self.x.reshape(-1), integrator.lag * h
-        v = self.v.reshape(-1)
-        v[:], self.lag = self.velocities(p, lag), lag
-        raise_if_stopped()
-        self.force_evals += integrator.advance(x, v, self.ledger, self.t, h, steps, p, with_account)
-        self.t += steps * h
-
-    def velocities(self, p: LineArrays, lag: float) -> NDArray[np.float64]:
-        """Velocities (3 n,) at time t - lag [s]: those stored, where they are of that time."""
-        v = self.v.reshape(-1)
-        if lag == self.lag:
-            return v
-        a = np.empty_like(v)
-        set_acceleration(self.x.reshape(-1), v, self.t, p, a)
-        return v + (self.lag - lag) * a
 
 
 def check_motion(system: System, motion: Mapping[int, Motion]) -> None:
@@ -104,7 +61,7 @@ def check_motion(system: System, motion: Mapping[int, Motion]) -> None:
         check_vector(f"motion[{one}](0)", function(0.0), "m")
 
 
-def place_and_velocity(function: Motion, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def place_and_velocity(function: Motion, t: float) -> tuple[Array, Array]:
     """Position [m] and velocity [m/s] of a motion at time t [s]."""
     place = np.asarray(function(t), dtype=np.float64)
     velocity = getattr(function, "velocity", None)
@@ -114,121 +71,208 @@ def place_and_velocity(function: Motion, t: float) -> tuple[NDArray[np.float64],
     return place, (after - before) / (2.0 * DIFFERENCE)
 
 
-def paths_of(system: System, motion: Mapping[int, Motion], t: float, duration: float) -> NDArray[np.float64]:
-    """Paths of the coupled points from t on for `duration` [s]: cubics through places and velocities at both ends."""
-    coupled = [point for point in system.points if point.kind == "coupled"]
+def cubic(x0: Array, v0: Array, x1: Array, v1: Array, t: float, duration: float) -> Array:
+    """The path (5, 3) from time t [s] on for `duration` [s] through places [m] with velocities [m/s] at both ends."""
+    gap = (x1 - x0) / duration
+    c2, c3 = (3.0 * gap - 2.0 * v0 - v1) / duration, (v0 + v1 - 2.0 * gap) / duration**2
+    return np.array((x0, v0, c2, c3, (t, 0.0, 0.0)))
+
+
+def paths_of(system: System, state: State, motion: Mapping[int, Motion], duration: float) -> Array:
+    """Paths (coupled points, 5, 3) of motions on for `duration` [s] from a state's time; other points stay there."""
+    coupled = {point.id: i for i, point in enumerate(system.points) if point.kind == "coupled"}
     paths = np.zeros((len(coupled), 5, 3))
-    for q, point in enumerate(coupled):
-        paths[q, 4] = t
-        if point.id not in motion:
-            paths[q, 0] = point.position
-            continue
-        (x0, v0), (x1, v1) = (place_and_velocity(motion[point.id], s) for s in (t, t + duration))
-        gap = (x1 - x0) / duration
-        paths[q, :4] = x0, v0, (3.0 * gap - 2.0 * v0 - v1) / duration, (v0 + v1 - 2.0 * gap) / duration**2
+    for q, (one, node) in enumerate(coupled.items()):
+        if one in motion:
+            (x0, v0), (x1, v1) = (place_and_velocity(motion[one], t) for t in (state.t, state.t + duration))
+            paths[q] = cubic(x0, v0, x1, v1, state.t, duration)
+        else:
+            paths[q, 0] = state.x[:, node]
     return paths
+
+
+def paths_to(system: System, state: State, ends: Mapping[int, tuple[ArrayLike, ArrayLike]], duration: float) -> Array:
+    """Paths (coupled points, 5, 3) on for `duration` [s] from where the coupled points of a state are.
+
+    ends: by the id of a coupled point, its place [m] and velocity [m/s] at the end; the others stop where they are.
+    `advance` takes the paths as `driven`; without any, coupled points are at their positions in `System.points`.
+
+    >>> from sim.mooring import Line, LineType, Point, State, System, advance, paths_to, point_forces
+    >>> chain = LineType("chain", 0.05, 20.0, 1e8)
+    >>> points = (Point(1, "fixed", (-60.0, 0.0, -30.0)), Point(2, "coupled", (0.0, 0.0, 0.0)))
+    >>> system = System((Line(1, chain, 1, 2, 75.0, 20),), points, depth=30.0)
+    >>> state = State.at_rest(system)
+    >>> for i in range(10):  # a vessel that moves by 0.1 m/s, in exchanges of 0.1 s
+    ...     place = (0.01 * (i + 1), 0.0, 0.0)
+    ...     paths = paths_to(system, state, {2: (place, (0.1, 0.0, 0.0))}, duration=0.1)
+    ...     advance(system, state, "leapfrog", h=1e-3, steps=100, driven={"paths": paths})
+    ...     force = point_forces(system, state)[2]  # [N] on the vessel
+    >>> round(state.t, 6), force.shape
+    (1.0, (3,))
+
+    Raises ValueError for a point that is not coupled, for a place or velocity that none has, and for a duration.
+    """
+    check_state(system, state)
+    check_number("duration", duration, 0, math.inf, "s", above=True)
+    coupled = {point.id: i for i, point in enumerate(system.points) if point.kind == "coupled"}
+    for one in ends:
+        if one not in coupled:
+            raise argument_error("ends", one, f"the id of a coupled point: {list(coupled)}")
+    paths = np.zeros((len(coupled), 5, 3))
+    for q, (one, node) in enumerate(coupled.items()):
+        place, velocity = ends.get(one, (state.x[:, node], np.zeros(3)))
+        x1 = np.array(check_vector(f"ends[{one}]: place", place, "m"))
+        v1 = np.array(check_vector(f"ends[{one}]: velocity", velocity, "m/s"))
+        paths[q] = cubic(state.x[:, node], state.v[:, node], x1, v1, state.t, duration)
+    return paths
+
+
+def point_forces(system: System, state: State) -> dict[int, Array]:
+    """Force (3,) [N] of the mooring on the holder of each fixed or coupled point, by its id.
+
+    It is the pull of the lines with the weight of half a segment of each, the point's own weight, and the force of
+    water and bed on these; the inertia of that half and of the point is left out.
+
+    Raises ValueError for a state of another system.
+    """
+    x, v = state.x.reshape(-1), velocities(system, state).reshape(-1)
+    f = np.empty_like(x)
+    set_node_forces(x, v, state.t, system.kernel_view(1.0), f)
+    forces = f.reshape(3, -1)
+    return {point.id: forces[:, i].copy() for i, point in enumerate(system.points) if is_held(point)}
+
+
+def is_held(point: Point) -> bool:
+    """True if something outside the system holds the point."""
+    return point.kind in ("fixed", "coupled")
+
+
+class MooringFrames:
+    """A mooring on its way from frame to frame, with the results of each."""
+
+    def __init__(
+        self,
+        system: System,
+        motion: Mapping[int, Motion],
+        record: Integrator,
+        t: Array,
+        step: float,
+        start: State,
+        with_account: bool,
+    ) -> None:
+        """step: [s] the longest that may be taken."""
+        self.system, self.motion, self.record, self.t, self.with_account = system, motion, record, t, with_account
+        self.state, interval = State(start.x.copy(), start.v.copy(), lag=start.lag), float(t[1])
+        for i, point in enumerate(system.points):
+            if point.id in motion:
+                self.state.x[:, i], self.state.v[:, i] = place_and_velocity(motion[point.id], 0.0)
+        self.pieces = max(1, math.ceil(interval / PIECE - 1e-9)) if motion else 1
+        self.piece = interval / self.pieces  # [s] of paths
+        self.steps = steps_for(self.piece, step)
+        self.h = self.piece / self.steps
+        self.p = system.kernel_view(self.h)
+        self.x = np.full((len(t), *start.x.shape), np.nan)
+        self.v, self.force = np.full_like(self.x, np.nan), np.full_like(self.x, np.nan)
+        self.tension = np.full((len(t), len(self.p.ends)), np.nan)
+        self.ledger = np.full((len(t), 6), np.nan)
+
+    def advance(self, frame: int) -> None:
+        """Go on to a frame from the one before, along the paths of the coupled points."""
+        for piece in range(self.pieces):
+            self.state.t = float(self.t[frame - 1]) + piece * self.piece
+            paths = paths_of(self.system, self.state, self.motion, self.piece)
+            advance(
+                self.system, self.state, self.record, self.h, self.steps,
+                with_account=self.with_account, driven={"paths": paths},
+            )  # fmt: skip
+
+    @property
+    def is_bounded(self) -> bool:
+        """False once anything is not finite or is out of any sane bound."""
+        return bool(np.abs(self.state.x).max() < FARTHEST)
+
+    def sample(self, frame: int) -> None:
+        """Keep the state as that of a frame."""
+        state = self.state
+        x, v = state.x.reshape(-1), velocities(self.system, state).reshape(-1)
+        self.x[frame], self.v[frame] = state.x, v.reshape(state.x.shape)
+        set_line_tensions(x, v, self.p, self.tension[frame])
+        set_node_forces(x, v, state.t, self.p, self.force[frame].reshape(-1))
+        self.ledger[frame] = *energies(x, v, state.t, self.p), state.dissipated, state.work
+
+    def by_line(self, values: Array) -> dict[int, Array]:
+        """(frames, 3, n) of all nodes as (frames, segments + 1, 3) by line."""
+        nodes = self.system.nodes_of.items()
+        return {one: np.ascontiguousarray(np.moveaxis(values[:, :, at], 1, -1)) for one, at in nodes}
+
+    def by_body(self, values: Array) -> dict[int, Array]:
+        """(frames, 3, n) of all points as (frames, 6) by body."""
+        m = self.p.nodes
+        return {
+            body.id: np.concatenate((values[:, :, m + 2 * b], values[:, :, m + 2 * b + 1]), axis=1)
+            for b, body in enumerate(self.system.bodies)
+        }
+
+    def run(self, diverged_at: float | None) -> MooringRun:
+        """All frames."""
+        tension = {one: self.tension[:, links] for one, links in self.system.links_of.items()}
+        held = {point.id: self.force[:, :, i].copy() for i, point in enumerate(self.system.points) if is_held(point)}
+        return MooringRun(
+            self.t,
+            self.by_line(self.x),
+            self.by_line(self.v),
+            tension,
+            held,
+            self.by_body(self.x),
+            self.by_body(self.v),
+            energy_history(self.ledger, self.with_account),
+            self.state.force_evals,
+            diverged_at,
+            self.h,
+            self.record.name,
+        )
 
 
 def simulate(
     system: System,
-    motion: Mapping[int, Motion] | None = None,
     duration: float = 10.0,
     frames: int = 101,
     step: float | None = None,
-    *,
     integrator: str | Integrator = "leapfrog",
+    *,
+    motion: Mapping[int, Motion] | None = None,
+    start: State | None = None,
     with_account: bool = False,
-    start: Rest | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = None,
 ) -> MooringRun:
     """Integrate `system` from rest and sample it at `frames` equal times from 0 to `duration` [s].
 
+    step: [s], half the critical step at the start by default, shortened equally so that it divides a frame interval.
     motion: by the id of a coupled point, a function of the time [s] that gives its place (3,) [m]; its velocity is that
     of `function.velocity(t)` where there is one, else by differences. Points without one stay where they are.
-    step: [s], half the critical step at rest by default, shortened equally so that it divides a frame interval.
-    start: a state to begin with, None: `at_rest` with the moved points where they begin.
+    start: a state to begin with, None: at rest, with the moved points where they begin. The run's time begins at 0.
     with_account: also integrate what damping takes and what moved points and water put in.
-    A run that diverges ends there: later frames are NaN, and a RuntimeWarning says so.
+    progress: called with (frames done, frames).
+    A run that diverges ends there: `diverged_at` is the time of the first frame out of any sane bound, it and later
+    frames are NaN, and a RuntimeWarning says so.
 
     Raises ValueError, naming the argument, its value and what is allowed, and ConvergenceError without a state of rest.
     """
-    if not isinstance(system, System):
-        raise argument_error("system", type(system), "a System, as `read_moordyn` makes it")
+    check_kind("system", system, System, "a System, as `read_moordyn` makes it")
     motion = dict(motion or {})
     check_motion(system, motion)
-    check_number("duration", duration, 0, math.inf, "s", above=True)
-    if not is_whole_number(frames) or not 2 <= frames <= MOST_FRAMES:
-        raise argument_error("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
+    t = frame_times(duration, frames, step, progress)
     record = integrator_named(integrator)
-    if record.implicit or record.undamped_only:
-        usable = [one.name for one in INTEGRATORS.values() if not (one.implicit or one.undamped_only)]
-        allowed = f"one of {', '.join(usable)}: implicit methods know no water, bed or bodies, and pefrl no damping"
-        raise argument_error("integrator", record.name, allowed)
-    if step is not None:
-        check_number("step", step, 0, math.inf, "s", above=True)
-    start = start or at_rest(system, {one: np.asarray(f(0.0), dtype=np.float64) for one, f in motion.items()})
+    system.check_integrator(record)
+    check_kind("with_account", with_account, bool, "True or False")
+    if start is None:
+        placed = {one: np.asarray(f(0.0), dtype=np.float64) for one, f in motion.items()}
+        start = State.still(at_rest(system, placed).nodes)
+    check_state(system, start, "start")
     h = step or SAFETY * critical_step(system, record, start)
-    if not h > 0.0 or duration / h > MOST_STEPS:
-        raise argument_error("step", h, f"at least duration / {MOST_STEPS:g} = {duration / MOST_STEPS:g} s")
-    return run_of(system, motion, record, np.linspace(0.0, duration, int(frames)), h, start, with_account, progress)
-
-
-def run_of(
-    system: System,
-    motion: Mapping[int, Motion],
-    record: Integrator,
-    t: NDArray[np.float64],
-    h: float,
-    start: Rest,
-    with_account: bool,
-    progress: Callable[[int, int], None] | None,
-) -> MooringRun:
-    """The run at times `t` [s] in equal steps of at most h [s]."""
-    interval = float(t[1])
-    pieces = max(1, math.ceil(interval / PIECE - 1e-9)) if motion else 1
-    steps = max(1, math.ceil(interval / pieces / h * (1.0 - 1e-9)))
-    h = interval / (pieces * steps)
-    state, p = LineState(system, start), system.kernel_view(h)
-    xs = np.full((len(t), *state.x.shape), np.nan)
-    tensions, ledger = np.full((len(t), len(p.ends)), np.nan), np.full((len(t), 6), np.nan)
-    diverged_at = None
-    for frame in range(len(t)):
-        if frame:
-            for piece in range(pieces):
-                begin = float(t[frame - 1]) + piece * interval / pieces
-                state.t = begin
-                paths = paths_of(system, motion, begin, interval / pieces)
-                state.advance(record, h, steps, paths, with_account)
-            if not state.is_bounded:
-                diverged_at = float(t[frame])
-                warnings.warn(
-                    f"the run with {record.name} in steps of {h:g} s diverged before t = {diverged_at:g} s: later "
-                    "frames are NaN; critical_step(system, integrator) is the longest step that is stable at rest",
-                    RuntimeWarning,
-                    stacklevel=3,
-                )
-                break
-        x, v = state.x.reshape(-1), state.velocities(p, 0.0)
-        xs[frame] = state.x
-        set_line_tensions(x, v, p, tensions[frame])
-        ledger[frame] = *energies(x, v, state.t, p), *state.ledger
-        if progress:
-            progress(frame + 1, len(t))
-    x_of = {one: np.ascontiguousarray(np.moveaxis(xs[:, :, nodes], 1, -1)) for one, nodes in system.nodes_of.items()}
-    tension_of = {one: tensions[:, links] for one, links in system.links_of.items()}
-    m = p.nodes
-    bodies = {
-        body.id: np.concatenate((xs[:, :, m + 2 * b], xs[:, :, m + 2 * b + 1]), axis=1)
-        for b, body in enumerate(system.bodies)
-    }
-    return MooringRun(
-        t,
-        x_of,
-        tension_of,
-        bodies,
-        energy_history(ledger, with_account),
-        state.force_evals,
-        diverged_at,
-        h,
-        record.name,
-    )
+    check_steps(duration, h, MOST_STEPS, step is not None)
+    kept = MooringFrames(system, motion, record, t, h, start, with_account)
+    done = run_frames(kept, len(t), progress)
+    run = kept.run(None if done == len(t) else float(t[done]))
+    warn_of_divergence(run.integrator, run.step, run.diverged_at)
+    return run

@@ -20,6 +20,7 @@ from sim.mooring.elastic import Curves
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
 from sim.springs.forces import check_forces, declared
+from sim.springs.integrators import Integrator, discover
 from sim.springs.line_arrays import (
     BODY_MASS,
     DAMPING,
@@ -32,6 +33,7 @@ from sim.springs.line_arrays import (
     STIFFNESS,
     LineArrays,
 )
+from sim.springs.point_system import PointSystem
 from sim.validation import argument_error, check_choice, check_kind, check_number, check_vector, is_whole_number
 from sim.water import Water
 from sim.waves import Waves
@@ -40,6 +42,7 @@ Vector = tuple[float, float, float]
 
 KINDS = ("fixed", "coupled", "free", "body")
 FARTHEST = 1e5  # [m] from the origin
+LINE_COST = 50.0  # of a node, over that of a point of a rope
 MOST_SEGMENTS = 2000  # of a line
 MOST_PARTS = 10_000  # lines or points of a system
 MOST_DAMPING = 100.0  # ratio, of a segment
@@ -113,7 +116,7 @@ class MooredBody(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class System:
+class System(PointSystem):
     """Lines, points and bodies in water of one depth."""
 
     lines: tuple[Line, ...]
@@ -231,6 +234,27 @@ class System:
         """The static state: see `sim.mooring.statics.at_rest`."""
         return at_rest(self)
 
+    @property
+    def state_shape(self) -> tuple[int, ...]:
+        """(3, n) of all nodes, then two points a body: its displacement and its rotation."""
+        return 3, self.node_count + 2 * len(self.bodies)
+
+    def start(self) -> NDArray[np.float64]:
+        """Positions (3, n) [m] of the state of rest. Raises ConvergenceError without one."""
+        return self.at_rest().nodes
+
+    @property
+    def evaluation_cost(self) -> float:
+        """Time that one evaluation of the forces on all points takes, over that of one point of a rope."""
+        return LINE_COST * self.node_count
+
+    def check_integrator(self, integrator: Integrator) -> None:
+        """Raises ValueError for a method that knows no water, bed or bodies, or no damping."""
+        if integrator.implicit or integrator.undamped_only:
+            usable = [one.name for one in discover().values() if not (one.implicit or one.undamped_only)]
+            allowed = f"one of {', '.join(usable)}: implicit methods know no water, bed or bodies, and pefrl no damping"
+            raise argument_error("integrator", integrator.name, allowed)
+
     @functools.cached_property
     def nodes_of(self) -> dict[int, NDArray[np.int64]]:
         """Node numbers of each line (segments + 1,), by its id: points first, in their order, then inner nodes."""
@@ -289,7 +313,7 @@ class System:
             damped=True,
             axial=True,
             slack_damping=bool(self.slack_damping),
-            loads=self.loads(n),
+            loads=loads_on(self.points, n),
             bends=bends_of(self),
             curves=curves.table,
             ends=ends,
@@ -310,7 +334,7 @@ class System:
             arms=arms,
             bodies=rows,
             steady=np.array([body.steady for body in self.bodies], dtype=np.float64).reshape(-1, 6),
-            excitation=self.excitations(waves.shape[1]),
+            excitation=excitations(self.bodies, waves.shape[1]),
             stop=stop_request(),
         )
 
@@ -321,26 +345,6 @@ class System:
         free[: len(self.points)] = [point.kind == "free" for point in self.points]
         found = np.zeros(len(mass))
         found[free] = 1.0 / np.maximum(mass[free], 1e-12)
-        return found
-
-    def loads(self, n: int) -> NDArray[np.float64]:
-        """Steady force (n, 3) [N] on each of the kernels' points; (0, 3) without any."""
-        found = np.zeros((n if any(any(point.force) for point in self.points) else 0, 3))
-        if not len(found):
-            return found
-        for i, point in enumerate(self.points):
-            found[i] = point.force
-        return found
-
-    def excitations(self, waves: int) -> NDArray[np.float64]:
-        """`excitation` of the kernels' view, of so many waves; none where no wave pushes a body."""
-        if all(body.excitation is None for body in self.bodies):
-            return np.zeros((len(self.bodies), 12, 0))
-        found = np.zeros((len(self.bodies), 12, waves))
-        for b, body in enumerate(self.bodies):
-            if body.excitation is not None:
-                X = np.asarray(body.excitation).T
-                found[b] = np.concatenate((X.real, X.imag))
         return found
 
     def body_rows(self, mass: NDArray[np.float64]) -> tuple[Any, Any, Any]:
@@ -377,6 +381,27 @@ class System:
             np.array(arms, dtype=np.float64).reshape(-1, 3),
             rows,
         )
+
+
+def loads_on(points: Sequence[Point], n: int) -> NDArray[np.float64]:
+    """Steady force (n, 3) [N] on each of the kernels' points, of which `points` are the first; (0, 3) without any."""
+    found = np.zeros((n if any(any(point.force) for point in points) else 0, 3))
+    if len(found):
+        for i, point in enumerate(points):
+            found[i] = point.force
+    return found
+
+
+def excitations(bodies: Sequence[MooredBody], waves: int) -> NDArray[np.float64]:
+    """`excitation` of the kernels' view, of so many waves; none where no wave pushes a body."""
+    if all(body.excitation is None for body in bodies):
+        return np.zeros((len(bodies), 12, 0))
+    found = np.zeros((len(bodies), 12, waves))
+    for b, body in enumerate(bodies):
+        if body.excitation is not None:
+            X = np.asarray(body.excitation).T
+            found[b] = np.concatenate((X.real, X.imag))
+    return found
 
 
 def link_tables(system: System, curves: Curves) -> tuple[NDArray[np.int64], NDArray[np.float64]]:

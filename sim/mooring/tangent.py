@@ -1,4 +1,4 @@
-"""The linearised forces of a mooring: free coordinates, and the stiffness and damping about a state."""
+"""The free coordinates of a mooring, and the forces on them."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sim.jit import kernel
 from sim.springs.forces import Absent
 from sim.springs.forces.links import set_tensions
-from sim.springs.forces.matrices import DAMPING, STIFFNESS
+from sim.springs.forces.matrices import STIFFNESS
 from sim.springs.integrators.implicit.tangent import add_tangents
 from sim.springs.laws import TAUT
 from sim.springs.line_arrays import STIFFNESS as OF_BODY
@@ -54,27 +54,6 @@ def set_tangents(x, units, p, part, out):
         add_tangents(x, units[i], 0.0, p, part, TAUT, out[i])
 
 
-def tangent_matrix(x: Array, p: LineArrays, part: int) -> Array:
-    """A part of the tangent of all forces about x (3, n), in free coordinates; see `sim.springs.forces.matrices`."""
-    free = free_coordinates(p)
-    carried, moves = carried_coordinates(p)
-    count, bodies = len(free), 2 * len(p.bodies)
-    nodes = np.zeros((count + 3 * bodies, 3 * p.nodes))  # unit motions
-    nodes[np.arange(count), free] = 1.0
-    nodes[count:, carried] = moves.T
-    units = np.zeros((len(nodes), 3, p.cols))
-    units[:, :, : p.nodes] = nodes.reshape(len(nodes), 3, p.nodes)
-    # Of a body's two points the first is its displacement, the second its rotation.
-    units[count:, :, p.nodes :] = np.eye(3 * bodies).reshape(3 * bodies, bodies, 3).swapaxes(1, 2)
-    found = np.empty_like(units)
-    set_tangents(
-        np.ascontiguousarray(x).reshape(-1), units.reshape(len(units), -1), p, part, found.reshape(len(units), -1)
-    )
-    nodes = found[:, :, : p.nodes].reshape(len(units), -1)
-    six = nodes[:, carried] @ moves + found[:, :, p.nodes :].swapaxes(1, 2).reshape(len(units), -1)
-    return np.concatenate((nodes[:, free], six), axis=1)
-
-
 def others(p: LineArrays) -> LineArrays:
     """The mooring with the drag of a current and declared forces only; the statics adds the others itself."""
     none, no_bends = p.links * [1.0, 0.0, 0.0, 0.0, 0.0], p.bends[:0]
@@ -97,16 +76,6 @@ def declared_stiffness(x: Array, p: LineArrays) -> Array:
     found = np.empty_like(units)
     set_tangents(np.ascontiguousarray(x).reshape(-1), units.reshape(3, -1), others(p), STIFFNESS, found.reshape(3, -1))
     return np.ascontiguousarray(found[:, :, : p.nodes].T)
-
-
-def stiffness_matrix(x: Array, p: LineArrays) -> Array:
-    """The matrix K [N/m] about x (3, n), in free coordinates."""
-    return tangent_matrix(x, p, STIFFNESS)
-
-
-def damping_matrix(x: Array, p: LineArrays) -> Array:
-    """The matrix D [N s/m] about x (3, n), in free coordinates; drag is none at rest."""
-    return tangent_matrix(x, p, DAMPING)
 
 
 def moves_on_free(forces: Array, p: LineArrays) -> Array:

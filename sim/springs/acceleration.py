@@ -153,6 +153,12 @@ def set_acceleration(x, v, t, p, a):
 
 
 @kernel
+def set_node_forces(x, v, t, p, out):
+    """Set the forces (3 n,) [N] on every node and body of lines, prescribed ones too."""
+    set_forces(x, v, t, p, True, make_scratch(p), out)
+
+
+@kernel
 def set_rest_forces(x, p, out):
     """Set the forces (3 n,) [N] on every node and body of lines that do not move, in still or steadily moving water."""
     set_forces(x, np.zeros(x.shape[0]), 0.0, p, True, make_scratch(p), out)

@@ -12,7 +12,7 @@ import math
 
 from sim.jit import kernel
 from sim.springs.arrays import span
-from sim.springs.line_arrays import INVERSE_MASS, PLACE
+from sim.springs.line_arrays import DECAY_PARTS, DECAY_SHAPES, INVERSE_MASS, PLACE
 from sim.springs.pins import set_paths
 
 TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction
@@ -206,6 +206,49 @@ def accelerate_masses(p, a):
         j = p.nodes + 2 * b
         set_six(a, n, j, matrix_times(p.bodies, b, INVERSE_MASS, six(a, n, j)))
     set_carried(a, p)
+
+
+@kernel(inline=True)
+def root_of_mobility(p, j):
+    """The lower triangle L with L L^T = M^-1 of node j, by `p.inertia`; zeros where the motion is prescribed."""
+    n, w = p.cols, p.inertia
+    if p.inverse_masses[j] == 0.0:  # the node of a fairlead has the mobility of its body there
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    xx = math.sqrt(w[j])
+    xy, xz = w[n + j] / xx, w[2 * n + j] / xx
+    yy = math.sqrt(w[3 * n + j] - xy * xy)
+    yz = (w[4 * n + j] - xy * xz) / yy
+    return xx, xy, xz, yy, yz, math.sqrt(w[5 * n + j] - xz * xz - yz * yz)
+
+
+@kernel(noalias=True, allocates=False)
+def set_root_motion(y, p, out):
+    """out = L y (3 n,) with L L^T = M^-1: motions of unit mass as those of nodes and bodies, carried nodes included."""
+    n = p.cols
+    for j in range(p.nodes):
+        xx, xy, xz, yy, yz, zz = root_of_mobility(p, j)
+        a, b, c = y[j], y[n + j], y[2 * n + j]
+        out[j], out[n + j], out[2 * n + j] = xx * a, xy * a + yy * b, xz * a + yz * b + zz * c
+    for b in range(p.bodies.shape[0]):
+        j = p.nodes + 2 * b
+        set_six(out, n, j, matrix_times(p.bodies, b, DECAY_SHAPES, six(y, n, j)))
+    set_carried(out, p)
+
+
+@kernel(noalias=True, allocates=False)
+def turn_to_root_forces(f, p):
+    """f = L^T f (3 n,) of forces, with the L of `set_root_motion`."""
+    n = p.cols
+    add_carried(f, p)
+    for j in range(p.nodes):
+        xx, xy, xz, yy, yz, zz = root_of_mobility(p, j)
+        a, b, c = f[j], f[n + j], f[2 * n + j]
+        f[j], f[n + j], f[2 * n + j] = xx * a + xy * b + xz * c, yy * b + yz * c, zz * c
+    for b in range(p.bodies.shape[0]):
+        j = p.nodes + 2 * b
+        # DECAY_SHAPES is such an L of the body's, and DECAY_PARTS its inverse.
+        moved = matrix_times(p.bodies, b, INVERSE_MASS, six(f, n, j))
+        set_six(f, n, j, matrix_times(p.bodies, b, DECAY_PARTS, moved))
 
 
 @kernel(inline=True)

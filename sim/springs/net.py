@@ -16,7 +16,9 @@ from sim.interruption import stop_request
 from sim.jit import MAX_THREADS
 from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays, WideArrays
 from sim.springs.forces import OWN, check_forces, declared
+from sim.springs.integrators import Integrator
 from sim.springs.laws import LAWS, check_law
+from sim.springs.point_system import PointSystem
 from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
@@ -24,6 +26,8 @@ Vector = tuple[float, float, float]
 DAMPING_MODELS = ("isotropic", "axial")
 CONTACT_LAWS = ("clipped", "lab")
 CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, bend: a kernel of their own
+GRID_COST = 4.0  # of a point with links in several directions, over that of a rope's
+CONTACT_COST = 300.0  # of a point of a net that touches itself
 LEAST_BAND = 8  # rows that are worth a thread
 PAIRS = 24  # most pairs within reach, for each particle, on average; what is beyond them is not pushed
 FARTHEST = 1e9  # [m] from the origin: a net that is farther counts as diverged
@@ -87,7 +91,7 @@ class PinPath(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class Net:
+class Net(PointSystem):
     """The immutable description of a spring-mass system; its state is `State`."""
 
     x0: NDArray[np.float64]  # (3, rows, cols) [m], initial positions
@@ -170,6 +174,15 @@ class Net:
         return self.x0.shape[1], self.x0.shape[2]
 
     @property
+    def state_shape(self) -> tuple[int, ...]:
+        """(3, rows, cols)."""
+        return self.x0.shape
+
+    def start(self) -> NDArray[np.float64]:
+        """Positions (3, rows, cols) [m], as the net was built."""
+        return self.x0.copy()
+
+    @property
     def is_rope(self) -> bool:
         """One row of points, each linked to the next only."""
         return self.x0.shape[1] == 1 and [f[:2] for f in self.families] == [(0, 1)]
@@ -186,6 +199,17 @@ class Net:
             or any(OWN[type(one)].damp for one in self.forces)
             or (touched and rough)
         )
+
+    @property
+    def evaluation_cost(self) -> float:
+        """Time that one evaluation of the forces on all points takes, over that of one point of a rope."""
+        return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_rope else GRID_COST)
+
+    def check_integrator(self, integrator: Integrator) -> None:
+        """Raises ValueError where a damped net is given to a method that takes none."""
+        if integrator.undamped_only and self.is_damped:
+            allowed = "another, as this net is damped: by links, drag or contact"
+            raise argument_error("integrator", integrator.name, allowed)
 
     @property
     def masses(self) -> NDArray[np.float64]:

@@ -3,12 +3,12 @@
 import dataclasses
 import math
 import warnings
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sim.frames import Progress, check_steps, frame_times, run_frames, steps_for, warn_of_divergence
 from sim.interruption import raise_if_stopped
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import EnergyHistory, energy_history
@@ -17,8 +17,8 @@ from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import PAIRS, Net
 from sim.springs.stability import critical_step, gershgorin
-from sim.springs.state import State, advance, check_damping, check_net, energy, steps_for, velocities
-from sim.validation import argument_error, as_array, check_kind, check_number, is_whole_number
+from sim.springs.state import State, advance, energy, velocities
+from sim.validation import argument_error, as_array, check_kind, check_number
 
 CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of the sane bound
 STEP = 1 / 1200  # [s], or SAFETY of the critical step where that is shorter
@@ -27,9 +27,6 @@ RTOL, ATOL = 1e-6, 1e-9  # of adaptive methods
 LEAST_RTOL, LEAST_ATOL = 1e-14, 1e-18  # below, round-off asks for ever shorter steps
 MOST_STEPS = 1e10  # of a run: hours of a rope
 FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
-MOST_FRAMES = 10_000_000  # what memory may hold, of a small net
-
-Progress = Callable[[int, int], None] | None
 
 
 class Run(NamedTuple):
@@ -47,11 +44,11 @@ class Run(NamedTuple):
 
 
 def simulate(
-    net: Net,
-    integrator: str = "rk4",
-    step: float | None = None,
+    system: Net,
     duration: float = 2.0,
     frames: int = 61,
+    step: float | None = None,
+    integrator: str | Integrator = "rk4",
     *,
     x: ArrayLike | None = None,
     v: ArrayLike | None = None,
@@ -60,13 +57,13 @@ def simulate(
     with_account: bool = False,
     progress: Progress = None,
 ) -> Run:
-    """Integrate `net` and sample it at `frames` equal times from 0 to `duration` [s].
+    """Integrate a net and sample it at `frames` equal times from 0 to `duration` [s].
 
-    integrator: a name in `INTEGRATORS`, or "auto", which takes an adaptive method by the net's damping and the
-    tolerance, or by the step (sim/springs/automatic.py); `integrator` of the run says which.
     step: [s], 1/1200 by default, or half the critical step at the start where that is shorter; shortened equally where
     it does not divide a frame interval, and `step` of the run is the one taken. A step that is given is taken, however
     long: see `sim.springs.stability.critical_step`.
+    integrator: a name in `INTEGRATORS`, or "auto", which takes an adaptive method by the net's damping and the
+    tolerance, or by the step (sim/springs/automatic.py); `integrator` of the run says which.
     x, v: positions [m] and velocities [m/s] at the start, (points, 3) of a rope, (rows, cols, 3) of another net, as a
     run has them; None: as the net was built, at rest. Pinned points are where x has them, and do not move.
     rtol, atol: adaptive methods choose steps with an error within atol + rtol |value| of each position [m] and velocity
@@ -79,47 +76,46 @@ def simulate(
     Raises ValueError, naming the argument, its value and what is allowed.
 
     >>> from sim.springs import rope, simulate
-    >>> run = simulate(rope(points=10), "leapfrog", step=1 / 240, duration=1.0, frames=31)
+    >>> run = simulate(rope(points=10), duration=1.0, frames=31, step=1 / 240, integrator="leapfrog")
     >>> run.x.shape, run.energy.kinetic.shape
     ((31, 10, 3), (31,))
     """
-    check_net(net)
-    net, velocity = begun(net, x, v)
+    check_kind("system", system, Net, "a Net, as `rope` and `cloth` make them")
+    net, velocity = begun(system, x, v)
     record = None if isinstance(integrator, str) and integrator == AUTO else integrator_named(integrator)
-    if step is not None:
-        check_number("step", step, 0, math.inf, "s", above=True)
+    t = frame_times(duration, frames, step, progress)
     for name, value, least in (("rtol", rtol, LEAST_RTOL), ("atol", atol, LEAST_ATOL)):
         if value is not None:
             check_number(name, value, least, 1, "")
             adaptive = record is None or record.adaptive
             if not adaptive or step is not None:
                 raise argument_error(name, value, "None, as the step is given" if adaptive else "adaptive methods only")
-    check_number("duration", duration, 0, math.inf, "s", above=True)
-    if not is_whole_number(frames) or not 2 <= frames <= MOST_FRAMES:
-        raise argument_error("frames", frames, f"a whole number from 2 to {MOST_FRAMES}")
     check_kind("with_account", with_account, bool, "True or False")
-    if progress is not None and not callable(progress):
-        raise argument_error("progress", progress, "a function of frames done and frames, or None")
     if record is None:
         interval = duration / (int(frames) - 1)
         choice = choose_for_step(net, step) if step else choose_for_tolerance(net, rtol or RTOL, interval)
         record = choice.integrator
-    check_damping(net, record)
+    net.check_integrator(record)
     if record.undamped_only and net.grab is not None and net.grab.damping > 0.0:
         raise argument_error("grab.damping", net.grab.damping, f"0, as {record.name} takes no damping")
-    t = np.linspace(0.0, duration, int(frames))
     if record.adaptive and step is None:
         may_be_endless = duration * max(gershgorin(net)) > MOST_STEPS
         longest = (may_be_endless and critical_step(net, record)) or math.inf  # 0 where no step is stable for ever
-        if duration / longest > MOST_STEPS:
-            raise argument_error("duration", duration, f"up to {MOST_STEPS:g} steps of {longest:g} s")
-        return warned(marched(net, velocity, record, t, rtol or RTOL, atol or ATOL, with_account, progress))
-    if step is not None and duration / step > MOST_STEPS:
-        raise argument_error("step", step, f"at least duration / {MOST_STEPS:g} = {duration / MOST_STEPS:g} s")
-    step = step or default_step(net, record)
-    if duration / step > MOST_STEPS:
-        raise argument_error("duration", duration, f"up to {MOST_STEPS:g} steps of {step:g} s")
-    return warned(stepped(net, velocity, record, t, step, with_account, progress))
+        check_steps(duration, longest, MOST_STEPS, False)
+        run = marched(net, velocity, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
+    else:
+        h = step or default_step(net, record)
+        check_steps(duration, h, MOST_STEPS, step is not None)
+        run = stepped(net, velocity, record, t, h, with_account, progress)
+    warn_of_divergence(run.integrator, run.step, run.diverged_at)
+    if run.left_out > 0:
+        warnings.warn(
+            f"self-contact left out up to {run.left_out} particles, the last of the net: more than {PAIRS} pairs a "
+            "particle were within reach",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+    return run
 
 
 def begun(net: Net, x: ArrayLike | None, v: ArrayLike | None) -> tuple[Net, NDArray[np.float64]]:
@@ -141,26 +137,6 @@ def begun(net: Net, x: ArrayLike | None, v: ArrayLike | None) -> tuple[Net, NDAr
     return net if x is None else dataclasses.replace(net, x0=found["x"]), found["v"]
 
 
-def warned(run: Run) -> Run:
-    """The run itself, after a warning to the caller of `simulate` where it diverged or left contacts out."""
-    if run.diverged_at is not None:
-        took = "its own steps" if run.step is None else f"steps of {run.step:g} s"
-        warnings.warn(
-            f"the run with {run.integrator} in {took} diverged at t = {run.diverged_at:g} s: later frames are NaN; "
-            "critical_step(net, integrator) is the longest step that is stable at the start",
-            RuntimeWarning,
-            stacklevel=3,
-        )
-    if run.left_out > 0:
-        warnings.warn(
-            f"self-contact left out up to {run.left_out} particles, the last of the net: more than {PAIRS} pairs a "
-            "particle were within reach",
-            RuntimeWarning,
-            stacklevel=3,
-        )
-    return run
-
-
 def default_step(net: Net, record: Integrator) -> float:
     """STEP [s], or shorter where the net asks for it."""
     fastest, strongest = gershgorin(net)
@@ -169,6 +145,48 @@ def default_step(net: Net, record: Integrator) -> float:
         return STEP
     longest = critical_step(net, record)
     return min(STEP, SAFETY * longest) if longest > 0.0 else STEP
+
+
+class NetFrames:
+    """A net on its way from frame to frame, with the results of each."""
+
+    def __init__(
+        self, net: Net, start: State, record: Integrator, t: NDArray[np.float64], step: float, with_account: bool
+    ) -> None:
+        """step: [s] the longest that may be taken."""
+        self.net, self.state, self.record, self.t, self.with_account = net, start, record, t, with_account
+        interval = float(t[-1]) / (len(t) - 1)
+        self.steps = steps_for(interval, step)
+        self.h = interval / self.steps
+        self.calm, self.calm_frame = start.copy(), 0
+        self.x = np.full((len(t), *net.x0.shape), np.nan)
+        self.v = np.full_like(self.x, np.nan)
+        self.ledger = np.full((len(t), 6), np.nan)
+
+    def advance(self, frame: int) -> None:
+        """Go on to a frame from the one before."""
+        if np.abs(self.state.x).max() < CALM:
+            self.calm, self.calm_frame = self.state.copy(), frame - 1
+        advance(self.net, self.state, self.record, self.h, self.steps, with_account=self.with_account)
+
+    @property
+    def is_bounded(self) -> bool:
+        """False once anything is not finite or is out of any sane bound."""
+        return self.state.is_bounded
+
+    def sample(self, frame: int) -> None:
+        """Keep the state as that of a frame."""
+        self.x[frame], self.v[frame] = self.state.x, velocities(self.net, self.state)
+        self.ledger[frame] = *energy(self.net, self.state), self.state.dissipated, self.state.work
+
+    def end_at_divergence(self, frame: int) -> float:
+        """The time [s] of the first bad step before a frame; all results from then on become NaN."""
+        steps = self.steps * (frame - self.calm_frame)
+        diverged_at = first_insane_time(self.net, self.calm, self.record, self.h, steps)
+        # What blows up may have passed the bound between frames, and come back for one.
+        for rows in (self.x, self.v, self.ledger):
+            rows[self.t >= diverged_at] = np.nan
+        return diverged_at
 
 
 def stepped(
@@ -181,41 +199,19 @@ def stepped(
     progress: Progress,
 ) -> Run:
     """The run at times `t` [s] in equal steps of at most `step` [s]."""
-    interval = float(t[-1]) / (len(t) - 1)
-    steps = steps_for(interval, step)
-    h = interval / steps
-
-    state = State(net.x0.copy(), velocity.copy())
-    calm, calm_frame = state.copy(), 0
-    xs = np.full((len(t), *net.x0.shape), np.nan)
-    vs = np.full_like(xs, np.nan)
-    ledger = np.full((len(t), 6), np.nan)
-    diverged_at = None
-    for frame in range(len(t)):
-        if frame:
-            advance(net, state, record, h, steps, with_account=with_account)
-            if not state.is_bounded:
-                diverged_at = first_insane_time(net, calm, record, h, steps * (frame - calm_frame))
-                # What blows up may have passed the bound between frames, and come back for one.
-                for rows in (xs, vs, ledger):
-                    rows[t >= diverged_at] = np.nan
-                break
-            if np.abs(state.x).max() < CALM:
-                calm, calm_frame = state.copy(), frame
-        xs[frame], vs[frame] = state.x, velocities(net, state)
-        ledger[frame] = *energy(net, state), state.dissipated, state.work
-        if progress:
-            progress(frame + 1, len(t))
+    kept = NetFrames(net, State(net.x0.copy(), velocity.copy()), record, t, step, with_account)
+    done = run_frames(kept, len(t), progress)
+    diverged_at = None if done == len(t) else kept.end_at_divergence(done)
     return Run(
         t,
-        per_point(net, xs),
-        per_point(net, vs),
-        energy_history(ledger, with_account or is_closed(net)),
-        state.force_evals,
+        per_point(net, kept.x),
+        per_point(net, kept.v),
+        energy_history(kept.ledger, with_account or is_closed(net)),
+        kept.state.force_evals,
         diverged_at,
-        h,
+        kept.h,
         record.name,
-        state.left_out,
+        kept.state.left_out,
     )
 
 

@@ -28,8 +28,10 @@ from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.integrators.implicit.tangent import quotients, set_lanczos, set_tangent
 from sim.springs.laws import largest_stiffness
+from sim.springs.line_arrays import LineArrays
 from sim.springs.net import Net
-from sim.springs.state import State, check_net, check_state
+from sim.springs.point_system import PointSystem, check_system
+from sim.springs.state import State, check_state
 from sim.validation import check_number
 
 VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
@@ -37,6 +39,7 @@ TOUCHING = 12  # equal spheres that can touch one of them
 LEAST_SLIDING = 1e-6  # below, friction does not count
 SAME = 1.0 - 1e-6  # product of two unit vectors that are one
 ROUNDS = 2  # of the fastest overdamped mode, which is then right to 0.1 %
+STIFF = 0.4  # omega^2 over the largest one, above which a less damped mode of a line may be the first to leave
 SECANTS = 8  # most of them, to 1e-4 of a step
 NEARLY = 1e-7  # relative width at which the search for a stiffness ends
 
@@ -132,26 +135,47 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
     return math.sqrt(float((free * stiffness).max())), float((free * damping).max())
 
 
-def sawtooth(net: Net, x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
+def sawtooth(x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
     """A unit vector (3 rows cols,) near the stiffest mode: neighbours move against each other along their links.
 
     A rope's top mode is one almost exactly, so that Lanczos starts where it is to end. The fixed noise keeps anything
     else that is stiff, such as a point in contact, from being orthogonal to the start.
     """
-    rows, cols = net.shape
     u = 0.1 * np.random.default_rng(0).standard_normal(x.shape)
+    u += against_along_lines(x, p) if isinstance(p, LineArrays) else against_along_rows(x)
+    free = p.inverse_masses > 0.0
+    if isinstance(p, LineArrays):
+        free[p.nodes :] = True  # bodies
+    flat = u.reshape(3, -1) * free
+    return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
+
+
+def against_along_rows(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Moves (3, rows, cols) of neighbours against each other along rows and columns at x (3, rows, cols)."""
+    rows, cols = x.shape[1:]
+    u = np.zeros_like(x)
     alternating = (-1.0) ** np.add.outer(np.arange(rows), np.arange(cols))
     for axis, count in ((1, rows), (2, cols)):
         if count > 1:
             along = np.gradient(x, axis=axis)
             u += alternating * along / np.sqrt((along * along).sum(axis=0) + 1e-300)
-    flat = u.reshape(3, -1) * (p.inverse_masses > 0.0)
-    return flat.ravel() / max(math.sqrt(float((flat * flat).sum())), 1e-300)
+    return u
 
 
-def across(net: Net, x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
-    """The same, (3 rows cols,), at right angles to the links, where they are least stiff."""
-    rows, cols = net.shape
+def against_along_lines(x: NDArray[np.float64], p: LineArrays) -> NDArray[np.float64]:
+    """The same (3, n) of the nodes of lines at x (3, n), whose links follow each other in their table."""
+    start, end = p.ends.T
+    along = x[:, end] - x[:, start]
+    along *= (-1.0) ** np.arange(len(start)) / np.sqrt((along * along).sum(axis=0) + 1e-300)
+    u = np.zeros_like(x)
+    np.add.at(u.T, end, along.T)
+    np.subtract.at(u.T, start, along.T)
+    return u
+
+
+def across(x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
+    """The same, (3 rows cols,), at right angles to the links of a net, where they are least stiff."""
+    rows, cols = x.shape[1:]
     along = np.gradient(x, axis=2) if cols > 1 else np.gradient(x, axis=1)
     other = np.gradient(x, axis=1) if min(rows, cols) > 1 else np.zeros_like(x)
     # A rope has no second direction: any will do that it does not run along.
@@ -187,6 +211,19 @@ def top_vector(
     STIFFEST."""
     _, vectors, basis = ritz(x, start, t, p, part, stiff)
     return vectors[:, -1] @ basis
+
+
+def stiff_vectors(
+    x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any
+) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
+    """The unit vector (3 rows cols,) of the stiffest mode; of lines also those of the next ones.
+
+    Segments are often damped near critically, where a method such as rkn8 may have a longer limit at the stiffest mode
+    than at the next, which are damped less.
+    """
+    values, vectors, basis = ritz(x, start, t, p, STIFFEST)
+    found = vectors.T @ basis if isinstance(p, LineArrays) else (vectors[:, -1] @ basis)[None]
+    return found[-1], [u for u, value in zip(found[:-1], values, strict=False) if value > STIFF * values[-1]]
 
 
 def mixed_vectors(
@@ -232,31 +269,41 @@ def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float,
     return found
 
 
-def top_modes(net: Net, x: NDArray[np.float64] | None = None, t: float = 0.0) -> list[Mode]:
-    """The stiffest mode about positions x (3, rows, cols) [m] (None: x0) at time t [s], then the most damped one and,
-    across the links, the most damped one again or, of axially damped nets, the stiffest. Where friction acts, the
+def is_damped_anywhere(system: PointSystem, p: Any) -> bool:
+    """True if any damping counts: of links, contacts, the grab, or declared forces."""
+    if not isinstance(system, Net):
+        return True
+    touched = p.has_floor or p.has_sphere or p.grabbed >= 0 or system.thickness > 0.0
+    return bool(p.damped or touched or system.forces)
+
+
+def top_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: float = 0.0) -> list[Mode]:
+    """The stiffest mode about positions x [m] (None: of the start) at time t [s], then the most damped one and, across
+    the links, the most damped one again or, of axially damped nets and lines, the stiffest. Where friction acts, the
     last one is the stiffest that slides.
 
+    x: (3, rows, cols) of a net, (3, n) of lines.
     Points that touch floor, sphere or each other, and the grab, count; how much of each mode slides is its `sliding`.
-    Air does not count.
+    Air, drag in water and friction on the bed do not count.
     Empty where nothing is free to move.
     """
-    x = net.x0 if x is None else x
+    x = system.start() if x is None else x
     if not np.isfinite(x).all():
         return []
-    p = net.kernel_view(1.0)
-    start = sawtooth(net, x, p)
+    p = system.kernel_view(1.0)
+    start = sawtooth(x, p)
     flat = np.ascontiguousarray(x).reshape(-1)
     if not start.any():
         return []
-    parts = [(STIFFEST, start)]
-    if p.damped or p.has_floor or p.has_sphere or p.grabbed >= 0 or net.thickness > 0.0 or net.forces:
+    stiffest, next_ones = stiff_vectors(flat, start, t, p)
+    parts = []
+    if is_damped_anywhere(system, p):
         parts.append((DAMPING, start))
     if p.damped:
-        parts.append((TRANSVERSE, start) if p.axial else (DAMPING, across(net, x, p)))
-    vectors = [top_vector(flat, begin, t, p, part) for part, begin in parts]
-    mixed = mixed_vectors(flat, vectors[0], vectors[1], t, p) if len(vectors) > 1 else []
-    if p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
+        parts.append((TRANSVERSE, start) if p.axial else (DAMPING, across(x, p)))
+    vectors = [stiffest, *(top_vector(flat, begin, t, p, part) for part, begin in parts), *next_ones]
+    mixed = mixed_vectors(flat, vectors[0], vectors[1], t, p) if parts else []
+    if isinstance(system, Net) and p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
         slides = sliding_vector(flat, start, t, p)
         if slides is not None:
             vectors.append(slides)
@@ -292,27 +339,28 @@ def step_limit(mode: Mode, integrator: Integrator) -> float:
     return min(h, free)
 
 
-def modes_at(net: Net, state: State | None) -> list[Mode]:
-    """The `top_modes` of a state, None: of the start. Raises ValueError for a state of another net."""
+def modes_at(system: PointSystem, state: State | None) -> list[Mode]:
+    """The `top_modes` of a state, None: of the start. Raises ValueError for a state of another system."""
     if state is None:
-        check_net(net)
+        check_system(system)
     else:
-        check_state(net, state)
-    return top_modes(net) if state is None else top_modes(net, state.x, state.t)
+        check_state(system, state)
+    return top_modes(system) if state is None else top_modes(system, state.x, state.t)
 
 
-def critical_step(net: Net, integrator: str | Integrator, state: State | None = None) -> float:
-    """The largest step [s] at which small disturbances of `state` (None: the start x0) do not grow.
+def critical_step(system: PointSystem, integrator: str | Integrator, state: State | None = None) -> float:
+    """The largest step [s] at which small disturbances of `state` do not grow.
 
+    system: a net or mooring lines. state: None: a net as it was built, or lines in their state of rest.
     0 where every step is unstable (undamped explicit Euler), inf where none is. Raises ValueError for an unknown
-    integrator.
+    integrator, and ConvergenceError for lines without a state of rest.
 
     >>> from sim.springs import critical_step, rope
     >>> round(critical_step(rope(points=10, stiffness=800.0), "leapfrog"), 4)  # [s]
     0.0358
     """
     record = integrator_named(integrator)
-    return min((step_limit(mode, record) for mode in modes_at(net, state)), default=math.inf)
+    return min((step_limit(mode, record) for mode in modes_at(system, state)), default=math.inf)
 
 
 def critical_stiffness(

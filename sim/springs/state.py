@@ -1,7 +1,9 @@
-"""`State` of a moving net, and `advance`, which changes it."""
+"""`State` of a net or of mooring lines in motion, and `advance`, which changes it."""
 
 import dataclasses
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,17 +15,19 @@ from sim.springs.analysis.energy import Energy, energies
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
+from sim.springs.point_system import PointSystem, check_system
 from sim.validation import argument_error, check_kind, check_number, is_whole_number
 
 # In one call of a kernel, which a Ctrl-C waits for: hundredths of a second.
 POINT_EVALS = 2e6  # force evaluations times points, of a rope
-GRID_COST = 4.0  # of a net with links in several directions, in evaluations of a rope's
-CONTACT_COST = 300.0  # of a net that touches itself, in evaluations without
 
 
 @dataclasses.dataclass
 class State:
-    """Positions and velocities (3, rows, cols), the time, and the running ledger."""
+    """Positions and velocities, (3, rows, cols) of a net and (3, n) of lines, the time, and the running ledger.
+
+    Of lines the points are all nodes, then two a body: its displacement [m] and its small rotation [rad].
+    """
 
     x: NDArray[np.float64]  # [m]
     v: NDArray[np.float64]  # [m/s], at time t - lag
@@ -36,10 +40,18 @@ class State:
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
 
     @classmethod
-    def at_rest(cls, net: Net) -> "State":
-        """The net as it was built, without motion. Raises ValueError if it is not a net."""
-        check_net(net)
-        return cls(net.x0.copy(), np.zeros_like(net.x0))
+    def at_rest(cls, system: PointSystem) -> "State":
+        """A net as it was built, or mooring lines in their state of rest, without motion.
+
+        Raises ValueError if it is neither, and ConvergenceError without a state of rest.
+        """
+        check_system(system)
+        return cls.still(system.start())
+
+    @classmethod
+    def still(cls, x: NDArray[np.float64]) -> "State":
+        """Positions x [m], without motion."""
+        return cls(np.array(x, dtype=np.float64, order="C"), np.zeros(x.shape))
 
     def copy(self) -> "State":
         return dataclasses.replace(self, x=self.x.copy(), v=self.v.copy())
@@ -50,67 +62,93 @@ class State:
         return extremes(self.x, self.v).max_coordinate < DIVERGENCE_BOUND
 
 
-def check_net(net: object) -> None:
-    """Raises ValueError if it is not a net."""
-    check_kind("net", net, Net, "a Net, as `rope` and `cloth` make them")
-
-
-def check_state(net: Net, state: State) -> None:
-    """Raises ValueError unless `state` is one of `net`: kernels check no index, and write into its arrays."""
-    check_net(net)
+def check_state(system: PointSystem, state: State, name: str = "state") -> None:
+    """Raises ValueError unless `state` is one of `system`: kernels check no index, and write into its arrays."""
+    check_system(system)
     if not isinstance(state, State):
-        raise argument_error("state", type(state), "a State")
-    for name, array in (("state.x", state.x), ("state.v", state.v)):
-        if array.shape != net.x0.shape:
-            raise argument_error(name, array.shape, f"the net's shape {net.x0.shape}")
+        raise argument_error(name, type(state), "a State")
+    for field, array in ((f"{name}.x", state.x), (f"{name}.v", state.v)):
+        if array.shape != system.state_shape:
+            raise argument_error(field, array.shape, f"the shape of a state of the system, {system.state_shape}")
         if array.dtype != np.float64 or not array.flags.c_contiguous:
-            raise argument_error(name, f"{array.dtype}, {array.strides}", "a contiguous array of float64")
+            raise argument_error(field, f"{array.dtype}, {array.strides}", "a contiguous array of float64")
 
 
-def acceleration(net: Net, state: State, lag: float) -> NDArray[np.float64]:
-    """Accelerations (3, rows, cols) [m/s^2] of the state as stored; its velocities may trail by half a step."""
-    a = np.empty_like(state.x)
-    set_acceleration(state.x.reshape(-1), state.v.reshape(-1), state.t, net.kernel_view(2.0 * lag), a.reshape(-1))
-    if net.thickness > 0.0:
+Driven = Mapping[str, NDArray[np.float64]] | None
+
+
+def view_of(system: PointSystem, h: float, driven: Driven) -> Any:
+    """The kernels' view of a system for steps of h [s], with the arrays of `driven` for its own.
+
+    Raises ValueError for one that the view does not have, or of another shape: kernels check no index.
+    """
+    p = system.kernel_view(h)
+    if driven is None:
+        return p
+    check_kind("driven", driven, Mapping, "arrays by their names, or None")
+    for name, array in driven.items():
+        own = getattr(p, name, None)
+        if not isinstance(own, np.ndarray) or own.dtype != np.float64:
+            known = [one for one, value in p._asdict().items() if getattr(value, "dtype", None) == np.float64]
+            raise argument_error("driven", name, f"one of {', '.join(known)}")
+        if not isinstance(array, np.ndarray) or array.dtype != np.float64 or array.shape != own.shape:
+            shape = getattr(array, "shape", type(array))
+            raise argument_error(f"driven: {name}", shape, f"an array of float64 of shape {own.shape}")
+    return p._replace(**{name: np.ascontiguousarray(array) for name, array in driven.items()})
+
+
+def touches_itself(system: PointSystem) -> bool:
+    """True if a look for contacts may end a solve early."""
+    return isinstance(system, Net) and system.thickness > 0.0
+
+
+def acceleration(system: PointSystem, state: State, lag: float, driven: Driven = None) -> NDArray[np.float64]:
+    """Accelerations [m/s^2] of the state as stored; its velocities may trail by half a step."""
+    a, p = np.empty_like(state.x), view_of(system, 2.0 * lag, driven)
+    set_acceleration(state.x.reshape(-1), state.v.reshape(-1), state.t, p, a.reshape(-1))
+    if touches_itself(system):
         raise_if_stopped()
     return a
 
 
-def set_lag(net: Net, state: State, lag: float) -> None:
+def set_lag(system: PointSystem, state: State, lag: float, driven: Driven = None) -> None:
     """Move the velocities, in place, to time t - lag [s], for a change of step or of integrator."""
     if lag != state.lag:
-        state.v += (state.lag - lag) * acceleration(net, state, max(lag, state.lag))
+        state.v += (state.lag - lag) * acceleration(system, state, max(lag, state.lag), driven)
         state.lag = lag
         state.force_evals += 1
 
 
-def velocities(net: Net, state: State) -> NDArray[np.float64]:
-    """Velocities at time t (3, rows, cols) [m/s], whether or not the integrator's trail by half a step.
+def velocities(system: PointSystem, state: State) -> NDArray[np.float64]:
+    """Velocities [m/s] at time t, of the shape of `state.x`, whether or not the integrator's trail by half a step.
 
-    Raises ValueError for a state of another net.
+    Raises ValueError for a state of another system.
     """
-    check_state(net, state)
+    check_state(system, state)
     if state.lag == 0.0:
         return state.v
-    return state.v + state.lag * acceleration(net, state, state.lag)
-
-
-def check_damping(net: Net, integrator: Integrator) -> None:
-    """Raises ValueError where a damped net is given to a method that takes none."""
-    if integrator.undamped_only and net.is_damped:
-        raise argument_error("integrator", integrator.name, "another, as this net is damped: by links, drag or contact")
+    return state.v + state.lag * acceleration(system, state, state.lag)
 
 
 def advance(
-    net: Net, state: State, integrator: str | Integrator, h: float, steps: int, *, with_account: bool = False
+    system: PointSystem,
+    state: State,
+    integrator: str | Integrator,
+    h: float,
+    steps: int,
+    *,
+    with_account: bool = False,
+    driven: Driven = None,
 ) -> None:
-    """Advance `state` in place by `steps` steps of h [s].
+    """Advance `state` of a net or of mooring lines in place by `steps` steps of h [s].
 
     integrator: a name in `INTEGRATORS`, or one of its records.
+    driven: arrays that stand for those of the same name and shape in the kernels' view, as `paths` of coupled points
+    from `paths_to`.
 
-    Raises ValueError for a net the integrator refuses, for a state of another net, for an unknown integrator, and for a
-    step or a number of steps that cannot be. Where the solve is ended early (sim/interruption.py) the state is that
-    after some of the steps.
+    Raises ValueError for a system the integrator refuses, for a state of another system, for an unknown integrator, and
+    for a step or a number of steps that cannot be. Where the solve is ended early (sim/interruption.py) the state is
+    that after some of the steps.
 
     >>> from sim.springs import State, advance, rope
     >>> net = rope(points=10)
@@ -119,22 +157,22 @@ def advance(
     >>> round(state.t, 6), state.force_evals
     (0.5, 2000)
     """
-    check_state(net, state)
+    check_state(system, state)
     integrator = integrator_named(integrator)
-    check_damping(net, integrator)
+    system.check_integrator(integrator)
     check_number("h", h, 0, math.inf, "s", above=True)
     if not is_whole_number(steps) or steps < 0:
         raise argument_error("steps", steps, "a whole number from 0")
     check_kind("with_account", with_account, bool, "True or False")
-    set_lag(net, state, integrator.lag * h)
+    p = view_of(system, h, driven)
+    set_lag(system, state, integrator.lag * h, driven)
     # The sums go on from where they are, so that they do not depend on how the steps are shared out among the calls.
-    ledger, p = np.array([state.dissipated, state.work]), net.kernel_view(h)
-    if net.bands > 1:
-        set_threads(net.bands)
-    each = CONTACT_COST if net.thickness > 0.0 else 1.0 if net.is_rope else GRID_COST
-    cost = net.x0[0].size * integrator.evals * each
-    most = max(1, int(POINT_EVALS / cost))
-    may_end_within_a_step = integrator.implicit or net.thickness > 0.0
+    ledger = np.array([state.dissipated, state.work])
+    if isinstance(system, Net) and system.bands > 1:
+        set_threads(system.bands)
+    most = max(1, int(POINT_EVALS / (system.evaluation_cost * integrator.evals)))
+    touches = touches_itself(system)
+    may_end_within_a_step = integrator.implicit or touches
     for done in range(0, steps, most):
         count = min(most, steps - done)
         raise_if_stopped()
@@ -144,7 +182,7 @@ def advance(
         if may_end_within_a_step:
             raise_if_stopped()
             state.x[:], state.v[:] = x, v
-        if net.thickness > 0.0:
+        if touches:
             state.left_out = max(state.left_out, int(p.pairs[-1, 1]))
         state.force_evals += evals
         state.t += count * h
@@ -153,14 +191,10 @@ def advance(
         state.work = float(ledger[1])
 
 
-def energy(net: Net, state: State) -> Energy:
+def energy(system: PointSystem, state: State) -> Energy:
     """Stored energies at the state's time [J]."""
-    found = Energy(*energies(state.x.reshape(-1), velocities(net, state).reshape(-1), state.t, net.kernel_view(1.0)))
-    if net.thickness > 0.0:
+    x, v = state.x.reshape(-1), velocities(system, state).reshape(-1)
+    found = Energy(*energies(x, v, state.t, system.kernel_view(1.0)))
+    if touches_itself(system):
         raise_if_stopped()
     return found
-
-
-def steps_for(interval: float, step: float) -> int:
-    """Steps that fill `interval` [s] with none longer than `step` [s], forgiving round-off in their ratio."""
-    return max(1, math.ceil(interval / step * (1.0 - 1e-9)))

@@ -70,9 +70,9 @@ def call(function: Callable[..., object], left_out: tuple[str, ...] = (), **righ
 LOAD = {"hull": BOX, "density": None, "mass": None, "center_of_gravity": None, "inertia": None}
 POSE = {"position": ORIGIN, "rotation": UPRIGHT, "velocity": ORIGIN, "spin": ORIGIN}
 CALLS = (
-    call(springs.rope), call(springs.cloth, rows=4, cols=4), call(springs.simulate, net=NET, duration=0.1, frames=3),
-    call(springs.critical_step, net=NET, integrator="rk4"), call(springs.State.at_rest, net=NET),
-    call(springs.advance, net=NET, state=springs.State.at_rest(NET), integrator="rk4", h=0.01, steps=1),
+    call(springs.rope), call(springs.cloth, rows=4, cols=4), call(springs.simulate, system=NET, duration=0.1, frames=3),
+    call(springs.critical_step, system=NET, integrator="rk4"), call(springs.State.at_rest, system=NET),
+    call(springs.advance, system=NET, state=springs.State.at_rest(NET), integrator="rk4", h=0.01, steps=1),
     call(springs.lab_units, points=4, length=1.0, axial_stiffness=1.0, mass_per_length=1.0, axial_viscosity=1.0,
          drag_per_length=1.0),
     call(catenary, points=5, length=2.0, span=1.0, rise=0.0, stiffness=8.0, mass=1.0, gravity=10.0),
@@ -130,11 +130,11 @@ SLIPS: tuple[tuple[str, Callable[[], object], str], ...] = (
     ("pinned", lambda: springs.cloth(4, 4, pinned="top"), "edge"),
     ("air", lambda: springs.cloth(4, 4, air=(8.0, 0.0, 0.0)), "an Air"),
     ("air.wind", lambda: springs.cloth(4, 4, air=springs.Air(wind=8.0)), "3 finite numbers"),
-    ("integrator", lambda: springs.simulate(NET, "RK4"), "rk4"),
+    ("integrator", lambda: springs.simulate(NET, integrator="RK4"), "rk4"),
     ("integrator", lambda: springs.critical_step("rk4", NET), "rk4"),
     ("x", lambda: springs.simulate(NET, x=NET.x0), "(4, 3)"),
-    ("rtol", lambda: springs.simulate(NET, "rk4", rtol=1e-6), "adaptive"),
-    ("net", lambda: springs.advance(springs.State.at_rest(NET), NET, "rk4", 0.01, 1), "a Net"),
+    ("rtol", lambda: springs.simulate(NET, integrator="rk4", rtol=1e-6), "adaptive"),
+    ("system", lambda: springs.advance(springs.State.at_rest(NET), NET, "rk4", 0.01, 1), "a Net"),
     ("net", lambda: equilibrium("rope"), "a rope"),
     ("size", lambda: Sea(101), "even"),
     ("size", lambda: Sea((64, 64)), "even"),

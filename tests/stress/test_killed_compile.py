@@ -13,7 +13,7 @@ KILLS = 50
 LONGEST = 3.0  # [s] that a compiler is let run: it has started after one
 CHECK = """
 from sim.springs import rope, simulate
-run = simulate(rope(5), "leapfrog", 1e-3, 0.1, 3, with_account=True)
+run = simulate(rope(5), 0.1, 3, 1e-3, "leapfrog", with_account=True)
 print(repr(float(run.x.sum())))
 """
 

@@ -28,7 +28,7 @@ def damping_of(integrator: str, damping: float) -> dict[str, Any]:
 
 def run_few(net: Net, integrator: str, step: float, steps: int = FEW) -> Run:
     """A short run; what must hold of any: numbers until it diverged, none after, and nothing in between."""
-    run = simulate(net, integrator, step, steps * step, 5)
+    run = simulate(net, duration=steps * step, frames=5, step=step, integrator=integrator)
     good = run.t < (math.inf if run.diverged_at is None else run.diverged_at)
     for rows in (run.x, run.v):
         assert np.isfinite(rows[good]).all()

@@ -84,7 +84,6 @@ class MooringScene(LineScene):
     def take_system(self) -> None:
         """Go on with the mooring as it is arranged now."""
         self.system = build(self.params, self.places, self.body, self.sea)
-        self.state.system = self.system
 
     @property
     def is_dragged(self) -> bool:

@@ -18,6 +18,7 @@ from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.interruption import raise_if_stopped
 from sim.mooring import System, at_rest
+from sim.mooring.simulate import cubic
 from sim.validation import ConvergenceError
 from sim.waves import Waves
 
@@ -112,7 +113,6 @@ class FileScene(LineScene):
     def take_system(self) -> None:
         """Go on with the water as it is now."""
         self.system = self.arranged()
-        self.state.system = self.system
 
     @property
     def is_dragged(self) -> bool:
@@ -152,11 +152,8 @@ class FileScene(LineScene):
             fade = fade_at(at)
             x += share * fade * wave
             v += share * fade * speed
-        gap = (x1 - x0) / duration
-        paths = np.zeros((len(self.file.vessel), 5, 3))
-        paths[:, 0] = x0 + self.places
-        paths[:, 1:4] = v0, (3.0 * gap - 2.0 * v0 - v1) / duration, (v0 + v1 - 2.0 * gap) / duration**2
-        paths[:, 4] = t
+        paths = np.repeat(cubic(x0, v0, x1, v1, t, duration)[None], len(self.file.vessel), axis=0)
+        paths[:, 0] += self.places
         self.moved_by = x1 if self.file.vessel else np.zeros(3)
         return paths
 

@@ -22,12 +22,11 @@ from app.scenes.springs.divergence import LastMoments, divergence_text, leapfrog
 from app.scenes.springs.speed_advice import faster_steps
 from sim.floating.rotation import quaternion_by_vector
 from sim.mooring import System, at_rest
-from sim.mooring.gauge import modes
-from sim.mooring.simulate import LineState
 from sim.mooring.statics import Rest, rest_of, straight
 from sim.springs import INTEGRATORS
 from sim.springs.forces.bending import set_line_tensions
-from sim.springs.stability import Gauge, Mode, gauge_of
+from sim.springs.stability import Gauge, Mode, gauge_of, top_modes
+from sim.springs.state import State, advance, velocities
 from sim.validation import ConvergenceError, DivergenceError
 from sim.waves import AMPLITUDE, Waves
 
@@ -86,7 +85,7 @@ class LineScene(abc.ABC):
         self.grabbed: tuple[int, Vector] | None = None
         self.arrange()
         rest, self.failure = rest_or_start(self.system)
-        self.state = LineState(self.system, rest)
+        self.state = State.still(rest.nodes)
         self.rest_place = self.body_place()
         self.check_start(rest)
         self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
@@ -190,8 +189,7 @@ class LineScene(abc.ABC):
 
     def assess_stability(self) -> None:
         """Find the modes about the state, and with them the longest stable step."""
-        rest = Rest({}, {}, {}, self.state.x)
-        self.step_modes: list[Mode] = modes(self.system, rest)
+        self.step_modes: list[Mode] = top_modes(self.system, self.state.x)
         self.take_step()
 
     def take_step(self) -> None:
@@ -221,8 +219,9 @@ class LineScene(abc.ABC):
         piece = max(1, round(SAMPLE / h))
         for first in range(0, steps, piece):
             count = min(piece, steps - first)
-            good = copied({"state": self.state}, self.system)["state"]
-            self.state.advance(method, h, count, self.paths(h * count), driven=self.driven())
+            good = self.state.copy()
+            paths = self.paths(h * count)
+            advance(self.system, self.state, method, h, count, driven={"paths": paths, **self.driven()})
             if not self.is_bounded():
                 self.state = good
                 raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
@@ -238,7 +237,7 @@ class LineScene(abc.ABC):
         """Take tensions, offset and path of the state."""
         p, state = self.system.kernel_view(self.step), self.state
         tension = np.empty(len(p.ends))
-        v = state.velocities(p, 0.0)
+        v = velocities(self.system, state).reshape(-1)
         set_line_tensions(state.x.reshape(-1), v, p, tension)
         self.tension, self.points = tension[self.links], self.points_at(state.x)
         if self.is_dragged:
@@ -314,7 +313,6 @@ class LineScene(abc.ABC):
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
         self.grabbed = None
-        self.state.system = self.system
         self.take_step()
         self.measure()
         self.plot_rows.resume()

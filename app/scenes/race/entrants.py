@@ -18,12 +18,13 @@ from numpy.typing import NDArray
 from app.messages import Vector
 from app.scenes.race.parameters import RaceParams, method_of
 from app.scenes.springs.divergence import limit_text
+from sim.frames import steps_for
 from sim.springs import INTEGRATORS, Integrator, Net
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.reference_run import TRUST_FACTOR, ReferenceRun
 from sim.springs.stability import Gauge, gauge
-from sim.springs.state import State, advance, steps_for
+from sim.springs.state import State, advance
 
 MAX_EQUAL_COST_STEP = 0.1  # [s] longest step that the rule "same cost" gives
 MIN_COST_TRIAL_STEPS, MAX_COST_TRIAL_STEPS = 4, 24  # steps in which the evaluations of an implicit method are counted

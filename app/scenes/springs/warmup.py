@@ -15,10 +15,10 @@ def integrator_pieces(net: Net, undamped: Net) -> Pieces:
         name: functools.partial(
             simulate,
             undamped if record.undamped_only else net,
-            name,
-            WARM_UP_STEP,
             2 * WARM_UP_STEP,
             2,
+            WARM_UP_STEP,
+            name,
             with_account=True,
         )
         for name, record in INTEGRATORS.items()

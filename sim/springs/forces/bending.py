@@ -21,7 +21,7 @@ import math
 from sim.jit import kernel
 from sim.springs.arrays import is_moving, push, span
 from sim.springs.forces.links import set_tensions
-from sim.springs.forces.matrices import STIFFEST, STIFFNESS
+from sim.springs.forces.matrices import STIFFEST, STIFFNESS, TRANSVERSE
 from sim.springs.forces.record import LINES, Force
 
 NODES, WEIGHTS, BEND_STIFFNESS, OFFSET, LINKS = 0, 3, 6, 7, 10  # columns
@@ -101,7 +101,7 @@ def power(x, v, t, p, with_damping):
 @kernel(noalias=True, allocates=False)
 def tangent(x, u, t, p, part, longest, out):
     """The constant K of all bends."""
-    for i in range(p.bends.shape[0] if part in (STIFFNESS, STIFFEST) else 0):
+    for i in range(p.bends.shape[0] if part in (STIFFNESS, STIFFEST, TRANSVERSE) else 0):
         dx, dy, dz = bend_at(u, p, i)
         push_bend(p, out, i, 1.0, dx - p.bends[i, OFFSET], dy - p.bends[i, OFFSET + 1], dz - p.bends[i, OFFSET + 2])
 

@@ -92,7 +92,7 @@ def test_the_accelerations_and_steps_are_those_of_the_rope() -> None:
         return REFERENCE["rope_acceleration"](x, v, *values)
 
     for name, integrator in (("step_euler", "explicit_euler"), ("step_rk4", "rk4")):
-        run = simulate(net, integrator=integrator, step=h, duration=steps * h, frames=2)
+        run = simulate(net, duration=steps * h, frames=2, step=h, integrator=integrator)
         x, v = run.x[0], run.v[0]
         for _ in range(steps):
             x, v = REFERENCE[name](x, v, h, acceleration)
@@ -100,7 +100,7 @@ def test_the_accelerations_and_steps_are_those_of_the_rope() -> None:
         assert np.abs(v - run.v[1]).max() < 1e-7, name
     undamped = rope(points=n, length=1.0, stiffness=300.0, damping=0.0, drag=0.0, gravity=9.0, mass=0.8)
     values = (0.8, 300.0, 0.0, 0.0, 0.2, 9.0)
-    run = simulate(undamped, integrator="leapfrog", step=h, duration=steps * h, frames=2)
+    run = simulate(undamped, duration=steps * h, frames=2, step=h, integrator="leapfrog")
     x, v = run.x[0], run.v[0]
     for _ in range(steps):
         x, v = REFERENCE["step_leapfrog"](x, v, h, acceleration)

@@ -26,6 +26,7 @@ from app.scenes.rope.scene import RopeScene
 from app.scenes.springs.methods import method_name
 from app.scenes.springs.rope_parameters import ROOT, build_rope
 from app.server.loop import SimLoop
+from sim.frames import steps_for
 from sim.parameters import check_record, parameters_of
 from sim.springs import simulate
 from sim.springs.analysis.reference_run import (
@@ -36,7 +37,6 @@ from sim.springs.analysis.reference_run import (
     ReferenceRun,
     too_costly,
 )  # fmt: skip
-from sim.springs.state import steps_for
 
 RaceOf: Any = RaceScene  # whose types the tests know
 Loop: Any = SimLoop  # of a scene whose types the tests know
@@ -105,7 +105,9 @@ def test_ropes_over_their_limit_diverge_and_the_others_go_on(preset, held):
 def test_a_rope_races_as_it_would_alone():
     scene = raced("RK4 at the same values", 2.0)
     entrant = scene.race.entrants[2]
-    alone = simulate(dataclasses.replace(entrant.net, x0=entrant.net.x0), "rk4", entrant.step, 2.0, 2)
+    alone = simulate(
+        dataclasses.replace(entrant.net, x0=entrant.net.x0), duration=2.0, frames=2, step=entrant.step, integrator="rk4"
+    )
     np.testing.assert_allclose(entrant.state.x[:, 0].T, alone.x[-1], atol=1e-12)
 
 
@@ -115,7 +117,7 @@ def test_the_reference_run_is_as_accurate_as_its_separation_says(damping):
     params = RaceParams(damping=damping, drag=damping / 7.0, floor=False)
     net = build_rope(params)
     reference = ReferenceRun(net, params.length)
-    truth = simulate(net, "dop853", duration=4.0, frames=241, rtol=1e-13, atol=1e-15)
+    truth = simulate(net, duration=4.0, frames=241, integrator="dop853", rtol=1e-13, atol=1e-15)
     for frame in range(1, 241):
         reference.advance(net, (frame - 1) / 60, 1 / 60)
         assert np.linalg.norm(reference.x.T - truth.x[frame], axis=1).max() < 3.0 * reference.separation
@@ -123,7 +125,9 @@ def test_the_reference_run_is_as_accurate_as_its_separation_says(damping):
 
 def test_the_error_shown_is_the_distance_from_the_truth():
     scene = raced("Euler against RK4 against leapfrog", 2.0)
-    truth = simulate(build_rope(scene.params), "dop853", duration=2.0, frames=2, rtol=1e-12, atol=1e-14).x[-1]
+    truth = simulate(build_rope(scene.params), duration=2.0, frames=2, integrator="dop853", rtol=1e-12, atol=1e-14).x[
+        -1
+    ]
     for entrant, rope in zip(scene.race.entrants, scene.readings().results, strict=True):
         error = np.linalg.norm(entrant.state.x[:, 0].T - truth, axis=1).max()
         assert rope.error == pytest.approx(error, abs=rope.error_floor)
@@ -187,7 +191,7 @@ def test_a_reference_run_that_is_too_expensive_is_left_out_and_says_so():
 def test_a_reference_run_may_be_too_expensive_by_its_damping_alone():
     """Where damping limits the step, the estimated cost is the actual one of the two runs to a factor of two."""
     net, duration = build_rope(RopeParams(points=10, damping=7000.0)), 0.1
-    taken = simulate(net, "dopri5", duration=duration, frames=2, rtol=RTOL, atol=ATOL).force_evals
+    taken = simulate(net, duration=duration, frames=2, integrator="dopri5", rtol=RTOL, atol=ATOL).force_evals
     most = MAX_EVALUATION_RATE / (2 * taken * 10 / duration)  # references
     assert too_costly(net, round(0.5 * most)) == ""
     assert "too many for ropes of 10 points" in too_costly(net, round(2.0 * most))

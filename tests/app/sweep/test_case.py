@@ -46,7 +46,7 @@ def test_a_rope_that_has_come_to_rest_hangs_as_statics_say():
 def test_the_rope_of_a_case_is_the_rope_of_the_library():
     found = run_case("rope", {"time_step": 1e-3, "floor": False}, (0.5, 1.0)).measures["tip_height"]
     net = app.scenes.rope.scene.build(app.scenes.rope.scene.RopeParams(floor=False))
-    run = simulate(net, "leapfrog", 1e-3, 1.0, 3)
+    run = simulate(net, duration=1.0, frames=3, step=1e-3, integrator="leapfrog")
     assert found == pytest.approx(run.x[1:, -1, 2], abs=1e-12)
 
 

@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from sim.floating import Body, Hull, MotionCoefficients, float_in, response_amplitude
+from sim.floating import Body, FloatState, Hull, MotionCoefficients, float_in, response_amplitude
 from sim.ocean import Sea
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSea
 from sim.waves import Waves
+from tests.refusals import assert_refused
 
 FREE = MotionCoefficients(quadratic_drag=0.0)
 BUOY = Body(Hull.cylinder(0.5, 1.0), mass=390.0, center_of_gravity=(0.0, 0.0, -0.25))
@@ -54,6 +55,52 @@ def test_a_small_buoy_follows_a_long_wave(kind):
     assert np.std(rise[150:] - run.surface[150:, 0]) < 0.05 * np.std(run.surface[150:, 0])
     balance = run.lift[100:, 0].sum(axis=1).mean() / (body.mass * 9.81)
     assert balance == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize("kind", ["square", "radial"])
+def test_steps_from_outside_are_those_of_a_run(kind):
+    """At any length of exchange; where the step changes, within the error of a step."""
+    if kind == "radial":
+        sea = regular(2.0 * math.pi / 40.0, 0.3)
+    else:
+        sea = Sea(32, 80.0, "regular", wave_height=0.6, wave_period=7.16, wind_speed=0.0)
+    told = []
+    run = float_in(sea, [BUOY.afloat()], 3.0, 31, 1 / 80, progress=lambda *done: told.append(done))
+    assert told[0] == (1, 31)
+    assert told[-1] == (31, 31)
+    state, changed = FloatState(sea, [BUOY.afloat()]), FloatState(sea, [BUOY.afloat()])
+    for steps in (1, 7, 0, 232):
+        state.advance(1 / 80, steps)
+    assert state.t == pytest.approx(3.0)
+    assert state.fleet.position == pytest.approx(run.x[-1], abs=1e-12)
+    for h, steps in ((1 / 80, 120), (1 / 160, 240)):
+        changed.advance(h, steps)
+    assert changed.fleet.position == pytest.approx(run.x[-1], abs=2e-3)
+
+
+def test_a_pull_from_outside_presses_a_buoy_down():
+    state = FloatState(regular(1.0, 0.0), [BUOY.afloat()])
+    start = state.fleet.position[0, 2]
+    state.fleet.mooring[0, 2] = -200.0
+    heights = []
+    for _ in range(300):
+        state.advance(1 / 60, 4)
+        heights.append(state.fleet.position[0, 2])
+    assert np.mean(heights[150:]) - start == pytest.approx(-200.0 / (1025.0 * 9.81 * math.pi * 0.25), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("name", "call", "words"),
+    [
+        ("h", lambda s: s.advance(0.1, 1), "0.0166"),
+        ("steps", lambda s: s.advance(0.01, -1), "from 0"),
+        ("step", lambda s: float_in(s.sea, [], 1.0, 3, 0.1), "0.0166"),
+        ("frames", lambda s: float_in(s.sea, [], 1.0, 1), "from 2"),
+        ("progress", lambda s: float_in(s.sea, [], 1.0, progress=1), "a function"),
+    ],
+)
+def test_bad_steps_and_frames_are_named(name, call, words):
+    assert_refused(name, lambda: call(FloatState(regular(1.0, 0.0), [])), words)
 
 
 def test_in_still_layers_a_body_at_rest_stays():

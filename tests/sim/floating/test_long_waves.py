@@ -153,7 +153,9 @@ def steady(body: Body, w: float, heading: float, periods: int = 5, skipped: int 
     """Motion (6,) for 1 m of a regular wave of w [rad/s] that `float_in` finds, about its slow drift."""
     one, k, height = np.ones(1), w * w / 9.81, 1e-3
     sea = RadialSea(Waves(k * math.cos(heading) * one, k * math.sin(heading) * one, height * one, 0.0 * one))
-    run = float_in(sea, [body], periods * 2.0 * math.pi / w, periods * 40 + 1, MotionCoefficients(quadratic_drag=0.0))
+    run = float_in(
+        sea, [body], periods * 2.0 * math.pi / w, periods * 40 + 1, coefficients=MotionCoefficients(quadratic_drag=0.0)
+    )
     last = slice(skipped * 40, None)
     t = run.t[last]
     columns = np.column_stack([np.cos(w * t), np.sin(w * t), np.ones(len(t)), t])

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, System, critical_step, read_moordyn, simulate
-from sim.mooring.gauge import modes
-from sim.mooring.tangent import stiffness_matrix
 from sim.springs.acceleration import set_rest_forces
 from sim.springs.analysis.energy import energies
 from sim.springs.forces.bending import energy
+from sim.springs.state import State
 from tests.refusals import assert_refused
+from tests.sim.mooring.dense import frequencies_squared, stiffness_matrix
 from tests.sim.mooring.systems import chain_on_bed
 
 FILES = Path(__file__).with_name("files")
@@ -85,7 +85,7 @@ def test_a_beam_on_two_supports_sinks_as_its_closed_form():
 
 def test_a_beam_on_two_supports_swings_as_its_closed_form():
     """omega^2 m = T (n pi/L)^2 + EI (n pi/L)^4."""
-    found = sorted(mode.stiffness for mode in modes(beam(40)))
+    found = frequencies_squared(beam(40))
     k = np.pi / LENGTH * np.array([1.0, 1.0, 2.0, 2.0])  # in both planes
     exact = (10.0 * k**2 + 1e5 * k**4) * 9.81
     assert found[:4] == pytest.approx(exact, rel=5e-3)
@@ -130,7 +130,7 @@ def test_the_account_of_a_stiff_line_with_a_table_and_slack_damping_balances():
     points = (Point(1, "fixed", (-20.0, 0.0, -29.0)), Point(2, "coupled", (0.0, 0.0, -5.0)))
     system = System((Line(1, kind, 1, 2, 31.0, 12),), points, 30.0, slack_damping=True)
     swing = lambda t: (1.5 * math.sin(2.0 * t), 0.0, -5.0 + 0.5 * math.sin(3.0 * t))  # noqa: E731
-    run = simulate(system, {2: swing}, 6.0, 61, integrator="rk4", step=2.5e-4, with_account=True)
+    run = simulate(system, duration=6.0, frames=61, step=2.5e-4, integrator="rk4", with_account=True, motion={2: swing})
     assert run.tension[1].min() < 0.0  # a slack link that closes is damped
     work = np.abs(run.energy.dissipated).max()
     assert np.abs(run.energy.error).max() < 2e-4 * work
@@ -158,10 +158,10 @@ def test_a_stiff_line_diverges_at_the_step_of_the_gauge(factor, holds):
     system = System((Line(1, kind, 1, 2, 9.99, 20),), points, 50.0, **DRY)
     rest = system.at_rest()
     rest.nodes[2, 2:] += 1e-6 * (-1.0) ** np.arange(19)
-    step = factor * critical_step(system, "leapfrog", rest)
+    step = factor * critical_step(system, "leapfrog", State.still(rest.nodes))
     plain = dataclasses.replace(system, lines=(system.lines[0]._replace(type=kind._replace(bending=0.0)),))
     assert step < 0.7 * critical_step(plain, "leapfrog")
-    v = simulate(system, duration=400 * step, frames=2, step=step, start=rest)
+    v = simulate(system, duration=400 * step, frames=2, step=step, start=State.still(rest.nodes))
     moved = np.abs(v.x[1][-1] - v.x[1][0]).max()
     assert (moved < 1e-4) == holds
 

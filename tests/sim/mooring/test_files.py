@@ -219,9 +219,9 @@ ROWS = [
     ("body 1: stiffness", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(stiffness=-np.eye(6)),))),
     ("body 1: damping", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(damping=np.eye(5)),))),
     ("system", lambda: simulate(None)),  # type: ignore[arg-type]
-    ("motion", lambda: simulate(SYSTEM, {1: lambda t: (0.0, 0.0, 0.0)})),
-    ("motion[2]", lambda: simulate(SYSTEM, {2: 3.0})),  # type: ignore[dict-item]
-    ("motion[2](0)", lambda: simulate(SYSTEM, {2: lambda t: (0.0, math.nan, 0.0)})),
+    ("motion", lambda: simulate(SYSTEM, motion={1: lambda t: (0.0, 0.0, 0.0)})),
+    ("motion[2]", lambda: simulate(SYSTEM, motion={2: 3.0})),  # type: ignore[dict-item]
+    ("motion[2](0)", lambda: simulate(SYSTEM, motion={2: lambda t: (0.0, math.nan, 0.0)})),
     ("duration", lambda: simulate(SYSTEM, duration=0.0)),
     ("frames", lambda: simulate(SYSTEM, frames=1)),
     ("step", lambda: simulate(SYSTEM, step=-1.0)),

@@ -8,7 +8,8 @@ import pytest
 
 from sim import floating
 from sim.mooring import Line, LineType, Point, System, moored, simulate
-from sim.mooring.statics import Rest, straight
+from sim.mooring.statics import straight
+from sim.springs import State
 from sim.springs.acceleration import set_acceleration
 from sim.water import Water
 from sim.waves import Waves
@@ -59,7 +60,7 @@ def test_a_wave_pushes_a_body_where_it_is(place):
 
 def test_the_account_balances_of_a_body_in_waves():
     system = box_in_waves(0.7)
-    start = Rest({}, {}, {}, straight(system))
+    start = State.still(straight(system))
     run = simulate(system, duration=60.0, frames=61, step=0.01, start=start, with_account=True)
     error = run.energy.total + run.energy.dissipated - run.energy.work
     assert np.abs(error - error[0]).max() < 1e-3 * np.ptp(run.energy.total)

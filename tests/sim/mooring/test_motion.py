@@ -9,8 +9,17 @@ import pytest
 from scipy.linalg import expm
 
 from sim import springs
-from sim.mooring import Line, LineType, MooredBody, Point, System, critical_step, simulate
-from sim.mooring.simulate import LineState, paths_of
+from sim.mooring import (
+    Line,
+    LineType,
+    MooredBody,
+    Point,
+    State,
+    System,
+    advance,
+    critical_step,
+    simulate,
+)
 from sim.mooring.statics import Rest
 from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import energies, power
@@ -40,7 +49,7 @@ def harmonic(t: np.ndarray, y: np.ndarray, period: float) -> tuple[float, float]
     ids=["chain on the bed", "taut rope"],
 )
 def test_tension_of_a_shaken_line_is_that_of_moordyn(system, motion, period, mean, first):
-    run = simulate(system, {2: motion}, 8.0 * period, round(400 * period) + 1)
+    run = simulate(system, duration=8.0 * period, frames=round(400 * period) + 1, motion={2: motion})
     found = harmonic(run.t, run.tension[1][:, -1], period)
     assert found[0] == pytest.approx(mean, rel=1e-3)
     assert found[1] == pytest.approx(first, rel=0.02)
@@ -73,8 +82,8 @@ def test_a_line_without_water_and_bed_is_a_rope(integrator):
         13, 1.5, 3.0 * spacing, 2000.0 / spacing, kind.damping / spacing, 0.0, root=(0.0, 0.0, 0.0),
         end=(2.0, 0.0, 0.3), damping_model="axial",
     )  # fmt: skip
-    expected = springs.simulate(net, integrator, 1e-3, 0.5, 6)
-    start = Rest({}, {}, {}, np.ascontiguousarray(net.x0[:, 0, [0, 12, *range(1, 12)]]))
+    expected = springs.simulate(net, duration=0.5, frames=6, step=1e-3, integrator=integrator)
+    start = State.still(net.x0[:, 0, [0, 12, *range(1, 12)]])
     found = simulate(system, duration=0.5, frames=6, step=1e-3, integrator=integrator, start=start)
     assert np.abs(found.x[1] - expected.x).max() < 1e-12
     assert np.abs(np.subtract(found.energy[:2], expected.energy[:2])).max() < 1e-9
@@ -93,9 +102,8 @@ def suspended_in_waves() -> tuple[System, Rest]:
 
 
 def end_of(system: System, rest: Rest, integrator: str, h: float, duration: float) -> np.ndarray:
-    state = LineState(system, rest)
-    steps = round(duration / h)
-    state.advance(springs.INTEGRATORS[integrator], h, steps, paths_of(system, {}, 0.0, duration))
+    state = State.still(rest.nodes)
+    advance(system, state, integrator, h, round(duration / h))
     return state.x
 
 
@@ -125,7 +133,9 @@ def test_the_account_balances_with_everything_at_work(integrator):
     motion = Shaking((0.0, 0.0, 0.0), 0, 1.5, 7.0)
     errors = []
     for step in (2e-3, 1e-3):
-        run = simulate(system, {2: motion}, 8.0, 17, step, integrator=integrator, with_account=True)
+        run = simulate(
+            system, duration=8.0, frames=17, step=step, integrator=integrator, with_account=True, motion={2: motion}
+        )
         stored = run.energy.total
         error = stored + run.energy.dissipated - run.energy.work
         errors.append(np.abs(error - error[0]).max())
@@ -159,8 +169,8 @@ def test_a_moored_body_without_losses_keeps_its_energy_and_surges_at_the_linear_
         at = system.nodes_of[line.id]
         share = np.linspace(0.0, 1.0, len(at)) if line.id == 1 else np.linspace(1.0, 0.0, len(at))
         x[0, at] += push * share
-    step = 0.5 * critical_step(system, "leapfrog", rest)
-    run = simulate(system, duration=1000.0, frames=8001, step=step, start=rest._replace(nodes=x))
+    step = 0.5 * critical_step(system, "leapfrog", State.still(rest.nodes))
+    run = simulate(system, duration=1000.0, frames=8001, step=step, start=State.still(x))
     total = run.energy.total
     stiffness = 2.0 * 4e5 / 37.9
     assert np.abs(total - total[0]).max() < 1e-4 * 0.5 * stiffness * push**2
@@ -190,20 +200,20 @@ def test_a_body_takes_the_pull_of_its_lines_as_a_rope_of_heavy_ends_does():
     nodes = np.zeros((3, 6))
     nodes[0] = (0.0, 10.4, *np.linspace(0.0, 10.4, 6)[1:-1])
     nodes[1, 2:] = 0.1
-    expected = simulate(free, duration=5.0, frames=11, step=2e-3, start=Rest({}, {}, {}, nodes))
+    expected = simulate(free, duration=5.0, frames=11, step=2e-3, start=State.still(nodes))
     with_body = np.concatenate((nodes, [[0.4, 0.0], [0.0, 0.0], [0.0, 0.0]]), axis=1)
-    found = simulate(carried, duration=5.0, frames=11, step=2e-3, start=Rest({}, {}, {}, with_body))
+    found = simulate(carried, duration=5.0, frames=11, step=2e-3, start=State.still(with_body))
     assert np.abs(found.x[1] - expected.x[1]).max() < 1e-9
 
 
 def grows(system: System, rest: Rest, integrator: str, h: float) -> bool:
     """Whether a small disturbance grows a thousandfold in 400 steps of h."""
-    state = LineState(system, rest)
+    state = State.still(rest.nodes)
     noise = 1e-7 * np.random.default_rng(0).standard_normal(state.x.shape)
     free = system.kernel_view(1.0).inverse_masses > 0.0
     state.x[:, free] += noise[:, free]
     with np.errstate(all="ignore"):
-        state.advance(springs.INTEGRATORS[integrator], h, 400, paths_of(system, {}, 0.0, 1.0))
+        advance(system, state, integrator, h, 400)
     return not np.abs(state.x - rest.nodes).max() < 1e-4
 
 
@@ -219,7 +229,7 @@ def test_a_line_diverges_at_the_step_of_the_gauge(lines, integrator):
         points = (Point(1, "fixed", (-span, 0.0, -depth)), Point(2, "fixed", (0.0, 0.0, 0.0)))
         system = System((Line(1, kind, 1, 2, length, int(rng.integers(10, 30))),), points, depth)
         rest = system.at_rest()
-        h = critical_step(system, integrator, rest)
+        h = critical_step(system, integrator, State.still(rest.nodes))
         assert not grows(system, rest, integrator, 0.95 * h)
         assert grows(system, rest, integrator, 1.05 * h)
 
@@ -229,7 +239,14 @@ def test_a_run_that_diverges_ends_with_a_warning_and_what_it_has():
     motion = Shaking((0.0, 0.0, -1.0), 2, 0.15, 5.0)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        run = simulate(system, {2: motion}, 5.0, 51, 20.0 * critical_step(system, "rk4"), integrator="rk4")
+        run = simulate(
+            system,
+            duration=5.0,
+            frames=51,
+            step=20.0 * critical_step(system, "rk4"),
+            integrator="rk4",
+            motion={2: motion},
+        )
     assert run.diverged_at is not None
     assert "critical_step" in str(caught[-1].message)
     assert np.isfinite(run.x[1][0]).all()
@@ -253,7 +270,7 @@ def test_a_damped_body_decays_as_a_damped_oscillator_does(integrator):
         frames=41,
         step=1e-3,
         integrator=integrator,
-        start=Rest({}, {}, {}, nodes),
+        start=State.still(nodes),
         with_account=True,
     )
     for axis, start, (mass, resistance, stiffness) in ((2, 0.3, (3e4, 2e4, 2e5)), (3, 0.1, (8e4, 3e4, 5e5))):
@@ -267,8 +284,8 @@ def test_a_damped_body_decays_as_a_damped_oscillator_does(integrator):
 
 def test_a_moved_point_needs_no_velocity_and_one_without_motion_stays():
     system, motion = taut_rope(6), Shaking((0.0, 0.0, -1.0), 2, 0.15, 5.0)
-    with_velocity = simulate(system, {2: motion}, 4.0, 21)
-    without = simulate(system, {2: lambda t: motion(t)}, 4.0, 21)
+    with_velocity = simulate(system, duration=4.0, frames=21, motion={2: motion})
+    without = simulate(system, duration=4.0, frames=21, motion={2: lambda t: motion(t)})
     assert np.abs(with_velocity.x[1] - without.x[1]).max() < 1e-6
     still = simulate(system, duration=1.0, frames=3)
     assert np.abs(still.x[1][:, -1] - (0.0, 0.0, -1.0)).max() == 0.0
@@ -311,8 +328,8 @@ def test_leapfrog_holds_up_to_its_critical_step_at_any_damping_of_a_body(rate):
     still = damped(rate)
     rest = still.at_rest()
     pushed = dataclasses.replace(still, bodies=(still.bodies[0]._replace(steady=(1e4, 0.0, 0.0, 0.0, 0.0, 0.0)),))
-    h = critical_step(still, "leapfrog", rest)
-    run = simulate(pushed, duration=4.0, frames=5, step=0.98 * h, start=rest)
+    h = critical_step(still, "leapfrog", State.still(rest.nodes))
+    run = simulate(pushed, duration=4.0, frames=5, step=0.98 * h, start=State.still(rest.nodes))
     assert run.diverged_at is None
     assert np.abs(run.bodies[1][:, 0]).max() < 1.5
 
@@ -323,7 +340,10 @@ def test_a_strongly_damped_body_creeps_as_rk4_has_it():
     pushed = dataclasses.replace(still, bodies=(still.bodies[0]._replace(steady=(1e4, 0.0, 0.0, 0.0, 0.0, 0.0)),))
     expected = 0.02451  # [m] after 5 s, rk4 in steps of 1 ms
     errors = [
-        abs(simulate(pushed, duration=5.0, frames=2, step=step, start=rest).bodies[1][-1, 0] - expected)
+        abs(
+            simulate(pushed, duration=5.0, frames=2, step=step, start=State.still(rest.nodes)).bodies[1][-1, 0]
+            - expected
+        )
         for step in (4e-3, 2e-3)
     ]
     assert errors[0] < 0.06 * expected

@@ -6,16 +6,13 @@ import math
 import numpy as np
 import pytest
 
-from sim.mooring import Line, LineType, Point, System, simulate
-from sim.mooring.simulate import LineState, paths_of
-from sim.mooring.statics import Rest
-from sim.mooring.tangent import stiffness_matrix
-from sim.springs import INTEGRATORS
+from sim.mooring import Line, LineType, Point, State, System, advance, simulate
 from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import energies as energies_of
 from sim.springs.analysis.energy import power
 from sim.water import Water
 from sim.waves import Waves
+from tests.sim.mooring.dense import stiffness_matrix
 
 CHAIN = LineType("chain", 0.05, 50.0, 1.674e9)
 HAIR = LineType("hair", 1e-9, 1e-9, 1.0)  # slack, and nothing beside the float
@@ -91,7 +88,7 @@ def test_a_float_bobs_with_the_period_of_its_cut_through_the_water():
     level = (0.5 - 300.0 / (1025.0 * 0.6)) * HEIGHT
     free = dataclasses.replace(system, points=(system.points[0], system.points[1]._replace(drag_area=0.0)))
     nodes = np.array([[0.0, 0.0], [0.0, 0.0], [-50.0, level + 0.05]])
-    run = simulate(free, duration=8.0, frames=401, step=1e-3, start=Rest({}, {}, {}, nodes))
+    run = simulate(free, duration=8.0, frames=401, step=1e-3, start=State.still(nodes))
     omega = math.sqrt(9.81 * 1025.0 * 0.6 / HEIGHT / (300.0 + 0.5 * 1025.0 * 0.6))
     expected = level + 0.05 * np.cos(omega * run.t)
     assert run.x[1][:, -1, 2] == pytest.approx(expected, abs=1e-4)
@@ -105,7 +102,7 @@ def test_a_float_rides_on_long_waves():
     waves = Waves(k * one, 0.0 * one, amplitude * one, 0.0 * one, omega * one, Water(5000.0))
     system, x = one_float(0.0)
     system = dataclasses.replace(system, depth=5000.0, waves=waves)
-    state = LineState(system, Rest({}, {}, {}, x.reshape(3, 2)))
-    state.advance(INTEGRATORS["leapfrog"], 5e-3, 6000, paths_of(system, {}, 0.0, 30.0))
+    state = State.still(x.reshape(3, 2))
+    advance(system, state, "leapfrog", 5e-3, 6000)
     height = state.x[2, 1] - amplitude * math.cos(k * state.x[0, 1] - omega * state.t)
     assert abs(height - (0.5 - 300.0 / (1025.0 * 0.6)) * HEIGHT) < 0.1 * amplitude

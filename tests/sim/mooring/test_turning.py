@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, MooredBody, Point, System, read_moordyn
-from sim.mooring.gauge import modes
 from sim.mooring.turning import stiffness_of_turning, with_turning
+from tests.sim.mooring.dense import frequencies_squared
 
 LENGTH, ARM, MASS, INERTIA, LIFT = 30.0, 2.0, 5e3, 1.2e4, 6e4
 FILES = Path(__file__).with_name("files")
@@ -29,7 +29,7 @@ def test_a_tethered_body_swings_as_the_double_pendulum_does():
     mass = np.array([[MASS * LENGTH**2, MASS * LENGTH * ARM], [MASS * LENGTH * ARM, MASS * ARM**2 + INERTIA]])
     exact = np.sort(np.linalg.eigvals(np.linalg.solve(mass, LIFT * np.diag([LENGTH, ARM]))))
     system = tethered()
-    found = sorted(mode.stiffness for mode in modes(with_turning(system, system.at_rest())))
+    found = frequencies_squared(with_turning(system, system.at_rest()))
     assert found[1:5] == pytest.approx(np.repeat(exact, 2), rel=1e-3)  # the first is the yaw, held by 1 N m
 
 

@@ -99,7 +99,7 @@ def test_the_error_follows_the_tolerance(name):
     fine = integrated(net, "dop853", 2.0, 2000)
     evals, errors = [], []
     for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-        run = simulate(net, name, rtol=rtol, atol=1e-3 * rtol, duration=2.0, frames=2)
+        run = simulate(net, duration=2.0, frames=2, integrator=name, rtol=rtol, atol=1e-3 * rtol)
         errors.append(np.abs(run.x[-1].T - fine.x[:, 0]).max())
         evals.append(run.force_evals)
         assert errors[-1] < 10.0 * rtol
@@ -110,8 +110,8 @@ def test_the_error_follows_the_tolerance(name):
 @pytest.mark.parametrize("name", ADAPTIVE)
 def test_frames_are_as_good_between_steps_as_at_their_ends(name):
     net = rope(6)
-    run = simulate(net, name, rtol=1e-8, atol=1e-10, duration=1.0, frames=333)
-    truth = simulate(net, "dop853", step=1e-4, duration=1.0, frames=333)
+    run = simulate(net, duration=1.0, frames=333, integrator=name, rtol=1e-8, atol=1e-10)
+    truth = simulate(net, duration=1.0, frames=333, step=1e-4, integrator="dop853")
     assert np.abs(run.x - truth.x).max() < 1e-7
     assert np.abs(run.v - truth.v).max() < 1e-6
 
@@ -158,8 +158,8 @@ def test_the_estimated_error_is_the_weighted_root_mean_square_of_the_tableau_s_r
 def test_steps_that_are_undone_leave_no_trace(name, rtol):
     """Of this stiff rope some steps without an estimate are followed by one that breaks the tolerance."""
     net = rope(129, 1.0, 1 / 129, 125568.0, 0.256, 0.2 / 129)
-    run = simulate(net, name, rtol=rtol, atol=0.01 * rtol, duration=1.0, frames=3, with_account=True)
-    truth = simulate(net, name, rtol=1e-9, atol=1e-11, duration=1.0, frames=3)
+    run = simulate(net, duration=1.0, frames=3, integrator=name, rtol=rtol, atol=0.01 * rtol, with_account=True)
+    truth = simulate(net, duration=1.0, frames=3, integrator=name, rtol=1e-9, atol=1e-11)
     assert np.abs(run.x - truth.x).max() < 5e-3 * rtol
     total = run.energy.total + run.energy.dissipated - run.energy.work
     assert np.abs(total - total[0]).max() < 2.0 * rtol
@@ -180,13 +180,13 @@ def test_steps_are_as_long_as_stability_allows_and_few_are_taken_in_vain(name):
 
 
 def test_dense_output_costs_nothing():
-    few, many = (simulate(rope(6), "dopri5", rtol=1e-6, duration=1.0, frames=frames) for frames in (2, 1001))
+    few, many = (simulate(rope(6), duration=1.0, frames=frames, integrator="dopri5", rtol=1e-6) for frames in (2, 1001))
     assert few.force_evals == many.force_evals
 
 
 @pytest.mark.parametrize("name", ADAPTIVE)
 def test_the_ledger_closes_within_the_tolerance(name):
-    run = simulate(rope(8), name, rtol=1e-9, atol=1e-12, duration=1.0, frames=11, with_account=True)
+    run = simulate(rope(8), duration=1.0, frames=11, integrator=name, rtol=1e-9, atol=1e-12, with_account=True)
     balance = run.energy.total + run.energy.dissipated - run.energy.work
     assert np.abs(balance - balance[0]).max() < 1e-5
 
@@ -194,7 +194,7 @@ def test_the_ledger_closes_within_the_tolerance(name):
 def test_pefrl_refuses_damping():
     for net in (rope(), rope(damping=0.0), rope(damping=0.0, drag=0.0, floor=-1.0)):
         with pytest.raises(ValueError, match=r"^integrator: 'pefrl' is not allowed; .* damped"):
-            simulate(net, "pefrl")
+            simulate(net, integrator="pefrl")
         with pytest.raises(ValueError, match="damped"):
             advance(net, State.at_rest(net), INTEGRATORS["pefrl"], 1e-3, 1)
 

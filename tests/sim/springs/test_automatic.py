@@ -24,7 +24,10 @@ NETS = {
 def test_auto_takes_hardly_more_evaluations_than_the_best_of_the_embedded_methods(net):
     for rtol in (1e-4, 1e-7, 1e-10):
         taken = choose_for_tolerance(net, rtol, 1.0).integrator.name
-        evals = {name: simulate(net, name, rtol=rtol, atol=0.01 * rtol, frames=2, duration=1.0) for name in ADAPTIVE}
+        evals = {
+            name: simulate(net, duration=1.0, frames=2, integrator=name, rtol=rtol, atol=0.01 * rtol)
+            for name in ADAPTIVE
+        }
         best = min(run.force_evals for run in evals.values())
         assert evals[taken].force_evals < 1.5 * best
 
@@ -49,12 +52,12 @@ def test_auto_holds_at_a_given_step_wherever_an_embedded_method_does(net):
 
 
 def test_a_run_says_what_auto_took():
-    run = simulate(rope(), AUTO, rtol=1e-8, atol=1e-10, duration=1.0, frames=2)
+    run = simulate(rope(), duration=1.0, frames=2, integrator=AUTO, rtol=1e-8, atol=1e-10)
     assert run.integrator == "dop853"
-    assert np.array_equal(run.x, simulate(rope(), "dop853", rtol=1e-8, atol=1e-10, duration=1.0, frames=2).x)
-    assert simulate(rope(), AUTO, 1e-3, 0.1, 2).integrator == "dopri5"
-    assert simulate(rope(), "rk4", duration=0.1, frames=2).integrator == "rk4"
+    assert np.array_equal(run.x, simulate(rope(), duration=1.0, frames=2, integrator="dop853", rtol=1e-8, atol=1e-10).x)
+    assert simulate(rope(), duration=0.1, frames=2, step=1e-3, integrator=AUTO).integrator == "dopri5"
+    assert simulate(rope(), duration=0.1, frames=2, integrator="rk4").integrator == "rk4"
     record, note = integrator_or_fallback(AUTO, rope(), 1e-3)
     assert (record.name, note) == ("dopri5", "dopri5 runs: it holds at this step with the fewest force evaluations")
     with pytest.raises(ValueError, match=r"rtol: .* the step is given"):
-        simulate(rope(), AUTO, 1e-3, rtol=1e-6)
+        simulate(rope(), step=1e-3, integrator=AUTO, rtol=1e-6)

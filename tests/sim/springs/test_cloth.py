@@ -52,7 +52,7 @@ def test_pleats_narrow_a_cloth_and_keep_its_arc_length(gather):
 @pytest.mark.parametrize("hold", PIN_CHOICES)
 def test_what_is_pinned_stays(hold):
     net = cloth(5, 6, pinned=hold)
-    run = simulate(net, "rk4", 1e-3, 0.2, 3)
+    run = simulate(net, duration=0.2, frames=3, step=1e-3, integrator="rk4")
     moved = np.abs(run.x[-1] - run.x[0]).max(axis=-1) > 0.0
     assert {(i, j) for i in range(5) for j in range(6) if not moved[i, j]} == set(net.pinned)
 
@@ -176,7 +176,7 @@ def test_the_wind_on_a_flat_plate_is_the_formula_s(angle):
 def test_a_flat_cloth_falls_at_its_terminal_speed(name):
     """m g = rho/2 C_D A v^2."""
     net = cloth(6, 6, density=0.2, pinned="free", air=Air(density=1.2, drag=1.2))
-    run = simulate(net, name, 1e-3, 2.0, 3)
+    run = simulate(net, duration=2.0, frames=3, step=1e-3, integrator=name)
     assert run.v[-1, :, :, 2].mean() == pytest.approx(-math.sqrt(0.2 * 9.81 / (0.6 * 1.2)), rel=1e-2)
 
 
@@ -326,8 +326,8 @@ def test_a_heap_that_fills_the_list_of_pairs_is_reported():
     heaped = dataclasses.replace(net, x0=heap)
     for method in ("leapfrog", "dopri5"):
         with pytest.warns(RuntimeWarning, match=r"self-contact left out up to \d+ particles"):
-            assert simulate(heaped, method, duration=1e-4, frames=2).left_out == state.left_out
-    assert simulate(net, "leapfrog", 1e-4, 1e-3, 2).left_out == 0
+            assert simulate(heaped, duration=1e-4, frames=2, integrator=method).left_out == state.left_out
+    assert simulate(net, duration=1e-3, frames=2, step=1e-4, integrator="leapfrog").left_out == 0
 
 
 def test_a_cloth_that_falls_onto_itself_does_not_pass_through():

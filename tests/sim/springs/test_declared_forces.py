@@ -91,7 +91,9 @@ def test_the_tangent_is_the_slope_of_the_force_and_the_blocks_hold_it(numbers, n
 @pytest.mark.parametrize("numbers", [one() for one in OWN], ids=[force.name for force in OWN.values()])
 def test_a_run_keeps_the_energy_and_no_mode_is_beyond_the_bound(numbers):
     net, without = with_and_without(numbers, NETS["rope"])
-    errors = [np.abs(simulate(net, "leapfrog", h, duration=0.5).energy.error).max() for h in (1e-3, 5e-4)]
+    errors = [
+        np.abs(simulate(net, duration=0.5, step=h, integrator="leapfrog").energy.error).max() for h in (1e-3, 5e-4)
+    ]
     assert errors[1] < 0.3 * errors[0] < 0.1
     assert gershgorin(net)[0] > gershgorin(without)[0]
 

@@ -66,7 +66,7 @@ def test_the_ledger_closes_through_contact_and_friction(name, law):
 
 def test_undamped_leapfrog_keeps_its_energy_over_a_hundred_thousand_steps():
     net = rope(10, damping=0.0, drag=0.0, gravity=10.0)
-    run = simulate(net, "leapfrog", 1e-3, 100.0, 1001)
+    run = simulate(net, duration=100.0, frames=1001, step=1e-3, integrator="leapfrog")
     total = run.energy.total
     off = np.abs(total - total[0]).max()
     assert run.force_evals >= 100_000
@@ -77,8 +77,8 @@ def test_undamped_leapfrog_keeps_its_energy_over_a_hundred_thousand_steps():
 
 def test_undamped_rk4_loses_energy_steadily_where_leapfrog_does_not():
     net = rope(10, damping=0.0, drag=0.0)
-    kept = simulate(net, "leapfrog", 1 / 60, 20.0, 21).energy.total
-    lost = simulate(net, "rk4", 1 / 60, 20.0, 21).energy.total
+    kept = simulate(net, duration=20.0, frames=21, step=1 / 60, integrator="leapfrog").energy.total
+    lost = simulate(net, duration=20.0, frames=21, step=1 / 60, integrator="rk4").energy.total
     assert lost[-1] - lost[0] < -10.0 * abs(kept[-1] - kept[0])
 
 
@@ -149,7 +149,7 @@ def test_the_damped_oscillator_is_the_closed_form(name):
 @pytest.mark.parametrize("name", DAMPABLE)
 def test_what_damping_took_never_falls(name, model):
     net = rope(8, damping_model=model)
-    run = simulate(net, name, 1e-4, 1.0, 101, with_account=True)
+    run = simulate(net, duration=1.0, frames=101, step=1e-4, integrator=name, with_account=True)
     assert np.diff(run.energy.dissipated).min() >= 0.0
     assert run.energy.work[-1] == 0.0
 
@@ -157,7 +157,7 @@ def test_what_damping_took_never_falls(name, model):
 @pytest.mark.parametrize("case", ["moving root", "moving sphere", "wind"])
 @pytest.mark.parametrize("name", ["rk4", "leapfrog"])
 def test_what_damping_took_never_falls_where_something_moves(name, case):
-    run = simulate(driven(case), name, 5e-4, 0.5, 51, with_account=True)
+    run = simulate(driven(case), duration=0.5, frames=51, step=5e-4, integrator=name, with_account=True)
     assert np.diff(run.energy.dissipated).min() >= -1e-9
 
 

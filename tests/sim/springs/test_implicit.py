@@ -155,7 +155,7 @@ def test_a_rope_of_1e9_newtons_a_metre_neither_explodes_nor_stalls(name):
 def test_the_midpoint_method_keeps_the_energy_at_any_stiffness(stiffness):
     """A fall of an undamped rope from level at the lab's own 1/60 s, in a whip that turns links by radians a step."""
     net = rope(50, stiffness=stiffness, damping=0.0, drag=0.0)
-    run = simulate(net, "implicit_midpoint", 1 / 60, 2.0, 121)
+    run = simulate(net, duration=2.0, frames=121, step=1 / 60, integrator="implicit_midpoint")
     total = run.energy.total
     assert run.energy.kinetic.max() > 400.0
     assert np.abs(total - total[0]).max() < 1e-9
@@ -165,7 +165,7 @@ def test_the_midpoint_method_keeps_the_energy_at_any_stiffness(stiffness):
 @pytest.mark.parametrize("stiffness", [800.0, 1e9])
 def test_the_midpoint_method_takes_what_damping_takes(stiffness):
     net = rope(50, stiffness=stiffness)
-    run = simulate(net, "implicit_midpoint", 1 / 60, 2.0, 121, with_account=True)
+    run = simulate(net, duration=2.0, frames=121, step=1 / 60, integrator="implicit_midpoint", with_account=True)
     total = run.energy.total + run.energy.dissipated
     assert run.energy.dissipated[-1] > 100.0
     assert np.abs(total - total[0]).max() < 1e-8
@@ -173,7 +173,7 @@ def test_the_midpoint_method_takes_what_damping_takes(stiffness):
 
 def test_the_midpoint_method_keeps_the_energy_of_a_stiff_cloth():
     net = cloth(12, 12, stiffness=1e5, shear=5e4, bend=1e4, damping=0.0)
-    run = simulate(net, "implicit_midpoint", 1 / 60, 0.5, 31)
+    run = simulate(net, duration=0.5, frames=31, step=1 / 60, integrator="implicit_midpoint")
     total = run.energy.total
     assert run.energy.kinetic.max() > 0.5
     assert np.abs(total - total[0]).max() < 1e-8

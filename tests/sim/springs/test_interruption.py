@@ -19,11 +19,11 @@ LONG, STIFF_ROPE = rope(4), rope(50, stiffness=1e9)
 def solve(name, seconds):
     """Minutes to hours for many seconds, if nothing ends it."""
     if name == "rk4":
-        simulate(LONG, name, step=1e-8, duration=seconds, frames=2)
+        simulate(LONG, duration=seconds, frames=2, step=1e-8, integrator=name)
     elif name == "dop853":
-        simulate(STIFF_ROPE, name, rtol=1e-12, atol=1e-15, duration=seconds, frames=2)
+        simulate(STIFF_ROPE, duration=seconds, frames=2, integrator=name, rtol=1e-12, atol=1e-15)
     else:
-        simulate(STIFF, name, 1 / 60, seconds, 2)
+        simulate(STIFF, duration=seconds, frames=2, step=1 / 60, integrator=name)
 
 
 ENDLESS = [*(name for name, record in INTEGRATORS.items() if record.implicit), "dop853", "rk4"]

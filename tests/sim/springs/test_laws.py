@@ -192,7 +192,7 @@ def test_a_mass_on_a_line_flies_free_and_bounces_at_the_closed_form_s_period(met
 @pytest.mark.parametrize("name", LAWS)
 def test_the_midpoint_method_keeps_the_energy_of_any_law(name):
     net = rope(20, stiffness=1e5, damping=0.0, drag=0.0, law=name)
-    run = simulate(net, "implicit_midpoint", 1 / 120, 1.0, 61)
+    run = simulate(net, duration=1.0, frames=61, step=1 / 120, integrator="implicit_midpoint")
     total = run.energy.total
     assert run.energy.kinetic.max() > 100.0
     assert np.abs(total - total[0]).max() < 1e-8
@@ -201,7 +201,9 @@ def test_the_midpoint_method_keeps_the_energy_of_any_law(name):
 
 def totals(name, step):
     """Energies [J] of 100 s of an undamped rope by leapfrog, and its largest kinetic energy."""
-    run = simulate(rope(10, damping=0.0, drag=0.0, law=name), "leapfrog", step, 100.0, 1001)
+    run = simulate(
+        rope(10, damping=0.0, drag=0.0, law=name), duration=100.0, frames=1001, step=step, integrator="leapfrog"
+    )
     return run.energy.total, run.energy.kinetic.max()
 
 

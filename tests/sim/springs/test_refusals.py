@@ -110,18 +110,22 @@ REFUSED: list[Row] = [
     *each(partial(simulate, rope()), integrator=["", "rk5", "RK4"], with_account=[1]),
     *each(partial(simulate, rope()), step=[*ABOVE_0, 5e-324, 1e-300]),
     *each(partial(simulate, rope()), duration=[*ABOVE_0, 1e308], frames=[*WHOLE, 1, -5, 2.0]),
-    *each(partial(simulate, rope(), "dopri5"), rtol=[1e-200, 0.0, -1.0, math.nan, "1", 2.0], atol=[1e-200]),
-    *each(partial(simulate, rope(), "dop853"), rtol=[1e-18], duration=[1e10]),
-    *each(partial(simulate, rope(damping=0.0, drag=0.0), "auto"), duration=[1e10]),
-    ("rtol", lambda: simulate(rope(), "rk4", rtol=1e-6), "adaptive methods only"),
+    *each(partial(simulate, rope(), integrator="dopri5"), rtol=[1e-200, 0.0, -1.0, math.nan, "1", 2.0], atol=[1e-200]),
+    *each(partial(simulate, rope(), integrator="dop853"), rtol=[1e-18], duration=[1e10]),
+    *each(partial(simulate, rope(damping=0.0, drag=0.0), integrator="auto"), duration=[1e10]),
+    ("rtol", lambda: simulate(rope(), integrator="rk4", rtol=1e-6), "adaptive methods only"),
     ("x", lambda: simulate(rope(4), x=np.zeros((3, 3))), "(4, 3)"),
     ("x", lambda: simulate(rope(4), x=np.full((4, 3), math.nan)), "nan"),
     ("v", lambda: simulate(cloth(4, 5), v=np.zeros((20, 3))), "(4, 5, 3)"),
     ("v", lambda: simulate(rope(4), v="fast"), "(4, 3)"),
     ("mass", lambda: rope(4, mass=[1.0, 2.0, 3.0]), "4 of them"),
     ("mass", lambda: rope(4, mass=[1.0, 2.0, 3.0, 0.0]), "4 of them"),
-    ("atol", lambda: simulate(rope(), "dopri5", 1e-3, atol=1e-6), "the step is given"),
-    ("grab.damping", lambda: simulate(dataclasses.replace(rope(damping=0.0, drag=0.0), grab=DAMPED), "pefrl"), ""),
+    ("atol", lambda: simulate(rope(), step=1e-3, integrator="dopri5", atol=1e-6), "the step is given"),
+    (
+        "grab.damping",
+        lambda: simulate(dataclasses.replace(rope(damping=0.0, drag=0.0), grab=DAMPED), integrator="pefrl"),
+        "",
+    ),
     *each(advanced, h=[-1e-3, 0.0, math.inf], steps=[-1, 1.5], integrator=["RK4"]),
     ("state", lambda: advanced(state=rope().x0), ""),
     ("state.x", lambda: advanced(rope(5000), State.at_rest(rope(10))), ""),
@@ -159,8 +163,8 @@ def test_no_stricter_tolerance_than_round_off_and_no_step_of_nan_are_taken():
     net = rope(3)
     broken = dataclasses.replace(net, x0=np.full_like(net.x0, math.nan))
     with pytest.warns(RuntimeWarning, match=r"dopri5 in its own steps diverged at t = 0 s"):
-        assert simulate(broken, "dopri5", duration=0.1, frames=3).diverged_at == 0.0
-    assert simulate(net, "dop853", rtol=1e-14, atol=1e-14, duration=0.01, frames=2).diverged_at is None
+        assert simulate(broken, duration=0.1, frames=3, integrator="dopri5").diverged_at == 0.0
+    assert simulate(net, duration=0.01, frames=2, integrator="dop853", rtol=1e-14, atol=1e-14).diverged_at is None
 
 
 def test_there_are_no_modes_of_what_is_not_finite():

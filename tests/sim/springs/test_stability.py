@@ -387,15 +387,17 @@ def test_what_nothing_holds_has_a_gauge_on_a_rough_floor():
 
 def test_a_step_that_is_not_given_is_half_the_critical_one_or_shorter():
     net = cloth()
-    run = simulate(net, "leapfrog", duration=0.02, frames=3)
+    run = simulate(net, duration=0.02, frames=3, integrator="leapfrog")
     assert run.diverged_at is None
     assert run.step is not None
     assert run.step <= 0.5 * critical_step(net, "leapfrog")
     assert run.step == pytest.approx(0.5 * critical_step(net, "leapfrog"), rel=0.1)
-    assert simulate(rope(), "leapfrog", duration=0.1, frames=2).step == pytest.approx(1 / 1200, rel=1e-12)
+    assert simulate(rope(), duration=0.1, frames=2, integrator="leapfrog").step == pytest.approx(1 / 1200, rel=1e-12)
     undamped, hardly = rope(damping=0.0, drag=0.0), rope(damping=0.0, drag=0.05)
-    run = simulate(hardly, "explicit_euler", duration=1e-4, frames=2)
+    run = simulate(hardly, duration=1e-4, frames=2, integrator="explicit_euler")
     assert run.step == pytest.approx(0.5 * critical_step(hardly, "explicit_euler"), rel=0.1)
-    assert simulate(undamped, "explicit_euler", duration=0.1, frames=2).step == pytest.approx(1 / 1200, rel=1e-12)
-    assert simulate(rope(), "rk4", 0.03, 0.1, 3).step == pytest.approx(0.025, rel=1e-12)
-    assert simulate(rope(), "dopri5", duration=0.01, frames=2).step is None
+    assert simulate(undamped, duration=0.1, frames=2, integrator="explicit_euler").step == pytest.approx(
+        1 / 1200, rel=1e-12
+    )
+    assert simulate(rope(), duration=0.1, frames=3, step=0.03, integrator="rk4").step == pytest.approx(0.025, rel=1e-12)
+    assert simulate(rope(), duration=0.01, frames=2, integrator="dopri5").step is None

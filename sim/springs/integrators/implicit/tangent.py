@@ -2,7 +2,8 @@
 
 About a state x the free particles obey M u'' + D u' + K u = 0. Neither matrix is ever formed. Products are those of
 M^-1/2 K M^-1/2, with zeros where pinned: symmetric, its eigenvalues squared frequencies [1/s^2] or damping rates [1/s],
-its vectors M^1/2 u.
+its vectors M^1/2 u. Of lines, whose masses are matrices, M^-1/2 stands for any L with L L^T = M^-1: the products are
+those of L^T K L, its vectors L^-1 u.
 """
 
 import math
@@ -10,16 +11,16 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import link_at, link_count, span
+from sim.springs.arrays import by_net, link_at, link_count, span
 from sim.springs.forces import each
 from sim.springs.forces.links import tangent as add_link_tangent
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST
 from sim.springs.laws import TAUT
+from sim.springs.line_points import set_inverse_masses, set_root_motion, turn_to_root_forces
 
 
 @kernel(allocates=False)
-def longest_strain(x, p):
-    """Largest l/l0 - 1 of any link, at least that of a link which is just taut: what another may soon come to."""
+def longest_of_net(x, p):
     n, longest = p.rows * p.cols, TAUT
     for q in range(link_count(p)):
         a, b, rest, _, _ = link_at(p, q)
@@ -29,13 +30,42 @@ def longest_strain(x, p):
     return longest
 
 
+just_taut = kernel(lambda x, p: TAUT, inline=True)
+# Largest l/l0 - 1 of any link, at least that of a link which is just taut: what another may soon come to. Lines of a
+# mooring are of several materials, so that the strain of one tells nothing of another.
+longest_strain = by_net(rope=longest_of_net, grid=longest_of_net, lines=just_taut)
+
+
 @kernel(noalias=True, inline=True)
 def set_over_root_mass(y, p, out):
-    """out = M^-1/2 y, 0 where pinned."""
     n = p.rows * p.cols
     for e in range(3):
         for j in range(n):
             out[e * n + j] = math.sqrt(p.inverse_masses[j]) * y[e * n + j]
+
+
+@kernel(noalias=True, inline=True)
+def divide_by_root_mass(f, p):
+    set_over_root_mass(f, p, f)
+
+
+keep_masses = kernel(lambda x, p: None, inline=True)
+# Prepare the masses at x for the next two, of which those of lines depend on x.
+set_masses = by_net(rope=keep_masses, grid=keep_masses, lines=set_inverse_masses)
+# out = M^-1/2 y, 0 where pinned.
+set_motion = by_net(rope=set_over_root_mass, grid=set_over_root_mass, lines=set_root_motion)
+# f = (M^-1/2)^T f, in place.
+turn_forces = by_net(rope=divide_by_root_mass, grid=divide_by_root_mass, lines=turn_to_root_forces)
+
+
+@kernel(inline=True)
+def has_friction(p):
+    return p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere)
+
+
+without_friction = kernel(lambda p: False, inline=True)
+# True if friction acts that counts: that of the bed under lines is left out.
+friction_acts = by_net(rope=has_friction, grid=has_friction, lines=without_friction)
 
 
 add_tangents = each("tangent", "x, u, t, p, part, longest, out", "none", noalias=True, allocates=False)
@@ -43,18 +73,18 @@ add_tangents = each("tangent", "x, u, t, p, part, longest, out", "none", noalias
 
 @kernel(noalias=True)
 def set_tangent(x, y, t, p, part, longest, out):
-    """out = M^-1/2 K M^-1/2 y, or with D for K (part DAMPING), about x at time t; all flat (3 rows cols,).
+    """out = M^-1/2 K M^-1/2 y, or with D for K (part DAMPING), about x at time t, after `set_masses`.
 
-    longest: strain to which links count as stretched, of part STIFFEST.
+    All are flat (3 rows cols,). longest: strain to which links count as stretched, of part STIFFEST.
 
     Friction is apart, as its strongest damping is 1/h by construction: h D of it is part FRICTION. Air is left out.
     """
     u = np.empty_like(y)
-    set_over_root_mass(y, p, u)
+    set_motion(y, p, u)
     for j in range(y.shape[0]):
         out[j] = 0.0
     add_tangents(x, u, t, p, part, longest, out)
-    set_over_root_mass(out, p, out)
+    turn_forces(out, p)
 
 
 @kernel(noalias=True, inline=True)
@@ -83,6 +113,7 @@ def set_lanczos(x, t, p, part, stiff, basis, diagonal, beside):
     w, other = np.empty_like(x), np.empty_like(x)
     largest = 0.0
     longest = longest_strain(x, p)
+    set_masses(x, p)
     for s in range(count):
         set_tangent(x, basis[s], t, p, part, longest, w)
         if stiff != 0.0:
@@ -110,17 +141,18 @@ def quotients(x, y, t, p):
     """
     u, w = np.empty_like(x), np.empty_like(x)
     longest = longest_strain(x, p)
+    set_masses(x, p)
     set_tangent(x, y, t, p, STIFFEST, longest, w)
     stiffness = dot(y, w)
     for j in range(w.shape[0]):
         w[j] = 0.0
-    set_over_root_mass(y, p, u)
+    set_motion(y, p, u)
     add_link_tangent(x, u, t, p, STIFFEST, longest, w)
     links = dot(u, w)
     set_tangent(x, y, t, p, DAMPING, longest, w)
     rate = dot(y, w)
     sliding = 0.0
-    if p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
+    if friction_acts(p):
         set_tangent(x, y, t, p, FRICTION, longest, w)
         sliding = dot(y, w)
     return stiffness, links, rate, sliding

@@ -21,7 +21,7 @@ from tests.examples import PAGE, add, commands, copy_of_sources, run, run_comman
 SHOWN = """
 import time
 from app.scenes import NAMES
-from app.scenes.radial_sea.measures import measures
+from app.scenes.quantities import measured
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.report import readout_of
 from app.server.viewer import Viewer
@@ -42,7 +42,7 @@ while not viewer.view.bodies and time.monotonic() < end:
     time.sleep(0.05)
 assert "cone" in viewer.view.bodies
 assert "Cone" in readout_of(viewer.loop.latest)
-assert measures(viewer.scene)["cone_draft_at_rest"].value > 0.0
+assert measured(viewer.panel.kind, viewer.scene)["cone_draft_at_rest"].value > 0.0
 assert not viewer.loop.run.halted
 viewer.shut()
 """

@@ -10,7 +10,7 @@ from typing import Any
 from app.formats.text_tables import fold
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
-from app.scenes.measures import plotted
+from app.scenes.quantities import Quantities, recorded_quantities
 from app.scenes.setups import write_value
 from sim.parameters import Parameter, parameters_of
 
@@ -26,17 +26,22 @@ def list_scenes() -> int:
 
 def list_scene(kind: SceneKind[Any, Any, Any]) -> int:
     """Print all that a run of the scene can be given and measures; returns the exit status."""
+    recorded = recorded_quantities(kind)
     sections = {
-        "Presets (--preset NAME)": ((name, kind.about.get(name, "")) for name in kind.presets),
-        "Parameters (--set NAME=VALUE)": (
+        "Presets (--preset NAME)": [(name, kind.about.get(name, "")) for name in kind.presets],
+        "Parameters (--set NAME=VALUE)": [
             (f"{name} = {setting_text(p)}", meaning_text(p)) for name, p in parameters_of(kind.params).items()
+        ],
+        "Measures (in a sweep)": quantity_entries(recorded),
+        "Further numbers (in tasks of the lab)": quantity_entries(
+            {name: q for name, q in kind.quantities.items() if name not in recorded}
         ),
-        "Measures (in a sweep)": ((f"{name} [{m.unit}]", m.meaning) for name, m in measures_of(kind).items()),
     }
     print(f"{kind.title} ({kind.name})")
     for heading, entries in sections.items():
-        print(f"\n{heading}")
-        print_entries(entries)
+        if entries:
+            print(f"\n{heading}")
+            print_entries(entries)
     return 0
 
 
@@ -49,6 +54,11 @@ def print_entries(entries: Iterable[tuple[str, str]]) -> None:
             print("\n".join(fold(margin + meaning, width)))
 
 
+def quantity_entries(table: Quantities) -> list[tuple[str, str]]:
+    """The names of quantities with their units, each with its meaning, and whether tasks lack it."""
+    return [(f"{name} [{q.unit}]", q.meaning + ("" if q.shown else "; not in tasks")) for name, q in table.items()]
+
+
 def setting_text(parameter: Parameter) -> str:
     """The default with its unit."""
     default = write_value(parameter.default)
@@ -58,8 +68,3 @@ def setting_text(parameter: Parameter) -> str:
 def meaning_text(parameter: Parameter) -> str:
     """The meaning, and the allowed values."""
     return f"{parameter.doc}. Allowed: {parameter.allowed}."
-
-
-def measures_of(kind: SceneKind[Any, Any, Any]) -> dict[str, Any]:
-    """The measures of the scene as it starts."""
-    return plotted(kind, ()) if kind.measures is None else kind.measures(kind.make(kind.params()))

@@ -63,12 +63,12 @@ VALUES: Mapping[tuple[str, str], SceneValue] = {  # scene and task -> the value
     ),
     ("radial_sea", "extra_draft"): SceneValue(
         "this layer", "m",
-        lambda n: (n("thickness"), n("oil_density"), n("water_density")), lambda n: n("added_draft"),
+        lambda n: (n("layer_thickness"), n("oil_density"), n("water_density")), lambda n: n("added_draft"),
         needs=("spill", "layer"),
     ),
     ("radial_sea", "draft"): SceneValue(
         "the box in these fluids", "m",
-        lambda n: (n("box_density"), n("box_height"), n("oil_density"), n("thickness"), n("water_density")),
+        lambda n: (n("box_density"), n("box_height"), n("oil_density"), n("layer_thickness"), n("water_density")),
         lambda n: n("box_draft_at_rest"), needs=("spill", "layer"),
     ),
     ("radial_sea", "mixture_viscosity"): SceneValue(

@@ -10,6 +10,7 @@ import numpy as np
 from app.messages import PlotRow
 from app.scenes.charts import Chart, Columns, chart_of, numbers_of
 from app.scenes.contract import AnyKind, AnyScene
+from app.scenes.quantities import measured
 from sim.parameters import parameters_of
 
 if TYPE_CHECKING:
@@ -35,7 +36,8 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
         own = f"state_{name}" if name in found else name
         dimensions = tuple(f"{own}_{axis}" for axis in range(array.ndim))
         found[own] = (dimensions, array, attributes(*split_unit(unit)))
-    for name, measure in ({} if kind.measures is None else kind.measures(scene)).items():
+    # The columns of the plots are there already.
+    for name, measure in (measured(kind, scene) if kind.quantities else {}).items():
         own = f"measured_{name}" if name in found else name
         found[own] = ((), np.array(measure.value), attributes(measure.unit, measure.meaning))
     for parameter, columns in (scene.curves() or {}).items():

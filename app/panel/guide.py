@@ -7,11 +7,11 @@ thread, shows what has changed.
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 
 import viser
 
-from app.lab.live_values import LiveNumber, LiveValues, fill_in
+from app.lab.live_values import LiveNumber, LiveValue, LiveValues, fill_in
 from app.lab.task import PREDICTION, Question, Task, TaskSetup
 from app.lab.workbook import Workbook, read_off
 from app.panel.controls import Controls
@@ -33,20 +33,47 @@ SIGNS = {"right": "✓", "begun": "●", "open": "○"}  # before a task, by its
 STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Kept."}
 
 
-def live_values(kind: AnyKind, snapshot: AnySnapshot) -> LiveValues:
-    """Values that a task may name: the parameters, those of the scene, the clock, and the state of the run."""
-    found: dict[str, bool | str | LiveNumber] = {}
-    for name, parameter in parameters_of(snapshot.params).items():
-        value: Value = getattr(snapshot.params, name)
-        meaning = parameter.title or in_words(name)
-        is_named = isinstance(value, bool | str)
-        found[name] = value if is_named else LiveNumber(float(value), parameter.unit, meaning)
-    status = snapshot.status
-    found["time"] = LiveNumber(status.time, "s", "Time")
-    found["diverged"] = bool(status.halted) or status.replayed is not None
-    if kind.live_values is not None:
-        found |= {name: LiveNumber(*m) for name, m in kind.live_values(snapshot).items()}
-    return found
+class SnapshotValues(Mapping[str, LiveValue]):
+    """Values that a task may name: the parameters, quantities of the scene, the clock, and the state of the run.
+
+    A quantity is computed when it is first asked for; one that the scene does not have now is missing.
+    """
+
+    def __init__(self, kind: AnyKind, snapshot: AnySnapshot) -> None:
+        self.quantities, self.snapshot = kind.quantities, snapshot
+        self.found: dict[str, LiveValue | None] = {}
+        for name, parameter in parameters_of(snapshot.params).items():
+            value: Value = getattr(snapshot.params, name)
+            meaning = parameter.title or in_words(name)
+            is_named = isinstance(value, bool | str)
+            self.found[name] = value if is_named else LiveNumber(float(value), parameter.unit, meaning)
+        status = snapshot.status
+        self.found["time"] = LiveNumber(status.time, "s", "Time")
+        self.found["diverged"] = bool(status.halted) or status.replayed is not None
+
+    def __getitem__(self, name: str) -> LiveValue:
+        """The value of this name. Raises KeyError if the scene does not have it now."""
+        if name not in self.found:
+            self.found[name] = self.computed(name)
+        found = self.found[name]
+        if found is None:
+            raise KeyError(name)
+        return found
+
+    def computed(self, name: str) -> LiveNumber | None:
+        """The quantity of this name, None if the scene does not have it now."""
+        quantity = self.quantities.get(name)
+        value = quantity.value(self.snapshot) if quantity is not None and quantity.shown else None
+        if quantity is None or value is None:
+            return None
+        floor = 0.0 if quantity.floor is None else quantity.floor(self.snapshot) or 0.0
+        return LiveNumber(value, quantity.unit, quantity.meaning, floor)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter([name for name in dict.fromkeys((*self.found, *self.quantities)) if name in self])
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
 
 
 class QuestionWidgets:
@@ -279,7 +306,7 @@ class GuideTab:
             widgets.flush(now)
         if refresh:
             self.workbook.refresh()
-            self.values = live_values(self.kind, snapshot)
+            self.values = SnapshotValues(self.kind, snapshot)
             if self.is_set_up_here(task):
                 self.unwritten = self.attempt(lambda: self.workbook.watch(task, self.values))
         if self.workbook.revision != self.revision:

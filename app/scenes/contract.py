@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from app.messages import BaseParams, Command, F, P, PlotRow, R, SceneCommand, Snapshot, Vector
 from app.scenes.charts import Chart, Columns, CurveAxes, PlotAxes
+from app.scenes.quantities import Quantities, Quantity, SceneInstant
 from sim.parameters import Value
 
 if TYPE_CHECKING:
@@ -37,15 +38,6 @@ R_co = TypeVar("R_co", covariant=True)
 
 
 Pieces: TypeAlias = Mapping[str, Callable[[], object]]  # name of what is compiled -> compiles it, by running it
-
-
-class Measure(NamedTuple):
-    """One number of a running scene, as a sweep records it."""
-
-    value: float
-    unit: str
-    meaning: str
-    floor: float = 0.0  # of a length, to which it is known; NaN: it is not known
 
 
 class Advice(NamedTuple):
@@ -253,8 +245,9 @@ class SceneKind(Generic[P, F, R]):
     curves: Mapping[str, CurveAxes] = field(
         default_factory=dict[str, CurveAxes]
     )  # parameter that opens the chart -> its axes
-    measures: Callable[..., dict[str, Measure]] | None = None  # of the scene, what a sweep records; None: the plot rows
-    live_values: Callable[..., dict[str, Measure]] | None = None  # of a snapshot, what the tasks of the lab use
+    # The numbers that sweeps, tasks, notebooks and `run --list` read; without a table a sweep records the plot rows.
+    quantities: Quantities = field(default_factory=dict[str, Quantity])
+    instant: Callable[..., object] = SceneInstant  # of a scene, what the recorded quantities are read from
     # Unit of each array of a frame that goes into a file of the recording; arrays of a record in it: "record_array".
     # The first one in metres is what moves.
     frame_units: Mapping[str, str] = field(default_factory=dict[str, str])

@@ -11,8 +11,7 @@ import numpy as np
 import app
 import sim
 from app.scenes import scene_named
-from app.scenes.contract import Measure
-from app.scenes.measures import plotted
+from app.scenes.quantities import Measure, measured
 from app.scenes.setups import make_setup
 from app.scenes.stepping import steps_to
 from sim.jit import sources_hash
@@ -67,9 +66,7 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
                 return failed(note)
             for index, until in enumerate(times):
                 row = advance_to(running, until) or row
-                add_measures(
-                    kind.measures(running) if kind.measures else plotted(kind, row), index, times, found, labels
-                )
+                add_measures(measured(kind, running, row), index, times, found, labels)
     except DivergenceError as reason:
         end, message, diverged_at = DIVERGED, str(reason), float(running.time)
     except Exception as error:

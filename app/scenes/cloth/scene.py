@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
-from app.scenes.cloth.live_values import live_values
 from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, ClothParams, hidden
 from app.scenes.cloth.pins import Pins
+from app.scenes.cloth.quantities import QUANTITIES, ClothInstant
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.springs.divergence import holding_step
@@ -315,6 +315,7 @@ SCENE = SceneKind(
     series=SERIES,
     plots=PLOTS,
     frame_units={"points": "m", "strain": "", "student": "m, a student's cloth beside the program's"},
-    live_values=live_values,
+    quantities=QUANTITIES,
+    instant=ClothInstant,
     remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
 )

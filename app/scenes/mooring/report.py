@@ -9,6 +9,7 @@ from app.messages import Snapshot
 from app.render.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
 from app.scenes.mooring.frame import EndStatistics, LineReading, MooringReadings
 from app.scenes.mooring.from_file import mooring_of
+from app.scenes.mooring.quantities import breaking_load_use, largest_tension
 from app.scenes.mooring.start_check import ADVISED, Fault, raised_points
 from app.scenes.springs.html import colour_scale, step_mark
 
@@ -27,10 +28,10 @@ def figures_of(snapshot: Snapshot) -> str:
     if found.fault is not None and not snapshot.status.halted:  # which says it all
         return coloured(found.fault.short, WARNING_COLOUR)
     line, t = found.most_at
-    largest = max(one.at_fairlead.largest for one in found.lines)
-    load = snapshot.params.breaking_load
-    use = fill(" ({})", percent(1e-3 * largest / load)) if load > 0.0 else ""
-    return fill("Largest tension: {} kN{}, line {} at {}", bold(kilonewtons(largest)), use, line + 1, seconds(t))
+    share = breaking_load_use(snapshot)
+    use = "" if math.isnan(share) else fill(" ({})", percent(share))
+    largest = bold(kilonewtons(largest_tension(snapshot)))
+    return fill("Largest tension: {} kN{}, line {} at {}", largest, use, line + 1, seconds(t))
 
 
 def slack_text(found: LineReading, now: float) -> Html:

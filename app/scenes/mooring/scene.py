@@ -9,9 +9,8 @@ from app.scenes.mooring.file_scene import FileScene
 from app.scenes.mooring.frame import MooringReadings
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, SERIES, LineScene
-from app.scenes.mooring.live_values import live_values
-from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import ABOUT, EXPLICIT, PRESETS, MooringParams, hidden
+from app.scenes.mooring.quantities import QUANTITIES
 from app.scenes.mooring.start_check import raised_points
 from app.scenes.springs.divergence import holding_step
 
@@ -90,9 +89,8 @@ SCENE = SceneKind(
     frame_units={
         "points": "m", "body": "m", "rotation": "1", "tension": "N", "surface": "m", "path": "m", "uplift": "1",
     },
-    measures=measures,
     remedy=remedy,
     advice=advice,
     warnings=warnings,
-    live_values=live_values,
+    quantities=QUANTITIES,
 )  # fmt: skip

@@ -12,10 +12,9 @@ from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.moments import copied, restore
 from app.scenes.race.charts import CURVES, RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings
-from app.scenes.race.live_values import live_values
-from app.scenes.race.measures import measures
 from app.scenes.race.names import rope_labels
 from app.scenes.race.parameters import ABOUT, PRESETS, RaceParams, hidden, method_of, offset_of
+from app.scenes.race.quantities import QUANTITIES
 from app.scenes.springs.grab import GrabFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.rope_handles import RopeHandles
@@ -216,7 +215,6 @@ SCENE = SceneKind(
     plots={},
     curves=CURVES,
     frame_units={"ropes": "m, side by side", "references": "m"},
-    measures=measures,
     stability_map=StabilityMap(stiffness_parameter, build_rope),
-    live_values=live_values,
+    quantities=QUANTITIES,
 )

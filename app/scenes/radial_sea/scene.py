@@ -16,8 +16,6 @@ from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.drawn_surface import DrawnSurface, Foam, tile_of
 from app.scenes.radial_sea.frame import JetParcels, RadialFrame, RadialReadings, pack_frame, unpack_frame
-from app.scenes.radial_sea.live_values import live_values
-from app.scenes.radial_sea.measures import measures
 from app.scenes.radial_sea.parameters import (
     ABOUT,
     PRESETS,
@@ -30,6 +28,7 @@ from app.scenes.radial_sea.parameters import (
     reading_of,
     spill_of,
 )
+from app.scenes.radial_sea.quantities import QUANTITIES
 from app.scenes.radial_sea.radiated_waves import RadiatedWaves
 from app.scenes.radial_sea.wave_choice import draw, wave_choice_of
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach, wave_left
@@ -441,7 +440,6 @@ SCENE = SceneKind(
     series=SERIES,
     plots=PLOTS,
     curves=CURVES,
-    measures=measures,
     frame_units={
         "positions": "m",
         "rotations": "quaternion (w, x, y, z)",
@@ -450,6 +448,6 @@ SCENE = SceneKind(
         "foam": "0 to 1",
     },
     packing=FramePacking(pack_frame, unpack_frame),
-    live_values=live_values,
+    quantities=QUANTITIES,
     needs=needs,
 )

@@ -10,9 +10,8 @@ from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Ve
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
-from app.scenes.rope.live_values import live_values
-from app.scenes.rope.measures import measures
 from app.scenes.rope.parameters import ABOUT, PRESETS, RopeParams, hidden
+from app.scenes.rope.quantities import QUANTITIES, RopeInstant
 from app.scenes.springs.divergence import holding_step, leapfrog_alternative
 from app.scenes.springs.grab import ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
@@ -287,8 +286,8 @@ SCENE = SceneKind(
     series=SERIES,
     plots=PLOTS,
     frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
-    measures=measures,
     stability_map=StabilityMap(stiffness_parameter, build),
     remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
-    live_values=live_values,
+    quantities=QUANTITIES,
+    instant=RopeInstant,
 )

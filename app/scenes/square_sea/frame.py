@@ -1,7 +1,7 @@
 """Frames and readings of the square sea for its view and the panel, immutable."""
 
 import functools
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,9 @@ from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.rainfall import RainFrame, RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
+
+if TYPE_CHECKING:
+    from app.scenes.square_sea.scene import SquareSeaScene
 
 
 class SeaFrame(NamedTuple):
@@ -72,3 +75,18 @@ class SeaReadings(NamedTuple):
     viscous_area: float  # [m2] sum of viscosity times time, since the start
     rain: RainReadings | None
     report: Report | None
+
+
+def readings_of(scene: "SquareSeaScene") -> SeaReadings:
+    """The numbers for the panel at the time of the last frame."""
+    p = scene.params
+    return SeaReadings(
+        foam_cover=scene.foam_cover,
+        expected_foam_cover=scene.expected_foam_cover(scene.time),
+        slope_left=scene.slope_left,
+        foam_limit=scene.foam_limit.value,
+        is_choppy=scene.marching is not None or scene.sea.choppiness > 0.0,
+        viscous_area=scene.viscous_area + p.viscosity * (scene.time - scene.changed_at),
+        rain=None if scene.rainfall is None else scene.rainfall.readings(),
+        report=scene.statistics.report if p.statistics else None,
+    )

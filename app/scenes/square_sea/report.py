@@ -8,8 +8,8 @@ from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, i
 from app.scenes.measured_sea import measured_text
 from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
-from app.scenes.square_sea.live_values import spectrum_conditions
 from app.scenes.square_sea.parameters import SquareSeaParams, gravity, marches, solved_points
+from app.scenes.square_sea.quantities import here, spectrum_conditions
 from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
@@ -17,7 +17,7 @@ from sim.ocean.dispersion import viscous_root
 from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, gravity_of
 from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
 from sim.ocean.spectra.regular import RegularConditions
-from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, open_sea_height, resolved_in_time
+from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, resolved_in_time
 
 MIN_SLOPE_LEFT = 0.98  # share of the mean square slope below which the sea counts as damped
 MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
@@ -107,11 +107,10 @@ def breaking_text(params: SquareSeaParams) -> str:
     """A warning where the waves are too high for the depth; "" where they are not."""
     if params.deep:
         return ""
-    spectrum = chosen_spectrum(params)
-    height = open_sea_height(spectrum, spectrum_conditions(params, params.wind_speed, gravity(params)))
+    height = here(params).height
     if height <= BREAKING_HEIGHT * params.depth:
         return ""
-    other = "" if spectrum.name == "tma" else " Of the wind seas only TMA is limited by depth."
+    other = "" if chosen_spectrum(params).name == "tma" else " Of the wind seas only TMA is limited by depth."
     return (
         f"A wave height of {number(height)} m is {number(height / params.depth, 2)} times the depth. "
         f"Above {BREAKING_HEIGHT:g} such waves break, which these do not.{other}"

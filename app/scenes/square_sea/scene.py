@@ -16,9 +16,7 @@ from app.scenes.moments import copied, restore
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
 from app.scenes.square_sea.foam_limit import FoamLimit, cover_in
-from app.scenes.square_sea.frame import SeaFrame, SeaReadings, pack_frame, unpack_frame
-from app.scenes.square_sea.live_values import live_values
-from app.scenes.square_sea.measures import measures, readings_of
+from app.scenes.square_sea.frame import SeaFrame, SeaReadings, pack_frame, readings_of, unpack_frame
 from app.scenes.square_sea.parameters import (
     ABOUT,
     GAUGE_OFFSET_SHARE,
@@ -30,6 +28,7 @@ from app.scenes.square_sea.parameters import (
     rain_settings,
     solved_points,
 )
+from app.scenes.square_sea.quantities import QUANTITIES, SeaInstant
 from app.scenes.square_sea.rainfall import SeaRain
 from app.scenes.square_sea.statistics import INTERVAL, LiveStatistics
 from app.scenes.square_sea.tile_mesh import Fields, set_mesh_of
@@ -435,10 +434,10 @@ SCENE = SceneKind(
     series=SERIES,
     plots=PLOTS,
     curves=CURVES,
-    measures=measures,
     frame_units={"vertices": "m", "slopes": "", "foam": "0 to 1"},
     packing=FramePacking(pack_frame, unpack_frame),
-    live_values=live_values,
+    quantities=QUANTITIES,
+    instant=SeaInstant,
     awaited=Awaited(f"Run on until a crest of {HIGH_CREST:g} Hs", AWAITED_HINT, marches, has_high_crest),
     middle=lambda params: (0.5 * params.length, 0.5 * params.length),
 )

@@ -8,7 +8,7 @@ import pytest
 
 from app.lab.live_values import LiveNumber, LiveValues, fill_in, names_in
 from app.lab.task import Task, load_tasks
-from app.panel.guide import live_values
+from app.panel.guide import SnapshotValues
 from app.panel.task_setups import setup_of_task
 from app.render.formula import formula
 from app.scenes import scene_named
@@ -31,7 +31,7 @@ def values_of(task: Task, **changes: object) -> LiveValues:
     loop = SimLoop(kind.make(params))
     for _ in range(TICKS):
         loop.tick(1 / 30)
-    return live_values(kind, loop.latest)
+    return SnapshotValues(kind, loop.latest)
 
 
 @pytest.fixture(scope="module")
@@ -156,7 +156,7 @@ def test_the_numbers_of_the_seas_are_those_of_their_laws(found) -> None:
 
 def test_the_numbers_of_the_springs_are_those_of_statics_and_stability(found) -> None:
     values = found("spring_force")
-    assert number(values, "rest_stretch") == pytest.approx(9 * 10.0 / 800.0)
+    assert number(values, "top_stretch_at_rest") == pytest.approx(9 * 10.0 / 800.0)
     h, damping, drag = 1 / 60, 7.0, 1.0
     eigenvalue = 2.0 * (1.0 - math.cos(math.pi * 17 / 19))  # the fastest mode of 9 springs with one free end
     euler = (damping * eigenvalue + drag) / (h * eigenvalue)

@@ -14,7 +14,7 @@ from app.lab.scene_values import VALUES, calls_here
 from app.lab.task import load_tasks
 from app.lab.versions import Versions
 from app.panel.code_panel import compared_text
-from app.panel.guide import live_values
+from app.panel.guide import SnapshotValues
 from app.scenes import scene_named
 from app.server.loop import SimLoop
 from tests.waiting import wait_for
@@ -58,7 +58,7 @@ def test_the_reference_solutions_give_the_numbers_of_the_program(
     loop.tick(0.1)
 
     def is_found() -> bool:
-        values.want(calls_here(scene, saved.begun, live_values(kind, loop.latest)))
+        values.want(calls_here(scene, saved.begun, SnapshotValues(kind, loop.latest)))
         time.sleep(0.05)
         loop.tick(0.05)
         return set(values.tables) == expected

@@ -135,7 +135,7 @@ def test_a_prediction_comes_before_the_answer_and_stays(folder: Path) -> None:
 
 def test_what_is_seen_to_be_done_is_ticked_off_for_good(folder: Path) -> None:
     book = Workbook(TASKS, folder)
-    thin, thick = ({"spill": "layer", "thickness": LiveNumber(d, "m")} for d in (0.2, 0.6))
+    thin, thick = ({"spill": "layer", "layer_thickness": LiveNumber(d, "m")} for d in (0.2, 0.6))
     book.watch(DRAFT, thin)
     assert not book.done(DRAFT)
     book.watch(DRAFT, thick)

@@ -12,8 +12,7 @@ from app.panel.head import status_line
 from app.scenes.cloth.parameters import PRESETS, ClothParams
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
 from app.scenes.cloth.view import ClothView, faces
-from app.scenes.contract import Measure
-from app.scenes.measures import plotted
+from app.scenes.quantities import measured, plotted_quantities
 from app.server.loop import SimLoop
 from sim.parameters import check_record
 from sim.validation import DivergenceError
@@ -268,10 +267,23 @@ def test_a_pull_is_as_stiff_as_the_step_allows(step):
 
 
 def test_plot_rows_are_measures_with_the_units_of_their_charts():
-    found = plotted(SCENE, (0.5, *range(1, 8)))
-    assert found["kinetic"] == Measure(2, "J", "Energy: kinetic")
-    assert found["gravity_energy"] == Measure(4, "J", "Energy: gravity")  # not the parameter
-    assert found["largest_strain"] == Measure(7, "%", "largest strain")
+    table, row = plotted_quantities(SCENE), dict(zip(SCENE.series, range(1, 8), strict=True))
+    found = {name: (q.value(row), q.unit, q.meaning) for name, q in table.items()}
+    assert found["kinetic"] == (2, "J", "Energy: kinetic")
+    assert found["gravity_energy"] == (4, "J", "Energy: gravity")  # not the parameter
+    assert found["largest_strain"] == (7, "%", "largest strain")
+
+
+def test_a_sweep_records_what_the_plots_of_the_cloth_show() -> None:
+    scene = ClothScene(dataclasses.replace(SMALL, plot_losses=True))
+    scene.advance(20)
+    scene.take_plot_rows()
+    scene.add_plot_row()
+    row = dict(zip(SCENE.series, scene.take_plot_rows()[-1][1:], strict=True))
+    plotted = {name: quantity.value(row) for name, quantity in plotted_quantities(SCENE).items()}
+    found = measured(SCENE, scene)
+    assert plotted["dissipated"] > 0.0
+    assert {name: found[name].value for name in plotted} == plotted
 
 
 def test_gusts_blow_along_across_and_up_by_their_shares():

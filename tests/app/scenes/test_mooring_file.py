@@ -14,11 +14,10 @@ from app.scenes.mooring.arrangement import depth_of, extent, has_body, water_of
 from app.scenes.mooring.file_scene import FileScene, level_force, water_motion
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.line_scene import FADE
-from app.scenes.mooring.live_values import live_values
-from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import MooringParams, hidden
 from app.scenes.mooring.report import notes_of
 from app.scenes.mooring.scene import SCENE
+from app.scenes.quantities import measured
 from app.scenes.setups import missing_files, read_file, read_setup_text, write_file
 from app.server.loop import SimLoop
 from app.server.replay_file import replay_html
@@ -144,7 +143,7 @@ def test_water_numbers_and_texts_are_those_of_the_file():
     assert (depth_of(p), water_of(p).density) == (80.0, 1025.0)
     assert extent(p) == pytest.approx(260.0)
     run_for(scene, 0.1)
-    assert measures(scene)["largest_tension"].value > 7e4
+    assert measured(SCENE, scene)["largest_tension"].value > 7e4
     assert set(scene.arrays()) == {"vessel", *(f"{name}_{i}" for i in range(1, 5) for name in ("x", "tension"))}
     assert scene.arrays()["x_1"][0].shape == (16, 3)
     assert {"lines", "depth", "axial_stiffness", "size", "handles"} <= hidden(p)
@@ -157,8 +156,9 @@ def test_water_numbers_and_texts_are_those_of_the_file():
     assert "version1.txt" in notes["File"]
     assert "4 lines, 6 points, 2 of them on the vessel" in notes["File"]
     assert "dtM" in notes["File"]
-    values = live_values(snapshot)  # type: ignore[arg-type]
-    assert values["line_weight"].value == pytest.approx(9.81 * (120.0 - 1025.0 * np.pi / 4.0 * 0.08**2))
+    assert SCENE.quantities["line_weight"].value(snapshot) == pytest.approx(
+        9.81 * (120.0 - 1025.0 * np.pi / 4.0 * 0.08**2)
+    )
 
 
 def test_a_file_without_coupled_points_has_no_vessel(tmp_path):

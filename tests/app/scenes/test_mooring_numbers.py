@@ -11,11 +11,11 @@ from app.scenes.mooring import report
 from app.scenes.mooring.arrangement import DENSITY, GRAVITY, bearings, first_places, line_types, sections
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.line_scene import FADE
-from app.scenes.mooring.live_values import live_values
-from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.restoring import force_of_lines
+from app.scenes.mooring.scene import SCENE
 from app.scenes.mooring.tensions import Tensions
+from app.scenes.quantities import measured
 from sim.mooring import critical_step
 from sim.waves import AMPLITUDE
 
@@ -74,7 +74,7 @@ def test_an_anchor_that_is_pulled_upwards_is_flagged_and_one_pushed_down_is_not(
 
 
 def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
-    found, values, whole = scene.readings(), live_values(snapshot_of(scene)), measures(scene)
+    found, shown, whole = scene.readings(), snapshot_of(scene), measured(SCENE, scene)
     first, p = found.lines[0], scene.params
     expected = {
         "fairlead_tension": first.fairlead, "anchor_tension": first.anchor, "uplift": first.uplift,
@@ -83,7 +83,9 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
         "fairlead_height": float(scene.points[0, -1, 2]) + p.depth,
         "line_weight": 9.81 * (80.0 - 1025.0 * math.pi / 4.0 * 0.09**2),
     }  # fmt: skip
-    assert {name: values[name].value for name in expected} == pytest.approx(expected, rel=1e-5, abs=1e-9)
+    assert {name: SCENE.quantities[name].value(shown) for name in expected} == pytest.approx(
+        expected, rel=1e-5, abs=1e-9
+    )
     expected = {
         "largest_tension": max(line.at_fairlead.largest for line in found.lines),
         "largest_at_anchor": max(line.at_anchor.largest for line in found.lines),
@@ -95,7 +97,7 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
         "mean_tension": max(line.fairlead for line in found.lines), "tension_deviation": 0.0,
         "breaking_load_use": max(line.fairlead for line in found.lines) / 3450e3,
     }  # fmt: skip
-    assert {name: one.value for name, one in whole.items()} == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert {name: whole[name].value for name in expected} == pytest.approx(expected, rel=1e-6, abs=1e-9)
 
 
 def test_the_panel_says_the_readings(scene):

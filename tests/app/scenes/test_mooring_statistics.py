@@ -12,10 +12,11 @@ from app.__main__ import with_mooring
 from app.messages import GrabTo, Place, Release, RestartStatistics
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
-from app.scenes.mooring.measures import measures
 from app.scenes.mooring.parameters import PRESETS, MooringParams, hidden
 from app.scenes.mooring.report import figures_of, notes_of, tension_tables
+from app.scenes.mooring.scene import SCENE
 from app.scenes.mooring.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
+from app.scenes.quantities import measured
 from sim.parameters import check_record
 from tests.app.scenes.test_mooring_start import FILES
 
@@ -58,7 +59,7 @@ def test_the_scene_has_the_statistics_of_both_ends_of_each_line():
     assert found.duration == pytest.approx(1.5)
     assert (found.since, found.counts) == (0.0, True)
     assert math.isnan(found.dragged)
-    values = measures(scene)
+    values = measured(SCENE, scene)
     fairleads = all_of[:, :, 0]
     assert values["breaking_load_use"].value == pytest.approx(fairleads.max() / 3450e3)
     assert values["mean_tension"].value == pytest.approx(fairleads[1:].mean(axis=0).max())
@@ -142,7 +143,7 @@ def test_the_use_is_of_the_breaking_load_and_without_one_there_is_none():
     assert "use" not in str(tension_tables(shown))
     assert "set the breaking load" in notes_of(shown)["Tensions"]
     assert "%" not in str(figures_of(shown))
-    assert math.isnan(measures(scene)["breaking_load_use"].value)
+    assert math.isnan(measured(SCENE, scene)["breaking_load_use"].value)
 
 
 def test_a_file_has_no_breaking_load_until_one_is_set():

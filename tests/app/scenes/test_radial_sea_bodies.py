@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from app.scenes.quantities import measured
 from app.scenes.radial_sea.bodies import LINE_REACH
-from app.scenes.radial_sea.measures import measures
-from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams
+from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, weathered_oil
 from app.scenes.radial_sea.report import forces_html
-from app.scenes.radial_sea.scene import RadialSeaScene
+from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
 from app.scenes.radial_sea.well_blowout import JetTotal
 from app.server.loop import SimLoop
 from sim.floating import equilibrium_draft, submerged
@@ -146,9 +146,15 @@ def test_weights_and_forces_are_on_screen_and_in_sweeps() -> None:
     box = loop.latest.readings.bodies[2]
     for shown in (f"{box.mass:,.0f}", "wet in oil", "in water", "mean upward force"):
         assert shown.replace(",", "") in text.replace("\u202f", "").replace(",", ""), shown
-    found = measures(loop.scene)
+    found = measured(SCENE, loop.scene)
     assert found["box_mass"].value == pytest.approx(box.density * box.volume)
     assert found["box_wet_volume_below"].value == box.wet_volume[1] != box.wet_volume[0]
+    spill = weathered_oil(loop.scene.params)
+    for name, value in {
+        "evaporated": spill.evaporated, "dispersed": spill.dispersed, "water_content": spill.water_content,
+        "slick_area": spill.area,
+    }.items():  # fmt: skip
+        assert found[name].value == value
     loop = SimLoop(scene_with(**CALM))
     loop.tick(0.1)
     text = forces_html(loop.latest.readings)

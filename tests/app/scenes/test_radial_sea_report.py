@@ -10,10 +10,9 @@ import pytest
 from app.formats.formatting import fixed
 from app.scenes.radial_sea.budget import budget_html
 from app.scenes.radial_sea.charts import budget_chart
-from app.scenes.radial_sea.live_values import live_values
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden, spill_of
 from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_budget_text, readout_of, surfaces_html
-from app.scenes.radial_sea.scene import RadialSeaScene
+from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
 from app.scenes.radial_sea.well_blowout import OilBudget
 from app.server.loop import SimLoop
 from sim.ocean.fluid_column import FluidColumn
@@ -60,11 +59,11 @@ def test_a_body_outside_its_table_of_coefficients_is_said_to_be(density: float, 
     assert (words in notes_of(loop.latest)["Forces"]) == is_said
 
 
-def live(**values) -> dict[str, float]:
+def live(**values) -> dict[str, Any]:
     """The live values of a scene."""
     loop = Loop(RadialSeaScene(check_record(RadialSeaParams, values)))
     loop.tick(0.1)
-    return {name: measure.value for name, measure in live_values(loop.latest).items()}
+    return {name: quantity.value(loop.latest) for name, quantity in SCENE.quantities.items()}
 
 
 @pytest.mark.parametrize("spill", ["none", "layer", "mixed"])

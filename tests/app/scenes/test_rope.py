@@ -11,9 +11,9 @@ import pytest
 from app.messages import GrabTo, Place, Release, finite_vector
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, coloured
 from app.scenes.contract import FRAME_INTERVAL
-from app.scenes.rope.measures import measures
+from app.scenes.quantities import measured
 from app.scenes.rope.parameters import PRESETS, RopeParams
-from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, RopeScene
+from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, SCENE, RopeScene
 from app.scenes.rope.view import bead_radius
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.html import stability_bar, step_mark
@@ -361,9 +361,9 @@ def test_the_root_swings_about_where_it_was_put_and_comes_to_rest_again() -> Non
 
 def test_a_sweep_records_the_tip_of_the_rope_and_nothing_dissipated_at_the_start() -> None:
     scene = Rope(RopeParams())
-    assert measures(scene)["dissipated_energy"].value == measures(scene)["energy_error"].value == 0.0
+    assert measured(SCENE, scene)["dissipated_energy"].value == measured(SCENE, scene)["energy_error"].value == 0.0
     run(scene, 30, 2)
-    found = {name: measure.value for name, measure in measures(scene).items()}
+    found = {name: measure.value for name, measure in measured(SCENE, scene).items()}
     assert found["tip_height"] == scene.state.x[2, 0, 9] < scene.state.x[2, 0, 1]
     assert found["tip_speed"] == np.linalg.norm(velocities(scene.net, scene.state)[:, 0, 9]) > 0.1
 

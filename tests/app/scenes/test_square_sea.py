@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from app.messages import PointAlong, Reset
+from app.scenes.quantities import measured
 from app.scenes.square_sea import report
 from app.scenes.square_sea import scene as square_sea
-from app.scenes.square_sea.live_values import live_values
-from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import PRESETS, SquareSeaParams, conditions, rain_settings
 from app.scenes.square_sea.rainfall import RING_STEEPNESS, SeaRain
-from app.scenes.square_sea.scene import SquareSeaScene
+from app.scenes.square_sea.scene import SCENE, SquareSeaScene
+from app.scenes.square_sea.statistics import theory
 from app.server.loop import SimLoop
 from sim.ocean import Sea
 from sim.ocean.foam import pace, whitecaps
@@ -415,17 +415,23 @@ def test_the_panel_has_words_for_every_preset(name):
 def test_the_dominant_waves_have_a_length_where_there_are_waves(change):
     loop = SimLoop(Scene(SquareSeaParams(**change)))
     loop.tick(1 / 30)
-    found = live_values(loop.latest)
+    found = {name: quantity.value(loop.latest) for name, quantity in SCENE.quantities.items() if quantity.shown}
     has_waves = "wind_speed" not in change
-    assert math.isfinite(found["wave_length"].value) == math.isfinite(found["open_speed"].value) == has_waves
-    assert (found["open_height"].value > 0.0) == has_waves
+    assert math.isfinite(found["wave_length"]) == math.isfinite(found["open_speed"]) == has_waves
+    assert (found["open_height"] > 0.0) == has_waves
 
 
 def test_a_sweep_records_the_highest_crest_and_the_waves_about_the_peak():
     scene = Scene(SquareSeaParams(size="128", mesh="64", amplitude=1.5))
     scene.advance(2)
-    found = {name: measure.value for name, measure in measures(scene).items()}
+    found = {name: measure.value for name, measure in measured(SCENE, scene).items()}
     assert found["crest_height"] == pytest.approx(1.5 * scene.sea.surface(scene.time).height.max(), rel=1e-6)
     length = 9.81 * found["expected_period"] ** 2 / (2.0 * math.pi)  # of deep water
     assert found["wave_length"] == pytest.approx(length, rel=0.1)
     assert found["wave_speed"] == pytest.approx(found["wave_length"] / found["expected_period"], rel=1e-9)
+    stated = theory(scene.sea, scene.time, scene.params)
+    expected = {
+        "expected_height": stated.statistics.significant_height, "expected_slope": stated.statistics.mean_square_slope,
+        "height_scatter": stated.scatter, "endless_height": stated.whole,
+    }  # fmt: skip
+    assert {name: found[name] for name in expected} == expected

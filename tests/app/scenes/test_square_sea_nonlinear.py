@@ -10,8 +10,8 @@ import pytest
 
 from app.formats.formatting import number
 from app.messages import Pause, Play, PointAlong, Reset, RunOn
+from app.scenes.quantities import measured
 from app.scenes.square_sea import report
-from app.scenes.square_sea.measures import measures
 from app.scenes.square_sea.parameters import LINEAR_ONLY, PRESETS, SquareSeaParams, hidden, solved_points
 from app.scenes.square_sea.scene import SCENE, SquareSeaScene
 from app.server.loop import SimLoop
@@ -179,7 +179,7 @@ def test_the_grid_of_a_high_order_is_smaller_and_the_panel_says_so() -> None:
 def test_measures_for_sweeps() -> None:
     scene = Scene(SquareSeaParams(**STEEP))
     scene.advance(300)
-    found = {name: measure.value for name, measure in measures(scene).items()}
+    found = {name: measure.value for name, measure in measured(SCENE, scene).items()}
     height = scene.marching.sea.height
     assert found["crest_height"] == pytest.approx(height.max(), rel=1e-6)
     away = height - height.mean()

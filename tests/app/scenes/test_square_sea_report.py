@@ -10,8 +10,8 @@ import pytest
 
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, bold
-from app.scenes.square_sea.live_values import open_sea
 from app.scenes.square_sea.parameters import SquareSeaParams
+from app.scenes.square_sea.quantities import open_sea
 from app.scenes.square_sea.report import (
     breaking_text,
     foam_text,

@@ -60,8 +60,7 @@ def texts_of(name: str, changes: dict[str, Any]) -> Iterator[str]:
         if hasattr(view, read):
             found = getattr(view, read)(NOT_DRAWN, snapshot)
             yield from found.values() if isinstance(found, dict) else [found]
-    if kind.live_values is not None:
-        yield from (measure.meaning for measure in kind.live_values(snapshot).values())
+    yield from (quantity.meaning for quantity in kind.quantities.values())
 
 
 @pytest.mark.parametrize(("name", "changes"), SETTINGS)

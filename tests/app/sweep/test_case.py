@@ -7,8 +7,7 @@ import pytest
 
 import app.scenes.rope.scene
 from app.scenes import NAMES, scene_named
-from app.scenes.contract import Measure
-from app.scenes.measures import plotted
+from app.scenes.quantities import Measure, measured
 from app.sweep.case import DIVERGED, FAILED, FINISHED, run_case
 from sim.floating import Hull, equilibrium_draft
 from sim.parameters import parameters_of
@@ -106,14 +105,13 @@ def test_what_a_scene_raises_is_the_outcome(monkeypatch):
     assert math.isnan(outcome.measures["tip_height"][1])
 
 
-def test_a_scene_without_measures_gives_its_plot_rows():
-    scene = scene_named("cloth")
-    assert scene.measures is None
-    row = (0.5, *range(len(scene.series)))
-    found = plotted(scene, row)
+def test_a_scene_without_a_table_gives_its_plot_rows():
+    kind = dataclasses.replace(scene_named("cloth"), quantities={})
+    row = (0.5, *range(len(kind.series)))
+    found = measured(kind, None, row)
     assert found["gravity_energy"] == Measure(3, "J", "Energy: gravity")
     assert found["largest_strain"].unit == "%"
-    assert all(math.isnan(measure.value) for measure in plotted(scene, ()).values())
+    assert all(math.isnan(measure.value) for measure in measured(kind, None).values())
 
 
 def test_an_integrator_that_would_be_replaced_is_a_failed_case(monkeypatch):

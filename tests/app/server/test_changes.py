@@ -21,7 +21,7 @@ from tests import coroutines
 from tests.stress.clients import CAMERA
 
 PROTOCOL = websockets.Subprotocol(f"viser-v{viser.__version__}")
-MAX_WAIT = 10.0  # [s]
+MAX_WAIT = 120.0  # [s]: a scene may have to be compiled first
 
 
 async def until(condition: Callable[[], Any]) -> Any:

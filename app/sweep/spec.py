@@ -5,6 +5,7 @@ the spec names, and an error is to name the value and the range with its unit, w
 """
 
 import dataclasses
+import json
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -66,11 +67,15 @@ def read_spec(path: Path) -> Spec:
     """Read and check a spec. Raises ValueError with the key, its value and the allowed values."""
     try:
         text = path.read_text("utf-8")
-        content = tomllib.loads(text)
     except OSError as error:
         raise unreadable("SPEC", path, error) from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise ValueError(f"SPEC: {path} is not TOML ({error})") from None
+    try:
+        content = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        advice = "; a path with backslashes goes in single quotes" if "\\" in text else ""
+        raise ValueError(f"SPEC: {path} is not TOML ({error}){advice}") from None
     return make_spec(content, text, path.parent)
 
 
@@ -120,7 +125,8 @@ def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = Non
         del fixed[parameter_name]
     preset = content.get("preset", "")
     if preset and preset not in scene.presets:
-        text = text.replace(preset, file_name(preset))
+        for path in (json.dumps(preset, ensure_ascii=False)[1:-1], preset):  # as in double quotes, and in single ones
+            text = text.replace(path, file_name(preset))
     spec = Spec(scene.name, seconds, frames, design, seed, fixed, values, cases, text)
     check_swept_parameters_matter(spec, scene)
     return spec

@@ -3,7 +3,9 @@
 import dataclasses
 import io
 import json
+import os
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -118,14 +120,20 @@ def test_a_reader_is_told_how_to_add_the_mesh(
         read_notebook_setup("radial_sea", str(file), {})
 
 
-def test_a_sweep_keeps_the_name_of_its_preset_only(tmp_path: Path) -> None:
-    file = tmp_path / "setup.json"
+@pytest.mark.parametrize("written", [json.dumps, "'{}'".format], ids=["double quotes", "single quotes"])
+def test_a_sweep_keeps_the_name_of_its_preset_only(tmp_path: Path, written: Callable[[str], str]) -> None:
+    folder = tmp_path if os.name == "nt" else tmp_path / r"with\Users"
+    folder.mkdir(exist_ok=True)
+    file, path = folder / "setup.json", tmp_path / "spec.toml"
     file.write_text(write_file(KIND, KIND.params(**SMALL)))
-    path = tmp_path / "spec.toml"
-    path.write_text(f'scene = "radial_sea"\nseconds = 1\npreset = "{file}"\n[parameters]\nwind_speed = [5.0, 9.0]\n')
-    written = about(read_spec(path))
-    assert 'preset = "setup.json"' in written["spec"]
-    assert str(tmp_path) not in str(written)
+    head = 'scene = "radial_sea"\nseconds = 1\n'
+    path.write_text(f"{head}preset = {written(str(file))}\n[parameters]\nwind_speed = [5.0, 9.0]\n")
+    kept = about(read_spec(path))
+    assert f"preset = {written('setup.json')}" in kept["spec"]
+    assert tmp_path.name not in str(kept)
+    path.write_text(f'{head}preset = "{file}"\n')
+    with pytest.raises(ValueError, match=r"is not TOML .*; a path with backslashes goes in single quotes"):
+        read_spec(path)
 
 
 def test_without_a_mesh_nothing_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,11 +2,13 @@
 
 import csv
 import html.parser
+import inspect
 import json
 import os
 import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -54,7 +56,8 @@ def test_a_new_folder_has_every_task_and_no_solution(empty: Path) -> None:
         assert f"### {task.item} {task.title}" in texts["README.md"]
         if task.file:
             assert f"def {task.name}({', '.join(task.arguments)}):" in texts[task.file]
-            assert (task.function.__doc__ or "").strip() in texts[task.file]
+            docstring = inspect.getdoc(task.function) or ""  # without its indentation in every Python
+            assert textwrap.indent(docstring, "    ").strip() in texts[task.file]
     code = "".join(text for name, text in texts.items() if name.endswith(".py"))
     assert not re.search(r"^\s*(return|for|if)\b", code, re.MULTILINE)
     assert code.count("    ...\n") == sum(task.check is not None for task in TASKS)

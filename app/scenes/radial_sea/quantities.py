@@ -9,17 +9,18 @@ import numpy as np
 
 from app.scenes.quantities import Quantities, Quantity, for_tasks, slug
 from app.scenes.radial_sea.bodies import BODY_KINDS, BodyKind
+from app.scenes.radial_sea.parameters import weathered_oil
 from app.scenes.radial_sea.well_blowout import FALL_TIME, LANDING, NOZZLE
 from sim.ocean.emulsions import arrhenius
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import diffuse_reflectance, normal_reflectance
 from sim.ocean.oil_film import OPAQUE_THICKNESS
+from sim.water import SEA_DENSITY
 
 if TYPE_CHECKING:
     from app.scenes.radial_sea.bodies import BodyReading
     from sim.ocean.weathering import WeatheredOil
 
-SEA_WATER_DENSITY = 1025.0  # [kg/m3] of clean sea water, in statements about a body's fraction below it
 LONG_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves
 SHORT_WAVE = 1.0  # [m] length of the wave in statements about viscosity
 FILM_THICKNESS = 1e-4  # [m] of a film that lets light through
@@ -46,7 +47,7 @@ OF_BODY: Quantities = {  # of a `BodyReading`
         "m", "deeper than in clean water", lambda body: body.mean_draft - body.prediction.draft_in_water
     ),
     "height": for_tasks("m", "height", lambda body: body.prediction.height),
-    "share": for_tasks("1", "share below sea water", lambda body: body.mass / (body.volume * SEA_WATER_DENSITY)),
+    "share": for_tasks("1", "fraction below sea water", lambda body: body.mass / (body.volume * SEA_DENSITY)),
 }
 
 
@@ -66,8 +67,8 @@ def of_spill(value: "Callable[[WeatheredOil], float]") -> Callable[[Any], float 
     """A number of the spill at the time of the parameters; None without a spill to follow."""
 
     def of_weathered(now: Any) -> float | None:
-        weathering = now.readings.weathering
-        return None if weathering is None else value(weathering.at(now.params.spill_hours))
+        spill = weathered_oil(now.params)
+        return None if spill is None else value(spill)
 
     return of_weathered
 
@@ -122,6 +123,23 @@ def reflectance_ratio(column: FluidColumn) -> float:
     return normal_reflectance(column.oil.refractive_index) / normal_reflectance(column.water.refractive_index)
 
 
+def light_of(fluid: str) -> Quantities:
+    """What the oil or the water of the column reflects."""
+
+    def of_index(value: Callable[[float], float]) -> Callable[[Any], float | None]:
+        return of_column(lambda column: value(getattr(column, fluid).refractive_index))
+
+    return {
+        f"{fluid}_index": for_tasks("1", f"Refractive index of the {fluid}", of_index(float)),
+        f"{fluid}_reflectance": for_tasks(
+            "1", f"Light that {fluid} reflects straight up", of_index(normal_reflectance)
+        ),
+        f"{fluid}_sky_reflectance": for_tasks(
+            "1", f"Light of a whole sky that {fluid} reflects", of_index(sky_reflectance)
+        ),
+    }
+
+
 def left(now: float, clean: float) -> float:
     """The fraction of a number that the oil leaves; NaN on a level sea."""
     return now / clean if clean > 0.0 else math.nan
@@ -164,12 +182,12 @@ QUANTITIES: Quantities = {name: quantity for kind in BODY_KINDS for name, quanti
     "solution_viscosity": for_tasks("Pa·s", "Viscosity of a solution, by Arrhenius", of_column(solution_viscosity)),
     "height_left": for_tasks(
         "1",
-        "Share of the height that the oil leaves",
+        "Fraction of the height that the oil leaves",
         lambda now: left(now.readings.height, now.readings.clean_height),
     ),
     "slope_left": for_tasks(
         "1",
-        "Share of the mean square slope that the oil leaves",
+        "Fraction of the mean square slope that the oil leaves",
         lambda now: left(now.readings.slope, now.readings.clean_slope),
     ),
     "long_wave_speed": for_tasks(
@@ -186,31 +204,9 @@ QUANTITIES: Quantities = {name: quantity for kind in BODY_KINDS for name, quanti
         of_column(lambda column: 1.0 / waves_on(column).short_decay),
     ),
     "waves_age": for_tasks("s", "Time for which the oil has damped the waves", lambda now: now.readings.age),
-    "oil_index": for_tasks("1", "Refractive index of the oil", of_column(lambda column: column.oil.refractive_index)),
-    "water_index": for_tasks(
-        "1", "Refractive index of the water", of_column(lambda column: column.water.refractive_index)
-    ),
-    "oil_reflectance": for_tasks(
-        "1",
-        "Light that oil reflects straight up",
-        of_column(lambda column: normal_reflectance(column.oil.refractive_index)),
-    ),
-    "water_reflectance": for_tasks(
-        "1",
-        "Light that water reflects straight up",
-        of_column(lambda column: normal_reflectance(column.water.refractive_index)),
-    ),
+    **light_of("oil"),
+    **light_of("water"),
     "reflectance_ratio": for_tasks("1", "Reflection of oil over that of water", of_column(reflectance_ratio)),
-    "oil_sky_reflectance": for_tasks(
-        "1",
-        "Light of a whole sky that oil reflects",
-        of_column(lambda column: sky_reflectance(column.oil.refractive_index)),
-    ),
-    "water_sky_reflectance": for_tasks(
-        "1",
-        "Light of a whole sky that water reflects",
-        of_column(lambda column: sky_reflectance(column.water.refractive_index)),
-    ),
     "film_light": for_tasks(
         "1", "Light through a film of 0.1 mm", lambda now: math.exp(-FILM_THICKNESS / OPAQUE_THICKNESS)
     ),

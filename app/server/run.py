@@ -130,8 +130,12 @@ class SceneRun:
         n = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, frame)
         if self.goal is not None:
             n = min(n, steps_to(self.scene, self.goal.until))
+        return self.take_steps(n)
+
+    def take_steps(self, n: int) -> bool:
+        """Take steps that are due, few at first where their cost is not known; True where there were any."""
         if n:
-            (self.advance_within_budget if self.pacer.cost_unknown else self.advance)(n)
+            (self.advance_within_budget if self.pacer.cost_unknown and self.running else self.advance)(n)
         return n > 0
 
     def note_place(self) -> None:
@@ -149,9 +153,7 @@ class SceneRun:
         due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
         n = self.pacer.most(due, self.clock.frame_interval(self.scene.frame_interval))
         self.pacer.capped = n < due or (seat.is_first and seat.clock.late)
-        if n:
-            (self.advance_within_budget if self.pacer.cost_unknown and self.running else self.advance)(n)
-        return n > 0
+        return self.take_steps(n)
 
     def aim_at(self, seconds: float, answer: Future[float]) -> None:
         """Go on for so long, and then answer the program that waits, with the time."""

@@ -52,7 +52,7 @@ class MooringRun(NamedTuple):
 
 def check_motion(system: System, motion: Mapping[int, Motion]) -> None:
     """Raises ValueError for a motion of a point that is not coupled, or that is no function."""
-    coupled = [point.id for point in system.points if point.kind == "coupled"]
+    coupled = list(system.coupled_nodes)
     for one, function in motion.items():
         if one not in coupled:
             raise argument_error("motion", one, f"the id of a coupled point: {coupled}")
@@ -80,7 +80,7 @@ def cubic(x0: Array, v0: Array, x1: Array, v1: Array, t: float, duration: float)
 
 def paths_of(system: System, state: State, motion: Mapping[int, Motion], duration: float) -> Array:
     """Paths (coupled points, 5, 3) of motions on for `duration` [s] from a state's time; other points stay there."""
-    coupled = {point.id: i for i, point in enumerate(system.points) if point.kind == "coupled"}
+    coupled = system.coupled_nodes
     paths = np.zeros((len(coupled), 5, 3))
     for q, (one, node) in enumerate(coupled.items()):
         if one in motion:
@@ -114,7 +114,7 @@ def paths_to(system: System, state: State, ends: Mapping[int, tuple[ArrayLike, A
     """
     check_state(system, state)
     check_number("duration", duration, 0, math.inf, "s", above=True)
-    coupled = {point.id: i for i, point in enumerate(system.points) if point.kind == "coupled"}
+    coupled = system.coupled_nodes
     for one in ends:
         if one not in coupled:
             raise argument_error("ends", one, f"the id of a coupled point: {list(coupled)}")

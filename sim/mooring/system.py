@@ -256,6 +256,11 @@ class System(PointSystem):
             raise argument_error("integrator", integrator.name, allowed)
 
     @functools.cached_property
+    def coupled_nodes(self) -> dict[int, int]:
+        """The node of each coupled point, by its id."""
+        return {point.id: i for i, point in enumerate(self.points) if point.kind == "coupled"}
+
+    @functools.cached_property
     def nodes_of(self) -> dict[int, NDArray[np.int64]]:
         """Node numbers of each line (segments + 1,), by its id: points first, in their order, then inner nodes."""
         index = {point.id: i for i, point in enumerate(self.points)}
@@ -292,7 +297,7 @@ class System(PointSystem):
         mass = np.zeros(n)
         np.add.at(mass, places[:, 0], parts["mass"])
         inverse = self.inverse_masses(mass)
-        moved = [i for i, point in enumerate(self.points) if point.kind == "coupled"]
+        moved = list(self.coupled_nodes.values())
         paths = np.zeros((len(moved), 5, 3))
         for q, i in enumerate(moved):
             paths[q, 0] = self.points[i].position

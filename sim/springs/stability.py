@@ -26,7 +26,7 @@ from sim.springs.forces import OWN
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
 from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.integrators.implicit.tangent import quotients, set_lanczos, set_tangent
+from sim.springs.integrators.implicit.tangent import has_friction, quotients, set_lanczos, set_tangent
 from sim.springs.laws import largest_stiffness
 from sim.springs.line_arrays import LineArrays
 from sim.springs.net import Net
@@ -303,7 +303,7 @@ def top_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: floa
         parts.append((TRANSVERSE, start) if p.axial else (DAMPING, across(x, p)))
     vectors = [stiffest, *(top_vector(flat, begin, t, p, part) for part, begin in parts), *next_ones]
     mixed = mixed_vectors(flat, vectors[0], vectors[1], t, p) if parts else []
-    if isinstance(system, Net) and p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere):
+    if isinstance(system, Net) and has_friction(p):
         slides = sliding_vector(flat, start, t, p)
         if slides is not None:
             vectors.append(slides)

@@ -58,14 +58,14 @@ set_motion = by_net(rope=set_over_root_mass, grid=set_over_root_mass, lines=set_
 turn_forces = by_net(rope=divide_by_root_mass, grid=divide_by_root_mass, lines=turn_to_root_forces)
 
 
-@kernel(inline=True)
 def has_friction(p):
+    """True if friction acts on a net."""
     return p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere)
 
 
-without_friction = kernel(lambda p: False, inline=True)
+net_friction_acts, line_friction_acts = kernel(has_friction, inline=True), kernel(lambda p: False, inline=True)
 # True if friction acts that counts: that of the bed under lines is left out.
-friction_acts = by_net(rope=has_friction, grid=has_friction, lines=without_friction)
+friction_acts = by_net(rope=net_friction_acts, grid=net_friction_acts, lines=line_friction_acts)
 
 
 add_tangents = each("tangent", "x, u, t, p, part, longest, out", "none", noalias=True, allocates=False)

@@ -39,7 +39,7 @@ class Measure(NamedTuple):
 
 
 class SceneInstant:
-    """A scene as it is now, with the parts of a snapshot. Each is made once, when a quantity first needs it.
+    """The present state of a scene, with the parts of a snapshot. Each is made once, when a quantity first needs it.
 
     A scene whose quantities need more derives its own; none draws a frame.
     """

@@ -14,7 +14,7 @@ class FixedStep:
     def __init__(self) -> None:
         self.debt = 0.0  # [s] of simulated time not yet stepped
         self.cost = 0.0  # [s] of processor time that a step takes, lately
-        self.cost_unknown = True  # with the parameters as they are
+        self.cost_unknown = True  # of a step with the present parameters
         self.dropped = 0  # steps that were due and never taken
         self.capped = False  # time could not be made up lately
 

@@ -79,7 +79,7 @@ class Runs:
         run.running = not run.halted
 
     def leave_for(self, number: int) -> None:
-        """Keep this run as it is for an undo, before the one of that number. A run that has halted is not kept."""
+        """Keep the present run for an undo before the run of that number begins, unless it has halted."""
         run = self.run
         if number in (0, self.number):
             return

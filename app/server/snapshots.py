@@ -108,7 +108,7 @@ class Snapshots:
         return Snapshot(serial, frame, self.status(), readings, scene.params, curves, self.keep_state())
 
     def hand_over(self, rows: Sequence[PlotRow]) -> None:
-        """Let the viewer take new plot rows, and keep them as far as they are of this run."""
+        """Queue new plot rows for the viewer, and keep those of the present run."""
         self.plot_rows.extend(rows)
         for row in rows:
             if row[0] != row[0]:  # a NaN time: the run starts over

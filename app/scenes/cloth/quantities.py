@@ -24,7 +24,7 @@ class ClothStrain(NamedTuple):
 
 
 class ClothInstant(SceneInstant):
-    """A cloth as it is now."""
+    """The present state of a cloth."""
 
     scene: "ClothScene"
 

@@ -26,7 +26,7 @@ class RopeShape(NamedTuple):
 
 
 class RopeInstant(SceneInstant):
-    """A rope as it is now."""
+    """The present state of a rope."""
 
     scene: "RopeScene"
 

@@ -32,7 +32,7 @@ class ReportNow(NamedTuple):
 
 
 class SeaInstant(SceneInstant):
-    """A square sea as it is now; no frame is drawn for it."""
+    """The present state of a square sea; no frame is drawn for it."""
 
     scene: "SquareSeaScene"
 

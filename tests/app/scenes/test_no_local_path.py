@@ -127,11 +127,11 @@ def test_a_sweep_keeps_the_name_of_its_preset_only(tmp_path: Path, written: Call
     file, path = folder / "setup.json", tmp_path / "spec.toml"
     file.write_text(write_file(KIND, KIND.params(**SMALL)))
     head = 'scene = "radial_sea"\nseconds = 1\n'
-    path.write_text(f"{head}preset = {written(str(file))}\n[parameters]\nwind_speed = [5.0, 9.0]\n")
+    path.write_text(f"{head}preset = {written(str(file))}\n[parameters]\nwind_speed = [5.0, 9.0]\n", "utf-8")
     kept = about(read_spec(path))
     assert f"preset = {written('setup.json')}" in kept["spec"]
     assert tmp_path.name not in str(kept)
-    path.write_text(f'{head}preset = "{file}"\n')
+    path.write_text(f'{head}preset = "{file}"\n', "utf-8")
     with pytest.raises(ValueError, match=r"is not TOML .*; a path with backslashes goes in single quotes"):
         read_spec(path)
 

@@ -1,4 +1,4 @@
-"""What couples a vessel with a mooring: forces on what holds points, velocities, and steps from outside."""
+"""Coupling of a vessel with a mooring: forces at held points, velocities, and steps from outside."""
 
 import math
 

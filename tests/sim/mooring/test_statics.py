@@ -50,7 +50,7 @@ def upper_tension(case: dict[str, float], segments: int) -> float:
 
 @pytest.mark.parametrize("cases", [CASES[:6], pytest.param(CASES, marks=pytest.mark.stress)], ids=["few", "all"])
 def test_lines_of_segments_come_near_the_catenary(cases):
-    """Where a segment is shorter than half the radius at the lowest point, H/w; and nearer with shorter segments."""
+    """The error falls with shorter segments; the bound holds if one is shorter than half the lowest radius, H/w."""
     errors, resolved = [], []
     for case in cases:
         exact = math.hypot(case["horizontal"], case["vertical"])

@@ -7,6 +7,7 @@ those of L^T K L, its vectors L^-1 u.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -58,7 +59,7 @@ set_motion = by_net(rope=set_over_root_mass, grid=set_over_root_mass, lines=set_
 turn_forces = by_net(rope=divide_by_root_mass, grid=divide_by_root_mass, lines=turn_to_root_forces)
 
 
-def has_friction(p):
+def has_friction(p: Any) -> bool:
     """True if friction acts on a net."""
     return p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere)
 

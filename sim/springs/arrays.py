@@ -128,32 +128,39 @@ def push_node(p, a, j, fx, fy, fz):
 push = by_net(rope=push_mass, grid=push_mass, lines=push_node)
 
 
+class Link(NamedTuple):
+    """A row of the table of links."""
+
+    number: int
+    a: int  # its points
+    b: int
+    family: int  # 0 of lines
+    rest: float  # [m]
+    stiffness: float  # [N/m]
+    damping: float  # [N s/m]
+    law: Any  # numbers of its law
+
+
 @kernel(inline=True)
 def next_link(p, q):
-    return q, q + 1, p.families[0, 0], p.families[0, 1], p.families[0, 2]
+    return Link(q, q, q + 1, 0, p.families[0, 0], p.families[0, 1], p.families[0, 2], p.law)
 
 
 @kernel(inline=True)
 def listed_link(p, q):
-    return p.ends[q, 0], p.ends[q, 1], p.links[q, 0], p.links[q, 1], p.links[q, 2]
+    return Link(q, p.ends[q, 0], p.ends[q, 1], p.ends[q, 2], p.links[q, 0], p.links[q, 1], p.links[q, 2], p.law)
 
 
-# Number of links, and of link q both points, rest length [m], stiffness [N/m] and damping [N s/m].
+@kernel(inline=True)
+def link_of_line(p, q):
+    law = TensionCurve(p.curves, p.links[q, 3], p.links[q, 4], p.slack_damping)
+    return Link(q, p.ends[q, 0], p.ends[q, 1], 0, p.links[q, 0], p.links[q, 1], p.links[q, 2], law)
+
+
 listed = kernel(lambda p: p.ends.shape[0], inline=True)
+# Number of links, and link q.
 link_count = by_net(rope=kernel(lambda p: p.cols - 1, inline=True), grid=listed, lines=listed)
-link_at = by_net(rope=next_link, grid=listed_link, lines=listed_link)
-law_of_net = kernel(lambda p, q: p.law, inline=True)
-law_of_line = kernel(lambda p, q: TensionCurve(p.curves, p.links[q, 3], p.links[q, 4], p.slack_damping), inline=True)
-# Numbers of its law.
-law_at = by_net(rope=law_of_net, grid=law_of_net, lines=law_of_line)
-# Damping [N s/m] of link q.
-link_damping = by_net(
-    rope=kernel(lambda p, q: p.families[0, 2], inline=True), grid=kernel(lambda p, q: p.links[q, 2], inline=True)
-)  # fmt: skip
-# Number of the family of link q.
-family_of = by_net(
-    rope=kernel(lambda p, q: 0, inline=True), grid=kernel(lambda p, q: p.ends[q, 2], inline=True)
-)  # fmt: skip
+link_at = by_net(rope=next_link, grid=listed_link, lines=link_of_line)
 
 
 @kernel(inline=True)

@@ -15,11 +15,12 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net, family_of, link_at, link_count, span
+from sim.springs.arrays import by_net
+from sim.springs.each_link import TINY, each_link, stretch
 from sim.springs.forces import each
-from sim.springs.forces.links import TINY
 from sim.springs.laws import by_damping, damps
 from sim.springs.line_points import set_inverse_masses
+from sim.springs.order import in_turn
 
 
 @kernel(noalias=True, inline=True)
@@ -109,7 +110,7 @@ def damp_links(x, v, decay, p, reverse):
     w, n = p.inverse_masses, p.rows * p.cols
     families = p.offsets.shape[0]
     for step in range(families):
-        q = families - 1 - step if reverse else step
+        q = in_turn(step, families, reverse)
         di, dj, b = p.offsets[q, 0], p.offsets[q, 1], p.families[q, 2]
         if b == 0.0:
             continue
@@ -117,10 +118,10 @@ def damp_links(x, v, decay, p, reverse):
         first = max(0, -dj)
         count = max(0, p.cols - abs(dj))
         for line in range(p.rows - di):
-            i = p.rows - di - 1 - line if reverse else line
+            i = in_turn(line, p.rows - di, reverse)
             if di == 0:
                 for turn in range(2):
-                    colour = 1 - turn if reverse else turn
+                    colour = in_turn(turn, 2, reverse)
                     damp_row(x, v, w, i * p.cols, p.cols, dj, colour, np.uint64(n), share, p.axial)
                 continue
             a, c = i * p.cols + first, (i + di) * p.cols + first + dj
@@ -140,6 +141,16 @@ def scale(v, keep, o, n):
         v[o + j] *= keep[j]
 
 
+@each_link()
+def set_link_shares(link, latest, s, p, decay):
+    """Set the shares of the links. latest: inverse masses, damping and share of the last link that was another."""
+    both = p.inverse_masses[link.a] + p.inverse_masses[link.b]
+    if both != latest[0] or link.damping != latest[1]:  # nearly all links are equal
+        latest[0], latest[1] = both, link.damping
+        latest[2] = -math.expm1(-link.damping * both * s) / both if both > 0.0 else 0.0
+    decay[link.family, link.a] = latest[2]
+
+
 @kernel
 def make_net_decay(p, s):
     """(families + 1, rows cols): the share of each family's link that begins at a point, then what drag leaves of each
@@ -149,14 +160,7 @@ def make_net_decay(p, s):
     """
     families, n, w = p.offsets.shape[0], p.rows * p.cols, p.inverse_masses
     decay = np.zeros((kept_shares(p.law, families) + families + 1, n))
-    last, before, share = 0.0, 0.0, 0.0
-    for q in range(link_count(p)):
-        a, b, _, _, c = link_at(p, q)
-        both = w[a] + w[b]
-        if both != last or c != before:  # nearly all links are equal
-            last, before = both, c
-            share = -math.expm1(-c * both * s) / both if both > 0.0 else 0.0
-        decay[family_of(p, q), a] = share
+    set_link_shares(np.zeros(3), s, p, decay)
     last, keep = 0.0, 1.0
     for j in range(n):
         if w[j] != last:
@@ -175,15 +179,11 @@ kept_shares = by_damping(
 )
 
 
-@kernel(allocates=False)
-def choose_shares(law, x, decay, p):
+@each_link()
+def choose_shares(link, law, x, decay, p):
     """Shares of 0 for the links whose damping does not act at positions x, and their own for the others."""
-    n, families = p.rows * p.cols, p.offsets.shape[0]
-    for q in range(link_count(p)):
-        a, b, rest, _, _ = link_at(p, q)
-        rx, ry, rz = span(x, n, a, b)
-        acts, family = damps(law, rest, math.sqrt(rx * rx + ry * ry + rz * rz)), family_of(p, q)
-        decay[family, a] = decay[families + 1 + family, a] if acts else 0.0
+    own = decay[p.offsets.shape[0] + 1 + link.family, link.a]
+    decay[link.family, link.a] = own if damps(law, link.rest, stretch(x, p, link)[3]) else 0.0
 
 
 set_shares = by_damping(always=kernel(lambda law, x, decay, p: None, inline=True), at_some_lengths=choose_shares)
@@ -225,7 +225,7 @@ def damp_motion(x, v, decay, p, reverse):
     n = np.uint64(p.rows * p.cols)
     keep = decay[p.offsets.shape[0]]
     for turn in range(2):
-        if (turn == 0) != reverse:
+        if in_turn(turn, 2, reverse) == 0:
             if p.damped:
                 set_shares(p.law, x, decay, p)
                 damp_all_links(x, v, decay, p, reverse)

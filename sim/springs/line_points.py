@@ -12,10 +12,9 @@ import math
 
 from sim.jit import kernel
 from sim.springs.arrays import span
+from sim.springs.each_link import TINY
 from sim.springs.line_arrays import DECAY_PARTS, DECAY_SHAPES, INVERSE_MASS, PLACE
 from sim.springs.pins import set_paths
-
-TINY = 1e-300  # [m^2] under the root: coincident nodes have no direction
 
 
 @kernel(inline=True)

@@ -13,7 +13,8 @@ def test_the_package_is_marked_as_typed() -> None:
 
 def is_kernel(function: Function) -> bool:
     """Compiled: its arguments have the types that it is called with."""
-    return any("kernel" in ast.unparse(decorator) for decorator in function.decorator_list)
+    names = "kernel", "each_link"
+    return any(name in ast.unparse(decorator) for decorator in function.decorator_list for name in names)
 
 
 def public_functions(tree: ast.Module) -> list[Function]:

@@ -7,9 +7,11 @@ import math
 
 from sim.jit import kernel
 from sim.springs.arrays import is_moving, push
+from sim.springs.each_link import TINY
 from sim.springs.forces.matrices import DAMPING, STIFFEST, STIFFNESS
 from sim.springs.forces.record import LINES, Force
-from sim.springs.line_points import TINY, kick, mobility
+from sim.springs.line_points import kick, mobility
+from sim.springs.order import in_turn
 
 
 @kernel(inline=True)
@@ -63,7 +65,7 @@ def damp_part(x, v, s, p, i):
 def damp(x, v, t, s, p, reverse):
     count = p.places.shape[0]
     for turn in range(count):
-        damp_part(x, v, s, p, count - 1 - turn if reverse else turn)
+        damp_part(x, v, s, p, in_turn(turn, count, reverse))
     return 0.0
 
 

@@ -13,6 +13,7 @@ from sim.springs.forces.matrices import STIFFNESS as OF_STIFFNESS
 from sim.springs.forces.record import LINES, Force
 from sim.springs.line_arrays import DAMPING, DECAY_PARTS, DECAY_RATES, DECAY_SHAPES, PLACE, STIFFNESS
 from sim.springs.line_points import add_six, half_form, matrix_times, set_carried, set_six, six
+from sim.springs.order import in_turn
 from sim.waves import AMPLITUDE, sums_at
 
 
@@ -48,7 +49,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
 def damp(x, v, t, s, p, reverse):
     n, bodies = p.cols, p.bodies.shape[0]
     for turn in range(bodies):
-        b = bodies - 1 - turn if reverse else turn
+        b = in_turn(turn, bodies, reverse)
         j = p.nodes + 2 * b
         set_six(v, n, j, matrix_times(p.bodies, b, DECAY_PARTS, six(v, n, j)))
         for e in range(6):

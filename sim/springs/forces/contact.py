@@ -11,9 +11,10 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.arrays import mass_at, push
-from sim.springs.forces.links import TINY
+from sim.springs.each_link import TINY
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
+from sim.springs.order import in_turn
 
 
 @kernel(inline=True)
@@ -151,7 +152,7 @@ def damp(x, v, t, s, p, reverse):
     """The floor's, then the sphere's, or in reverse; each with its surface as a constant, which LLVM makes use of."""
     work = 0.0
     for turn in range(2):
-        if (turn == 1) != reverse:
+        if in_turn(turn, 2, reverse) == 1:
             if p.has_sphere:
                 work += damp_on(x, v, t, s, p, True, reverse)
         elif p.has_floor:

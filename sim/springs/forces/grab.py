@@ -4,7 +4,7 @@ import math
 
 from sim.jit import kernel
 from sim.springs.arrays import push
-from sim.springs.forces.links import TINY
+from sim.springs.each_link import TINY
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import SPRING_NETS, Force
 

@@ -5,24 +5,13 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import (
-    add_pair,
-    by_net,
-    is_moving,
-    law_at,
-    link_at,
-    link_count,
-    link_damping,
-    push,
-    span,
-)
+from sim.springs.arrays import add_pair, by_net, is_moving, link_at, push, span
+from sim.springs.each_link import TINY, acting_damping, each_link, stretch
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
 from sim.springs.forces.record import Force, of_nets
 from sim.springs.laws import damps, force_density, stiffness, tension
 from sim.springs.laws import energy as link_energy
 from sim.springs.line_points import kick, mobility
-
-TINY = 1e-300  # [m^2] under the root: coincident points get no spring force instead of 0/0
 
 
 @kernel(noalias=True, inline=True)
@@ -81,74 +70,50 @@ def scale_ends(f, of, n, M, s):
 
 
 @kernel(inline=True)
-def lengthening(x, v, p, n, q):
-    """Length [m] of link q, the rate [m/s] at which it grows, and its damping [N s/m] if it acts."""
-    (a, b, rest, _, c), law = link_at(p, q), law_at(p, q)
-    rx, ry, rz = span(x, n, a, b)
-    du, dv, dw = span(v, n, a, b)
-    length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-    return length, (du * rx + dv * ry + dw * rz) / length, c if damps(law, rest, length) else 0.0
+def lengthening(x, v, p, link):
+    """Length [m] of a link, the rate [m/s] at which it grows, and its damping [N s/m] if it acts."""
+    rx, ry, rz, length = stretch(x, p, link)
+    du, dv, dw = span(v, p.rows * p.cols, link.a, link.b)
+    return length, (du * rx + dv * ry + dw * rz) / length, acting_damping(link, length)
 
 
-@kernel(allocates=False)
-def set_tensions(x, v, p, out):
+@each_link()
+def set_tensions(link, x, v, p, out):
     """Set the tension (links,) [N] of every link, negative where it is pressed, with its damping along it."""
-    n = p.rows * p.cols
-    for q in range(link_count(p)):
-        _, _, rest, k, _ = link_at(p, q)
-        length, rate, damping = lengthening(x, v, p, n, q)
-        out[q] = tension(law_at(p, q), k, rest, length) + damping * rate
+    length, rate, damping = lengthening(x, v, p, link)
+    out[link.number] = tension(link.law, link.stiffness, link.rest, length) + damping * rate
 
 
-@kernel(noalias=True, allocates=False)
-def accelerate(x, v, t, p, with_damping, f, a):
+@each_link(noalias=True)
+def accelerate(link, x, v, t, p, with_damping, f, a):
     """Of lines; those of nets are in `sim.springs.acceleration`."""
-    n = p.cols
-    for q in range(link_count(p)):
-        i, j, rest, k, _ = link_at(p, q)
-        rx, ry, rz = span(x, n, i, j)
-        length, rate, damping = lengthening(x, v, p, n, q)
-        s = force_density(law_at(p, q), k, rest, length)
-        if with_damping:
-            s += damping * rate / length
-        push(p, a, i, s * rx, s * ry, s * rz)
-        push(p, a, j, -s * rx, -s * ry, -s * rz)
+    rx, ry, rz, length = stretch(x, p, link)
+    s = force_density(link.law, link.stiffness, link.rest, length)
+    if with_damping:
+        _, rate, damping = lengthening(x, v, p, link)
+        s += damping * rate / length
+    push(p, a, link.a, s * rx, s * ry, s * rz)
+    push(p, a, link.b, -s * rx, -s * ry, -s * rz)
 
 
-@kernel(allocates=False)
-def damp_link(x, v, s, p, q):
-    """The damping of link q of a line for a time s [s]: its nodes' closing speed decays exponentially."""
-    n = p.cols
-    a, b, _, _, _ = link_at(p, q)
-    rx, ry, rz = span(x, n, a, b)
-    length, rate, damping = lengthening(x, v, p, n, q)
+@each_link("sum")
+def damp(link, x, v, t, s, p, reverse):
+    """Of lines: the closing speed of a link's nodes decays exponentially. That of nets is in `sim.springs.damping`."""
+    rx, ry, rz, _ = stretch(x, p, link)
+    length, rate, damping = lengthening(x, v, p, link)
     rx, ry, rz = rx / length, ry / length, rz / length
-    both = mobility(p, a, rx, ry, rz) + mobility(p, b, rx, ry, rz)
-    if both == 0.0 or damping == 0.0:
-        return
-    impulse = -math.expm1(-damping * both * s) / both * rate
-    kick(p, v, a, impulse * rx, impulse * ry, impulse * rz)
-    kick(p, v, b, -impulse * rx, -impulse * ry, -impulse * rz)
-
-
-@kernel(allocates=False)
-def damp(x, v, t, s, p, reverse):
-    """Of lines, one link after the other; that of nets is in `sim.springs.damping`."""
-    count = link_count(p)
-    for turn in range(count):
-        damp_link(x, v, s, p, count - 1 - turn if reverse else turn)
+    both = mobility(p, link.a, rx, ry, rz) + mobility(p, link.b, rx, ry, rz)
+    if both != 0.0 and damping != 0.0:
+        impulse = -math.expm1(-damping * both * s) / both * rate
+        kick(p, v, link.a, impulse * rx, impulse * ry, impulse * rz)
+        kick(p, v, link.b, -impulse * rx, -impulse * ry, -impulse * rz)
     return 0.0
 
 
-@kernel(allocates=False)
-def energy(x, t, p):
+@each_link("sum")
+def energy(link, x, t, p):
     """Of the links [J]."""
-    total, n = 0.0, p.rows * p.cols
-    for q in range(link_count(p)):
-        (a, b, rest, k, _), law = link_at(p, q), law_at(p, q)
-        rx, ry, rz = span(x, n, a, b)
-        total += link_energy(law, k, rest, math.sqrt(rx * rx + ry * ry + rz * rz))
-    return total
+    return link_energy(link.law, link.stiffness, link.rest, stretch(x, p, link)[3])
 
 
 @kernel(inline=True)
@@ -161,27 +126,27 @@ def damping_force(v, p, n, a, b, c, rx, ry, rz):
     return c * du, c * dv, c * dw
 
 
+@each_link("sum")
+def holders_power(link, x, v, p, elastic, damping):
+    """`moving_pins_power`."""
+    n, (a_moves, b_moves) = p.rows * p.cols, (is_moving(p, link.a), is_moving(p, link.b))
+    if a_moves and b_moves:
+        return 0.0
+    rx, ry, rz, length = stretch(x, p, link)
+    s = force_density(link.law, elastic * link.stiffness, link.rest, length)
+    fx, fy, fz = damping_force(v, p, n, link.a, link.b, damping * acting_damping(link, length), rx, ry, rz)
+    fx, fy, fz, work = fx + s * rx, fy + s * ry, fz + s * rz, 0.0
+    if not a_moves:
+        work -= fx * v[link.a] + fy * v[n + link.a] + fz * v[2 * n + link.a]
+    if not b_moves:
+        work += fx * v[link.b] + fy * v[n + link.b] + fz * v[2 * n + link.b]
+    return work
+
+
 @kernel(allocates=False)
 def moving_pins_power(x, v, p, elastic, damping):
     """Power of moving pins [W] through the links' elastic forces, their damping, or both: 1.0 counts it, 0.0 not."""
-    work, n = 0.0, p.rows * p.cols
-    if p.pins.shape[0] == 0:
-        return work
-    for q in range(link_count(p)):
-        (a, b, rest, k, c), law = link_at(p, q), law_at(p, q)
-        if is_moving(p, a) and is_moving(p, b):
-            continue
-        rx, ry, rz = span(x, n, a, b)
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        s = force_density(law, elastic * k, rest, length)
-        d = damping * c if damps(law, rest, length) else 0.0
-        fx, fy, fz = damping_force(v, p, n, a, b, d, rx, ry, rz)
-        fx, fy, fz = fx + s * rx, fy + s * ry, fz + s * rz
-        if not is_moving(p, a):
-            work -= fx * v[a] + fy * v[n + a] + fz * v[2 * n + a]
-        if not is_moving(p, b):
-            work += fx * v[b] + fy * v[n + b] + fz * v[2 * n + b]
-    return work
+    return 0.0 if p.pins.shape[0] == 0 else holders_power(x, v, p, elastic, damping)
 
 
 @kernel(noalias=True, inline=True)
@@ -194,14 +159,14 @@ def row_damping_power(x, v, p, a, b, count, n, first, rest):
             rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[n + n + d] - x[n + n + c]
             du, dv, dw = v[d] - v[c], v[n + d] - v[n + c], v[n + n + d] - v[n + n + c]
             closing, rr = du * rx + dv * ry + dw * rz, rx * rx + ry * ry + rz * rz + TINY
-            power = closing * closing / rr * link_damping(p, first + j)
+            power = closing * closing / rr * link_at(p, first + j).damping
             total += power if damps(p.law, rest, math.sqrt(rr)) else 0.0
     else:
         for j in range(count):
             c, d = a + j, b + j
             rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[n + n + d] - x[n + n + c]
             du, dv, dw = v[d] - v[c], v[n + d] - v[n + c], v[n + n + d] - v[n + n + c]
-            power = (du * du + dv * dv + dw * dw) * link_damping(p, first + j)
+            power = (du * du + dv * dv + dw * dw) * link_at(p, first + j).damping
             total += power if damps(p.law, rest, math.sqrt(rx * rx + ry * ry + rz * rz)) else 0.0
     return total
 
@@ -219,13 +184,10 @@ def damping_power_by_rows(x, v, p):
     return total
 
 
-@kernel(allocates=False)
-def damping_power_by_links(x, v, p):
-    total, n = 0.0, p.rows * p.cols
-    for q in range(link_count(p)):
-        _, rate, c = lengthening(x, v, p, n, q)
-        total += c * rate * rate
-    return total
+@each_link("sum")
+def damping_power_by_links(link, x, v, p):
+    _, rate, damping = lengthening(x, v, p, link)
+    return damping * rate * rate
 
 
 # Power [W] that the links' damping takes.
@@ -244,31 +206,29 @@ def pins_power(x, v, p):
     return moving_pins_power(x, v, p, 0.0, 1.0)
 
 
-@kernel(noalias=True, allocates=False)
-def tangent(x, u, t, p, part, longest, out):
+@each_link(noalias=True)
+def tangent(link, x, u, t, p, part, longest, out):
     """Links: K = T' n n^T + T/l (I - n n^T), of `linearised`; D = b I, or b n n^T where damping is axial.
 
     longest: strain of part STIFFEST, see `longest_strain`.
     """
+    if part == FRICTION:
+        return
+    rx, ry, rz, length = stretch(x, p, link)
+    along, across = linearised(link.law, link.stiffness, link.rest, length)
+    # Of a link that is pressed further only this counts: it buckles, which no step can mend.
+    across = max(across, -along)
+    if part == DAMPING:
+        along = acting_damping(link, length)
+        across = 0.0 if p.axial else along
+    elif part == STIFFEST:
+        along = max(along, stiffness(link.law, link.stiffness, link.rest, (1.0 + longest) * link.rest))
+    elif part == TRANSVERSE:
+        along = 0.0
     n = p.rows * p.cols
-    for q in range(link_count(p) if part != FRICTION else 0):
-        (a, b, rest, k, c), law = link_at(p, q), law_at(p, q)
-        rx, ry, rz = span(x, n, a, b)
-        du, dv, dw = span(u, n, a, b)
-        rr = rx * rx + ry * ry + rz * rz
-        length = math.sqrt(rr)
-        along, across = linearised(law, k, rest, length)
-        # Of a link that is pressed further only this counts: it buckles, which no step can mend.
-        across = max(across, -along) if rr > 0.0 else -along
-        if part == DAMPING:
-            along = c if damps(law, rest, length) else 0.0
-            across = 0.0 if p.axial else along
-        elif part == STIFFEST:
-            along = max(along, stiffness(law, k, rest, (1.0 + longest) * rest))
-        elif part == TRANSVERSE:
-            along = 0.0
-        s = (along - across) * (rx * du + ry * dv + rz * dw) / rr if rr > 0.0 else 0.0
-        add_pair(out, n, b, a, across * du + s * rx, across * dv + s * ry, across * dw + s * rz)
+    du, dv, dw = span(u, n, link.a, link.b)
+    s = (along - across) * (rx * du + ry * dv + rz * dw) / (length * length)
+    add_pair(out, n, link.b, link.a, across * du + s * rx, across * dv + s * ry, across * dw + s * rz)
 
 
 FORCE = Force(

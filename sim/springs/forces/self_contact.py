@@ -14,9 +14,10 @@ import math
 import numpy as np
 
 from sim.jit import is_stopped, kernel
-from sim.springs.forces.links import TINY
+from sim.springs.each_link import TINY
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import WIDE_NETS, Force
+from sim.springs.order import in_turn
 
 UNASKED = 64  # particles between two looks at whether the search is to end
 SKIN = 0.5  # of the thickness: how far pairs are looked for beyond it, so that the list of them lasts
@@ -179,7 +180,7 @@ def damp(x, v, t, s, p, reverse):
     n = p.rows * p.cols
     count = refresh_pairs(x, p)
     for turn in range(count):
-        pair = count - 1 - turn if reverse else turn
+        pair = in_turn(turn, count, reverse)
         i, j = p.pairs[pair, 0], p.pairs[pair, 1]
         dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
         rr = dx * dx + dy * dy + dz * dz

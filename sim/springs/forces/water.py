@@ -21,6 +21,7 @@ from sim.springs.arrays import is_moving, push
 from sim.springs.forces.matrices import STIFFEST, STIFFNESS
 from sim.springs.forces.record import LINES, Force
 from sim.springs.line_points import kick, mobility, tangent_at
+from sim.springs.order import in_turn
 from sim.waves import AMPLITUDE, sums_at
 
 
@@ -94,7 +95,7 @@ def damp_part(x, v, t, s, p, i, reverse):
     for turn in range(2):
         rx, ry, rz = u - v[j], w - v[n + j], c - v[2 * n + j]
         along = rx * qx + ry * qy + rz * qz
-        if (turn == 0) != reverse:
+        if in_turn(turn, 2, reverse) == 0:
             drag_along(v, s, p, j, wet * p.parts[i].drag_across, rx - along * qx, ry - along * qy, rz - along * qz)
         else:
             drag_along(v, s, p, j, wet * p.parts[i].drag_along, along * qx, along * qy, along * qz)
@@ -104,7 +105,7 @@ def damp_part(x, v, t, s, p, i, reverse):
 def damp(x, v, t, s, p, reverse):
     count = p.places.shape[0]
     for turn in range(count):
-        damp_part(x, v, t, s, p, count - 1 - turn if reverse else turn, reverse)
+        damp_part(x, v, t, s, p, in_turn(turn, count, reverse), reverse)
     return 0.0
 
 

@@ -9,10 +9,10 @@ Gershgorin's discs, so that Newton's method is exact for short steps, and cut of
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import family_of, link_at, link_count, mass_at, span
+from sim.springs.arrays import mass_at
+from sim.springs.each_link import acting_damping, each_link, stretch
 from sim.springs.forces import each
-from sim.springs.forces.links import TINY, linearised
-from sim.springs.laws import damps
+from sim.springs.forces.links import linearised
 
 KEPT = 0.4  # part of the mass that pressed links may take from a particle
 
@@ -26,22 +26,19 @@ def least_across(p, a, b):
     return -KEPT * min(mass_at(p, a), mass_at(p, b)) / (2.0 * p.offsets.shape[0])
 
 
-@kernel(allocates=False)
-def set_link_blocks(x, g, p, links):
+@each_link()
+def set_link_blocks(link, x, g, p, links):
     """H = g b (I or n n^T) + g^2 [T' n n^T + T/l (I - n n^T)] of every link, at its first end."""
+    rx, ry, rz, length = stretch(x, p, link)
+    damping = g * acting_damping(link, length)
+    along, turning = linearised(link.law, link.stiffness, link.rest, length)
+    across = max(g * g * turning, least_across(p, link.a, link.b))
+    if not p.axial:
+        across += damping
+    s = math.sqrt(max(0.0, g * g * along + damping - across)) / length
     n = p.rows * p.cols
-    for q in range(link_count(p)):
-        a, b, rest, k, c = link_at(p, q)
-        rx, ry, rz = span(x, n, a, b)
-        length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-        damping = c if damps(p.law, rest, length) else 0.0
-        along, turning = linearised(p.law, k, rest, length)
-        across = max(g * g * turning, least_across(p, a, b))
-        if not p.axial:
-            across += g * damping
-        s = math.sqrt(max(0.0, g * g * along + g * damping - across)) / length
-        at = SYMMETRIC * n * family_of(p, q) + a
-        links[at], links[at + n], links[at + 2 * n], links[at + 3 * n] = across, s * rx, s * ry, s * rz
+    at = SYMMETRIC * n * link.family + link.a
+    links[at], links[at + n], links[at + 2 * n], links[at + 3 * n] = across, s * rx, s * ry, s * rz
 
 
 coupled_size = each("coupled_size", "p", "count", inline=True)
@@ -63,20 +60,18 @@ def set_point_blocks(x, v, t, g, p, points):
     add_blocks(x, v, t, g, p, points)
 
 
-@kernel(noalias=True, allocates=False)
-def add_links_to_points(p, links, points):
+@each_link(noalias=True)
+def add_links_to_points(link, p, links, points):
     """Each link's block onto the blocks of both its ends: the matrix's own diagonal, of a net."""
     n = p.rows * p.cols
-    for q in range(link_count(p)):
-        a, b, _, _, _ = link_at(p, q)
-        at = SYMMETRIC * n * family_of(p, q) + a
-        qx, qy, qz = links[at + n], links[at + 2 * n], links[at + 3 * n]
-        xx, yy, zz = links[at] + qx * qx, links[at] + qy * qy, links[at] + qz * qz
-        xy, xz, yz = qx * qy, qx * qz, qy * qz
-        for m in (a, b):
-            points[m] += xx
-            points[n + m] += xy
-            points[2 * n + m] += xz
-            points[3 * n + m] += yy
-            points[4 * n + m] += yz
-            points[5 * n + m] += zz
+    at = SYMMETRIC * n * link.family + link.a
+    qx, qy, qz = links[at + n], links[at + 2 * n], links[at + 3 * n]
+    xx, yy, zz = links[at] + qx * qx, links[at] + qy * qy, links[at] + qz * qz
+    xy, xz, yz = qx * qy, qx * qz, qy * qz
+    for m in (link.a, link.b):
+        points[m] += xx
+        points[n + m] += xy
+        points[2 * n + m] += xz
+        points[3 * n + m] += yy
+        points[4 * n + m] += yz
+        points[5 * n + m] += zz

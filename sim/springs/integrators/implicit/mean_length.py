@@ -13,60 +13,53 @@ spring the first factor is the tension at l, and where it does not turn F is the
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net, link_at, link_count, span
-from sim.springs.forces.links import TINY
+from sim.springs.arrays import by_net, push
+from sim.springs.each_link import TINY, acting_damping, each_link, stretch
 from sim.springs.integrators.implicit.blocks import least_across, set_link_blocks
-from sim.springs.laws import damps, force_density, over_step
+from sim.springs.laws import force_density, over_step
 
 
 @kernel(inline=True)
-def lengths(x0, x, n, a, c):
-    """Of the link from a to c, from its start x0 and its middle x: r, its length, n1, its lengths before and after."""
-    rx, ry, rz = span(x, n, a, c)
-    sx, sy, sz = span(x0, n, a, c)
+def before_and_after(x0, x, p, link):
+    """Of a link with its start x0 and its middle x: its lengths before and after, and its direction after."""
+    rx, ry, rz, _ = stretch(x, p, link)
+    sx, sy, sz, before = stretch(x0, p, link)
     ex, ey, ez = 2.0 * rx - sx, 2.0 * ry - sy, 2.0 * rz - sz
-    end = math.sqrt(ex * ex + ey * ey + ez * ez + TINY)
-    start = math.sqrt(sx * sx + sy * sy + sz * sz + TINY)
-    return rx, ry, rz, math.sqrt(rx * rx + ry * ry + rz * rz + TINY), ex / end, ey / end, ez / end, start, end
+    after = math.sqrt(ex * ex + ey * ey + ez * ez + TINY)
+    return before, after, ex / after, ey / after, ez / after
 
 
-@kernel(noalias=True, allocates=False)
-def add_mean_lengths(x0, x, p, a):
+@each_link(noalias=True)
+def add_mean_lengths(link, x0, x, p, a):
     """a += change of the accelerations by the mean lengths at the midpoint x of a step from x0."""
-    n = p.rows * p.cols
-    for q in range(link_count(p)):
-        b, c, rest, k, _ = link_at(p, q)
-        rx, ry, rz, length, _, _, _, before, after = lengths(x0, x, n, b, c)
-        s = over_step(p.law, k, rest, before, after)[0] - force_density(p.law, k, rest, length)
-        wb, wc = s * p.inverse_masses[b], s * p.inverse_masses[c]
-        a[b] += wb * rx
-        a[n + b] += wb * ry
-        a[2 * n + b] += wb * rz
-        a[c] -= wc * rx
-        a[n + c] -= wc * ry
-        a[2 * n + c] -= wc * rz
+    rx, ry, rz, length = stretch(x, p, link)
+    before, after, _, _, _ = before_and_after(x0, x, p, link)
+    s = over_step(link.law, link.stiffness, link.rest, before, after)[0]
+    s -= force_density(link.law, link.stiffness, link.rest, length)
+    push(p, a, link.a, s * rx, s * ry, s * rz)
+    push(p, a, link.b, -s * rx, -s * ry, -s * rz)
 
 
-@kernel(noalias=True, allocates=False)
-def set_rope_mean_blocks(x0, x, g, p, links):
+@each_link(noalias=True)
+def set_rope_mean_blocks(link, x0, x, g, p, links):
     """H = g b (I or n n^T) + g^2 [S I + 2 dS/dl1 r_m n1^T] of every link, F = S r_m and n1 its direction at the end."""
-    n = p.cols
-    for j in range(link_count(p)):
-        _, _, rest, k, b = link_at(p, j)
-        rx, ry, rz, length, ex, ey, ez, before, after = lengths(x0, x, n, j, j + 1)
-        rx, ry, rz = rx / length, ry / length, rz / length
-        pull, rise = over_step(p.law, k, rest, before, after)
-        whole = g * g * pull
-        across = max(whole, least_across(p, j, j + 1))
-        # Along the link nothing is cut off.
-        along = whole - across
-        if damps(p.law, rest, length):
-            along += g * b if p.axial else 0.0
-            across += 0.0 if p.axial else g * b
-        s = g * g * rise * length
-        links[j] = across
-        links[j + n], links[j + 2 * n], links[j + 3 * n] = s * ex + along * rx, s * ey + along * ry, s * ez + along * rz
-        links[j + 4 * n], links[j + 5 * n], links[j + 6 * n] = rx, ry, rz
+    n, j = p.cols, link.number
+    rx, ry, rz, length = stretch(x, p, link)
+    before, after, ex, ey, ez = before_and_after(x0, x, p, link)
+    rx, ry, rz = rx / length, ry / length, rz / length
+    pull, rise = over_step(link.law, link.stiffness, link.rest, before, after)
+    whole, damping = g * g * pull, g * acting_damping(link, length)
+    across = max(whole, least_across(p, link.a, link.b))
+    # Along the link nothing is cut off.
+    along = whole - across
+    if p.axial:
+        along += damping
+    else:
+        across += damping
+    s = g * g * rise * length
+    links[j] = across
+    links[j + n], links[j + 2 * n], links[j + 3 * n] = s * ex + along * rx, s * ey + along * ry, s * ez + along * rz
+    links[j + 4 * n], links[j + 5 * n], links[j + 6 * n] = rx, ry, rz
 
 
 # A net takes the symmetric blocks of the tension at the midpoint, which conjugate gradients can solve with. Newton's

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net, link_at, link_count, span
+from sim.springs.arrays import by_net
+from sim.springs.each_link import each_link, stretch
 from sim.springs.forces import each
 from sim.springs.forces.links import tangent as add_link_tangent
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST
@@ -20,17 +21,12 @@ from sim.springs.laws import TAUT
 from sim.springs.line_points import set_inverse_masses, set_root_motion, turn_to_root_forces
 
 
-@kernel(allocates=False)
-def longest_of_net(x, p):
-    n, longest = p.rows * p.cols, TAUT
-    for q in range(link_count(p)):
-        a, b, rest, _, _ = link_at(p, q)
-        if rest > 0.0:
-            rx, ry, rz = span(x, n, a, b)
-            longest = max(longest, math.sqrt(rx * rx + ry * ry + rz * rz) / rest - 1.0)
-    return longest
+@each_link("largest")
+def largest_strain(link, x, p):
+    return stretch(x, p, link)[3] / link.rest - 1.0 if link.rest > 0.0 else 0.0
 
 
+longest_of_net = kernel(lambda x, p: max(TAUT, largest_strain(x, p)))
 just_taut = kernel(lambda x, p: TAUT, inline=True)
 # Largest l/l0 - 1 of any link, at least that of a link which is just taut: what another may soon come to. Lines of a
 # mooring are of several materials, so that the strain of one tells nothing of another.

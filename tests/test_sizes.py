@@ -17,8 +17,6 @@ MANY_ATTRIBUTES = {
     "RadialSea", "RadialSeaView", "RopeView", "Sea", "SquareSeaScene",
     "StudentCloth", "Viewer",
 }  # fmt: skip
-# Names that two packages of the library offer for different things. An entry goes as soon as they are one.
-NAMES_OF_TWO = {"simulate": {"sim.mooring", "sim.springs"}}
 
 
 def classes_below(*tops: str) -> list[tuple[Path, ast.ClassDef]]:
@@ -61,7 +59,7 @@ def test_a_name_that_packages_of_the_library_offer_means_one_thing() -> None:
             offers.setdefault(name, []).append((package.__name__, getattr(package, name)))
     assert {"rope", "Sea", "float_in", "moored", "INTEGRATORS"} <= offers.keys()
     of_two = {name: found for name, found in offers.items() if any(one is not found[0][1] for _, one in found)}
-    assert {name: {package for package, _ in found} for name, found in of_two.items()} == NAMES_OF_TWO
+    assert of_two == {}
 
 
 def test_none_is_longer_but_those_that_are_known() -> None:

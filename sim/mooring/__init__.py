@@ -4,14 +4,16 @@ system = read_moordyn("line.txt")     # or System(lines, points, depth)
 rest = system.at_rest()
 run = simulate(system, motion={2: lambda t: (0.5 * math.sin(t), 0.0, 0.0)}, duration=60.0)
 
-`State`, `advance` and `critical_step` are those of sim.springs.
+`State`, `advance`, `critical_step` and `simulate` are those of sim.springs.
 """
 
 from sim.mooring.moordyn import read_moordyn, write_moordyn
 from sim.mooring.moored import moored
-from sim.mooring.simulate import MooringRun, paths_to, point_forces, simulate
+from sim.mooring.motion import paths_to, point_forces
+from sim.mooring.run import MooringRun
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.system import Line, LineType, MooredBody, Point, System
+from sim.springs.simulate import simulate
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from sim.interruption import stop_request
 from sim.mooring.bending import bends_of
 from sim.mooring.elastic import Curves
+from sim.mooring.run import MooringRun
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
 from sim.springs.forces import check_forces, declared
@@ -116,7 +117,7 @@ class MooredBody(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class System(PointSystem):
+class System(PointSystem[MooringRun]):
     """Lines, points and bodies in water of one depth."""
 
     lines: tuple[Line, ...]

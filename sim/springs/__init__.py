@@ -9,7 +9,8 @@ from sim.springs.integrators import Integrator, discover
 from sim.springs.laws import LAWS
 from sim.springs.net import Air, Contact, Family, Grab, Net, PinPath
 from sim.springs.rope import lab_units, rope
-from sim.springs.simulate import Run, simulate
+from sim.springs.run import Run
+from sim.springs.simulate import simulate
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance
 

@@ -19,6 +19,7 @@ from sim.springs.forces import OWN, check_forces, declared
 from sim.springs.integrators import Integrator
 from sim.springs.laws import LAWS, check_law
 from sim.springs.point_system import PointSystem
+from sim.springs.run import Run
 from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
 
 Vector = tuple[float, float, float]
@@ -91,7 +92,7 @@ class PinPath(NamedTuple):
 
 
 @dataclasses.dataclass(frozen=True)
-class Net(PointSystem):
+class Net(PointSystem[Run]):
     """The immutable description of a spring-mass system; its state is `State`."""
 
     x0: NDArray[np.float64]  # (3, rows, cols) [m], initial positions

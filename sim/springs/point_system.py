@@ -1,7 +1,7 @@
 """`PointSystem`: a net of springs or mooring lines, as the kernels of this package move it."""
 
 import abc
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 from sim.springs.integrators import Integrator
 from sim.validation import check_kind
 
+RunT = TypeVar("RunT", covariant=True)  # the record of a run: `Run` of a net, `MooringRun` of a mooring
 
-class PointSystem(abc.ABC):
+
+class PointSystem(abc.ABC, Generic[RunT]):
     """Points with masses and the forces on them: a `Net`, or a `System` of sim.mooring."""
 
     @abc.abstractmethod

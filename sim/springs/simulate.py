@@ -1,9 +1,10 @@
-"""`simulate`: a net from rest to the end, sampled at equal times."""
+"""`simulate`: a net of springs or a mooring from its start to the end, sampled at equal times."""
 
 import dataclasses
 import math
 import warnings
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,11 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from sim.frames import Progress, check_steps, frame_times, run_frames, steps_for, warn_of_divergence
 from sim.interruption import raise_if_stopped
 from sim.springs.analysis.energy import energies
-from sim.springs.analysis.energy_history import EnergyHistory, energy_history
+from sim.springs.analysis.energy_history import energy_history
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import PAIRS, Net
+from sim.springs.point_system import PointSystem, RunT, check_system
+from sim.springs.run import Run
 from sim.springs.stability import critical_step, gershgorin
 from sim.springs.state import State, advance, energy, velocities
 from sim.validation import argument_error, as_array, check_kind, check_number
@@ -29,71 +32,117 @@ MOST_STEPS = 1e10  # of a run: hours of a rope
 FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
 
 
-class Run(NamedTuple):
-    """A simulated motion. Ropes have (frames, points, 3), other nets (frames, rows, cols, 3)."""
+class Simulated(NamedTuple):
+    """How `simulate` runs the systems of one class."""
 
-    t: NDArray[np.float64]  # (frames,) [s]
-    x: NDArray[np.float64]  # [m]
-    v: NDArray[np.float64]  # [m/s]
-    energy: EnergyHistory  # by name, (frames,) each [J]
-    force_evals: int
-    diverged_at: float | None  # [s]
-    step: float | None  # [s] that was taken; None where the method chose its own
-    integrator: str  # that ran: what "auto" took
-    left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
+    run: Callable[..., Any]  # (system, t, step, integrator, with_account, progress, **options) -> record of the run
+    duration: float  # [s] by default
+    frames: int
+    integrator: str
+    options: tuple[str, ...]  # names of the arguments that only these systems have
+
+
+SIMULATED: dict[type[PointSystem[Any]], Simulated] = {}  # each class of systems adds its own
 
 
 def simulate(
-    system: Net,
-    duration: float = 2.0,
-    frames: int = 61,
+    system: PointSystem[RunT],
+    duration: float | None = None,
+    frames: int | None = None,
     step: float | None = None,
-    integrator: str | Integrator = "rk4",
+    integrator: str | Integrator | None = None,
     *,
     x: ArrayLike | None = None,
     v: ArrayLike | None = None,
     rtol: float | None = None,
     atol: float | None = None,
+    motion: Mapping[int, Callable[[float], Any]] | None = None,
+    start: State | None = None,
     with_account: bool = False,
     progress: Progress = None,
-) -> Run:
-    """Integrate a net and sample it at `frames` equal times from 0 to `duration` [s].
+) -> RunT:
+    """Integrate a net or a mooring and sample it at `frames` equal times from 0 to `duration` [s].
 
-    step: [s], 1/1200 by default, or half the critical step at the start where that is shorter; shortened equally where
-    it does not divide a frame interval, and `step` of the run is the one taken. A step that is given is taken, however
-    long: see `sim.springs.stability.critical_step`.
-    integrator: a name in `INTEGRATORS`, or "auto", which takes an adaptive method by the net's damping and the
-    tolerance, or by the step (sim/springs/automatic.py); `integrator` of the run says which.
+    Returns a `Run` of a net, a `MooringRun` of a mooring.
+
+    duration, frames: 2 s and 61 of a net by default, 10 s and 101 of a mooring.
+    step: [s], half the critical step at the start by default, of a net at most 1/1200; shortened equally where it does
+    not divide a frame interval, and `step` of the run is the one taken. A step that is given is taken, however long:
+    see `sim.springs.critical_step`.
+    integrator: a name in `INTEGRATORS`, "rk4" of a net and "leapfrog" of a mooring by default. For a net also "auto",
+    which takes an adaptive method by the net's damping and the tolerance, or by the step (sim/springs/automatic.py);
+    `integrator` of the run says which.
+    with_account: also integrate what damping takes and what moved points and water put in; the stored energies are
+    always there.
+    progress: called with (frames done, frames).
+
+    Of a net only:
     x, v: positions [m] and velocities [m/s] at the start, (points, 3) of a rope, (rows, cols, 3) of another net, as a
     run has them; None: as the net was built, at rest. Pinned points are where x has them, and do not move.
     rtol, atol: adaptive methods choose steps with an error within atol + rtol |value| of each position [m] and velocity
     [m/s], 1e-6 and 1e-9 by default; given a step instead they take that.
-    with_account: also integrate what damping takes and pins put in; the stored energies are always there.
-    progress: called with (frames done, frames).
-    A run that diverges ends there: `diverged_at` is the time of the first step that left any sane bound, or of an
-    adaptive method's that found none short enough, later frames are NaN, and a RuntimeWarning says so.
 
-    Raises ValueError, naming the argument, its value and what is allowed.
+    Of a mooring only:
+    motion: by the id of a coupled point, a function of the time [s] that gives its place (3,) [m]; its velocity is that
+    of `function.velocity(t)` where there is one, else by differences. Points without one stay where they are.
+    start: a state to begin with, None: at rest, with the moved points where they begin. The run's time begins at 0.
+
+    A run that diverges ends there: `diverged_at` is the time of the first step of a net, or the first frame of a
+    mooring, that left any sane bound, or at which an adaptive method found no step short enough. Later frames are NaN,
+    and a RuntimeWarning says so.
+
+    Raises ValueError, naming the argument, its value and what is allowed, and ConvergenceError for a mooring without a
+    state of rest.
 
     >>> from sim.springs import rope, simulate
     >>> run = simulate(rope(points=10), duration=1.0, frames=31, step=1 / 240, integrator="leapfrog")
     >>> run.x.shape, run.energy.kinetic.shape
     ((31, 10, 3), (31,))
     """
-    check_kind("system", system, Net, "a Net, as `rope` and `cloth` make them")
+    check_system(system)
+    how = next(SIMULATED[kind] for kind in type(system).__mro__ if kind in SIMULATED)
+    given = {"x": x, "v": v, "rtol": rtol, "atol": atol, "motion": motion, "start": start}
+    given = {name: value for name, value in given.items() if value is not None}
+    for name, value in given.items():
+        if name not in how.options:
+            has = " and ".join((", ".join(how.options[:-1]), how.options[-1]))
+            raise argument_error(name, value, f"None, as a {type(system).__name__} has {has} instead")
+    duration = how.duration if duration is None else duration
+    t = frame_times(duration, how.frames if frames is None else frames, step, progress)
+    check_kind("with_account", with_account, bool, "True or False")
+    run = how.run(
+        system, t, step, how.integrator if integrator is None else integrator, with_account, progress, **given
+    )
+    warn_of_divergence(run.integrator, run.step, run.diverged_at)
+    return run
+
+
+def run_net(
+    system: Net,
+    t: NDArray[np.float64],
+    step: float | None,
+    integrator: str | Integrator,
+    with_account: bool,
+    progress: Progress,
+    x: ArrayLike | None = None,
+    v: ArrayLike | None = None,
+    rtol: float | None = None,
+    atol: float | None = None,
+) -> Run:
+    """The run of a net at the times t [s], with the arguments of `simulate`."""
     net, velocity = begun(system, x, v)
     record = None if isinstance(integrator, str) and integrator == AUTO else integrator_named(integrator)
-    t = frame_times(duration, frames, step, progress)
     for name, value, least in (("rtol", rtol, LEAST_RTOL), ("atol", atol, LEAST_ATOL)):
         if value is not None:
             check_number(name, value, least, 1, "")
             adaptive = record is None or record.adaptive
             if not adaptive or step is not None:
                 raise argument_error(name, value, "None, as the step is given" if adaptive else "adaptive methods only")
-    check_kind("with_account", with_account, bool, "True or False")
+    duration = float(t[-1])
     if record is None:
-        interval = duration / (int(frames) - 1)
-        choice = choose_for_step(net, step) if step else choose_for_tolerance(net, rtol or RTOL, interval)
+        choice = (
+            choose_for_step(net, step) if step else choose_for_tolerance(net, rtol or RTOL, duration / (len(t) - 1))
+        )
         record = choice.integrator
     net.check_integrator(record)
     if record.undamped_only and net.grab is not None and net.grab.damping > 0.0:
@@ -107,15 +156,17 @@ def simulate(
         h = step or default_step(net, record)
         check_steps(duration, h, MOST_STEPS, step is not None)
         run = stepped(net, velocity, record, t, h, with_account, progress)
-    warn_of_divergence(run.integrator, run.step, run.diverged_at)
     if run.left_out > 0:
         warnings.warn(
             f"self-contact left out up to {run.left_out} particles, the last of the net: more than {PAIRS} pairs a "
             "particle were within reach",
             RuntimeWarning,
-            stacklevel=2,
+            stacklevel=3,
         )
     return run
+
+
+SIMULATED[Net] = Simulated(run_net, 2.0, 61, "rk4", ("x", "v", "rtol", "atol"))
 
 
 def begun(net: Net, x: ArrayLike | None, v: ArrayLike | None) -> tuple[Net, NDArray[np.float64]]:

@@ -22,7 +22,7 @@ FIRST = {
     "sim.floating.periods": ("heave_period", "roll_period"),
     "sim.floating.response": ("",),
     "sim.floating.stability": ("",),
-    "sim.mooring.simulate": ("paths_to",),
+    "sim.mooring.motion": ("paths_to",),
     "sim.ocean.dispersion": ("omega", "phase_speed", "group_speed"),
     "sim.ocean.gerstner": ("draw_waves",),
     "sim.ocean.nonlinear.sea": ("",),

@@ -18,7 +18,7 @@ from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.interruption import raise_if_stopped
 from sim.mooring import System, at_rest
-from sim.mooring.simulate import cubic
+from sim.mooring.motion import cubic
 from sim.validation import ConvergenceError
 from sim.waves import Waves
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, State, System, advance, paths_to, point_forces, simulate
-from sim.mooring.simulate import paths_of
+from sim.mooring.motion import paths_of
 from tests.refusals import assert_refused
 from tests.sim.mooring.systems import CHAIN, Shaking, chain_on_bed, in_vacuum
 

@@ -1,4 +1,4 @@
-"""`simulate`: a mooring in time, by any explicit integrator of ropes; and its coupling with a vessel.
+"""A mooring in time, by any explicit integrator of ropes, for `sim.springs.simulate`; and its coupling with a vessel.
 
 `sim.springs.state.advance` moves a `State` of a mooring, along `paths_to` places of the coupled points, and
 `point_forces` are the forces at them.
@@ -6,22 +6,24 @@
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.frames import Progress, check_steps, frame_times, run_frames, steps_for, warn_of_divergence
+from sim.frames import Progress, check_steps, run_frames, steps_for
+from sim.mooring.run import MooringRun
 from sim.mooring.statics import at_rest
 from sim.mooring.system import Point, System
 from sim.springs.acceleration import set_node_forces
 from sim.springs.analysis.energy import energies
-from sim.springs.analysis.energy_history import EnergyHistory, energy_history
+from sim.springs.analysis.energy_history import energy_history
 from sim.springs.forces.bending import set_line_tensions
 from sim.springs.integrators import Integrator, integrator_named
+from sim.springs.simulate import SIMULATED, Simulated
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, check_state, velocities
-from sim.validation import argument_error, check_kind, check_number, check_vector
+from sim.validation import argument_error, check_number, check_vector
 
 SAFETY = 0.5  # of the critical step at the start
 PIECE = 0.05  # [s] of a moved point's path that is one cubic
@@ -31,23 +33,6 @@ FARTHEST = 1e6  # [m]: a node that is farther has diverged
 
 Array = NDArray[np.float64]
 Motion = Callable[[float], Any]
-
-
-class MooringRun(NamedTuple):
-    """A simulated motion."""
-
-    t: Array  # (frames,) [s]
-    x: dict[int, Array]  # by line: (frames, segments + 1, 3) [m]
-    v: dict[int, Array]  # by line: (frames, segments + 1, 3) [m/s]
-    tension: dict[int, Array]  # by line: (frames, segments) [N], internal damping included
-    force: dict[int, Array]  # by fixed or coupled point: (frames, 3) [N] on what holds it, see `point_forces`
-    bodies: dict[int, Array]  # by body: (frames, 6) [m, rad] from its place
-    bodies_v: dict[int, Array]  # by body: (frames, 6) [m/s, rad/s]
-    energy: EnergyHistory  # by name, (frames,) each [J]; `contact` is the bed's
-    force_evals: int
-    diverged_at: float | None  # [s]
-    step: float  # [s] that was taken
-    integrator: str
 
 
 def check_motion(system: System, motion: Mapping[int, Motion]) -> None:
@@ -233,46 +218,30 @@ class MooringFrames:
         )
 
 
-def simulate(
+def run_mooring(
     system: System,
-    duration: float = 10.0,
-    frames: int = 101,
-    step: float | None = None,
-    integrator: str | Integrator = "leapfrog",
-    *,
+    t: Array,
+    step: float | None,
+    integrator: str | Integrator,
+    with_account: bool,
+    progress: Progress,
     motion: Mapping[int, Motion] | None = None,
     start: State | None = None,
-    with_account: bool = False,
-    progress: Progress = None,
 ) -> MooringRun:
-    """Integrate `system` from rest and sample it at `frames` equal times from 0 to `duration` [s].
-
-    step: [s], half the critical step at the start by default, shortened equally so that it divides a frame interval.
-    motion: by the id of a coupled point, a function of the time [s] that gives its place (3,) [m]; its velocity is that
-    of `function.velocity(t)` where there is one, else by differences. Points without one stay where they are.
-    start: a state to begin with, None: at rest, with the moved points where they begin. The run's time begins at 0.
-    with_account: also integrate what damping takes and what moved points and water put in.
-    progress: called with (frames done, frames).
-    A run that diverges ends there: `diverged_at` is the time of the first frame out of any sane bound, it and later
-    frames are NaN, and a RuntimeWarning says so.
-
-    Raises ValueError, naming the argument, its value and what is allowed, and ConvergenceError without a state of rest.
-    """
-    check_kind("system", system, System, "a System, as `read_moordyn` makes it")
+    """The run of a mooring at the times t [s], with the arguments of `simulate`."""
     motion = dict(motion or {})
     check_motion(system, motion)
-    t = frame_times(duration, frames, step, progress)
     record = integrator_named(integrator)
     system.check_integrator(record)
-    check_kind("with_account", with_account, bool, "True or False")
     if start is None:
         placed = {one: np.asarray(f(0.0), dtype=np.float64) for one, f in motion.items()}
         start = State.still(at_rest(system, placed).nodes)
     check_state(system, start, "start")
     h = step or SAFETY * critical_step(system, record, start)
-    check_steps(duration, h, MOST_STEPS, step is not None)
+    check_steps(float(t[-1]), h, MOST_STEPS, step is not None)
     kept = MooringFrames(system, motion, record, t, h, start, with_account)
     done = run_frames(kept, len(t), progress)
-    run = kept.run(None if done == len(t) else float(t[done]))
-    warn_of_divergence(run.integrator, run.step, run.diverged_at)
-    return run
+    return kept.run(None if done == len(t) else float(t[done]))
+
+
+SIMULATED[System] = Simulated(run_mooring, 10.0, 101, "leapfrog", ("motion", "start"))

@@ -1,0 +1,22 @@
+"""`Run`: the record of a simulated net."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.springs.analysis.energy_history import EnergyHistory
+
+
+class Run(NamedTuple):
+    """A simulated motion. Ropes have (frames, points, 3), other nets (frames, rows, cols, 3)."""
+
+    t: NDArray[np.float64]  # (frames,) [s]
+    x: NDArray[np.float64]  # [m]
+    v: NDArray[np.float64]  # [m/s]
+    energy: EnergyHistory  # by name, (frames,) each [J]
+    force_evals: int
+    diverged_at: float | None  # [s]
+    step: float | None  # [s] that was taken; None where the method chose its own
+    integrator: str  # that ran: what "auto" took
+    left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full

@@ -56,6 +56,10 @@ class ClothFunctions(Functions):
         """The mass of point i [kg]: of a cell, of half of one on an edge, of a quarter at a corner."""
         return self.forces.mass * self.cells[i]
 
+    def shape_of(self, x: np.ndarray) -> tuple[int, int]:
+        """Rows and columns of the points."""
+        return self.sheet.rows, self.sheet.cols
+
     def inner(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Links, air and gravity."""
         f, sheet = self.forces, self.sheet

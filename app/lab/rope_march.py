@@ -1,9 +1,9 @@
 """Advances a rope with a student's functions, in the process that runs them.
 
 What the student has not written yet, the reference solutions do. Floor, friction and the pull of the mouse, which are
-no task, are the program's laws (`sim/springs/forces`), in numpy. A parameter that acts otherwise than on the program's
-rope is named in the panel (`unlike` in `student_rope.py` and `student_cloth.py`). Only numpy is imported here, so that
-the process starts fast.
+no task, are the program's laws (`sim/springs/forces`), in numpy. The forces that the net declares are the program's
+kernels. A parameter that acts otherwise than on the program's rope is named in the panel (`unlike` in `student_rope.py`
+and `student_cloth.py`). Only numpy is imported here, so that the process starts fast.
 """
 
 import time
@@ -54,6 +54,8 @@ class Forces(NamedTuple):
     wind: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s] at a cloth
     air_drag: float = 0.0  # [kg/m3] half the density of the air times the coefficient of drag
     air_lift: float = 0.0  # [kg/m3] the same of lift
+    declared: tuple[tuple[str, tuple[float, ...]], ...] = ()  # name and numbers of each force of `Net.forces`
+    began: float = 0.0  # [s] time of the net at time 0 of the segment
 
 
 class ClothData(NamedTuple):
@@ -238,7 +240,7 @@ class Functions:
         return self.fit("spring_force", self.own["spring_force"](*ends, f.stiffness, f.damping, f.rest_length), (3,))
 
     def add_surroundings(self, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
-        """Add floor, sphere and the pull of the mouse on all points but the root."""
+        """Add floor, sphere, the pull of the mouse and the forces that the net declares, on all points but the root."""
         f, first = self.forces, self.roots
         for i in np.flatnonzero(x[first:, 2] < f.floor) + first if x[:, 2].min() < f.floor else ():
             up = np.array([0.0, 0.0, 1.0])
@@ -255,6 +257,16 @@ class Functions:
             distance = float(np.linalg.norm(gap))
             k = f.max_pull / distance if f.grab_stiffness * distance > f.max_pull else f.grab_stiffness
             a[f.grabbed] += (k * gap - f.grab_damping * v[f.grabbed]) / self.mass_of(f.grabbed)
+        if f.declared:
+            from app.lab.declared_forces import accelerations, record  # numba, which takes a second to import
+
+            masses = tuple(float(self.mass_of(i)) for i in range(len(x)))
+            p = record(f.declared, self.shape_of(x), masses, tuple(self.pins.tolist()), self.segment.h)
+            a += accelerations(x, v, f.began + self.now, p)
+
+    def shape_of(self, x: np.ndarray) -> tuple[int, int]:
+        """Rows and columns of the points."""
+        return 1, len(x)
 
     def mass_of(self, i: int | np.intp) -> float:
         """The mass of point i [kg]."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.arrays import by_net
-from sim.springs.forces import each
+from sim.springs.forces import OWN, each
 from sim.springs.forces.air import wind_scratch_size
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 from sim.springs.forces.links import link_forces, scale_ends
@@ -150,6 +150,17 @@ set_pins = by_net(rope=set_paths, grid=set_paths, lines=set_line_pins)
 def set_acceleration(x, v, t, p, a):
     """`accelerate` with every force, for callers outside the kernels."""
     accelerate(x, v, t, p, True, make_scratch(p), a)
+
+
+add_declared = each("accelerate", "x, v, t, p, with_damping, f, a", "none", tuple(OWN.values()), noalias=True)
+
+
+@kernel(noalias=True)
+def set_declared(x, v, t, p, a):
+    """Set the accelerations a [m/s^2] to those of the forces that the net declares (`Net.forces`), without others."""
+    for j in range(a.shape[0]):
+        a[j] = 0.0
+    add_declared(x, v, t, p, True, make_scratch(p), a)
 
 
 @kernel

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from app.lab.live_net import LiveNet, Marched, StudentReport
 from app.lab.rope_march import ClothData, Forces, Segment
 from sim.springs import Net
+from sim.springs.forces import OWN
 
 MAX_BEHIND = 1.0  # [s] of simulated time that the student's rope may be late; then it starts again from the program's
 MAX_MATCHED = 0.1  # [s] up to which the program's rope is drawn as late as the student's
@@ -151,6 +152,7 @@ def forces_of(net: Net, start: float) -> Forces:
         p.mass, link.stiffness, link.damping, p.drag, link.rest, -p.gz, p.floor if p.has_floor else -math.inf,
         p.sr if p.has_sphere else 0.0, centre, (p.svx, p.svy, p.svz), p.contact_k, p.contact_b, p.friction,
         p.lab_contact, p.grabbed, (p.grab_x, p.grab_y, p.grab_z), p.grab_k, p.grab_b, p.grab_max,
+        declared=tuple((OWN[type(one)].name, tuple(map(float, one))) for one in net.forces), began=start,
     )._replace(**air_of(p))  # fmt: skip
 
 

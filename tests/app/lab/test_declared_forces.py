@@ -1,0 +1,62 @@
+"""Forces that a net declares act on the student's rope and cloth as on the program's."""
+
+import dataclasses
+import types
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.lab.cloth_march import ClothFunctions
+from app.lab.rope_march import ClothData, Functions, Segment, march, packed, unpacked
+from app.lab.wire import pack, unpack
+from app.scenes.cloth.parameters import ClothParams
+from app.scenes.cloth.start import build, sphere_home
+from app.scenes.springs.student_net import forces_of
+from sim.springs import Net, State, advance, rope
+from sim.springs.forces import OWN
+
+STEPS, H, START = 60, 1e-3, 2.0  # their number, [s], and the time [s] of the first
+OF_EACH = pytest.mark.parametrize("numbers", [pytest.param(one(), id=force.name) for one, force in OWN.items()])
+NO_TASK = types.ModuleType("rope")  # of which no function is written: the reference solutions move it
+
+
+def march_by_reference(net: Net, sheet: ClothData | None = None) -> np.ndarray:
+    """Positions (n, 3) [m] after the steps, through the messages between the lab and the process that takes them."""
+    forces = forces_of(net, START)._replace(mass=net.mass)
+    segment = Segment(STEPS, H, forces, np.zeros((0, 4, 3)))
+    segment = unpacked(unpack(pack(packed(segment), lambda _: 0), lambda _: None))
+    functions: Any = Functions(NO_TASK, (), "step_rk4", {})
+    if sheet is not None:
+        functions = ClothFunctions(NO_TASK, (), "step_rk4", sheet)
+    x = net.x0.reshape(3, -1).T
+    return march(functions, x, np.zeros_like(x), [segment]).x[-1]
+
+
+def march_by_program(net: Net) -> np.ndarray:
+    state = State(net.x0.copy(), np.zeros_like(net.x0), START)
+    advance(net, state, "rk4", H, STEPS)
+    return state.x.reshape(3, -1).T
+
+
+@OF_EACH
+def test_the_student_s_rope_moves_under_it_as_the_program_s(numbers: Any) -> None:
+    still = rope(5, 1.0, floor=None)
+    net = dataclasses.replace(still, forces=(numbers,))
+    x = march_by_reference(net)
+    np.testing.assert_allclose(x, march_by_program(net), rtol=0.0, atol=1e-10)
+    assert np.abs(x - march_by_program(still)).max() > 1e-5
+
+
+@OF_EACH
+def test_the_student_s_cloth_moves_under_it_as_the_program_s(numbers: Any) -> None:
+    """Its points have unlike masses, and two of them are pinned."""
+    params = ClothParams(rows=4, cols=5, stiffness=100.0, shear=60.0, bend=3.0, gather=1.0)
+    still = build(params, sphere_home(params))
+    across, down, shear, _, bend, _ = still.families
+    pins = tuple(5 * i + j for i, j in sorted(still.pinned))
+    sheet = ClothData(4, 5, (across.rest, down.rest), shear.stiffness, bend.stiffness, pins)
+    net = dataclasses.replace(still, forces=(numbers,))
+    x = march_by_reference(net, sheet)
+    np.testing.assert_allclose(x, march_by_program(net), rtol=0.0, atol=1e-10)
+    assert np.abs(x - march_by_program(still)).max() > 1e-5

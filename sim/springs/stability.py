@@ -39,7 +39,8 @@ TOUCHING = 12  # equal spheres that can touch one of them
 LEAST_SLIDING = 1e-6  # below, friction does not count
 SAME = 1.0 - 1e-6  # product of two unit vectors that are one
 ROUNDS = 2  # of the fastest overdamped mode, which is then right to 0.1 %
-STIFF = 0.4  # omega^2 over the largest one, above which a less damped mode of a line may be the first to leave
+STIFF = 0.4  # omega^2 over the largest one, above which a less damped mode may be the first to leave
+DAMPED = 0.2  # damping ratio of the stiffest mode of a net, below which it is the first
 SECANTS = 8  # most of them, to 1e-4 of a step
 NEARLY = 1e-7  # relative width at which the search for a stiffness ends
 
@@ -216,13 +217,17 @@ def top_vector(
 def stiff_vectors(
     x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any
 ) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]:
-    """The unit vector (3 rows cols,) of the stiffest mode; of lines also those of the next ones.
+    """The unit vector (3 rows cols,) of the stiffest mode; of lines and of damped nets also those of the next ones.
 
-    Segments are often damped near critically, where a method such as rkn8 may have a longer limit at the stiffest mode
-    than at the next, which are damped less.
+    Where the stiffest mode is damped near critically, rkn8 may have a longer limit at it than at the next ones, which
+    are damped less.
     """
     values, vectors, basis = ritz(x, start, t, p, STIFFEST)
-    found = vectors.T @ basis if isinstance(p, LineArrays) else (vectors[:, -1] @ basis)[None]
+    found = vectors.T @ basis
+    if not isinstance(p, LineArrays):
+        stiffness, _, rate, _ = quotients(x, found[-1], t, p)
+        if rate * rate < 4.0 * DAMPED * DAMPED * stiffness:
+            return found[-1], []
     return found[-1], [u for u, value in zip(found[:-1], values, strict=False) if value > STIFF * values[-1]]
 
 

@@ -282,6 +282,19 @@ def test_nothing_that_moves_allows_every_step():
     assert gauge(rope(1), "rk4", 0.01, State.at_rest(rope(1))).h_omega == 0.0
 
 
+@pytest.mark.parametrize(("points", "damping"), [(10, 22.5), (15, 22.25), (30, 22.25)])
+def test_a_less_damped_mode_may_limit_the_step_before_the_stiffest(points, damping):
+    """A straight rope at its rest length has the modes of a chain along it; across it is damped, but not stiff."""
+    net = rope(points, stiffness=800.0, damping=damping, drag=0.0)
+    chain = 2.0 * np.eye(points - 1) - np.eye(points - 1, k=1) - np.eye(points - 1, k=-1)
+    chain[-1, -1] = 1.0
+    of_chain = np.linalg.eigvalsh(chain) / net.mass
+    method = INTEGRATORS["rkn8"]
+    limits = [method.stable_step(math.sqrt(stiffness * e), damping * e) for e in of_chain for stiffness in (0.0, 800.0)]
+    assert critical_step(net, method) == pytest.approx(min(limits), rel=1e-3)
+    assert min(limits) < 0.995 * method.stable_step(math.sqrt(800.0 * of_chain[-1]), damping * of_chain[-1])
+
+
 def test_contact_lowers_the_critical_step():
     net = rope(10, floor=0.1, contact=Contact(80_000.0, 5.0))
     assert critical_step(net, "leapfrog") < 0.5 * critical_step(rope(10), "leapfrog")

@@ -30,7 +30,9 @@ print(sorted(signatures() - before))
 """
 
 # Presets that need few pieces come first: what these compile is known before the others add to it.
-PRESETS = f"""{SIGNATURES}
+PRESETS = (
+    SIGNATURES
+    + """
 from app.scenes import scene_named, warmup
 from sim.parameters import check_record
 
@@ -49,6 +51,7 @@ for preset in sorted(records, key=lambda preset: len(kind.needs(records[preset])
     new = sorted(signatures() - before)
     assert not new, (preset, new)
 """
+)
 
 
 def test_each_preset_of_the_radial_sea_runs_with_what_it_says_it_needs() -> None:

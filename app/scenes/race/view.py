@@ -19,6 +19,7 @@ from app.scenes.race.html import errors_line, results_table
 from app.scenes.race.parameters import RaceParams
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.html import step_mark
+from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
 from app.scenes.springs.view import ROOT_ARROW_LENGTH, SpringView
 
@@ -74,10 +75,8 @@ def shown_height(params: RaceParams) -> float:
     """Height [m] of the first view: of all ropes, as far as they swing, and of their labels."""
     depth = (params.ropes - 1) * params.spacing
     across = BEARING[0] * 2.0 * params.length * SHOWN_SWING + BEARING[1] * depth
-    net = build_rope(params, ROOT)  # of rope 1, the softest
-    n = net.shape[1] - 1
-    stretch = 0.5 * n * (n + 1) * net.mass * abs(net.gravity[2]) / net.families[0].stiffness  # as it hangs
-    fall = params.length + min(PULL_OF_FALL * stretch, MAX_STRETCH)
+    length, stretch = rope_lengths(build_rope(params, ROOT))  # of rope 1, the softest
+    fall = length + min(PULL_OF_FALL * stretch, MAX_STRETCH)
     if params.floor:
         fall = min(fall, ROOT[2] + BELOW_FLOOR)
     fall += 0.5 * depth * ELEVATION  # the nearest rope is drawn lower

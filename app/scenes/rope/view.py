@@ -21,7 +21,8 @@ from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.html import colour_scale, simple_drawing, stability_bar, step_mark
-from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, link_and_point
+from app.scenes.springs.net_motion import rope_lengths
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
 from app.scenes.springs.view import ROOT_ARROW_LENGTH, SecondNet, Sphere, SpringView, compile_tube
 
 ROPE_COLOUR = (196, 154, 92)
@@ -66,12 +67,11 @@ class RopeView(SpringView[RopeParams, RopeFrame, RopeReadings]):
 
     def first_view(self, params: RopeParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved: in front of the rope as it hangs."""
-        link, n = link_and_point(params), params.points - 1
-        stretch = 0.5 * n * (n + 1) * link["mass"] * params.gravity / link["stiffness"]
-        fall = params.length + min(stretch, params.length)
+        length, stretch = rope_lengths(build_rope(params))
+        fall = length + min(stretch, length)
         if params.floor:
             fall = min(fall, ROOT[2])
-        height = max(fall / SHOWN_SHARE, SHOWN_SWING * params.length)
+        height = max(fall / SHOWN_SHARE, SHOWN_SWING * length)
         distance, target = 0.5 * height / math.tan(0.5 * self.FIELD_OF_VIEW), ROOT[2] - 0.5 * fall - LOWER * height
         position = 0.0, -distance * math.cos(ELEVATION), target + distance * math.sin(ELEVATION)
         return position, (0.0, 0.0, target)

@@ -14,10 +14,10 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.quantities import measured
 from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, SCENE, RopeScene
-from app.scenes.rope.view import bead_radius
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.html import stability_bar, step_mark
-from app.scenes.springs.rope_parameters import ROOT, SPHERE
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE
+from app.scenes.springs.ropes_view import bead_radius
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
@@ -416,6 +416,6 @@ def test_a_rope_has_left_its_bounds_at_three_times_the_length_it_hangs_at() -> N
 def test_beads_are_as_large_in_every_direction_of_the_rope() -> None:
     """They are made once for a number of points: level at a start, in any shape when a run comes back."""
     along = np.array([1.0, 0.0, 0.0]), np.array([1.0, 1.0, 1.0]) / math.sqrt(3.0)
-    level, slanted = (bead_radius(0.05 * np.outer(np.arange(40), direction)) for direction in along)
+    level, slanted = (bead_radius(0.05 * np.outer(np.arange(40), direction), ROPE_RADIUS) for direction in along)
     assert level == pytest.approx(0.4 * 0.05, rel=1e-12)
     assert slanted == pytest.approx(level, rel=1e-12)

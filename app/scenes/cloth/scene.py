@@ -17,14 +17,14 @@ from app.scenes.cloth.quantities import QUANTITIES, ClothInstant
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.springs.divergence import holding_step
-from app.scenes.springs.grab import GrabFrame, ParticleGrab
+from app.scenes.springs.grab import GrabSpring, ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from sim.springs import Air, Grab, Net, cloth
+from sim.springs import Air, Net, cloth
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
 from sim.springs.integrator_fallback import integrator_or_fallback
@@ -205,29 +205,22 @@ class ClothScene(NetScene[ClothParams]):
         before = self.sphere_at(t)
         self.sphere.advance(t, duration)
         after = self.sphere_at(t + duration)
-        grab = None
-        if self.grab.grabbed is not None:
-            _, index, hand = self.grab.grabbed
-            hand.advance(t, duration)
-            row, col = divmod(index, self.params.cols)
-            stiffness, damping = self.grab_spring(index)
-            grab = Grab(row, col, hand.position, stiffness, damping, self.params.pull)
         return dataclasses.replace(
             self.net,
             pin_paths=self.pins.paths(t, duration),
             sphere=(*before, self.params.sphere_radius) if self.params.sphere else None,
             sphere_velocity=tuple((b - a) / duration for a, b in zip(before, after, strict=True)),
             epoch=t,
-            grab=grab,
+            grab=self.grab.pull(t, duration, self.net.shape, self.grab_spring()),
             air=Air(gusty_wind(self.params, t), self.params.air) if self.params.air > 0.0 else None,
         )
 
-    def grab_spring(self, index: int) -> tuple[float, float]:
-        """Stiffness [N/m] and damping [N s/m] of a grab of a particle."""
-        mass = float(self.net.masses.flat[index])
+    def grab_spring(self) -> GrabSpring:
+        """The spring of the grab."""
+        mass = float(self.net.masses.flat[self.grab.grabbed.particle if self.grab.grabbed else 0])
         stiffest = MAX_GRAB_STIFFNESS_STEP * mass / self.step**2
         stiffness = min(self.params.pull / GRAB_LENGTH, stiffest)
-        return stiffness, 0.5 * math.sqrt(stiffness * mass)
+        return GrabSpring(stiffness, 0.5 * math.sqrt(stiffness * mass), self.params.pull)
 
     def sphere_at(self, t: float) -> Vector:
         """Centre of the sphere at time t [m]."""
@@ -264,11 +257,6 @@ class ClothScene(NetScene[ClothParams]):
     def frame(self) -> ClothFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
         params = self.params
-        grab = None
-        if self.grab.grabbed is not None:
-            _, index, hand = self.grab.grabbed
-            distance = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
-            grab = GrabFrame(index, hand.position, min(1.0, distance * self.grab_spring(index)[0] / params.pull))
         x, student = self.state.x, None
         both = None if self.student is None else self.student.pictured(x)
         if both is not None:
@@ -280,7 +268,7 @@ class ClothScene(NetScene[ClothParams]):
             pins=None if params.pinned == "free" else self.pins.targets,
             sphere=(*self.sphere_at(self.time), params.sphere_radius) if params.sphere else None,
             sphere_home=self.sphere.target,
-            grab=grab,
+            grab=self.grab.frame(self.state.x, self.grab_spring()),
             student=student,
         )
         self.last_moments.add(self.state.t, frame, frame.points)

@@ -11,20 +11,18 @@ from app.scenes.charts import Chart
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.moments import copied, restore
 from app.scenes.race.charts import CURVES, RaceCharts
-from app.scenes.race.entrants import Race, RaceReadings
+from app.scenes.race.entrants import Race, RaceReadings, race_bound
 from app.scenes.race.names import rope_labels
 from app.scenes.race.parameters import ABOUT, PRESETS, RaceParams, hidden, method_of
 from app.scenes.race.quantities import QUANTITIES
 from app.scenes.springs.grab import GrabFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
-from app.scenes.springs.rope_handles import RopeHandles, offset_of
+from app.scenes.springs.net_motion import NetMotion
+from app.scenes.springs.rope_handles import RopeHandles, grab_spring, offset_of
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from sim.springs import INTEGRATORS, Net, rope
-from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.reference_run import ReferenceRun
-from sim.springs.stability import gauge
-from sim.springs.state import State, energy
 
 ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
 CHANGING = ("net", "race", "charts", "handles", "assessed_at")  # as the ropes move
@@ -53,10 +51,7 @@ def warm_up(law: str = SPRING) -> Pieces:
 
 def compile_gauge(net: Net) -> None:
     """The gauge of a rope, and the energies."""
-    state = State.at_rest(net)
-    gauge(net, INTEGRATORS["leapfrog"], 1e-3, state)
-    energy(net, state)
-    extremes(state.x, state.v)
+    NetMotion(net, INTEGRATORS["leapfrog"], 1e-3, race_bound).gauge()
 
 
 def compile_reference(net: Net) -> None:
@@ -146,7 +141,7 @@ class RaceScene:
             labels=rope_labels(race.entrants),
             failed=tuple(bool(entrant.failure) for entrant in race.entrants),
             root=handles.home,
-            grab=handles.grab_frame(xs, self.net.mass, self.step, params.pull, params.spacing),
+            grab=handles.grab_frame(xs, grab_spring(self.net, self.step, params.pull), params.spacing),
         )
 
     def readings(self) -> RaceReadings:

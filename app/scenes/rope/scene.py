@@ -17,7 +17,7 @@ from app.scenes.springs.grab import ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.net_scene import NetScene
-from app.scenes.springs.rope_handles import RopeHandles
+from app.scenes.springs.rope_handles import RopeHandles, grab_spring
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
@@ -232,7 +232,7 @@ class RopeScene(NetScene[RopeParams]):
             full_scale=max(1.25 * weight, 1e-3),
             root=handles.home,
             sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
-            grab=handles.grab_frame([x], self.net.mass, self.step, params.pull),
+            grab=handles.grab_frame([x], grab_spring(self.net, self.step, params.pull)),
         )
         self.last_moments.add(self.state.t, frame, frame.points)
         return frame

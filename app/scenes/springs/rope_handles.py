@@ -8,19 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import GrabTo, Place, Release, SceneCommand, Vector, vector_of
-from app.scenes.springs.grab import GrabFrame, ParticleGrab
+from app.scenes.springs.grab import GrabFrame, GrabSpring, ParticleGrab
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, SharedRopeParams
 from app.scenes.springs.tracking import CriticallyDampedTracker
-from sim.springs import Grab, Net
+from sim.springs import Net
 from sim.springs.state import State
 
 MAX_GRAB_RATE = 30.0  # [1/s] natural frequency of the grab of a free point
 MAX_GRAB_RATE_STEP = 0.5  # the same times the time step, so that it is stable at any step
 
 
-def grab_rate(step: float) -> float:
-    """Natural frequency [1/s] of the grab of a free point, at time step `step` [s]; it is critically damped."""
-    return min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step)
+def grab_spring(net: Net, step: float, max_force: float) -> GrabSpring:
+    """The spring of a grab, which damps a free point critically. step: [s]. max_force: [N]."""
+    rate = min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step)
+    return GrabSpring(net.mass * rate**2, 2.0 * net.mass * rate, max_force)
 
 
 def offset_of(number: int, ropes: int, spacing: float) -> float:
@@ -89,34 +90,21 @@ class RopeHandles:
         before = self.sphere.position
         self.sphere.advance(t, duration)
         velocity = tuple((b - a) / duration for a, b in zip(before, self.sphere.position, strict=True))
-        grab = None
-        if self.grab.grabbed is not None:
-            _, index, hand = self.grab.grabbed
-            hand.advance(t, duration)
-            rate = grab_rate(step)
-            point = index % net.shape[1]  # the points of several ropes are numbered through
-            grab = Grab(0, point, hand.position, net.mass * rate**2, 2.0 * net.mass * rate, params.pull)
         return dataclasses.replace(
             net,
             pin_paths=() if path is None else (((0, 0), path),),
             sphere=(*before, net.sphere[3]) if net.sphere else None,
             sphere_velocity=velocity,
             epoch=t,
-            grab=grab,
+            grab=self.grab.pull(t, duration, net.shape, grab_spring(net, step, params.pull)),
         )
 
     def grab_frame(
-        self, ropes: Sequence[NDArray[np.float64]], mass: float, step: float, max_force: float, spacing: float = 0.0
+        self, ropes: Sequence[NDArray[np.float64]], spring: GrabSpring, spacing: float = 0.0
     ) -> GrabFrame | None:
         """The grab as drawn, None if nothing is grabbed.
 
-        ropes: (3, 1, points) of each [m]; mass: of a point [kg]; spacing: [m] between ropes as drawn, along y.
+        ropes: (3, 1, points) of each [m]. spacing: [m] between ropes as drawn, along y.
         """
-        if self.grab.grabbed is None:
-            return None
-        _, index, hand = self.grab.grabbed
-        number, point = divmod(index, ropes[0].shape[2])
-        x, y, z = hand.position
-        distance = float(np.linalg.norm(np.asarray(hand.position) - ropes[number][:, 0, point]))
-        load = min(1.0, distance * mass * grab_rate(step) ** 2 / max_force)
-        return GrabFrame(index, (x, y + offset_of(number, len(ropes), spacing), z), load)
+        number = self.grab.grabbed.particle // ropes[0].shape[2] if self.grab.grabbed else 0
+        return self.grab.frame(ropes[number], spring, offset_of(number, len(ropes), spacing))

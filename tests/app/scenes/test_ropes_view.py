@@ -19,6 +19,8 @@ from app.scenes.rope.scene import RopeScene
 from app.scenes.rope.view import RopeView
 from app.scenes.springs.rope_handles import offset_of
 
+RaceDrawing: Any = RaceView  # whose types the tests know
+
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[viser.ViserServer]:
@@ -81,7 +83,7 @@ def test_a_grabbed_bead_of_a_race_stays_dark_for_a_browser_with_a_dark_floor(
     told: list[Any] = []
     client: Any = Mock(client_id=3)
     client._websock_connection.queue_message = told.append
-    scene, view = RaceScene(RaceParams()), RaceView(server, lambda command: None)
+    scene, view = RaceScene(RaceParams()), RaceDrawing(server, lambda command: None)
     view.show(scene.frame())
     monkeypatch.setattr(server, "get_clients", lambda: {3: client})
     view.set_dark(client, True)
@@ -95,7 +97,7 @@ def test_a_grabbed_bead_of_a_race_stays_dark_for_a_browser_with_a_dark_floor(
 
 
 def test_a_rope_that_has_stopped_is_drawn_where_another_spacing_puts_it(server: viser.ViserServer) -> None:
-    scene, view = RaceScene(RaceParams(ropes=2, integrator_2="pefrl")), RaceView(server, lambda command: None)
+    scene, view = RaceScene(RaceParams(ropes=2, integrator_2="pefrl")), RaceDrawing(server, lambda command: None)
     scene.advance(3)
     assert scene.frame().failed == (False, True)
     view.show(scene.frame())

@@ -16,6 +16,7 @@ from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, SCENE, RopeScene
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.html import stability_bar, step_mark
+from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE
 from app.scenes.springs.ropes_view import bead_radius
 from app.scenes.springs.tracking import CriticallyDampedTracker
@@ -405,6 +406,14 @@ def test_the_panel_says_what_limits_a_step_that_only_damping_limits() -> None:
     assert leapfrog_alternative(INTEGRATORS["rk4"], gauge) == "leapfrog with one up to 1/25 s (40 ms)"
     text = divergence_text(1.0, INTEGRATORS["rk4"], 2e-3, gauge, "")
     assert "200\u00a0% of the largest stable one for Runge-Kutta 4 (damping alone limits it)" in text
+
+
+@pytest.mark.parametrize("points", [2, 10, 60])
+def test_the_length_at_which_a_rope_hangs_is_that_of_the_exact_chain(points: int) -> None:
+    net = Rope(RopeParams(points=points)).net
+    length, stretch = rope_lengths(net)
+    assert length == pytest.approx(2.0, rel=1e-12)
+    assert length + stretch == pytest.approx(ROOT[2] - hanging_chain(net)[0][-1, 2], rel=1e-9)
 
 
 def test_a_rope_has_left_its_bounds_at_three_times_the_length_it_hangs_at() -> None:

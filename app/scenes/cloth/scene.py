@@ -211,13 +211,13 @@ class ClothScene(NetScene[ClothParams]):
             sphere=(*before, self.params.sphere_radius) if self.params.sphere else None,
             sphere_velocity=tuple((b - a) / duration for a, b in zip(before, after, strict=True)),
             epoch=t,
-            grab=self.grab.pull(t, duration, self.net.shape, self.grab_spring()),
+            grab=self.grab.pull(t, duration, self.net.shape, self.grab_spring),
             air=Air(gusty_wind(self.params, t), self.params.air) if self.params.air > 0.0 else None,
         )
 
-    def grab_spring(self) -> GrabSpring:
-        """The spring of the grab."""
-        mass = float(self.net.masses.flat[self.grab.grabbed.particle if self.grab.grabbed else 0])
+    def grab_spring(self, particle: int) -> GrabSpring:
+        """The spring of a grab of a particle."""
+        mass = float(self.net.masses.flat[particle])
         stiffest = MAX_GRAB_STIFFNESS_STEP * mass / self.step**2
         stiffness = min(self.params.pull / GRAB_LENGTH, stiffest)
         return GrabSpring(stiffness, 0.5 * math.sqrt(stiffness * mass), self.params.pull)
@@ -268,7 +268,7 @@ class ClothScene(NetScene[ClothParams]):
             pins=None if params.pinned == "free" else self.pins.targets,
             sphere=(*self.sphere_at(self.time), params.sphere_radius) if params.sphere else None,
             sphere_home=self.sphere.target,
-            grab=self.grab.frame(self.state.x, self.grab_spring()),
+            grab=self.grab.frame(self.state.x, self.grab_spring),
             student=student,
         )
         self.last_moments.add(self.state.t, frame, frame.points)

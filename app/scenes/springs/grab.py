@@ -1,6 +1,7 @@
 """A particle that a browser has grabbed, and pulls with the mouse."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,9 @@ class GrabSpring(NamedTuple):
     stiffness: float  # [N/m]
     damping: float  # [N s/m]
     max_force: float  # [N]
+
+
+SpringOf: TypeAlias = Callable[[int], GrabSpring]  # flat index of a particle -> the spring of its grab
 
 
 class GrabbedParticle(NamedTuple):
@@ -57,7 +61,7 @@ class ParticleGrab:
         if self.grabbed is not None and self.grabbed.client == client:
             self.grabbed = None
 
-    def pull(self, t: float, duration: float, shape: tuple[int, int], spring: GrabSpring) -> Grab | None:
+    def pull(self, t: float, duration: float, shape: tuple[int, int], spring_of: SpringOf) -> Grab | None:
         """The grab over the next `duration` [s] from time t [s], None if nothing is grabbed. Moves the hand on.
 
         shape: rows and columns of the net; the particles of several nets are numbered through.
@@ -67,9 +71,9 @@ class ParticleGrab:
         _, particle, hand = self.grabbed
         hand.advance(t, duration)
         row, column = divmod(particle % (shape[0] * shape[1]), shape[1])
-        return Grab(row, column, hand.position, *spring)
+        return Grab(row, column, hand.position, *spring_of(particle))
 
-    def frame(self, x: NDArray[np.float64], spring: GrabSpring, offset: float = 0.0) -> GrabFrame | None:
+    def frame(self, x: NDArray[np.float64], spring_of: SpringOf, offset: float = 0.0) -> GrabFrame | None:
         """The grab as drawn, None if nothing is grabbed.
 
         x: (3, rows, columns) [m] of the net with the particle. offset: [m] of its drawing along y.
@@ -77,7 +81,7 @@ class ParticleGrab:
         if self.grabbed is None:
             return None
         _, particle, hand = self.grabbed
-        position = x.reshape(3, -1)[:, particle % x[0].size]
+        position, spring = x.reshape(3, -1)[:, particle % x[0].size], spring_of(particle)
         distance = float(np.linalg.norm(np.asarray(hand.position) - position))
         load = min(1.0, distance * spring.stiffness / spring.max_force)
         return GrabFrame(particle, (hand.position[0], hand.position[1] + offset, hand.position[2]), load)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import GrabTo, Place, Release, SceneCommand, Vector, vector_of
-from app.scenes.springs.grab import GrabFrame, GrabSpring, ParticleGrab
+from app.scenes.springs.grab import GrabFrame, GrabSpring, ParticleGrab, SpringOf
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, SharedRopeParams
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.springs import Net
@@ -18,10 +18,14 @@ MAX_GRAB_RATE = 30.0  # [1/s] natural frequency of the grab of a free point
 MAX_GRAB_RATE_STEP = 0.5  # the same times the time step, so that it is stable at any step
 
 
-def grab_spring(net: Net, step: float, max_force: float) -> GrabSpring:
+def grab_spring(net: Net, step: float, max_force: float) -> SpringOf:
     """The spring of a grab, which damps a free point critically. step: [s]. max_force: [N]."""
-    rate = min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step)
-    return GrabSpring(net.mass * rate**2, 2.0 * net.mass * rate, max_force)
+
+    def of_point(point: int) -> GrabSpring:
+        rate = min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step)
+        return GrabSpring(net.mass * rate**2, 2.0 * net.mass * rate, max_force)
+
+    return of_point
 
 
 def offset_of(number: int, ropes: int, spacing: float) -> float:
@@ -100,11 +104,11 @@ class RopeHandles:
         )
 
     def grab_frame(
-        self, ropes: Sequence[NDArray[np.float64]], spring: GrabSpring, spacing: float = 0.0
+        self, ropes: Sequence[NDArray[np.float64]], spring_of: SpringOf, spacing: float = 0.0
     ) -> GrabFrame | None:
         """The grab as drawn, None if nothing is grabbed.
 
         ropes: (3, 1, points) of each [m]. spacing: [m] between ropes as drawn, along y.
         """
         number = self.grab.grabbed.particle // ropes[0].shape[2] if self.grab.grabbed else 0
-        return self.grab.frame(ropes[number], spring, offset_of(number, len(ropes), spacing))
+        return self.grab.frame(ropes[number], spring_of, offset_of(number, len(ropes), spacing))

@@ -76,10 +76,10 @@ class RopesDrawing(abc.ABC):
 
     def shape_tubes(self, ropes: NDArray[np.float32], *, always: bool = False) -> None:
         """Compute the vertices of ropes (ropes, points, 3) [m] that have moved. always: of all."""
-        for number, points in enumerate(ropes):
-            if always or float(np.abs(points - self.points[number]).max()) >= POSITION_TOLERANCE:
-                self.points[number] = points
-                self.vertices[number] = self.tube.vertices(points, self.RADIUS)
+        moved = always | (np.abs(ropes - self.points).max(axis=(1, 2)) >= POSITION_TOLERANCE)
+        for number in np.flatnonzero(moved):
+            self.points[number] = ropes[number]
+            self.vertices[number] = self.tube.vertices(ropes[number], self.RADIUS)
 
     def show_beads(self, visible: bool, grab: GrabFrame | None) -> bool:
         """Assign the places of the beads, and the colour of the grabbed one. True if a colour has changed."""

@@ -14,8 +14,7 @@ MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; att
 LARGE_OBJECTS = {"FileScene", "MooringScene"}
 MANY_ATTRIBUTES = {
     "FileScene", "FloatingBodies", "GuideTab", "LineScene", "MooringScene", "MooringView", "NonlinearSea", "Panel",
-    "RadialSea", "RadialSeaView", "RopeView", "Sea", "SquareSeaScene",
-    "StudentCloth", "Viewer",
+    "RadialSea", "RadialSeaView", "Sea", "SquareSeaScene", "Viewer",
 }  # fmt: skip
 
 

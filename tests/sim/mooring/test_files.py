@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, System, read_moordyn, simulate, write_moordyn
+from sim.springs import rope
 from tests.refusals import assert_refused
 from tests.sim.mooring.systems import chain_on_bed, floating_body
 
@@ -220,6 +221,8 @@ ROWS = [
     ("body 1: damping", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(damping=np.eye(5)),))),
     ("system", lambda: simulate(None)),  # type: ignore[arg-type]
     ("motion", lambda: simulate(SYSTEM, motion={1: lambda t: (0.0, 0.0, 0.0)})),
+    ("motion", lambda: simulate(rope(3), motion={})),  # a net has x and v instead
+    ("x", lambda: simulate(SYSTEM, x=SYSTEM.start())),
     ("motion[2]", lambda: simulate(SYSTEM, motion={2: 3.0})),  # type: ignore[dict-item]
     ("motion[2](0)", lambda: simulate(SYSTEM, motion={2: lambda t: (0.0, math.nan, 0.0)})),
     ("duration", lambda: simulate(SYSTEM, duration=0.0)),

@@ -76,7 +76,7 @@ QUANTITIES: Quantities = {
         lambda now: float(now.scene.body_place()[2] - now.scene.middle[2]),
     ),
     "rest_stretch": for_sweeps(
-        "1", "Largest stretch of a line at rest", lambda now: float(now.scene.rest_stretch.max())
+        "1", "Largest stretch of a line at rest", lambda now: float(now.scene.start.stretch.max())
     ),
     **STABILITY,
     "fairlead_tension": for_tasks("N", "Tension of line 1 at the fairlead", of_line_1(lambda line: line.fairlead)),

@@ -51,8 +51,8 @@ class StaticInputs(NamedTuple):
         """Those of a scene as it is arranged now."""
         system, (x, y) = scene.system, direction_of(scene).tolist()
         return cls(
-            scene.places, system.lines, vector_of(scene.rest_place), (x, y), scene.params.length, scene.params.reach,
-            far, system.depth, system.gravity, system.density,
+            scene.attached.places, system.lines, vector_of(scene.excursion.rest), (x, y), scene.params.length,
+            scene.params.reach, far, system.depth, system.gravity, system.density,
         )  # fmt: skip
 
     def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -70,14 +70,14 @@ class RestoringCurve:
     def chart(self, scene: "LineScene") -> Chart:
         """The chart; the curve is found again where anything that it depends on is another."""
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
-        far = 2.0 ** math.ceil(math.log2(max(scene.farthest, 1e-3)))
+        far = 2.0 ** math.ceil(math.log2(max(scene.excursion.farthest, 1e-3)))
         key = scene.static_inputs(far)
         if key != self.made_of:
             self.curve = key.curve()
             self.made_of = key
         offset, force = self.curve
         wave = direction_of(scene)
-        now = float((scene.body_place() - scene.rest_place)[:2] @ wave)
+        now = float((scene.body_place() - scene.excursion.rest)[:2] @ wave)
         pull = -float(scene.force_of_lines() @ wave)
         # A bar from the lowest force of the curve to the force now, at the offset now.
         x = np.concatenate((offset, [now, now]))
@@ -92,13 +92,6 @@ def direction_of(scene: "LineScene") -> NDArray[np.float64]:
     """Unit vector (2,) along the waves."""
     bearing = math.radians(scene.params.direction)
     return np.array([math.cos(bearing), math.sin(bearing)])
-
-
-def force_of_lines(scene: "MooringScene") -> NDArray[np.float64]:
-    """Level force (2,) [N] of the lines on the body now."""
-    last = scene.points[:, -2] - scene.points[:, -1]
-    unit = last / np.maximum(np.linalg.norm(last, axis=1), 1e-12)[:, None]
-    return (scene.tension[:, -1:] * unit[:, :2]).sum(axis=0)
 
 
 def static_curve(inputs: StaticInputs) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -24,9 +24,10 @@ from app.scenes.mooring.arrangement import (
     surface_side,
 )
 from app.scenes.mooring.body_scene import MooringScene
-from app.scenes.mooring.line_scene import FADE, MAX_PATH, PATH_INTERVAL
+from app.scenes.mooring.excursion import MAX_PATH, PATH_INTERVAL
+from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import PRESETS, MooringParams
-from app.scenes.mooring.restoring import StaticInputs, force_of_lines, static_curve
+from app.scenes.mooring.restoring import StaticInputs, static_curve
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import BED_ROWS, MooringView, bed_colours
 from app.server.loop import SimLoop
@@ -47,7 +48,7 @@ def test_a_frame_turns_the_body_as_its_state_and_draws_the_watch_circle_about_it
     scene = MooringScene(MooringParams(**SMALL))
     turn = np.array([0.3, -0.2, 0.6])  # a rotation vector [rad] of length 0.7
     scene.state.x[:, scene.system.node_count + 1] = turn
-    scene.rest_place = np.array([3.0, -1.0, 0.0])
+    scene.excursion.rest = np.array([3.0, -1.0, 0.0])
     frame = scene.frame()
     np.testing.assert_allclose(frame.rotation, [math.cos(0.35), *(math.sin(0.35) * turn / 0.7)], atol=1e-6)
     assert frame.rest == (3.0, -1.0, 0.0)
@@ -91,7 +92,7 @@ def test_the_rest_is_that_of_the_catenary():
 def test_without_waves_it_stays_at_rest_and_with_them_the_touchdown_wanders():
     scene = MooringScene(MooringParams(**SMALL, wave_height=0.0))
     run(scene, 5.0)
-    assert scene.most_offset < 1e-3
+    assert scene.excursion.largest < 1e-3
     waves = MooringScene(MooringParams(**SMALL, wave_height=6.0, regular=True))
     lying = []
     run(waves, FADE)
@@ -152,11 +153,11 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
     assert before < scene.tensions.dragged < 10.0 * before  # no jerk
     assert scene.readings().lines[0].at_fairlead.largest == pytest.approx(before, rel=1e-3)
     scene.handle(Place("anchor 1", (-1e6, 0.0, 0.0)))  # no farther than the line reaches
-    assert np.linalg.norm(scene.anchors[0].target) < 130.0
+    assert np.linalg.norm(scene.attached.anchors[0].target) < 130.0
     scene.handle(Place("anchor 1", (-95.0, 5.0, 0.0)))
     scene.handle(Place("fairlead 1", vector_of(scene.body_place() + (0.0, 50.0, 0.0))))
     run(scene, 10.0)
-    assert scene.places.fairleads[0] == pytest.approx((0.0, hull_of(scene.params).extents[1, 1], 0.0))
+    assert scene.attached.places.fairleads[0] == pytest.approx((0.0, hull_of(scene.params).extents[1, 1], 0.0))
     scene.handle(GrabTo(0, (0.0, 20.0, 0.0), client=1))
     scene.handle(GrabTo(0, (0.0, -20.0, 0.0), client=2))  # the other browser waits
     run(scene, 2.0)
@@ -174,7 +175,7 @@ def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed
     assert (np.diff(force) > 0.0).all()
     moved = float(pushed.body_place()[0] - free.body_place()[0])
     assert np.interp(moved, offset, force) == pytest.approx(15e3, rel=0.1)
-    assert -force_of_lines(pushed)[0] == pytest.approx(15e3, rel=0.02)
+    assert -pushed.force_of_lines()[0] == pytest.approx(15e3, rel=0.02)
 
 
 def test_the_chart_of_the_restoring_force_marks_the_state():
@@ -186,7 +187,7 @@ def test_the_chart_of_the_restoring_force_marks_the_state():
     assert (np.diff(offset) >= 0.0).all()
     assert np.isfinite(static).all()
     assert np.isfinite(now).sum() == 2
-    assert np.nanmax(now) == pytest.approx(-1e-3 * force_of_lines(scene)[0])
+    assert np.nanmax(now) == pytest.approx(-1e-3 * scene.force_of_lines()[0])
 
 
 def test_the_gauge_is_that_of_the_library_and_a_longer_step_diverges():
@@ -247,7 +248,7 @@ def test_the_restoring_curve_is_that_of_the_rest_now(changed):
     charts = scene.curves()
     assert charts is not None
     offset, static, _ = charts["plot_restoring"].columns
-    expected = static_curve(StaticInputs.of(scene, 2.0 ** math.ceil(math.log2(max(scene.most_offset, 1e-3)))))
+    expected = static_curve(StaticInputs.of(scene, 2.0 ** math.ceil(math.log2(max(scene.excursion.largest, 1e-3)))))
     assert np.interp(expected[0], offset, static) == pytest.approx(1e-3 * expected[1], abs=1e-6)
 
 
@@ -268,19 +269,19 @@ def test_the_path_is_bounded_and_its_last_place_is_that_of_the_body():
         scene.state.x[0, scene.system.node_count] = 1e-3 * i
         scene.measure()
         scene.measure()  # no second place at the same time
-    assert scene.path.shape == (MAX_PATH, 2)
-    steps = np.diff(scene.path[:, 0])
+    assert scene.excursion.path.shape == (MAX_PATH, 2)
+    steps = np.diff(scene.excursion.path[:, 0])
     assert steps == pytest.approx(np.full(len(steps), 1e-3), abs=1e-6)
-    assert scene.path[-1] == pytest.approx(scene.body_place()[:2], abs=1e-6)
+    assert scene.excursion.path[-1] == pytest.approx(scene.body_place()[:2], abs=1e-6)
     kept: Any = scene.keep()
-    assert kept["path"].nbytes == MAX_PATH * 8
+    assert kept["excursion"].path.nbytes == MAX_PATH * 8
 
 
 def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
     def fail(system):
         raise ConvergenceError("static state of the mooring", "3 N", 40)
 
-    monkeypatch.setattr("app.scenes.mooring.line_scene.at_rest", fail)
+    monkeypatch.setattr("app.scenes.mooring.start.at_rest", fail)
     scene = MooringScene(MooringParams(**SMALL))
     assert np.isfinite(scene.frame().points).all()
     with pytest.raises(DivergenceError, match=r"no state of rest .*3 N left.* Change their length"):
@@ -303,7 +304,7 @@ def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
     ],
 )  # fmt: skip
 def test_light_ropes_and_stiff_lines_rest(changed):
-    assert not MooringScene(MooringParams(**changed)).failure
+    assert not MooringScene(MooringParams(**changed)).start.failure
 
 
 def anywhere(rng: random.Random, one: Parameter) -> float:

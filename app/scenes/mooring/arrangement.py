@@ -78,6 +78,11 @@ def width_of(params: MooringParams) -> float:
     return min(max(VESSEL_WIDTH * found.radius, LEAST_VESSEL * found.extent), LARGEST_VESSEL * found.extent)
 
 
+def is_round(params: MooringParams) -> bool:
+    """True if the body is round as seen from above."""
+    return bool(params.moordyn_file) or params.body == "buoy"
+
+
 def hull_of(params: MooringParams) -> floating.Hull:
     """The body's hull."""
     if params.moordyn_file:

@@ -23,13 +23,14 @@ from app.scenes.mooring.arrangement import (
     surface_heights,
     surface_side,
 )
+from app.scenes.mooring.bed_view import BED_ROWS, bed_colours
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.excursion import MAX_PATH, PATH_INTERVAL
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import PRESETS, MooringParams
 from app.scenes.mooring.restoring import StaticInputs, static_curve
 from app.scenes.mooring.tensions import Tensions
-from app.scenes.mooring.view import BED_ROWS, MooringView, bed_colours
+from app.scenes.mooring.view import MooringView
 from app.server.loop import SimLoop
 from sim.mooring import balance, critical_step, interior
 from sim.parameters import Parameter, check_record, parameters_of

@@ -14,7 +14,7 @@ MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; att
 LARGE_OBJECTS: set[str] = set()
 MANY_ATTRIBUTES = {
     "FloatingBodies", "GuideTab", "NonlinearSea", "Panel",
-    "RadialSea", "RadialSeaView", "RopeView", "Sea", "SquareSeaScene",
+    "RadialSea", "RadialSeaView", "RopeView", "Sea",
     "StudentCloth", "Viewer",
 }  # fmt: skip
 # Names that two packages of the library offer for different things. An entry goes as soon as they are one.

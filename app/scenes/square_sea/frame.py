@@ -81,12 +81,12 @@ def readings_of(scene: "SquareSeaScene") -> SeaReadings:
     """The numbers for the panel at the time of the last frame."""
     p = scene.params
     return SeaReadings(
-        foam_cover=scene.foam_cover,
+        foam_cover=scene.foam.cover,
         expected_foam_cover=scene.expected_foam_cover(scene.time),
-        slope_left=scene.slope_left,
-        foam_limit=scene.foam_limit.value,
+        slope_left=scene.waves.slope_left,
+        foam_limit=scene.foam.limit.value,
         is_choppy=scene.marching is not None or scene.sea.choppiness > 0.0,
-        viscous_area=scene.viscous_area + p.viscosity * (scene.time - scene.changed_at),
+        viscous_area=scene.change.viscous_area_at(scene.time, p.viscosity),
         rain=None if scene.rainfall is None else scene.rainfall.readings(),
         report=scene.statistics.report if p.statistics else None,
     )

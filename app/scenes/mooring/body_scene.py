@@ -13,7 +13,7 @@ from app.scenes.mooring.line_scene import LineScene
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.restoring import StaticInputs
 from app.scenes.mooring.start import rest_or_start
-from app.scenes.mooring.start_check import Fault, fault_of
+from app.scenes.mooring.start_check import Fault, fault_of, overload_of
 
 GRAB_RATE = 1.0  # [rad/s] natural frequency of the grab of the body
 FARTHEST = 5.0  # in lengths of a line and distances of anchors, beyond which a run has diverged
@@ -40,9 +40,10 @@ class MooringScene(LineScene):
         """[m] of the body, where it rests without lines."""
         return self.body.place
 
-    def fault_of(self, stretch: NDArray[np.float64]) -> Fault | None:
-        """The fault of a state to start with, None if there is none. stretch: (lines,) over the length."""
-        return fault_of(self.params, self.attached.places, self.body.place, stretch)
+    def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
+        """The fault of a state to start with, None if there is none; see `LineScene`."""
+        found = fault_of(self.params, self.attached.places, self.body.place, stretch)
+        return found or (overload_of(self.params) if failure else None)
 
     def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion goes on."""
@@ -54,7 +55,7 @@ class MooringScene(LineScene):
             rest, failure = rest_or_start(self.system)
             if not failure:
                 stretch = self.rows.stretch(rest.nodes)
-                self.start = self.start._replace(stretch=stretch, fault=self.fault_of(stretch))
+                self.start = self.start._replace(stretch=stretch, fault=self.fault_of(stretch, ""))
         materials = (line_types(params), params.friction, params.wave_period)
         if materials != (line_types(old), old.friction, old.wave_period):
             self.assess_stability()

@@ -13,7 +13,7 @@ from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.from_file import mooring_of, slack_of
 from app.scenes.mooring.line_scene import LineScene, fade_at
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.restoring import LEAST_SHARE, SHARE
+from app.scenes.mooring.restoring import LEAST_REACH, REACH
 from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.interruption import raise_if_stopped
@@ -41,7 +41,7 @@ class FileInputs(NamedTuple):
         """Offsets [m] of the vessel along the waves, and the force [N] of all lines against each; NaN without rest."""
         file = mooring_of(self.path)
         slack = slack_of(file.system)
-        end = max(SHARE * slack[0] if slack else 0.0, LEAST_SHARE * file.extent, self.far)
+        end = max(REACH * slack[0] if slack else 0.0, LEAST_REACH * file.extent, self.far)
         offset = np.linspace(-end, end, CURVE_POINTS)
         force = np.full(len(offset), math.nan)
         for i, one in enumerate(offset):
@@ -77,8 +77,8 @@ class FileScene(LineScene):
         """[m] of the vessel at the surface, where it begins."""
         return self.file.middle
 
-    def fault_of(self, stretch: NDArray[np.float64]) -> Fault | None:
-        """The fault of a state to start with, None if there is none. stretch: (lines,) over the length."""
+    def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
+        """The fault of a state to start with, None if there is none; see `LineScene`."""
         return fault_of_file(self.file, stretch)
 
     def arranged(self) -> System:
@@ -123,15 +123,15 @@ class FileScene(LineScene):
     def paths(self, duration: float) -> NDArray[np.float64]:
         """(coupled points, 5, 3) for `duration` [s], as `LineArrays` has them: all points move as one."""
         t = self.state.t
-        share = self.params.follow
+        follow = self.params.follow
         x0, v0 = np.array(self.vessel.position), np.array(self.vessel.velocity)
         self.vessel.advance(t, duration)
         x1, v1 = np.array(self.vessel.position), np.array(self.vessel.velocity)
         for x, v, at in ((x0, v0, t), (x1, v1, t + duration)):
             wave, speed = water_motion(self.sea, self.middle, at)
             fade = fade_at(at)
-            x += share * fade * wave
-            v += share * fade * speed
+            x += follow * fade * wave
+            v += follow * fade * speed
         paths = np.repeat(cubic(x0, v0, x1, v1, t, duration)[None], len(self.file.vessel), axis=0)
         paths[:, 0] += self.places
         self.moved_by = x1 if self.file.vessel else np.zeros(3)

@@ -85,7 +85,7 @@ class LineScene(abc.ABC):
         self.state = State.still(rest.nodes)
         self.excursion = Excursion(self.body_place())
         stretch = self.rows.stretch(rest.nodes)
-        self.start = MooringStart.of(rest, stretch, self.fault_of(stretch), failure)
+        self.start = MooringStart.of(rest, stretch, self.fault_of(stretch, failure), failure)
         self.assess_stability()
         self.tensions = Tensions(len(self.rows.lengths))
         self.measure()
@@ -93,8 +93,11 @@ class LineScene(abc.ABC):
         self.last_moments.clear()
 
     @abc.abstractmethod
-    def fault_of(self, stretch: NDArray[np.float64]) -> Fault | None:
-        """The fault of a state to start with, None if there is none. stretch: (lines,) over the length."""
+    def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
+        """The fault of a state to start with, None if there is none.
+
+        stretch: (lines,) over the length. failure: of the search for rest, or "".
+        """
 
     @abc.abstractmethod
     def arrange(self) -> None:
@@ -294,5 +297,5 @@ class LineScene(abc.ABC):
 
 def fade_at(t: float) -> float:
     """Factor on what begins smoothly, at time t [s]."""
-    share = min(t / FADE, 1.0)
-    return share * share * (3.0 - 2.0 * share)
+    fraction = min(t / FADE, 1.0)
+    return fraction * fraction * (3.0 - 2.0 * fraction)

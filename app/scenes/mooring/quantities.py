@@ -63,8 +63,8 @@ QUANTITIES: Quantities = {
     "largest_uplift": Quantity(
         "N", "Largest upward force on an anchor", over_lines(max, lambda line: line.most_uplift)
     ),
-    "slack_share": Quantity(
-        "1", "Largest fraction of time that a line is slack", over_lines(max, lambda line: line.slack_share)
+    "slack_fraction": Quantity(
+        "1", "Largest fraction of time that a line is slack", over_lines(max, lambda line: line.slack_fraction)
     ),
     "lying_length": Quantity("m", "Length of all lines on the bed", over_lines(sum, lambda line: line.lying)),
     "largest_offset": Quantity(
@@ -90,8 +90,8 @@ QUANTITIES: Quantities = {
         lambda now: float(now.frame.points[0, -1, 2]) + water_of(now.params).depth,
     ),
     "line_weight": for_tasks("N/m", "Weight of a metre of line in water", lambda now: weight_in_water(now.params)),
-    "line_1_slack_share": for_tasks(
-        "1", "Fraction of time that line 1 is slack", of_line_1(lambda line: line.slack_share)
+    "line_1_slack_fraction": for_tasks(
+        "1", "Fraction of time that line 1 is slack", of_line_1(lambda line: line.slack_fraction)
     ),
     "offset": for_tasks("m", "Level distance of the body from its place of rest", lambda now: now.readings.offset),
 }

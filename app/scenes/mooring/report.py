@@ -10,7 +10,7 @@ from app.render.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, 
 from app.scenes.mooring.frame import EndStatistics, LineReading, MooringReadings
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.quantities import breaking_load_use, largest_tension
-from app.scenes.mooring.start_check import ADVISED, Fault, raised_points
+from app.scenes.mooring.start_check import BLAMED, Fault, raised_points
 from app.scenes.springs.html import colour_scale, step_mark
 
 TENSIONS = "Tensions"  # heading
@@ -28,16 +28,16 @@ def figures_of(snapshot: Snapshot) -> str:
     if found.fault is not None and not snapshot.status.halted:  # which says it all
         return coloured(found.fault.short, WARNING_COLOUR)
     line, t = found.most_at
-    share = breaking_load_use(snapshot)
-    use = "" if math.isnan(share) else fill(" ({})", percent(share))
+    used = breaking_load_use(snapshot)
+    use = "" if math.isnan(used) else fill(" ({})", percent(used))
     largest = bold(kilonewtons(largest_tension(snapshot)))
     return fill("Largest tension: {} kN{}, line {} at {}", largest, use, line + 1, seconds(t))
 
 
 def slack_text(found: LineReading, now: float) -> Html:
-    """Time since a line went slack, or the share of time that it was slack."""
+    """Time since a line went slack, or the fraction of time that it was slack."""
     if math.isnan(found.slack_since):
-        return fill("{}", percent(found.slack_share) if found.slack_share > 0.0 else "never")
+        return fill("{}", percent(found.slack_fraction) if found.slack_fraction > 0.0 else "never")
     return coloured(f"since {seconds(now - found.slack_since)}", ERROR_COLOUR)
 
 
@@ -97,7 +97,7 @@ def offset_text(snapshot: Snapshot) -> Html:
 
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
-    said = faint("Slack: the share of time, or since when, in which the last segment is not stretched.")
+    said = faint("Slack: the fraction of time, or since when, in which the last segment is not stretched.")
     notes: dict[str, str] = {
         TENSIONS: join((offset_text(snapshot), tension_tables(snapshot), statistics_text(snapshot))),
         "Bed and slack": join((bed_table(snapshot), said)),
@@ -132,7 +132,7 @@ def readout_of(snapshot: Snapshot) -> Html:
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     found: MooringReadings = snapshot.readings
-    lines = {"time_step": step_mark(found.stability.critical_step), **dict.fromkeys(ADVISED, "")}
+    lines = {"time_step": step_mark(found.stability.critical_step), **dict.fromkeys(BLAMED, "")}
     if found.fault is not None and found.fault.parameter:
         lines[found.fault.parameter] = coloured(found.fault.said, WARNING_COLOUR)
     return lines

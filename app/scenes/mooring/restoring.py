@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 SPANS = 32  # places at which a line's statics are solved
 POINTS = 41  # of the drawn curve
-SHARE = 0.9  # of the way to where the first line is straight, which the curve goes to either side
-LEAST_SHARE = 0.03  # of the distance of the anchors, of lines that are straight at rest
+REACH = 0.9  # of the way to where the first line is straight, which the curve goes to either side
+LEAST_REACH = 0.03  # of the distance of the anchors, of lines that are straight at rest
 
 STATIC_LINE, NOW_LINE = ChartLine("static", PALETTE[0], 2.0), ChartLine("now", PALETTE[1], 5.0)
 
@@ -104,7 +104,7 @@ def static_curve(inputs: StaticInputs) -> tuple[NDArray[np.float64], NDArray[np.
     ways = fairleads - anchors
     straight = np.sqrt(np.maximum(inputs.length**2 - ways[:, 2] ** 2, 0.0))
     slack = float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
-    offset = max(SHARE * slack, LEAST_SHARE * inputs.reach, inputs.far) * np.linspace(-1.0, 1.0, POINTS)
+    offset = max(REACH * slack, LEAST_REACH * inputs.reach, inputs.far) * np.linspace(-1.0, 1.0, POINTS)
     away = -ways[:, None, :2] - offset[:, None] * wave  # (lines, points, 2) from the fairlead to the anchor
     span = np.linalg.norm(away, axis=2)
     along = (away @ wave) / np.maximum(span, 1e-9)

@@ -34,8 +34,8 @@ def budget_html(params: RadialSeaParams, weathering: Weathering | None) -> Html:
 
 def row_of(state: WeatheredOil, label: str) -> tuple[str, ...]:
     """A row of the table."""
-    shares = (state.evaporated, state.dispersed, state.remaining, state.water_content)
-    return (label, *(fixed(100.0 * share, 1) for share in shares))
+    fractions = (state.evaporated, state.dispersed, state.remaining, state.water_content)
+    return (label, *(fixed(100.0 * fraction, 1) for fraction in fractions))
 
 
 def now_html(params: RadialSeaParams, now: WeatheredOil) -> Html:
@@ -81,7 +81,7 @@ def origin_text(record: OilRecord) -> str:
     if record.emulsion_water > 0.0:
         onset = f"once {percent(record.emulsion_onset)} has evaporated" if record.emulsion_onset else "from the start"
         emulsion = f"It takes up water {onset}, at most {percent(record.emulsion_water)}."
-    return f"Shares of the mass spilled, by the laws of NOAA's PyGNOME. {known} {emulsion}"
+    return f"Fractions of the mass spilled, by the laws of NOAA's PyGNOME. {known} {emulsion}"
 
 
 def budget_marks(params: RadialSeaParams, weathering: Weathering | None) -> dict[str, str]:

@@ -47,7 +47,7 @@ OF_BODY: Quantities = {  # of a `BodyReading`
         "m", "deeper than in clean water", lambda body: body.mean_draft - body.prediction.draft_in_water
     ),
     "height": for_tasks("m", "height", lambda body: body.prediction.height),
-    "share": for_tasks("1", "fraction below sea water", lambda body: body.mass / (body.volume * SEA_DENSITY)),
+    "fraction_below": for_tasks("1", "fraction below sea water", lambda body: body.mass / (body.volume * SEA_DENSITY)),
 }
 
 

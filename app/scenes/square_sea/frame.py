@@ -67,9 +67,9 @@ def unpack_frame(packed: PackedSeaFrame) -> SeaFrame:
 class SeaReadings(NamedTuple):
     """The numbers of the sea for the panel."""
 
-    foam_cover: float  # share of the drawn sea that is foam
-    expected_foam_cover: float  # by Monahan's law, times the share of the slope that is left
-    slope_left: float  # share of the mean square slope that damping and a small height factor leave
+    foam_cover: float  # fraction of the drawn sea that is foam
+    expected_foam_cover: float  # by Monahan's law, times the fraction of the slope that is left
+    slope_left: float  # fraction of the mean square slope that damping and a small height factor leave
     foam_limit: float  # Jacobian below which there is foam; -inf without foam
     is_choppy: bool  # whether water moves level at all, which presses the surface together
     viscous_area: float  # [m2] sum of viscosity times time, since the start

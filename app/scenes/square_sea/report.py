@@ -19,8 +19,8 @@ from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
 from sim.ocean.spectra.regular import RegularConditions
 from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, resolved_in_time
 
-MIN_SLOPE_LEFT = 0.98  # share of the mean square slope below which the sea counts as damped
-MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
+MIN_SLOPE_LEFT = 0.98  # fraction of the mean square slope below which the sea counts as damped
+MAX_FRACTION_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
 HEIGHT = (
     "Significant height: the mean of the highest third of the waves, from trough to crest. "
     "The band holds 19 of 20 seas."
@@ -167,9 +167,9 @@ def statistics_table(r: Report, source: str = "an open sea") -> Html:
     )
     if not endless > 0.0:
         return measured
-    share = e.significant_height / endless
-    if share < MAX_SHARE_OF_ENDLESS_SEA:
-        text = fill("These waves have {} of the height of {} ({} m).", percent(share, 3), source, number(endless))
+    fraction = e.significant_height / endless
+    if fraction < MAX_FRACTION_OF_ENDLESS_SEA:
+        text = fill("These waves have {} of the height of {} ({} m).", percent(fraction, 3), source, number(endless))
     else:
         text = fill("Waves of the earlier weather are still here; this wind alone makes {} m.", number(endless))
     return join((measured, faint(text)))

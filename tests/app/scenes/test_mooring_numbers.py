@@ -65,10 +65,10 @@ def test_an_anchor_that_is_pulled_upwards_is_flagged_and_one_pushed_down_is_not(
     assert first[:2] + first[4:7] == pytest.approx((25.0, 8.0, 6.4, 8.0, 7.0))
     assert (first.at_fairlead.largest, first.at_anchor.largest) == (25.0, 10.0)
     assert math.isnan(first.slack_since)
-    assert first.slack_share == 0.0
+    assert first.slack_fraction == 0.0
     assert second[:2] + second[4:7] == (0.0, 31.0, 0.0, 0.0, 9.0)
     assert (second.at_fairlead.largest, second.at_anchor.largest) == (5.0, 31.0)
-    assert (second.slack_since, second.slack_share) == (3.0, pytest.approx(2.0 / 3.0))
+    assert (second.slack_since, second.slack_fraction) == (3.0, pytest.approx(2.0 / 3.0))
     assert tensions.most_at == (0, 3.0)
 
 
@@ -78,7 +78,7 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
     expected = {
         "fairlead_tension": first.fairlead, "anchor_tension": first.anchor, "uplift": first.uplift,
         "largest_tension": max(line.at_fairlead.largest for line in found.lines), "line_1_lying_length": first.lying,
-        "hanging_length": p.length - first.lying, "line_1_slack_share": 0.0, "offset": found.offset,
+        "hanging_length": p.length - first.lying, "line_1_slack_fraction": 0.0, "offset": found.offset,
         "fairlead_height": float(scene.points[0, -1, 2]) + p.depth,
         "line_weight": 9.81 * (80.0 - 1025.0 * math.pi / 4.0 * 0.09**2),
     }  # fmt: skip
@@ -88,7 +88,7 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
     expected = {
         "largest_tension": max(line.at_fairlead.largest for line in found.lines),
         "largest_at_anchor": max(line.at_anchor.largest for line in found.lines),
-        "largest_uplift": max(line.most_uplift for line in found.lines), "slack_share": 0.0,
+        "largest_uplift": max(line.most_uplift for line in found.lines), "slack_fraction": 0.0,
         "lying_length": found.lines[0].lying + found.lines[1].lying, "largest_offset": found.most_offset,
         "heave": float(scene.state.x[2, scene.system.node_count]),
         "critical_step": critical_step(scene.system, "leapfrog"), "rest_stretch": float(scene.start.stretch.max()),
@@ -115,7 +115,7 @@ def test_the_panel_says_the_readings(scene):
     slack = found.lines[0]._replace(slack_since=2.0)
     assert "since 3" in str(report.slack_text(slack, 5.0))
     assert str(report.slack_text(found.lines[0], 5.0)) == "never"
-    assert "25" in str(report.slack_text(found.lines[0]._replace(slack_share=0.25), 5.0))
+    assert "25" in str(report.slack_text(found.lines[0]._replace(slack_fraction=0.25), 5.0))
     assert f"{report.kilonewtons(2.0 * scene.start.scale)} kN" in str(report.readout_of(shown))
 
 

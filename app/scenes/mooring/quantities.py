@@ -28,10 +28,10 @@ def of_line_1(value: "Callable[[LineReading], float]") -> Callable[[Any], float]
 largest_tension = over_lines(max, lambda line: line.at_fairlead.largest)
 
 
-def breaking_load_use(now: Any) -> float:
-    """Largest tension over the breaking load; NaN if that is not known."""
-    load = 1e3 * now.params.breaking_load  # [N]
-    return largest_tension(now) / load if load > 0.0 else math.nan
+def load_use(tension: float, params: "MooringParams") -> float:
+    """A tension [N] over the breaking load; NaN if that is not known."""
+    load = 1e3 * params.breaking_load  # [N]
+    return tension / load if load > 0.0 else math.nan
 
 
 def hanging_length(now: Any) -> float:
@@ -56,7 +56,11 @@ QUANTITIES: Quantities = {
         "Largest standard deviation of the tension at a fairlead",
         over_lines(max, lambda line: line.at_fairlead.deviation),
     ),
-    "breaking_load_use": Quantity("1", "Largest tension at a fairlead over the breaking load", breaking_load_use),
+    "breaking_load_use": Quantity(
+        "1",
+        "Largest tension at a fairlead over the breaking load",
+        lambda now: load_use(largest_tension(now), now.params),
+    ),
     "largest_at_anchor": Quantity(
         "N", "Largest tension at an anchor", over_lines(max, lambda line: line.at_anchor.largest)
     ),

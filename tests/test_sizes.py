@@ -13,9 +13,7 @@ LONG_CLASSES: set[str] = set()
 MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; attributes that these assign to self
 LARGE_OBJECTS: set[str] = set()
 MANY_ATTRIBUTES = {
-    "NonlinearSea", "Panel",
-    "RadialSea", "RopeView", "Sea",
-    "StudentCloth", "Viewer",
+    "NonlinearSea", "Panel", "RadialSea", "Sea", "Viewer",
 }  # fmt: skip
 # Names that two packages of the library offer for different things. An entry goes as soon as they are one.
 NAMES_OF_TWO = {"simulate": {"sim.mooring", "sim.springs"}}

@@ -13,7 +13,7 @@ ANCHOR_SPEED, FAIRLEAD_SPEED = 0.02, 0.1
 
 
 class Attachments:
-    """The ends of all lines: where they are, and where they are dragged to."""
+    """The ends of all lines, with their places and the targets of drags."""
 
     def __init__(self, params: MooringParams) -> None:
         anchors, fairleads = first_places(params)
@@ -22,7 +22,7 @@ class Attachments:
 
     @property
     def places(self) -> Places:
-        """Where they are."""
+        """Their places."""
         return Places(tuple(one.position for one in self.anchors), tuple(one.position for one in self.fairleads))
 
     @property

@@ -9,6 +9,7 @@ from app.messages import RestartStatistics, Snapshot, Vector
 from app.render.cameras import set_clipping
 from app.render.dragging import GrabLine, drag
 from app.render.gizmo import Gizmo
+from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand, SceneView
 from app.scenes.mooring.arrangement import depth_of, extent
 from app.scenes.mooring.bed_view import DrawnBed
@@ -21,7 +22,6 @@ from app.scenes.mooring.report import TENSIONS, figures_of, marks_of, notes_of, 
 from app.scenes.mooring.watch_view import WatchCircle
 from app.scenes.mooring.water_view import SeenWater
 from app.scenes.springs.html import simple_drawing
-from app.scenes.springs.view import compile_tube
 
 ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07  # in `extent`s
 FAR_VIEW = 40.0  # where the picture ends, and the bed would, in `extent`s

@@ -8,7 +8,7 @@ SETTLING_TRANSITIONS = 16.0  # transition times after which nothing is left of t
 
 
 class WeatherChange(NamedTuple):
-    """When it was, and the sea before it."""
+    """The time of the change, and the sea before it."""
 
     at: float  # [s]
     transition: float  # [s] in which the waves adapt

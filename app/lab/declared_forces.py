@@ -42,7 +42,7 @@ def record(
 
 
 def accelerations(x: np.ndarray, v: np.ndarray, t: float, p: Any) -> np.ndarray:
-    """What the declared forces of a record add to the accelerations [m/s2] at the time t [s]; x, v: (n, 3)."""
+    """Accelerations (n, 3) [m/s2] by the forces of a record at the time t [s]; x, v: (n, 3)."""
     a = np.zeros(x.size)
     set_declared(np.ascontiguousarray(x.T).reshape(-1), np.ascontiguousarray(v.T).reshape(-1), t, p, a)
     return a.reshape(3, -1).T

@@ -1,4 +1,4 @@
-"""`each_link`: the one loop over the table of links, of ropes, other nets and lines, for all that is done to a link.
+"""`each_link`: the one loop over the table of links of ropes, other nets and lines.
 
 Its source is written when the program starts, as `sim.springs.forces.each` does for forces, and the compiler expands
 into it what is done to a link. Loops that follow the rows of a grid, so that they vectorise, stand where they are used.

@@ -67,6 +67,14 @@ def test_tangent_products_are_the_derivatives_of_the_forces(model, law):
     assert np.abs(products(net, net.x0, DAMPING) - damping).max() < 1e-8 * np.abs(damping).max()
 
 
+def test_links_without_rest_length_are_as_stiff_where_their_points_meet():
+    net = rope(3, damping=0.0, drag=0.0)
+    net = dataclasses.replace(net, families=(net.families[0]._replace(rest=0.0),))
+    k = net.families[0].stiffness / net.mass
+    chain = k * np.array([[0.0, 0.0, 0.0], [0.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+    np.testing.assert_allclose(products(net, np.zeros_like(net.x0), STIFFNESS), np.kron(np.eye(3), chain), atol=1e-9 * k)
+
+
 def test_a_capped_grab_is_stiff_across_only():
     grab = Grab(0, 2, (1.0, 2.0, 3.0), 500.0, 3.0, 10.0)
     net = dataclasses.replace(rope(3), grab=grab)

@@ -1,12 +1,22 @@
 // The light of a sea, found once for each pixel of the canvas.
 //
 // A graphics processor shades at least 2 x 2 pixels for each triangle, and also waves that nearer ones hide later. So the
-// polar grid first writes which place of the sea each pixel shows, one triangle finds the light of these places, and the
+// polar grid first writes which place of the sea each pixel shows, tiles of the canvas find the light of these places, and the
 // grid is drawn once more with these colours, with all samples of the canvas along its edges. This needs the table of the
 // sky (sky_table.js), which shows that the browser draws into floats; elsewhere the grid itself is shaded.
 
 const FLOAT = 1015, NEAREST = 1003; // three's constants
+const PLACED = "#define PLACED\n"; // for WATER_VERTEX
 
+// The vertices of the polar grid, once for both times that it is drawn. Of the columns, even ones have where a vertex is, and
+// odd ones where it rests.
+const VERTICES_FRAGMENT = `
+  ${POLAR_GLSL}
+  void main() {
+    vec2 rest, at = floor(gl_FragCoord.xy);
+    vec3 place = placeOf(at.y, floor(0.5 * at.x), rest);
+    gl_FragColor = vec4(mod(at.x, 2.0) < 0.5 ? place : vec3(rest, 0.0), 1.0);
+  }`;
 const PLACES_FRAGMENT = `
   ${WATER_PLACE}
   layout(location = 1) out highp vec4 restAndSteps;
@@ -75,13 +85,14 @@ const LIT_FRAGMENT = `
 function makeLit(sea) {
   const grid = new sea.mesh.constructor(sea.polar.geometry, new sea.mesh.material.constructor());
   grid.frustumCulled = false;
-  const [triangle, light] = [makeDome(sea), makeDome(sea)];
-  const lit = { grid, triangle, light, tiles: null, places: null, counts: null, lights: null, size: "" };
-  for (const dome of [triangle, light]) {
+  const [corners, triangle, light] = [makeDome(sea), makeDome(sea), makeDome(sea)];
+  const targets = { vertices: null, places: null, counts: null, lights: null };
+  const lit = { corners, grid, triangle, light, tiles: null, ...targets, size: "" };
+  for (const dome of [corners, triangle, light]) {
     dome.removeFromParent();
     dome.material.depthTest = false;
   }
-  for (const { material } of [grid, triangle, light]) material.fog = material.toneMapped = false;
+  for (const { material } of [corners, grid, triangle, light]) material.fog = material.toneMapped = false;
   return lit;
 }
 
@@ -100,28 +111,34 @@ function makeTiles(sea, columns, rows) {
 }
 
 function disposeTargets(lit) {
-  for (const one of [lit.tiles, lit.places, lit.counts, lit.lights]) one?.dispose();
+  for (const one of [lit.tiles, lit.vertices, lit.places, lit.counts, lit.lights]) one?.dispose();
 }
 
 function disposeLit(sea) {
   const { lit } = sea;
   if (!lit) return;
   disposeTargets(lit);
-  for (const { geometry, material } of [lit.triangle, lit.light]) for (const one of [geometry, material]) one.dispose();
+  for (const { geometry, material } of [lit.corners, lit.triangle, lit.light]) {
+    geometry.dispose();
+    material.dispose();
+  }
   lit.grid.material.dispose();
   sea.lit = null;
 }
 
 function resizeLit(base, sea, width, height) {
   const { lit, uniforms } = sea, columns = Math.ceil(width / TILE), rows = Math.ceil(height / TILE);
-  if (lit.size === [width, height].join()) return;
-  lit.size = [width, height].join();
+  const { rings, spokes } = POLAR[sea.polar.userData.fineness], size = [width, height, rings].join();
+  if (lit.size === size) return;
+  lit.size = size;
   disposeTargets(lit);
   const Target = skyTables.get(base).target.constructor, how = { format: RGBA, minFilter: NEAREST, magFilter: NEAREST };
+  lit.vertices = new Target(2 * spokes, rings + DOUBLED, { ...how, type: FLOAT, depthBuffer: false });
   lit.places = new Target(width, height, { ...how, type: FLOAT, count: 2 });
   lit.counts = new Target(columns, rows, { ...how, depthBuffer: false });
   lit.lights = new Target(width, height, { ...how, type: HALF_FLOAT, depthBuffer: false });
   lit.tiles = lit.light.geometry = makeTiles(sea, columns, rows);
+  uniforms.seaVertices.value = lit.vertices.texture;
   [uniforms.seaPlaces.value, uniforms.seaRest.value] = lit.places.textures;
   [uniforms.seaTiles.value, uniforms.seaLight.value] = [lit.counts.texture, lit.lights.texture];
 }
@@ -131,14 +148,15 @@ function lightSea(base, sea, renderer, scene, camera, shape, light) {
   const { uniforms } = sea;
   if (!uniforms.skyTable.value) return false;
   const lit = (sea.lit ??= makeLit(sea)), before = renderer.getRenderTarget(), gl = renderer.getContext();
-  const materials = [lit.grid, lit.triangle, lit.light].map(({ material }) => material);
+  const materials = [lit.corners, lit.grid, lit.triangle, lit.light].map(({ material }) => material);
   if (materials.some((material) => refused.has(material))) return false;
   resizeLit(base, sea, before?.width ?? gl.drawingBufferWidth, before?.height ?? gl.drawingBufferHeight);
   lit.grid.geometry = sea.polar.geometry;
   lit.grid.material.side = sea.mesh.material.side;
   litBy(lit.light.material, scene);
   const shaders = [
-    [`${shape.key} places`, shape.defines + WATER_VERTEX, shape.defines + PLACES_FRAGMENT],
+    [`${shape.key} vertices`, TARGET_VERTEX, shape.defines + VERTICES_FRAGMENT],
+    [`${shape.key} places`, PLACED + WATER_VERTEX, shape.defines + PLACES_FRAGMENT],
     ["springtide-water tiles", TARGET_VERTEX, TILES_FRAGMENT],
     [keyWithDetails(`${light.key} light`), LIGHT_VERTEX, withSky(light.defines + LIGHT_FRAGMENT, uniforms)],
   ];
@@ -150,7 +168,8 @@ function lightSea(base, sea, renderer, scene, camera, shape, light) {
   }
   const alpha = renderer.getClearAlpha();
   renderer.setClearAlpha(0);
-  for (const [target, drawn] of [[lit.places, lit.grid], [lit.counts, lit.triangle], [lit.lights, lit.light]]) {
+  const passes = [[lit.vertices, lit.corners], [lit.places, lit.grid], [lit.counts, lit.triangle], [lit.lights, lit.light]];
+  for (const [target, drawn] of passes) {
     renderer.setRenderTarget(target);
     renderer.clear();
     renderer.render(drawn, camera);

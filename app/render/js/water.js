@@ -25,7 +25,8 @@ function uniformsOf(base, mesh) {
   if (!uniformsByName.has(base)) {
     const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
-    for (const name of ["wavePlaces", "waveSlopes", "skyTable", "seaPlaces", "seaRest", "seaTiles", "seaLight"]) uniforms[name] = { value: null };
+    const textures = ["wavePlaces", "waveSlopes", "skyTable", "seaVertices", "seaPlaces", "seaRest", "seaTiles", "seaLight"];
+    for (const name of textures) uniforms[name] = { value: null };
     uniforms.eye = { value: [0, 0, 0] };
     for (const name of ["polarPlace", "polarSteps"]) uniforms[name] = { value: [0, 0, 0, 0] };
     for (const name of ["polarTurn", "farDepth"]) uniforms[name] = { value: 0 };
@@ -37,7 +38,8 @@ function uniformsOf(base, mesh) {
 
 function makeSea(mesh, uniforms) {
   // widest, highest: greatest displacement [m] along the level and upwards; cell: of the simulated grid [m]
-  return { mesh, geometry: mesh.geometry, uniforms, filled: -1, hasOil: false, hasHulls: false, polar: null, lit: null, dome: null, triangle: null, widest: 0, highest: 0, cell: 1 };
+  const made = { polar: null, lit: null, dome: null, triangle: null }, size = { widest: 0, highest: 0, cell: 1 };
+  return { mesh, geometry: mesh.geometry, uniforms, filled: -1, hasOil: false, hasHulls: false, ...made, ...size };
 }
 
 // Fill a texture with width x height x 4 half-precision numbers (half.js), and its smaller copies with their means where
@@ -187,9 +189,11 @@ shaders.push({
     const parts = { RINGS: ringLaw.value.y, CUTOUT: cutout.value.z, WIRE: wireframe, OIL: sea.hasOil, HULLS: sea.hasHulls };
     const variantOf = (...names) => {
       const defined = names.filter((name) => parts[name] > 0);
-      return { key: [`springtide-water${base}`, ...defined].join(" "), defines: defined.map((name) => `#define ${name}\n`).join("") };
+      const defines = defined.map((name) => `#define ${name}\n`).join("");
+      return { key: [`springtide-water${base}`, ...defined].join(" "), defines };
     };
-    const shape = variantOf("RINGS", "CUTOUT", "WIRE"), light = variantOf("RINGS", "OIL", "HULLS"), whole = variantOf(...Object.keys(parts));
+    const shape = variantOf("RINGS", "CUTOUT", "WIRE"), light = variantOf("RINGS", "OIL", "HULLS");
+    const whole = variantOf(...Object.keys(parts));
     // viser asks three for a reversed depth buffer; a browser without clip control has none.
     sea.uniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     const fineness = finenessOf(renderer.getContext());
@@ -199,7 +203,7 @@ shaders.push({
     const isLit = sea.polar.visible && lightSea(base, sea, renderer, scene, camera, shape, light);
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
-      shader.vertexShader = shape.defines + WATER_VERTEX;
+      shader.vertexShader = (isLit ? PLACED : shape.defines) + WATER_VERTEX;
       shader.fragmentShader = isLit ? shape.defines + LIT_FRAGMENT : withSky(whole.defines + WATER_FRAGMENT, sea.uniforms);
     };
     if (!replaceShader(mesh.material, isLit ? `${shape.key} lit` : keyWithDetails(whole.key), edit)) {

@@ -725,33 +725,50 @@ const WATER_GLSL = {
     }`,
 };
 
-// The vertices of the polar grid (polar_grid.js): ring and spoke, counted from the first that are drawn.
-const WATER_VERTEX = `
-  uniform mat4 fromSea;
+// A vertex of the polar grid (polar_grid.js) by ring and spoke, counted from the first that are drawn: where it rests, and
+// where the waves move it.
+const POLAR_GLSL = `
   uniform vec3 eye; // [m]
   uniform vec4 polarPlace; // x, y of the middle of the grid, its distance from below the eye, height that sets steps [m]
   uniform vec4 polarSteps; // of rings: the first, step, the last with waves; angle between spokes [rad]
   uniform float polarTurn; // [rad] of the first spoke
-  uniform float farDepth;
-  varying vec3 vSea;
-  varying vec2 vRest;
   ${WATER_GLSL.noise}
   ${WATER_GLSL.waves}
-  void main() {
-    float last = polarSteps.z, s = polarSteps.x + polarSteps.y * position.x, angle = polarTurn + polarSteps.w * position.y;
+  vec3 placeOf(float ring, float spoke, out vec2 rest) {
+    float last = polarSteps.z, s = polarSteps.x + polarSteps.y * ring, angle = polarTurn + polarSteps.w * spoke;
     float reach = polarPlace.z + polarPlace.w * sinh(last);
     float far = s > last + 0.5 * polarSteps.y ? reach * exp2((s - last) / polarSteps.y) : polarPlace.z + polarPlace.w * sinh(s);
-    vRest = polarPlace.xy + far * vec2(cos(angle), sin(angle));
+    rest = polarPlace.xy + far * vec2(cos(angle), sin(angle));
     // Heights are means over about half a triangle, so that waves do not flicker where the grid moves over them.
     #ifdef RINGS
-      vec3 moved = ringsAt(wavePlaces, vRest).xyz * (1.0 - ringFlatness(vRest));
+      vec3 moved = ringsAt(wavePlaces, rest).xyz * (1.0 - ringFlatness(rest));
     #else
       float wide = max(polarSteps.y * polarPlace.w * cosh(min(s, last)), polarSteps.w * far);
       float level = max(log2(0.5 * wide * (grid.x - 1.0) / grid.z), 0.0);
-      vec3 moved = wavesAt(wavePlaces, vRest, pieceShare(vRest, eye), level, false).xyz;
+      vec3 moved = wavesAt(wavePlaces, rest, pieceShare(rest, eye), level, false).xyz;
       moved *= 1.0 - smoothstep(0.7, 1.0, far / reach);
     #endif
-    vSea = vec3(vRest, 0.0) + moved;
+    return vec3(rest, 0.0) + moved;
+  }`;
+// PLACED: the vertices are in a texture (lit_sea.js), as two texels each.
+const WATER_VERTEX = `
+  uniform mat4 fromSea;
+  uniform float farDepth;
+  varying vec3 vSea;
+  varying vec2 vRest;
+  #ifdef PLACED
+    uniform highp sampler2D seaVertices;
+  #else
+    ${POLAR_GLSL}
+  #endif
+  void main() {
+    #ifdef PLACED
+      ivec2 at = ivec2(2.0 * position.y, position.x);
+      vSea = texelFetch(seaVertices, at, 0).xyz;
+      vRest = texelFetch(seaVertices, at + ivec2(1, 0), 0).xy;
+    #else
+      vSea = placeOf(position.x, position.y, vRest);
+    #endif
     gl_Position = projectionMatrix * viewMatrix * fromSea * vec4(vSea, 1.0);
     // What is beyond the camera's range is drawn at its end, as the sea reaches the horizon.
     float end = (farDepth > 0.5 ? 1.0 - 1e-6 : 1e-9) * gl_Position.w;

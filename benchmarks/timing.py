@@ -5,12 +5,14 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from app.timer import effort_clock
+
 
 def processor_time(call: Callable[[], Any]) -> float:
     """Processor time of this thread in a call [s], which other programs on the machine do not lengthen."""
-    start = time.thread_time()
+    start = effort_clock()
     call()
-    return time.thread_time() - start
+    return effort_clock() - start
 
 
 def median_times(calls: Sequence[Callable[[], Any]], repeats: int) -> list[float]:

@@ -19,10 +19,10 @@ ORDER = (
     ("scenes",),
     ("lab",),
     ("render",),
-    ("formats", "messages", "files"),
+    ("formats", "messages", "files", "timer"),
 )
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
-TOP_MODULES = {"__init__", "__main__", "messages", "files"}  # directly in app/
+TOP_MODULES = {"__init__", "__main__", "messages", "files", "timer"}  # directly in app/
 VIEWING = ("server", "panel", "render")  # folders that may import viser, beside each scene's drawing
 SCENES_SHARED = {"springs"}  # folders in app/scenes that are no scenes
 APART = ("springs", "ocean", "particles")

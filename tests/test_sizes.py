@@ -14,8 +14,7 @@ MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; att
 LARGE_OBJECTS = {"FileScene", "MooringScene"}
 MANY_ATTRIBUTES = {
     "FileScene", "FloatingBodies", "GuideTab", "LineScene", "MooringScene", "MooringView", "NonlinearSea", "Panel",
-    "RadialSea", "RadialSeaView", "RopeView", "Sea", "SquareSeaScene",
-    "StudentCloth", "Viewer",
+    "RadialSea", "RadialSeaView", "Sea", "SquareSeaScene", "Viewer",
 }  # fmt: skip
 # Names that two packages of the library offer for different things. An entry goes as soon as they are one.
 NAMES_OF_TWO = {"simulate": {"sim.mooring", "sim.springs"}}

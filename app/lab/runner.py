@@ -442,8 +442,10 @@ def dispose(process: Process, trace: IO[bytes] | None) -> None:
 def processor_time(pid: int) -> tuple[bool, float]:
     """Return whether a process runs or waits for the processor, and the processor time [s] that it has taken.
 
-    (False, 0.0) if the system does not say; Linux does.
+    (False, 0.0) on all systems but Linux.
     """
+    if sys.platform != "linux":
+        return False, 0.0
     try:
         fields = Path(f"/proc/{pid}/stat").read_text("ascii", "replace").rpartition(")")[2].split()
         return fields[0] == "R", sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")

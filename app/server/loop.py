@@ -38,7 +38,7 @@ from app.server.run import SceneRun
 from app.server.runs import Runs
 from app.server.shared_clock import Seat
 from app.server.tick_clock import Clock, TickClock
-from app.server.timer import effort_clock, fine_timer
+from app.timer import effort_clock, fine_timer
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do

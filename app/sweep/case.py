@@ -1,7 +1,6 @@
 """One case of a sweep, from its parameters to its numbers; runs in a worker, which may be another machine."""
 
 import math
-import time
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,6 +13,7 @@ from app.scenes import scene_named
 from app.scenes.quantities import Measure, measured
 from app.scenes.setups import make_setup
 from app.scenes.stepping import steps_to
+from app.timer import effort_clock
 from sim.jit import sources_hash
 from sim.validation import DivergenceError
 
@@ -57,7 +57,7 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
     end, message, diverged_at = FINISHED, "", math.nan
     row: tuple[float, ...] = ()
     running: Any = None
-    start = time.thread_time()
+    start = effort_clock()
     try:
         with np.errstate(all="ignore"):
             running = kind.make(make_setup(kind, "", values).params)
@@ -71,7 +71,7 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
         end, message, diverged_at = DIVERGED, str(reason), float(running.time)
     except Exception as error:
         end, message = FAILED, f"{type(error).__name__}: {error}"
-    return Outcome(end, message, diverged_at, time.thread_time() - start, found, labels)
+    return Outcome(end, message, diverged_at, effort_clock() - start, found, labels)
 
 
 def add_measures(

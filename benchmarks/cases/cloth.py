@@ -14,7 +14,6 @@ import dataclasses
 import functools
 import math
 import statistics
-import time
 from collections import Counter
 from typing import Any
 
@@ -22,6 +21,7 @@ import numpy as np
 from rich.progress import track
 
 from app.experiments.tables import front
+from app.timer import effort_clock
 from benchmarks.reference import RESOLUTION, Positions, Reference, largest_distances
 from benchmarks.timing import processor_time
 from sim.frames import steps_for
@@ -92,9 +92,9 @@ def ladder(net: Net, name: str, truth: Reference, max_time: float, timing: float
                 break  # finer rungs take longer, except with a solver that iterates
             continue
         with np.errstate(all="ignore"):
-            start = time.thread_time()
+            start = effort_clock()
             state = run(net, name, steps)
-            times = [time.thread_time() - start]
+            times = [effort_clock() - start]
             (error,) = largest_distances((state.x,), truth)
         if not error < MAX_ERROR:
             row["left out"] = "diverged"

@@ -1,10 +1,10 @@
 """The time of a frame of each scene: solving, making the snapshot, handing it to viser; and the bytes that are sent."""
 
 import statistics
-import time
 from typing import Any
 
 from app.scenes import NAMES
+from app.timer import effort_clock
 from benchmarks.labs import viewer_here
 
 FRAME_INTERVAL = 1 / 30  # [s] of simulated time in a frame, for every scene
@@ -23,14 +23,14 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
         steps = max(1, round(FRAME_INTERVAL / scene.step))
         times = []
         for _ in range(frames):
-            start = time.thread_time()
+            start = effort_clock()
             loop.run.advance(steps)
-            solved = time.thread_time()
+            solved = effort_clock()
             loop.run.snapshots.publish()
-            taken = time.thread_time()
+            taken = effort_clock()
             with viewer.transport.counted():
                 viewer.served.show_latest()
-            times.append((solved - start, taken - solved, time.thread_time() - taken))
+            times.append((solved - start, taken - solved, effort_clock() - taken))
         return times, (sent["bytes"] - before) / frames
 
 

@@ -5,12 +5,12 @@ Times are of the processor, and the ratio is the median of those of pairs: what 
 
 import ctypes
 import statistics
-import time
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from app.timer import effort_clock
 from benchmarks.native.build import build
 from benchmarks.tasks.rope import benchmark_rope
 from sim.springs import INTEGRATORS
@@ -29,9 +29,9 @@ def run_ours(net: Net, name: str, h: float, steps: int) -> tuple[float, np.ndarr
     """Processor time [s] of some steps of ours, and the positions after them, (3, 1, points) [m]."""
     x, v, account = net.x0.copy(), np.zeros_like(net.x0), np.zeros(2)
     p = net.kernel_view(h)
-    start = time.thread_time()
+    start = effort_clock()
     INTEGRATORS[name].advance(x.reshape(-1), v.reshape(-1), account, 0.0, h, steps, p, False)
-    return time.thread_time() - start, x
+    return effort_clock() - start, x
 
 
 def run_c(library: ctypes.CDLL, net: Net, name: str, h: float, steps: int) -> tuple[float, np.ndarray]:
@@ -42,9 +42,9 @@ def run_c(library: ctypes.CDLL, net: Net, name: str, h: float, steps: int) -> tu
     link = net.families[0]
     numbers = (link.stiffness, link.damping, link.rest, *(net.mass * g for g in net.gravity), net.drag, net.mass, h)
     pointers = [a.ctypes.data_as(ctypes.c_void_p) for a in (x, v, w, scratch)]
-    start = time.thread_time()
+    start = effort_clock()
     getattr(library, C_LOOPS[name])(n, *pointers, *(ctypes.c_double(q) for q in numbers), steps)
-    return time.thread_time() - start, x
+    return effort_clock() - start, x
 
 
 def cases(work: int) -> Iterator[tuple[Net, str, float, int]]:

@@ -1,12 +1,12 @@
 """Nonlinear waves: run time against error of order and grid, a step over its bare transforms, and plain numpy."""
 
 import math
-import time
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from app.timer import effort_clock
 from benchmarks.peers.nonlinear import PlainSea
 from benchmarks.timing import processor_time
 from sim.ocean import Sea
@@ -58,9 +58,9 @@ def ours(order: int, size: int, rtol: float) -> dict[str, Any]:
         return sea
 
     run()
-    began = time.thread_time()
+    began = effort_clock()
     sea = run()
-    seconds = (time.thread_time() - began) / PERIODS
+    seconds = (effort_clock() - began) / PERIODS
     return record("springtide", order, size, sea.steps / PERIODS, seconds, sea.height[:, 0])
 
 
@@ -68,10 +68,10 @@ def plain(order: int, size: int, steps: int) -> dict[str, Any]:
     """The run in numpy with so many steps a period."""
     wave, elevation, potential = start(size)
     sea = PlainSea(elevation[:, None], potential[:, None], (LENGTH, LENGTH), order, GRAVITY)
-    began = time.thread_time()
+    began = effort_clock()
     with np.errstate(all="ignore"):
         sea.advance(PERIODS * LENGTH / wave.speed, PERIODS * steps)
-    seconds = (time.thread_time() - began) / PERIODS
+    seconds = (effort_clock() - began) / PERIODS
     return record("numpy, scipy.fft", order, size, steps, seconds, sea.height[:, 0])
 
 
@@ -80,9 +80,9 @@ def findings(_: list[dict[str, Any]]) -> list[dict[str, Any]]:
     linear = Sea(SEA_SIZE, 500.0, "jonswap", wind_speed=15.0, fetch=50e3, choppiness=0.0, precision="double")
     sea = NonlinearSea(start=linear, order=SEA_ORDER, rtol=SEA_TOLERANCE, fade=0.0)
     sea.advance(1.0)
-    steps, began = sea.steps, time.thread_time()
+    steps, began = sea.steps, effort_clock()
     sea.advance(1.0 + SEA_DURATION)
-    share = (time.thread_time() - began) / SEA_DURATION
+    share = (effort_clock() - began) / SEA_DURATION
     each = SEA_DURATION / (sea.steps - steps)
     fixed = NonlinearSea(size=SEA_SIZE, length=500.0, order=SEA_ORDER, start=sea.waves_at(), step=each, fade=0.0)
     fixed.advance(each)

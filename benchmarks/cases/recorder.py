@@ -1,6 +1,5 @@
 """Cost of recording: processor time and memory of the frames and states that are kept."""
 
-import time
 from typing import Any
 
 from app.panel.recorder import Recorder
@@ -9,6 +8,7 @@ from app.scenes.moments import arrays_in
 from app.scenes.setups import make_setup
 from app.server.loop import SimLoop
 from app.server.snapshots import KEEP_INTERVAL, KEEP_SHARE
+from app.timer import effort_clock
 
 DURATION, QUICK_DURATION = 130.0, 1.0  # [s] of wall time that are recorded
 
@@ -28,13 +28,13 @@ def record(name: str, duration: float) -> dict[str, Any]:
     while wall < duration:
         loop.tick(scene.frame_interval)
         wall += scene.frame_interval
-        start = time.thread_time()
+        start = effort_clock()
         recorder.note(loop.latest, wall)
-        noting += time.thread_time() - start
+        noting += effort_clock() - start
         if kept < wall / KEEP_INTERVAL:  # as often as the loop does
-            start = time.thread_time()
+            start = effort_clock()
             arrays_in(scene.keep())
-            keeping += time.thread_time() - start
+            keeping += effort_clock() - start
             kept += 1
     low, high = recorder.span()
     return {

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from rich.progress import track
 
 from app.formats.text_tables import Rows
+from app.timer import process_effort_clock
 from benchmarks.peers.own_runs import OwnRuns
 from benchmarks.peers.record import Peer
 from benchmarks.reference import RESOLUTION, largest_distances
@@ -62,9 +63,9 @@ def undisturbed_time(call: Callable[[], Any]) -> float:
     On a busy machine a long call waits for a core, and one shorter than a slice of the scheduler does not: wall times
     would favour the short one. Several threads at once make the wall time the lesser.
     """
-    start, used = time.perf_counter(), time.process_time()
+    start, used = time.perf_counter(), process_effort_clock()
     call()
-    return min(time.process_time() - used, time.perf_counter() - start)
+    return min(process_effort_clock() - used, time.perf_counter() - start)
 
 
 def in_turns(calls: Sequence[Callable[[], Any]], max_time: float) -> list[list[float]]:

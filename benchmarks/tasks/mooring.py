@@ -12,7 +12,6 @@ import math
 import os
 import statistics
 import tempfile
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -21,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.formats.text_tables import Rows
+from app.timer import process_effort_clock
 from benchmarks.peers.ladder import RATIO
 from benchmarks.peers.record import is_installed
 from sim.mooring import Line, LineType, Point, System, critical_step, simulate, write_moordyn
@@ -57,7 +57,7 @@ def fairlead(t: float) -> tuple[float, float, float]:
 
 def our_run(system: System, start: Rest, method: str, step: float) -> Measured:
     """A run of ours."""
-    begin = time.process_time()
+    begin = process_effort_clock()
     run = simulate(
         system,
         duration=END,
@@ -67,7 +67,7 @@ def our_run(system: System, start: Rest, method: str, step: float) -> Measured:
         start=State.still(start.nodes),
         motion={2: fairlead},
     )
-    return Measured(run.x[1][-1], time.process_time() - begin)
+    return Measured(run.x[1][-1], process_effort_clock() - begin)
 
 
 def their_run(system: System, step: float) -> Measured:
@@ -88,13 +88,13 @@ def their_run(system: System, step: float) -> Measured:
             moordyn.Init(mooring, list(fairlead(0.0)), [0.0, 0.0, 0.0])
             line = moordyn.GetLine(mooring, 1)
             every = max(step, 1e-3)  # [s] at which it is told where the fairlead is
-            begin = time.process_time()
+            begin = process_effort_clock()
             for i in range(round(END / every)):
                 t = i * every
                 ahead, behind = fairlead(t + every), fairlead(t)
                 speed = [(a - b) / every for a, b in zip(ahead, behind, strict=True)]
                 moordyn.Step(mooring, list(behind), speed, t, every)
-            taken = time.process_time() - begin
+            taken = process_effort_clock() - begin
             x = [moordyn.GetLineNodePos(line, i) for i in range(system.lines[0].segments + 1)]
             moordyn.Close(mooring)
         finally:

@@ -1,6 +1,7 @@
 """Two commits of a tiny repository whose benchmark writes a table of its own."""
 
 import json
+import shutil
 import subprocess
 
 import pytest
@@ -29,6 +30,8 @@ def git(root, *arguments):
 @pytest.fixture
 def repository(tmp_path):
     """Commits `slow` and `fast`, of 4 and 1 ms, and `broken`."""
+    if shutil.which("git") is None:
+        pytest.skip("git is not installed")
     root = tmp_path / "repository"
     (root / "app").mkdir(parents=True)
     (root / "app" / "__init__.py").touch()

@@ -92,7 +92,7 @@ def test_labels_are_dark_in_dark_mode_and_light_again(
 
     def brightness() -> float:
         """Of the last label and its text [0..255], to the right of its pole and above it; that of the sky is 115."""
-        x, y = tab.pixel(np.array(lab.view.ropes.labels[-1].position))
+        x, y = tab.pixel(np.array(lab.view.ropes.labels.handles[-1].position))
         picture = tab.page.screenshot(clip={"x": x + 4, "y": y - 16, "width": 60, "height": 12})
         return float(np.median(np.asarray(Image.open(io.BytesIO(picture)).convert("L"))))
 

@@ -37,7 +37,7 @@ def teacher(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name, text in FILES.items():
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
+        path.write_text(text, "utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -46,7 +46,7 @@ def test_the_teacher_s_example_works(teacher: Path) -> None:
     assert set(FILES) == {"my_tasks/pendulum_period.toml", "my_tasks/pendulum_period.py"}
     new, check = (shlex.split(line)[1:] for line in COMMANDS[-1].splitlines())
     assert main(new) == 0
-    stub = (teacher / "course" / "pendulum.py").read_text()
+    stub = (teacher / "course" / "pendulum.py").read_text("utf-8")
     assert "def pendulum_period(length, gravity):" in stub
     task = next(task for task in load_tasks(teacher / "my_tasks") if task.name == "pendulum_period")
     assert task.guide is not None
@@ -57,8 +57,8 @@ def test_the_teacher_s_example_works(teacher: Path) -> None:
     assert main(check) == 1
     assert main(["lab", "new", "solved", "--solutions", "--tasks", "my_tasks"]) == 0
     assert main(["lab", "check", "solved", "--tasks", "my_tasks", "--report", "report.html"]) == 0
-    assert "The period of a pendulum" in (teacher / "report.html").read_text()
-    assert "period [s]" in (teacher / "report.html").read_text()
+    assert "The period of a pendulum" in (teacher / "report.html").read_text("utf-8")
+    assert "period [s]" in (teacher / "report.html").read_text("utf-8")
 
 
 @pytest.mark.parametrize(

@@ -272,10 +272,14 @@ print(x[0])
 """
 
 
-def test_a_full_disk_and_rubbish_in_the_cache_cost_a_compilation_and_no_more(tmp_path):
+def test_a_full_disk_costs_a_compilation_and_no_more(tmp_path):
+    pytest.importorskip("resource", reason="this system limits no sizes of files")
     full = f"from tests.full_disk import full_disk\nwith full_disk(3000):{textwrap.indent(ADDS, '    ')}"
     assert python(full, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
     assert not list(tmp_path.rglob("*.nbc"))
+
+
+def test_rubbish_in_the_cache_costs_a_compilation_and_no_more(tmp_path):
     assert python(ADDS, SPRINGTIDE_CACHE=str(tmp_path)) == "2.0"
     for pattern in ("*.nbc", "*.nb?"):
         kept = list(tmp_path.rglob(pattern))

@@ -17,20 +17,19 @@ from app.scenes.cloth.quantities import QUANTITIES, ClothInstant
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.springs.divergence import holding_step
-from app.scenes.springs.grab import GrabFrame, ParticleGrab
+from app.scenes.springs.grab import GrabSpring, ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
-from sim.springs import Air, Grab, Net, cloth
-from sim.springs.analysis.energy_account import EnergyAccount
+from sim.springs import Air, Net, cloth
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
 from sim.springs.integrator_fallback import integrator_or_fallback
-from sim.springs.stability import Mode, gauge, gauge_of, gershgorin
-from sim.springs.state import State, advance, energy
+from sim.springs.stability import Mode, gershgorin
+from sim.springs.state import State, energy
 
 if TYPE_CHECKING:
     from app.lab.live_code import LiveCode
@@ -39,7 +38,7 @@ if TYPE_CHECKING:
 MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Gershgorin's bound is shown
 MAX_SPHERE_SPEED = 3.0  # [m/s] along an axis, however fast it is dragged: faster, it would pass through the cloth
 MIN_PARTICLES_FOR_TWO_THREADS = 2000
-MAX_DISTANCE = 60.0  # [m] from the origin; farther out the run has diverged
+MAX_REACH = 60.0  # [m] of a particle from the first one along an axis; beyond it the run has diverged
 GRAB_LENGTH = 0.1  # [m] at which a grab has its largest force, if the step allows
 MAX_GRAB_STIFFNESS_STEP = 0.1  # stiffness of a grab over mass / step^2, so that it is stable at any step
 BOB_RATE = 4.0  # [rad/s] of the sphere's motion up and down
@@ -81,13 +80,17 @@ def needs(params: ClothParams) -> tuple[str, ...]:
     return pieces_of_law((integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE), params.law)
 
 
+def cloth_bound(net: Net, state: State) -> float:
+    """Largest reach [m] of a cloth."""
+    return MAX_REACH
+
+
 class ClothScene(NetScene[ClothParams]):
     """The cloth on the simulation thread."""
 
-    CHANGING = ("net", "state", "account", "account_kept", "sphere", "pins", "corrections")
+    CHANGING = ("motion", "account_kept", "sphere", "pins")
     ASSESSMENT_INTERVAL = 1.0
     frame_interval = FRAME_INTERVAL
-    max_reach = MAX_DISTANCE
     student: "StudentCloth | None" = None
     stability: ClothReadings
 
@@ -106,7 +109,7 @@ class ClothScene(NetScene[ClothParams]):
         """Advice on a faster step."""
         touches_itself = self.params.thickness > 0.0
         return faster_steps(
-            self.integrator, self.stability.stability, "rows and columns", touches_itself=touches_itself
+            self.motion.method, self.stability.stability, "rows and columns", touches_itself=touches_itself
         )
 
     @property
@@ -122,7 +125,7 @@ class ClothScene(NetScene[ClothParams]):
     def reset(self) -> None:
         """The cloth, its pins and the sphere where the parameters start them."""
         self.sphere = CriticallyDampedTracker(sphere_home(self.params), MAX_SPHERE_SPEED)
-        self.place_at_rest(build(self.params, self.sphere.position))
+        self.place_at_rest(build(self.params, self.sphere.position), cloth_bound)
         self.account_kept = self.with_account
         self.grab.clear()
         self.pins = Pins(self.net, self.state)
@@ -139,18 +142,15 @@ class ClothScene(NetScene[ClothParams]):
             self.student.set_up(self.params)
             self.student.begin(self.student.rows_of(self.state.x), self.student.rows_of(self.state.v), self.state.t)
 
-    def hold_pins(self, before: Net) -> None:
-        """Hold the pins where they are, and still, if the net before had others."""
-        if (self.net.shape, self.net.pinned) != (before.shape, before.pinned):
-            self.pins = Pins(self.net, self.state)
-            for i, j in self.net.pinned:
-                self.state.v[:, i, j] = 0.0
-
     def change_forces(self, params: ClothParams) -> None:
         """Take new parameters. The motion goes on, interpolated where the grid changes."""
         old, self.params = self.params, params
         self.tuner.restart()
-        self.take_net(build(params, self.sphere_at(self.state.t)))
+        net = build(params, self.sphere_at(self.state.t))
+        other_pins = (net.shape, net.pinned) != (self.net.shape, self.net.pinned)
+        self.take_net(net, still_pins=other_pins)
+        if other_pins:
+            self.pins = Pins(net, self.state)
         self.assess_stability()
         if self.student is not None:
             self.student.change(params, old, self.state)
@@ -170,7 +170,7 @@ class ClothScene(NetScene[ClothParams]):
             case Release(client):
                 self.grab.release(client)
             case StudentAnswer() if self.student is not None:
-                self.student.collect(MAX_DISTANCE)
+                self.student.collect(MAX_REACH)
             case _:
                 pass
 
@@ -178,26 +178,21 @@ class ClothScene(NetScene[ClothParams]):
         """Take steps of `net` in place, on one or two threads. Returns the net that took the last one."""
         with_account = self.with_account
         if with_account and not self.account_kept:
-            self.account = EnergyAccount(self.net, self.state)
+            self.motion.restart_account()
         self.account_kept = with_account
 
         def take(threads: int, count: int) -> None:
             nonlocal net
             if net.threads != threads:  # a net is checked as a whole each time that one is made
                 net = dataclasses.replace(net, threads=threads)
-            advance(net, state, self.integrator, self.step, count, with_account=with_account)
+            self.motion.take_steps(net, state, count, with_account=with_account)
 
         self.tuner.advance(steps, take, large=self.particles >= MIN_PARTICLES_FOR_TWO_THREADS)
         return net
 
-    def distance(self, found: Extremes) -> float:
-        """Distance [m] of the farthest particle from the origin, along an axis."""
-        return found.max_coordinate
-
     def moved(self, good: State, steps: int, found: Extremes) -> None:
         """Count the corrections, and let the student's cloth follow."""
-        if self.integrator.implicit:
-            self.corrections = (self.state.force_evals - good.force_evals) / steps
+        self.motion.count_evals()
         if self.student is not None:
             self.student.follow_cloth(self.net, good, self.state, self.step)
 
@@ -210,29 +205,22 @@ class ClothScene(NetScene[ClothParams]):
         before = self.sphere_at(t)
         self.sphere.advance(t, duration)
         after = self.sphere_at(t + duration)
-        grab = None
-        if self.grab.grabbed is not None:
-            _, index, hand = self.grab.grabbed
-            hand.advance(t, duration)
-            row, col = divmod(index, self.params.cols)
-            stiffness, damping = self.grab_spring(index)
-            grab = Grab(row, col, hand.position, stiffness, damping, self.params.pull)
         return dataclasses.replace(
             self.net,
             pin_paths=self.pins.paths(t, duration),
             sphere=(*before, self.params.sphere_radius) if self.params.sphere else None,
             sphere_velocity=tuple((b - a) / duration for a, b in zip(before, after, strict=True)),
             epoch=t,
-            grab=grab,
+            grab=self.grab.pull(t, duration, self.net.shape, self.grab_spring),
             air=Air(gusty_wind(self.params, t), self.params.air) if self.params.air > 0.0 else None,
         )
 
-    def grab_spring(self, index: int) -> tuple[float, float]:
-        """Stiffness [N/m] and damping [N s/m] of a grab of a particle."""
-        mass = float(self.net.masses.flat[index])
+    def grab_spring(self, particle: int) -> GrabSpring:
+        """The spring of a grab of a particle."""
+        mass = float(self.net.masses.flat[particle])
         stiffest = MAX_GRAB_STIFFNESS_STEP * mass / self.step**2
         stiffness = min(self.params.pull / GRAB_LENGTH, stiffest)
-        return stiffness, 0.5 * math.sqrt(stiffness * mass)
+        return GrabSpring(stiffness, 0.5 * math.sqrt(stiffness * mass), self.params.pull)
 
     def sphere_at(self, t: float) -> Vector:
         """Centre of the sphere at time t [m]."""
@@ -241,21 +229,18 @@ class ClothScene(NetScene[ClothParams]):
 
     def assess_stability(self) -> None:
         """Compare the step with its limit: at the state as it is where that is quick, else by a bound for all."""
-        self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net, self.step)
-        record = self.integrator
-        exact = self.particles <= MAX_ASSESSED_PARTICLES
-        if exact:
-            stability = gauge(self.net, record, self.step, self.state)
-        else:
+        exact, modes = self.particles <= MAX_ASSESSED_PARTICLES, None
+        if not exact:
             omega, rate = gershgorin(self.net, self.state.x)
-            stability = gauge_of([Mode(omega**2, omega**2, rate)], record, self.step)
-        readings = ClothReadings(stability, exact, self.corrections, self.fallback_note, self.tuner.threads)
+            modes = [Mode(omega**2, omega**2, rate)]
+        stability, corrections = self.motion.gauge(modes), self.motion.corrections
+        readings = ClothReadings(stability, exact, corrections, self.fallback_note, self.tuner.threads)
         self.stability = self.recent.worst(self.state.t, readings)
         self.assessed_at = self.state.t
 
     def alternative(self) -> str:
         """A method that would hold."""
-        return "" if self.integrator.implicit else "implicit Euler, which is stable at every step"
+        return "" if self.motion.method.implicit else "implicit Euler, which is stable at every step"
 
     def add_plot_row(self) -> None:
         """Add the energies and the largest strain at the scene's time."""
@@ -267,16 +252,11 @@ class ClothScene(NetScene[ClothParams]):
     def readings(self) -> ClothReadings:
         """The worst stability of the last assessments, and the cost of the last steps."""
         threads, left_out = self.tuner.threads, self.state.left_out
-        return self.stability._replace(corrections=self.corrections, threads=threads, left_out=left_out)
+        return self.stability._replace(corrections=self.motion.corrections, threads=threads, left_out=left_out)
 
     def frame(self) -> ClothFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""
         params = self.params
-        grab = None
-        if self.grab.grabbed is not None:
-            _, index, hand = self.grab.grabbed
-            distance = float(np.linalg.norm(np.asarray(hand.position) - self.state.x.reshape(3, -1)[:, index]))
-            grab = GrabFrame(index, hand.position, min(1.0, distance * self.grab_spring(index)[0] / params.pull))
         x, student = self.state.x, None
         both = None if self.student is None else self.student.pictured(x)
         if both is not None:
@@ -288,7 +268,7 @@ class ClothScene(NetScene[ClothParams]):
             pins=None if params.pinned == "free" else self.pins.targets,
             sphere=(*self.sphere_at(self.time), params.sphere_radius) if params.sphere else None,
             sphere_home=self.sphere.target,
-            grab=grab,
+            grab=self.grab.frame(self.state.x, self.grab_spring),
             student=student,
         )
         self.last_moments.add(self.state.t, frame, frame.points)

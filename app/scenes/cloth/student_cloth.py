@@ -30,11 +30,15 @@ class StudentCloth(StudentNet):
         super().__init__(live)
         self.side = COARSE_SIDES[0]
 
+    @property
+    def is_comparable(self) -> bool:
+        """True if it has the same points as the program's."""
+        return self.params.rows * self.params.cols <= MAX_SAME_POINTS
+
     def set_up(self, params: ClothParams) -> bool:
         """Choose the points and their links. True if they have changed."""
         self.params, self.unlike = params, unlike(params)
         rows, cols = params.rows, params.cols
-        self.is_comparable = rows * cols <= MAX_SAME_POINTS
         if not self.is_comparable:
             self.rows.clear()
             rows, cols = min(rows, self.side), min(cols, self.side)

@@ -124,7 +124,7 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         self.show_surroundings(p.floor, p.grid, frame.grab)
         self.sphere.show(frame.sphere, frame.sphere_home if p.handles else None)
         if frame.student is None:
-            self.student.set_visible(False)
+            self.student.hide()
         else:
             own = frame.student.reshape(-1, 3)
             self.student.show(own, faces(*frame.student.shape[:2]), own[-1], self.points[-1])

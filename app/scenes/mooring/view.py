@@ -17,6 +17,7 @@ from app.render.gizmo import Gizmo
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import as_linear_bytes
 from app.render.meshes import ball, smooth_line, sweep, tube_faces
+from app.render.tubes import compile_tube
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import Pieces, PostCommand, SceneView
 from app.scenes.mooring.arrangement import depth_of, diameter_of, extent, has_body, hull_of, width_of
@@ -24,7 +25,6 @@ from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
 from app.scenes.springs.html import simple_drawing
-from app.scenes.springs.view import compile_tube
 from sim.floating.rotation import heading_angle, rotation_matrix
 
 SIDES = 6  # of a tube

@@ -10,6 +10,7 @@ from app.scenes.charts import DASHES, PALETTE, Chart, CurveAxes
 from app.scenes.plot_rows import ROW_INTERVAL, row_number
 from app.scenes.race.entrants import Race
 from app.scenes.race.names import rope_name
+from app.scenes.springs.net_motion import rope_lengths
 
 MAX_ROWS = 600  # a longer race keeps every second row, then every fourth, and so on
 ERROR_TICKS = (  # [m] from end to end of the error's scale
@@ -42,8 +43,7 @@ class RaceCharts:
         self.drawn: dict[str, Chart] = {}
         net = race.entrants[0].net
         n, weight = net.shape[1] - 1, net.mass * abs(net.gravity[2])
-        fall = n * net.families[0].rest + 0.5 * weight / net.families[0].stiffness * n * (n + 1)  # [m]
-        self.max_energy = MAX_ENERGY_RATIO * n * max(weight, net.mass) * fall  # [J]
+        self.max_energy = MAX_ENERGY_RATIO * n * max(weight, net.mass) * sum(rope_lengths(net))  # [J]
 
     def update(self) -> None:
         """Add a row if one is due."""
@@ -59,7 +59,7 @@ class RaceCharts:
         row[1] = self.error_floor()
         for i, entrant in enumerate(race.entrants):
             row[2 + 2 * i] = race.error(entrant)
-            row[3 + 2 * i] = math.nan if entrant.failure else entrant.account.error(entrant.net, entrant.state)
+            row[3 + 2 * i] = math.nan if entrant.failure else entrant.energy_error()
         self.count += 1
         self.drawn = {}
 

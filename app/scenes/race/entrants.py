@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.race.parameters import RaceParams, method_of
-from app.scenes.springs.divergence import limit_text
+from app.scenes.springs.divergence import short_divergence_text
+from app.scenes.springs.net_motion import NetMotion, rope_lengths
 from sim.frames import steps_for
 from sim.springs import INTEGRATORS, Integrator, Net
-from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.reference_run import TRUST_FACTOR, ReferenceRun
-from sim.springs.stability import Gauge, gauge
+from sim.springs.stability import Gauge
 from sim.springs.state import State, advance
 
 MAX_EQUAL_COST_STEP = 0.1  # [s] longest step that the rule "same cost" gives
@@ -104,61 +104,45 @@ def tick_of(steps: list[float]) -> float:
     return longest * next((m for m in multiples if loss(m) <= MAX_SHORTENING), min(multiples, key=loss))
 
 
-class Entrant:
-    """One rope of the race."""
+def race_bound(net: Net, state: State) -> float:
+    """Largest reach [m] of a rope that races: closer than alone, as the picture also shows where it has stopped."""
+    # A swinging rope pulls a point with about three times its weight.
+    length, stretch = rope_lengths(net)
+    return 0.5 + 1.2 * max(length + 4.0 * stretch, extremes(state.x, state.v).reach)
+
+
+class Entrant(NetMotion):
+    """The motion of one rope of the race."""
 
     def __init__(
         self,
         number: int,
         net: Net,
-        record: Integrator,
+        method: Integrator,
         step: float,
         tick: float,
         clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """step: [s] as the rule gives it; the one taken divides `tick` [s]. clock: [s], to time a step."""
-        self.number, self.record, self.clock = number, record, clock
+        self.number, self.clock = number, clock
         self.substeps = steps_for(tick, step)  # a tick
-        self.step = tick / self.substeps  # [s]
-        self.state = State.at_rest(net)
-        self.net = net
-        self.account = EnergyAccount(net, self.state)
+        super().__init__(net, method, tick / self.substeps, race_bound)
         self.failure = ""
         self.step_time = 0.0  # [s]
-        self.counted = 0, 0  # force evaluations and steps at the last assessment
-        self.evals, self.corrections = float(record.evals), 0.0  # a step
-        self.gauge = gauge(net, record, self.step, self.state)
-        self.set_bounds()
-        if record.undamped_only and net.is_damped:
+        self.stability = self.gauge()
+        self.check_damping()
+        self.assess_stability()
+
+    def change_net(self, net: Net, *, still_pins: bool = False) -> None:
+        """Go on with another net; a rope whose method allows no damping stops if the net has some."""
+        super().change_net(net, still_pins=still_pins)
+        self.check_damping()
+        self.assess_stability()
+
+    def check_damping(self) -> None:
+        """Stop the rope if the net is damped and its method allows no damping."""
+        if not self.failure and self.method.undamped_only and self.net.is_damped:
             self.failure = "allows no damping: set damping and air drag to 0, and switch the floor off"
-        self.assess_stability()
-
-    def set_bounds(self) -> None:
-        """How far a rope of these parameters may get."""
-        link = self.net.families[0]
-        sag = self.net.mass * abs(self.net.gravity[2]) / max(link.stiffness, 1e-9)
-        n = self.net.shape[1] - 1
-        # A swinging rope pulls a point with about three times its weight. Beyond this bound it is no rope any more.
-        reach = extremes(self.state.x, self.state.v).reach
-        self.max_reach = 0.5 + 1.2 * max(n * link.rest + 2.0 * sag * n * (n + 1), reach)  # [m] from the root
-
-    def change_net(self, net: Net) -> None:
-        """Go on with another net."""
-        stored = self.account.stored(self.net, self.state)
-        self.net = net
-        self.account.book_change(stored, net, self.state)
-        self.set_bounds()
-        self.assess_stability()
-
-    @property
-    def stiffness(self) -> float:
-        """[N/m] of its links."""
-        return self.net.families[0].stiffness
-
-    @property
-    def integrator(self) -> str:
-        """Name of its method."""
-        return self.record.name
 
     def after(self, net: Net, ticks: int) -> tuple[State, str]:
         """The state after `ticks` ticks, the last good one where it diverges, and why it has stopped, or "".
@@ -168,34 +152,18 @@ class Entrant:
         if self.failure:
             return self.state, self.failure
         state = self.state.copy()
-        advance(net, state, self.record, self.step, ticks * self.substeps, with_account=True)
-        if not extremes(state.x, state.v).reach < self.max_reach:  # true of a NaN as well
-            return self.state, self.failure_at(state.t)
-        return state, ""
-
-    def failure_at(self, t: float) -> str:
-        """Why it diverged at time t [s]."""
-        g = self.gauge
-        cause = "its step is too long" if g.share > 1.0 else "an impact was too sudden for its step"
-        return f"diverged at {t:.2f} s: {cause} ({limit_text(g)})"
-
-    def move_root(self, position: Vector) -> None:
-        """Put the root to rest at a position [m]."""
-        self.state.x[:, 0, 0] = position
-        self.state.v[:, 0, 0] = 0.0
+        self.take_steps(net, state, ticks * self.substeps)
+        if self.holds(extremes(state.x, state.v)):
+            return state, ""
+        return self.state, short_divergence_text(state.t, self.stability)
 
     def assess_stability(self) -> None:
         """Compare the step with its limit in the present state, and measure its cost."""
         if self.failure:
             return
-        self.gauge = gauge(self.net, self.record, self.step, self.state)
+        self.stability = self.gauge()
         self.step_time = self.timed_step()
-        evals, steps = self.state.force_evals, self.state.steps
-        if steps > self.counted[1]:
-            if self.record.implicit:
-                self.evals = (evals - self.counted[0]) / (steps - self.counted[1])
-                self.corrections = max(0.0, self.evals - self.record.evals_outside_newton)
-            self.counted = evals, steps
+        self.count_evals()
 
     def timed_step(self) -> float:
         """Time [s] of a step from here: the shortest of a few runs of many steps, minus the cost of one call."""
@@ -206,19 +174,11 @@ class Entrant:
             for i, steps in enumerate((1, many)):
                 trial = self.state.copy()
                 start = self.clock()
-                advance(self.net, trial, self.record, self.step, steps)
+                self.take_steps(self.net, trial, steps, with_account=False)
                 shortest[i] = min(shortest[i], self.clock() - start)
         now = max(0.0, shortest[1] - shortest[0]) / (many - 1)
         # Down at once, up slowly: what disturbs a timing makes it longer.
         return now if not 0.0 < self.step_time < now else 0.9 * self.step_time + 0.1 * now
-
-    def stored_energy(self) -> float:
-        """Stored energy [J]."""
-        return self.account.stored(self.net, self.state)
-
-    def numerical_dissipation(self) -> float:
-        """Energy [J] that the method took since the start, negative where it fed the motion."""
-        return self.account.numerical_dissipation(self.net, self.state)
 
 
 class Race:
@@ -271,7 +231,7 @@ class Race:
         """Put the roots of all that have not failed to rest at a position [m]."""
         for entrant in self.entrants:
             if not entrant.failure:
-                entrant.move_root(position)
+                entrant.place_root(position)
         for reference in self.references:
             reference.pin(position)
 
@@ -297,7 +257,7 @@ class Race:
                 integrator=e.integrator,
                 step=e.step,
                 stiffness=e.stiffness,
-                gauge=e.gauge,
+                gauge=e.stability,
                 evals=e.evals,
                 corrections=e.corrections,
                 step_time=e.step_time,

@@ -129,11 +129,6 @@ def method_of(params: RaceParams, number: int) -> str:
     return params.integrator if number == 1 else getattr(params, f"integrator_{number}")
 
 
-def offset_of(params: RaceParams, index: int) -> float:
-    """Drawn y [m] of rope `index`, from 0. All ropes move in the same place; only the drawing differs."""
-    return (index - 0.5 * (params.ropes - 1)) * params.spacing
-
-
 def hidden(params: RaceParams) -> set[str]:
     """The parameters that mean nothing with the others as they are."""
     names = hidden_of_rope(params, sphere=False)

@@ -6,25 +6,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import GrabTo, Place, PlotRow, Release, SceneCommand, Vector, vector_of
+from app.messages import PlotRow, SceneCommand, Vector
 from app.scenes.charts import Chart
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.moments import copied, restore
 from app.scenes.race.charts import CURVES, RaceCharts
-from app.scenes.race.entrants import Race, RaceReadings
+from app.scenes.race.entrants import Race, RaceReadings, race_bound
 from app.scenes.race.names import rope_labels
-from app.scenes.race.parameters import ABOUT, PRESETS, RaceParams, hidden, method_of, offset_of
+from app.scenes.race.parameters import ABOUT, PRESETS, RaceParams, hidden, method_of
 from app.scenes.race.quantities import QUANTITIES
 from app.scenes.springs.grab import GrabFrame
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
-from app.scenes.springs.rope_handles import RopeHandles
+from app.scenes.springs.net_motion import NetMotion
+from app.scenes.springs.rope_handles import RopeHandles, grab_spring, offset_of
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from sim.springs import INTEGRATORS, Net, rope
-from sim.springs.analysis.extremes import extremes
 from sim.springs.analysis.reference_run import ReferenceRun
-from sim.springs.stability import gauge
-from sim.springs.state import State, energy
 
 ASSESSMENT_INTERVAL = 0.5  # [s] of simulated time between two assessments of the stability
 CHANGING = ("net", "race", "charts", "handles", "assessed_at")  # as the ropes move
@@ -53,10 +51,7 @@ def warm_up(law: str = SPRING) -> Pieces:
 
 def compile_gauge(net: Net) -> None:
     """The gauge of a rope, and the energies."""
-    state = State.at_rest(net)
-    gauge(net, INTEGRATORS["leapfrog"], 1e-3, state)
-    energy(net, state)
-    extremes(state.x, state.v)
+    NetMotion(net, INTEGRATORS["leapfrog"], 1e-3, race_bound).gauge()
 
 
 def compile_reference(net: Net) -> None:
@@ -118,27 +113,8 @@ class RaceScene:
         self.assessed_at = self.race.t
 
     def handle(self, command: SceneCommand) -> None:
-        """Move the roots, pull a point, or let go of it. Points are numbered through, rope after rope."""
-        match command:
-            case Place("root", position):
-                self.handles.move_root(position)
-            case GrabTo(index, target, client) if 0 <= index < self.params.points * self.params.ropes:
-                self.grab(index, target, client)
-            case Release(client):
-                self.handles.grab.release(client)
-            case _:
-                pass
-
-    def grab(self, index: int, target: Vector, client: int) -> None:
-        """Pull the same point of all ropes towards `target` [m], which is where rope `index // points` is drawn."""
-        number, point = divmod(index, self.params.points)
-        x, y, z = target
-        target = x, y - offset_of(self.params, number), z
-        if point > 0:
-            position = vector_of(self.race.entrants[number].state.x[:, 0, point])
-            self.handles.grab.move(client, index, position, target)
-        elif self.handles.grab.may_move(client):
-            self.handles.move_root(target)
+        """Move the roots, pull the same point of all ropes, or release it."""
+        self.handles.handle(command, [entrant.state for entrant in self.race.entrants], self.params.spacing)
 
     def advance(self, steps: int) -> None:
         """Take `steps` ticks of the race, whatever happens to its ropes."""
@@ -155,11 +131,9 @@ class RaceScene:
     def frame(self) -> RaceFrame:
         """Frame to draw."""
         params, race, handles = self.params, self.race, self.handles
-        offsets = np.array([(0.0, offset_of(params, i), 0.0) for i in range(len(race.entrants))])[:, None]
+        count, xs = params.ropes, [entrant.state.x for entrant in race.entrants]
+        offsets = np.array([(0.0, offset_of(i, count, params.spacing), 0.0) for i in range(count)])[:, None]
         references = race.reference_points() if params.show_reference else None
-        number, point = divmod(handles.grab.grabbed.particle if handles.grab.grabbed else 0, params.points)
-        held = race.entrants[number].state.x[:, 0, point]
-        offset = offset_of(params, number)
         return RaceFrame(
             params=params,
             ropes=(race.points() + offsets).astype(np.float32),
@@ -167,7 +141,7 @@ class RaceScene:
             labels=rope_labels(race.entrants),
             failed=tuple(bool(entrant.failure) for entrant in race.entrants),
             root=handles.home,
-            grab=handles.grab_frame(held, offset, self.net.mass, self.step, params.pull),
+            grab=handles.grab_frame(xs, grab_spring(self.net, self.step, params.pull), params.spacing),
         )
 
     def readings(self) -> RaceReadings:

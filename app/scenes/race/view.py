@@ -8,9 +8,8 @@ import viser
 
 from app.messages import Snapshot, Vector
 from app.render.colormap import lifted, rgb
-from app.render.gizmo import Gizmo
-from app.render.injection import add_contact_shadow, injector_of
-from app.render.meshes import ball, smooth_line, sweep, tube_faces
+from app.render.injection import injector_of
+from app.render.tubes import compile_tube
 from app.render.viser_inside import set_arrays, update_node
 from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
@@ -19,11 +18,11 @@ from app.scenes.race.html import errors_line, results_table
 from app.scenes.race.parameters import RaceParams
 from app.scenes.race.scene import RaceFrame
 from app.scenes.springs.html import step_mark
+from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
-from app.scenes.springs.view import ROOT_ARROW_LENGTH, SpringView
+from app.scenes.springs.ropes_view import RopesDrawing, RopesView
+from app.scenes.springs.view import Translucent
 
-RING_COUNT = 90  # rings of a drawn tube, about
-SIDES = 8  # of a drawn tube
 TUBE_RADIUS = 0.75 * ROPE_RADIUS  # [m]
 REFERENCE_RADIUS = 0.9 * TUBE_RADIUS  # [m], so that a rope without error hides its reference run
 REFERENCE_COLOUR = (70, 76, 88)
@@ -74,145 +73,132 @@ def shown_height(params: RaceParams) -> float:
     """Height [m] of the first view: of all ropes, as far as they swing, and of their labels."""
     depth = (params.ropes - 1) * params.spacing
     across = BEARING[0] * 2.0 * params.length * SHOWN_SWING + BEARING[1] * depth
-    net = build_rope(params, ROOT)  # of rope 1, the softest
-    n = net.shape[1] - 1
-    stretch = 0.5 * n * (n + 1) * net.mass * abs(net.gravity[2]) / net.families[0].stiffness  # as it hangs
-    fall = params.length + min(PULL_OF_FALL * stretch, MAX_STRETCH)
+    length, stretch = rope_lengths(build_rope(params, ROOT))  # of rope 1, the softest
+    fall = length + min(PULL_OF_FALL * stretch, MAX_STRETCH)
     if params.floor:
         fall = min(fall, ROOT[2] + BELOW_FLOOR)
     fall += 0.5 * depth * ELEVATION  # the nearest rope is drawn lower
     return max(fall / (1.0 - LABEL_SHARE * label_rows(params.ropes)), across / SHOWN_ASPECT)
 
 
-def bead_colours(count: int, points: int, *, dark: bool = False) -> np.ndarray:
-    """The colours (count points, 3) of the beads of all ropes."""
-    ropes = [linear_colour(material_colour(i, dark=dark)) for i in range(count)]
-    return np.repeat(ropes, points, axis=0).astype(np.uint8)
-
-
-def tube_vertices(points: np.ndarray, samples: int, radius: float) -> np.ndarray:
-    """Vertices (rings SIDES + 2, 3) of a tube of `radius` [m] along points (n, 3) [m], with `samples` rings a link."""
-    rings = (len(points) - 1) * samples + 1
-    line, vertices = np.zeros((rings, 3)), np.zeros((rings * SIDES + 2, 3), np.float32)
-    smooth_line(points, samples, line)
-    sweep(line, radius, SIDES, vertices)
-    return vertices
-
-
-class RopesDrawing:
-    """The handles of all ropes, made for their number and their points, then assigned to."""
+class RootLabels:
+    """A label over each root, on a pole."""
 
     def __init__(self, server: viser.ViserServer, frame: RaceFrame, row: float) -> None:
         """row: height [m] of a row of labels."""
-        count, n, _ = self.shape = frame.ropes.shape
-        self.samples = max(1, RING_COUNT // (n - 1))
-        faces = tube_faces((n - 1) * self.samples + 1, SIDES)
-        scene = server.scene
-        tubes = self.tube_meshes(frame.ropes, TUBE_RADIUS)
-        self.tubes = [
-            scene.add_mesh_simple(f"/race/rope_{i + 1}", tube, faces, color=material_colour(i), side="double")
-            for i, tube in enumerate(tubes)
-        ]
-        for tube in self.tubes:
-            add_contact_shadow(server, tube.name)
-        each = len(tubes[0])
-        self.references = scene.add_mesh_simple(
-            "/race/references",
-            np.zeros((count * each, 3), np.float32),
-            np.concatenate([faces + i * each for i in range(count)]).astype(np.uint32),
-            color=REFERENCE_COLOUR,
-            opacity=REFERENCE_OPACITY,
-            cast_shadow=False,
-            visible=False,
-        )
-        points = frame.ropes.reshape(-1, 3)
-        bead_radius = min(1.5 * ROPE_RADIUS, 0.3 / n + 0.8 * ROPE_RADIUS)
-        self.beads = scene.add_batched_meshes_simple(
-            "/race/points",
-            *ball(6),
-            batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1)),
-            batched_positions=points,
-            batched_scales=np.full(len(points), bead_radius, np.float32),
-            batched_colors=bead_colours(count, n),
-            lod="off",
-        )
-        self.poles = scene.add_line_segments(
+        count = len(frame.labels)
+        self.places = self.poles_of(frame, row)
+        self.poles = server.scene.add_line_segments(
             "/race/poles",
-            self.label_poles(frame, row),
+            self.places,
             colors=np.repeat([[linear_colour(rgb(colour))] for colour in PALETTE[:count]], 2, axis=1).astype(np.uint8),
             thickness=2.0,
             thickness_units="screen",
         )
-        self.labels = [
-            scene.add_label(
+        self.handles = [
+            server.scene.add_label(
                 f"/race/label_{i + 1}",
                 text,
+                position=tuple(self.places[i, 1].tolist()),
                 font_screen_scale=LABEL_SCALE,
                 anchor="bottom-right" if i < count // 2 else "bottom-left",
             )
             for i, text in enumerate(frame.labels)
         ]
-        self.shown_poles: np.ndarray | None = None
-        self.shown_failed = (False,) * count
 
-    def tube_meshes(self, ropes: np.ndarray, radius: float) -> list[np.ndarray]:
-        """The vertices of each rope of (ropes, points, 3) [m]."""
-        return [tube_vertices(points, self.samples, radius) for points in ropes]
-
-    def label_poles(self, frame: RaceFrame, row: float) -> np.ndarray:
+    def poles_of(self, frame: RaceFrame, row: float) -> np.ndarray:
         """(ropes, 2, 3): from each root up to its label [m]. row: height [m] of a row of labels."""
         poles = np.repeat(frame.ropes[:, :1], 2, axis=1)
         poles[:, 1, 2] += row * label_heights(len(poles))
         return poles
 
     def show(self, frame: RaceFrame, row: float) -> None:
-        """Assign a new frame; call it where a picture is handed over as one. row: height [m] of a row of labels."""
-        for i, tube in enumerate(self.tubes):
-            if frame.failed[i] and self.shown_failed[i]:
-                continue  # it has stopped where it is drawn
-            set_arrays(tube, vertices=tube_vertices(frame.ropes[i], self.samples, TUBE_RADIUS))
-            if frame.failed[i] != self.shown_failed[i]:
-                tube.opacity = FAILED_OPACITY if frame.failed[i] else None
-        self.shown_failed = frame.failed
-        self.references.visible = frame.references is not None
-        if frame.references is not None:
-            set_arrays(self.references, vertices=np.concatenate(self.tube_meshes(frame.references, REFERENCE_RADIUS)))
-        self.beads.visible = frame.params.show_points
-        if frame.params.show_points:
-            set_arrays(self.beads, batched_positions=frame.ropes.reshape(-1, 3))
-        poles = self.label_poles(frame, row)
-        if self.shown_poles is None or not np.array_equal(self.shown_poles, poles):
-            self.shown_poles = self.poles.points = poles
-            for label, pole in zip(self.labels, poles, strict=True):
+        """Assign a new frame. row: height [m] of a row of labels."""
+        places = self.poles_of(frame, row)
+        if not np.array_equal(self.places, places):
+            self.places = self.poles.points = places
+            for label, pole in zip(self.handles, places.tolist(), strict=True):
                 label.position = tuple(pole[1])
-        for label, text in zip(self.labels, frame.labels, strict=True):
+        for label, text in zip(self.handles, frame.labels, strict=True):
             if label.text != text:
                 label.text = text
 
-    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
-        """Draw ropes and beads as on a dark floor, or light again, for one browser. The nodes stay the server's."""
-        count, n, _ = self.shape
-        for i, tube in enumerate(self.tubes):
-            update_node(client, tube.name, color=material_colour(i, dark=dark))
-        update_node(client, self.beads.name, batched_colors=bead_colours(count, n, dark=dark))
-
     def remove(self) -> None:
-        """Take everything out of the scene."""
-        for handle in (*self.tubes, *self.labels, self.references, self.beads, self.poles):
+        """Remove everything from the scene."""
+        for handle in (*self.handles, self.poles):
             handle.remove()
 
 
-class RaceView(SpringView[RaceParams, RaceFrame, RaceReadings]):
+class RacingRopes(RopesDrawing):
+    """Ropes in a colour each, with a label at each root."""
+
+    RADIUS = TUBE_RADIUS
+    RINGS = 90
+    SIDES = 8
+    BEADS = "/race/points"
+    BEAD_ROWS = 6
+
+    def __init__(self, server: viser.ViserServer, frame: RaceFrame, row: float, dark: set[int]) -> None:
+        """row: height [m] of a row of labels. dark: browsers that draw on a dark floor."""
+        super().__init__(server, frame, frame.ropes, [f"/race/rope_{i + 1}" for i in range(len(frame.ropes))])
+        self.labels = RootLabels(server, frame, row)
+        self.shown_failed = (False,) * len(frame.ropes)
+        faces, each = self.tube.faces, self.tube.shape[0]
+        self.all_faces = np.concatenate([faces + i * each for i in range(len(frame.ropes))]).astype(np.uint32)
+        self.dark = dark
+        self.darken()
+
+    def make_tube(self, frame: RaceFrame, number: int, name: str) -> viser.MeshHandle:
+        """The node of a rope's tube."""
+        return self.server.scene.add_mesh_simple(
+            name, self.vertices[number], self.tube.faces, color=material_colour(number), side="double"
+        )
+
+    def bead_colours(self, *, dark: bool = False) -> np.ndarray:
+        """Colours (ropes points, 3) of the beads, none grabbed. dark: on a dark floor."""
+        count, points, _ = self.points.shape
+        ropes = [linear_colour(material_colour(i, dark=dark)) for i in range(count)]
+        return np.repeat(ropes, points, axis=0).astype(np.uint8)
+
+    def show(self, frame: RaceFrame) -> None:
+        """Assign a new frame; called while a picture is handed over as one."""
+        self.shape_tubes(frame.ropes)
+        for i, tube in enumerate(self.tubes):
+            set_arrays(tube, vertices=self.vertices[i])
+            if frame.failed[i] != self.shown_failed[i]:
+                tube.opacity = FAILED_OPACITY if frame.failed[i] else None
+        self.shown_failed = frame.failed
+        if self.show_beads(frame.params.show_points, frame.grab):
+            self.darken()
+
+    def darken(self) -> None:
+        """Draw ropes and beads as on a dark floor for the browsers that have one."""
+        for number, client in self.server.get_clients().items():
+            if number in self.dark:
+                self.set_dark(client, True)
+
+    def set_dark(self, client: viser.ClientHandle, dark: bool) -> None:
+        """Draw ropes and beads as on a dark floor, or light again, for one browser. The nodes stay the server's."""
+        for i, tube in enumerate(self.tubes):
+            update_node(client, tube.name, color=material_colour(i, dark=dark))
+        update_node(client, self.beads.name, batched_colors=self.with_grabbed(self.bead_colours(dark=dark)))
+
+    def remove(self) -> None:
+        """Remove everything from the scene."""
+        super().remove()
+        self.labels.remove()
+
+
+class RaceView(RopesView[RaceParams, RaceFrame, RaceReadings]):
     """Draws `RaceFrame`s."""
 
     FIELD_OF_VIEW = 0.06  # [rad], from so far away that all ropes look equally large
-    WARM_UP: ClassVar[Pieces] = {"drawing": lambda: tube_vertices(np.zeros((2, 3), np.float32), 2, TUBE_RADIUS)}
+    WARM_UP: ClassVar[Pieces] = {"drawing": compile_tube}
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         super().__init__(server, post, NEAR)
-        self.root = Gizmo(server, post, "root", ROOT_ARROW_LENGTH, position=ROOT)
         injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
-        self.ropes: RopesDrawing | None = None
+        self.references = Translucent(server, "/race/references", color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY)
         self.params: RaceParams | None = None  # that the height of a row of labels [m] is of
         self.label_row = 0.0
         self.dark: set[int] = set()  # browsers that draw on a dark floor
@@ -226,26 +212,21 @@ class RaceView(SpringView[RaceParams, RaceFrame, RaceReadings]):
         flat = distance * math.cos(ELEVATION)
         return (x + BEARING[1] * flat, y - BEARING[0] * flat, z + distance * math.sin(ELEVATION)), target
 
+    def draw(self, frame: RaceFrame) -> RacingRopes:
+        """A drawing for the number of ropes and points of a frame."""
+        return RacingRopes(self.server, frame, self.label_row, self.dark)
+
     def show(self, frame: RaceFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
-        self.points = frame.ropes.reshape(-1, 3)
         if frame.params is not self.params:
             self.params, self.label_row = frame.params, LABEL_SHARE * shown_height(frame.params)
-        if self.ropes is not None and self.ropes.shape != frame.ropes.shape:
-            self.ropes.remove()
-            self.ropes = None
-        if self.ropes is None:
-            self.ropes = RopesDrawing(self.server, frame, self.label_row)
-            self.ropes.beads.on_drag("left")(self.on_bead)  # beads are numbered through, rope after rope
-            for tube in self.ropes.tubes:
-                tube.on_drag("left")(self.on_surface)
-            for number, client in self.server.get_clients().items():
-                if number in self.dark:
-                    self.ropes.set_dark(client, True)
-        self.ropes.show(frame, self.label_row)
-        p = frame.params
-        self.root.show(frame.root if p.handles else None)
-        self.show_surroundings(p.floor, p.grid, frame.grab)
+        self.show_ropes(frame, frame.ropes)
+        self.ropes.labels.show(frame, self.label_row)
+        if frame.references is None:
+            self.references.hide()
+        else:
+            tubes = [self.ropes.tube.vertices(points, REFERENCE_RADIUS) for points in frame.references]
+            self.references.show(np.concatenate(tubes), self.ropes.all_faces)
 
     def figures(self, snapshot: RaceSnapshot) -> str:
         """The ropes that are nearest to the reference and farthest from it."""

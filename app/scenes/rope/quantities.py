@@ -49,7 +49,7 @@ class RopeInstant(SceneInstant):
     @property
     def gained(self) -> float:
         """Potential energy [J] gained since the start."""
-        return self.energy.gravity - self.scene.account.initial.gravity
+        return self.energy.gravity - self.scene.motion.account.initial.gravity
 
     @property
     def tip_speed(self) -> float:
@@ -104,7 +104,7 @@ QUANTITIES: Quantities = {
     "energy_error": for_sweeps(
         "J",
         "Numerical error of the energy since the start",
-        lambda now: now.scene.account.error(now.scene.net, now.scene.state),
+        lambda now: now.scene.motion.energy_error(),
     ),
     **STABILITY,
     "largest_stiffness": Quantity("N/m", "Largest stable stiffness of a link", largest_stiffness),

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Vector, vector_of
+from app.messages import SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
 from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
@@ -15,8 +15,9 @@ from app.scenes.rope.quantities import QUANTITIES, RopeInstant
 from app.scenes.springs.divergence import holding_step, leapfrog_alternative
 from app.scenes.springs.grab import ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
+from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.net_scene import NetScene
-from app.scenes.springs.rope_handles import RopeHandles
+from app.scenes.springs.rope_handles import RopeHandles, grab_spring
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, build_rope, stiffness_parameter
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
@@ -24,7 +25,7 @@ from sim.springs import Net, rope
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.tension import rope_tension
 from sim.springs.integrator_fallback import integrator_or_fallback
-from sim.springs.stability import critical_stiffness, gauge, top_modes
+from sim.springs.stability import critical_stiffness, top_modes
 from sim.springs.state import State, energy
 
 if TYPE_CHECKING:
@@ -79,10 +80,16 @@ def state_of(points: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray(points.T[:, None])
 
 
+def rope_bound(net: Net, state: State) -> float:
+    """Largest reach [m] of a rope: three times the length at which it hangs, its present reach, and a margin."""
+    # At a bound of 1e9 m nothing could be seen.
+    return 4.0 + 3.0 * sum(rope_lengths(net)) + extremes(state.x, state.v).reach
+
+
 class RopeScene(NetScene[RopeParams]):
     """The rope on the simulation thread."""
 
-    CHANGING = ("net", "state", "account", "handles", "corrections", "max_reach")
+    CHANGING = ("motion", "handles")
     ASSESSMENT_INTERVAL = 0.5
     student: "StudentRope | None" = None
     stability: RopeReadings
@@ -114,14 +121,13 @@ class RopeScene(NetScene[RopeParams]):
     @property
     def faster(self) -> str:
         """Advice on a faster step."""
-        return faster_steps(self.integrator, self.stability.stability, "points")
+        return faster_steps(self.motion.method, self.stability.stability, "points")
 
     def reset(self) -> None:
         """The rope at rest, level from its root; root and sphere where a new scene has them."""
         self.handles.restart()
-        self.place_at_rest(build(self.params, self.handles.root.position, self.handles.sphere.position))
-        self.counted = 0, 0  # force evaluations and steps at the last assessment
-        self.set_bounds()
+        self.place_at_rest(build(self.params, self.handles.root.position, self.handles.sphere.position), rope_bound)
+        self.max_speed = np.inf  # [m/s] of the fastest point along an axis; how fast it is going to be is not known
         self.assess_stability()
         if self.student is not None:
             self.student.restart(rows_of(self.state.x), rows_of(self.state.v))
@@ -129,28 +135,16 @@ class RopeScene(NetScene[RopeParams]):
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         super().resume(kept)
-        self.counted = self.state.force_evals, self.state.steps
         self.max_speed = np.inf
         self.assess_stability()
         if self.student is not None:
             self.student.begin(rows_of(self.state.x), rows_of(self.state.v), self.state.t)
 
-    def set_bounds(self) -> None:
-        """How far a rope of these parameters may get; how fast it is going to be is not known."""
-        # Three times the length of the hanging rope, and some room. At a bound of 1e9 m nothing could be seen.
-        sag = self.net.mass * abs(self.net.gravity[2]) / self.net.families[0].stiffness
-        n = self.params.points - 1
-        reach = extremes(self.state.x, self.state.v).reach
-        self.max_reach = 4.0 + 3.0 * (self.params.length + 0.5 * sag * n * (n + 1)) + reach  # [m] from the root
-        self.max_speed = np.inf  # [m/s] along an axis, of the fastest point
-
     def change_forces(self, params: RopeParams) -> None:
         """Take new parameters. The motion goes on, interpolated where the number of points changes."""
         old, self.params = self.params, params
         self.take_net(build(params, self.handles.root.position, self.handles.sphere.position))
-        if (params.integrator, params.time_step) != (old.integrator, old.time_step):
-            self.account.start_method(self.net, self.state)
-        self.set_bounds()
+        self.max_speed = np.inf
         self.assess_stability()
         if self.student is not None and (params.points, params.integrator) != (old.points, old.integrator):
             self.student.begin(rows_of(self.state.x), rows_of(self.state.v), self.state.t)
@@ -158,35 +152,20 @@ class RopeScene(NetScene[RopeParams]):
     def handle(self, command: SceneCommand) -> None:
         """Move root or sphere, pull a point, or let go of it."""
         match command:
-            case Place("root", position):
-                self.handles.move_root(position)
-            case Place("sphere", position):
-                self.handles.sphere.target = position
-            case GrabTo(0, target, client) if self.handles.grab.may_move(client):
-                self.handles.move_root(target)
-            case GrabTo(index, target, client) if 0 < index < self.params.points:
-                self.handles.grab.move(client, index, vector_of(self.state.x[:, 0, index]), target)
-            case Release(client):
-                self.handles.grab.release(client)
             case StudentAnswer() if self.student is not None:
-                self.student.collect(self.max_reach)
+                self.student.collect(self.motion.max_reach)
             case _:
-                pass
+                self.handles.handle(command, [self.state])
 
     def net_during(self, t: float, duration: float) -> Net:
         """The net with the motions of root, sphere and pull over the next `duration` [s] from time t [s]."""
         return self.handles.net_during(self.net, t, duration, self.step, self.params)
 
-    def distance(self, found: Extremes) -> float:
-        """Distance [m] of the farthest point from the root, along an axis."""
-        return found.reach
-
     def moved(self, good: State, steps: int, found: Extremes) -> None:
         """Put a root that has just come to rest in its place, and let the student's rope follow."""
         self.max_speed = found.speed
         if self.net.pin_paths and self.handles.root.at_rest:
-            self.state.x[:, 0, 0] = self.handles.root.position
-            self.state.v[:, 0, 0] = 0.0
+            self.motion.place_root(self.handles.root.position)
         if self.student is not None:
             x, v = rows_of(self.state.x), rows_of(self.state.v)
             self.student.follow_rope(self.net, good.t, steps, self.params, x, v)
@@ -194,44 +173,39 @@ class RopeScene(NetScene[RopeParams]):
     def has_news(self) -> bool:
         """True if the stability, or the cost of an implicit method, may have changed since the last assessment."""
         moved = float(np.abs(self.state.x - self.assessed_x).max())
-        return self.integrator.implicit or moved > MIN_MOVE_TO_ASSESS * self.net.families[0].rest
+        return self.motion.method.implicit or moved > MIN_MOVE_TO_ASSESS * self.net.families[0].rest
 
     def assess_stability(self) -> None:
         """Compare the step with the limits at the state as it is, and sum up the cost of an implicit method."""
-        self.integrator, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net, self.step)
-        modes = top_modes(self.net, self.state.x, self.state.t)
-        stability = gauge(self.net, self.integrator, self.step, self.state, modes)
-        largest = critical_stiffness(self.net, self.integrator, self.step, self.state, modes)
+        motion = self.motion
+        modes = top_modes(motion.net, motion.state.x, motion.state.t)
+        largest = critical_stiffness(motion.net, motion.method, motion.step, motion.state, modes)
         parameter = stiffness_parameter(self.params)
         if parameter == "axial_stiffness":
             largest *= self.net.families[0].rest
         cost = self.numerical_cost()
-        readings = RopeReadings(stability, parameter, largest, self.fallback_note, cost)
+        readings = RopeReadings(motion.gauge(modes), parameter, largest, self.fallback_note, cost)
         self.stability = self.recent.worst(self.state.t, readings)._replace(cost=cost)
         self.assessed_at, self.assessed_x = self.state.t, self.state.x.copy()
 
     def numerical_cost(self) -> NumericalCost | None:
         """The cost of an implicit method; None for explicit ones."""
-        if not self.integrator.implicit:
+        motion = self.motion
+        motion.count_evals()
+        if not motion.method.implicit:
             return None
-        steps = self.state.steps - self.counted[1]
-        if steps:
-            evals = (self.state.force_evals - self.counted[0]) / steps
-            self.corrections = max(0.0, evals - self.integrator.evals_outside_newton)
-            self.counted = self.state.force_evals, self.state.steps
-        account = self.account
-        taken = account.numerical_dissipation(self.net, self.state)
-        return NumericalCost(self.corrections, taken, account.damping_dissipation(self.state))
+        by_damping = motion.account.damping_dissipation(motion.state)
+        return NumericalCost(motion.corrections, motion.numerical_dissipation(), by_damping)
 
     def alternative(self) -> str:
         """The step at which leapfrog would hold."""
-        return leapfrog_alternative(self.integrator, self.stability.stability)
+        return leapfrog_alternative(self.motion.method, self.stability.stability)
 
     def add_plot_row(self) -> None:
         """Add the energy account and the tip's height at the scene's time."""
-        e, state, account = energy(self.net, self.state), self.state, self.account
-        gained = e.gravity - account.initial.gravity
-        error = account.error(self.net, state)
+        e, state = energy(self.net, self.state), self.state
+        gained = e.gravity - self.motion.account.initial.gravity
+        error = self.motion.energy_error()
         tip = float(state.x[2, 0, -1])
         total = e.kinetic + e.elastic + gained + e.contact
         self.plot_rows.add(state.t, total, e.kinetic, e.elastic, gained, e.contact, state.dissipated, error, tip)
@@ -250,7 +224,6 @@ class RopeScene(NetScene[RopeParams]):
         weight = self.net.mass * abs(self.net.gravity[2]) * (params.points - 1)
         both = None if self.student is None else self.student.drawn(rows_of(self.state.x))
         x = self.state.x if both is None else state_of(both[0])
-        held = x[:, 0, handles.grab.grabbed.particle if handles.grab.grabbed else 0]
         frame = RopeFrame(
             params=params,
             points=np.ascontiguousarray(x[:, 0].T, dtype=np.float32),
@@ -259,7 +232,7 @@ class RopeScene(NetScene[RopeParams]):
             full_scale=max(1.25 * weight, 1e-3),
             root=handles.home,
             sphere=(*handles.sphere.position, params.sphere_radius) if self.net.sphere else None,
-            grab=handles.grab_frame(held, 0.0, self.net.mass, self.step, params.pull),
+            grab=handles.grab_frame([x], grab_spring(self.net, self.step, params.pull)),
         )
         self.last_moments.add(self.state.t, frame, frame.points)
         return frame

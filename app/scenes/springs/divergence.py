@@ -71,6 +71,12 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
     )
 
 
+def short_divergence_text(t: float, gauge: Gauge) -> str:
+    """Time [s] and cause of a divergence, for a table."""
+    cause = "its step is too long" if gauge.share > 1.0 else "an impact was too sudden for its step"
+    return f"diverged at {t:.2f} s: {cause} ({limit_text(gauge)})"
+
+
 def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
     """The step at which leapfrog would hold; "" where that is no news."""
     longest = INTEGRATORS["leapfrog"].stable_step(gauge.highest, 0.0)

@@ -1,9 +1,14 @@
 """A particle that a browser has grabbed, and pulls with the mouse."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.springs.tracking import CriticallyDampedTracker
+from sim.springs import Grab
 
 
 class GrabFrame(NamedTuple):
@@ -12,6 +17,17 @@ class GrabFrame(NamedTuple):
     particle: int  # flat index
     target: Vector  # [m] where it is pulled to
     load: float  # the force over the largest force of a grab, 0 to 1
+
+
+class GrabSpring(NamedTuple):
+    """The spring between a particle and the mouse."""
+
+    stiffness: float  # [N/m]
+    damping: float  # [N s/m]
+    max_force: float  # [N]
+
+
+SpringOf: TypeAlias = Callable[[int], GrabSpring]  # flat index of a particle -> the spring of its grab
 
 
 class GrabbedParticle(NamedTuple):
@@ -44,6 +60,31 @@ class ParticleGrab:
         """Release the particle that this browser has grabbed."""
         if self.grabbed is not None and self.grabbed.client == client:
             self.grabbed = None
+
+    def pull(self, t: float, duration: float, shape: tuple[int, int], spring_of: SpringOf) -> Grab | None:
+        """The grab over the next `duration` [s] from time t [s], None if nothing is grabbed. Moves the hand on.
+
+        shape: rows and columns of the net; the particles of several nets are numbered through.
+        """
+        if self.grabbed is None:
+            return None
+        _, particle, hand = self.grabbed
+        hand.advance(t, duration)
+        row, column = divmod(particle % (shape[0] * shape[1]), shape[1])
+        return Grab(row, column, hand.position, *spring_of(particle))
+
+    def frame(self, x: NDArray[np.float64], spring_of: SpringOf, offset: float = 0.0) -> GrabFrame | None:
+        """The grab as drawn, None if nothing is grabbed.
+
+        x: (3, rows, columns) [m] of the net with the particle. offset: [m] of its drawing along y.
+        """
+        if self.grabbed is None:
+            return None
+        _, particle, hand = self.grabbed
+        position, spring = x.reshape(3, -1)[:, particle % x[0].size], spring_of(particle)
+        distance = float(np.linalg.norm(np.asarray(hand.position) - position))
+        load = min(1.0, distance * spring.stiffness / spring.max_force)
+        return GrabFrame(particle, (hand.position[0], hand.position[1] + offset, hand.position[2]), load)
 
     def clear(self) -> None:
         """Release it, whoever has grabbed it."""

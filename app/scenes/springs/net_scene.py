@@ -1,4 +1,4 @@
-"""The common part of rope and cloth: the course of one spring network, its checkpoints, divergence and plot rows."""
+"""The common part of rope and cloth: the scene of one spring network, its checkpoints, divergence and plot rows."""
 
 import abc
 from typing import Any, ClassVar, Generic, TypeVar
@@ -12,14 +12,13 @@ from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.grab import ParticleGrab
+from app.scenes.springs.net_motion import Bound, NetMotion
 from app.scenes.springs.recent_gauges import RecentGauges
 from sim.springs import Net
-from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.automatic import AUTO
-from sim.springs.integrators import Integrator
-from sim.springs.resampling import resample
-from sim.springs.state import State, advance, energy, velocities
+from sim.springs.integrator_fallback import integrator_or_fallback
+from sim.springs.state import State, energy, velocities
 from sim.validation import DivergenceError
 
 P = TypeVar("P", bound=MethodParams)
@@ -32,11 +31,10 @@ class NetScene(abc.ABC, Generic[P]):
     ASSESSMENT_INTERVAL: ClassVar[float]  # [s] of simulated time between two assessments of the stability
 
     grab: ParticleGrab
+    motion: NetMotion
     stability: Any  # readings: the worst of the last assessments
-    integrator: Integrator
     fallback_note: str
     assessed_at: float  # [s]
-    max_reach: float  # [m] as `distance` measures it; farther out the run has diverged
 
     def __init__(self, params: P, columns: int) -> None:
         """columns: number of values in a plot row."""
@@ -50,6 +48,16 @@ class NetScene(abc.ABC, Generic[P]):
     def step(self) -> float:
         """Time step [s]."""
         return self.params.time_step
+
+    @property
+    def net(self) -> Net:
+        """The net as it is."""
+        return self.motion.net
+
+    @property
+    def state(self) -> State:
+        """The last good state."""
+        return self.motion.state
 
     @property
     def time(self) -> float:
@@ -73,10 +81,6 @@ class NetScene(abc.ABC, Generic[P]):
     @abc.abstractmethod
     def net_during(self, t: float, duration: float) -> Net:
         """The net with the motions of what a user moves over the next `duration` [s] from time t [s]."""
-
-    @abc.abstractmethod
-    def distance(self, found: Extremes) -> float:
-        """Distance [m] of the farthest particle; NaN if a number is not finite."""
 
     @abc.abstractmethod
     def moved(self, good: State, steps: int, found: Extremes) -> None:
@@ -106,12 +110,10 @@ class NetScene(abc.ABC, Generic[P]):
     def laid_out(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Positions or velocities (3, rows, cols) with the axis last, in an array of their own."""
 
-    def place_at_rest(self, net: Net) -> None:
+    def place_at_rest(self, net: Net, bound: Bound) -> None:
         """Begin a run of this net."""
-        self.net = net
-        self.state = State.at_rest(net)
-        self.account = EnergyAccount(net, self.state)
-        self.corrections = 0.0  # Newton corrections a step, of implicit methods
+        method, self.fallback_note = integrator_or_fallback(self.params.integrator, net, self.step)
+        self.motion = NetMotion(net, method, self.step, bound)
         self.plot_rows.restart()
         self.last_moments.clear()
         self.recent.clear()
@@ -123,39 +125,41 @@ class NetScene(abc.ABC, Generic[P]):
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
+        self.choose_method()
         self.grab.clear()
         self.plot_rows.resume()
         self.last_moments.clear()
         self.recent.clear()
 
-    def take_net(self, net: Net) -> None:
-        """Go on with another net; the motion is interpolated where its points are others."""
+    def take_net(self, net: Net, *, still_pins: bool = False) -> None:
+        """Go on with another net, as `NetMotion.change_net` does."""
         self.recent.clear()
-        stored, before, self.net = self.account.stored(self.net, self.state), self.net, net
-        if net.shape != before.shape:
-            self.state.x, self.state.v = (resample(values, *net.shape) for values in (self.state.x, self.state.v))
+        if net.shape != self.net.shape:
             self.grab.clear()
-        self.hold_pins(before)
-        self.account.book_change(stored, net, self.state)
+        self.motion.change_net(net, still_pins=still_pins)
+        self.choose_method()
 
-    def hold_pins(self, before: Net) -> None:
-        """Hold pins that the net before did not have."""
+    def choose_method(self) -> None:
+        """Go on with the method and step of the parameters, or with another method if the net does not allow it."""
+        method, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net, self.step)
+        self.motion.use(method, self.step)
 
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the net leaves its bounds, and keeps the last good state."""
         self.add_due_row()  # of the start
-        good, state = self.state, self.state.copy()  # what is shown in the middle of the steps, and what moves
+        motion, good = self.motion, self.state  # which is shown in the middle of the steps
+        state = good.copy()
         net = self.net_during(good.t, steps * self.step)
         try:
             net = self.take_steps(net, state, steps)
         finally:  # where it is ended early the steps that were taken count
             found = extremes(state.x, state.v)
-            if self.distance(found) < self.max_reach:  # false of a NaN as well
-                self.state = state
-        if self.state is good:
+            if motion.holds(found):
+                motion.state = state
+        if motion.state is good:
             self.repeat_to_divergence(net, good, steps)
             raise DivergenceError(self.diagnosis(), tuple(self.last_moments))
-        self.net = net
+        motion.net = net
         self.moved(good, steps, found)
         if self.state.t - self.assessed_at >= self.ASSESSMENT_INTERVAL and self.has_news():
             self.assess_stability()
@@ -168,26 +172,27 @@ class NetScene(abc.ABC, Generic[P]):
 
     def take_steps(self, net: Net, state: State, steps: int) -> Net:
         """Take steps of `net` in place. Returns the net that took the last one."""
-        advance(net, state, self.integrator, self.step, steps, with_account=self.with_account)
+        self.motion.take_steps(net, state, steps, with_account=self.with_account)
         return net
 
     def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
         """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
-        self.state = good.copy()
+        motion = self.motion
+        motion.state = good.copy()
         try:
             for _ in range(steps):
-                advance(net, self.state, self.integrator, self.step, 1, with_account=self.with_account)
-                distance = self.distance(extremes(self.state.x, self.state.v))
-                if distance < MAX_OVERSHOOT * self.max_reach:  # false of a NaN as well
+                motion.take_steps(net, self.state, 1, with_account=self.with_account)
+                found = extremes(self.state.x, self.state.v)
+                if found.reach < MAX_OVERSHOOT * motion.max_reach:  # false of a NaN as well
                     self.frame()
-                if not distance < self.max_reach:
+                if not motion.holds(found):
                     break
         finally:  # it may be ended early
-            self.state = good
+            motion.state = good
 
     def diagnosis(self) -> str:
         """Cause of the divergence, and settings that would hold."""
-        return divergence_text(self.state.t, self.integrator, self.step, self.stability.stability, self.alternative())
+        return divergence_text(self.time, self.motion.method, self.step, self.stability.stability, self.alternative())
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""

@@ -2,23 +2,35 @@
 
 import dataclasses
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import Vector
-from app.scenes.springs.grab import GrabFrame, ParticleGrab
+from app.messages import GrabTo, Place, Release, SceneCommand, Vector, vector_of
+from app.scenes.springs.grab import GrabFrame, GrabSpring, ParticleGrab, SpringOf
 from app.scenes.springs.rope_parameters import ROOT, SPHERE, SharedRopeParams
 from app.scenes.springs.tracking import CriticallyDampedTracker
-from sim.springs import Grab, Net
+from sim.springs import Net
+from sim.springs.state import State
 
 MAX_GRAB_RATE = 30.0  # [1/s] natural frequency of the grab of a free point
 MAX_GRAB_RATE_STEP = 0.5  # the same times the time step, so that it is stable at any step
 
 
-def grab_rate(step: float) -> float:
-    """Natural frequency [1/s] of the grab of a free point, at time step `step` [s]; it is critically damped."""
-    return min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step)
+def grab_spring(net: Net, step: float, max_force: float) -> SpringOf:
+    """The spring of a grab, which damps a free point critically. step: [s]. max_force: [N]."""
+
+    def of_point(point: int) -> GrabSpring:
+        rate = min(MAX_GRAB_RATE, MAX_GRAB_RATE_STEP / step)
+        return GrabSpring(net.mass * rate**2, 2.0 * net.mass * rate, max_force)
+
+    return of_point
+
+
+def offset_of(number: int, ropes: int, spacing: float) -> float:
+    """Drawn y [m] of rope `number`, from 0, of so many. All move in the same place; only the drawing differs."""
+    return (number - 0.5 * (ropes - 1)) * spacing
 
 
 class RopeHandles:
@@ -33,6 +45,28 @@ class RopeHandles:
     def move_root(self, position: Vector) -> None:
         """Move the root, or the centre of its swing."""
         self.home = self.root.target = position
+
+    def handle(self, command: SceneCommand, ropes: Sequence[State], spacing: float = 0.0) -> None:
+        """Move root or sphere, pull a point, or release it.
+
+        The points of several ropes are numbered through. spacing: [m] between ropes as drawn, along y.
+        """
+        match command:
+            case Place("root", position):
+                self.move_root(position)
+            case Place("sphere", position):
+                self.sphere.target = position
+            case GrabTo(index, (x, y, z), client) if 0 <= index < sum(state.x.shape[2] for state in ropes):
+                number, point = divmod(index, ropes[0].x.shape[2])
+                target = x, y - offset_of(number, len(ropes), spacing), z
+                if point > 0:
+                    self.grab.move(client, index, vector_of(ropes[number].x[:, 0, point]), target)
+                elif self.grab.may_move(client):
+                    self.move_root(target)
+            case Release(client):
+                self.grab.release(client)
+            case _:
+                pass
 
     @property
     def at_rest(self) -> bool:
@@ -60,33 +94,21 @@ class RopeHandles:
         before = self.sphere.position
         self.sphere.advance(t, duration)
         velocity = tuple((b - a) / duration for a, b in zip(before, self.sphere.position, strict=True))
-        grab = None
-        if self.grab.grabbed is not None:
-            _, index, hand = self.grab.grabbed
-            hand.advance(t, duration)
-            rate = grab_rate(step)
-            point = index % net.shape[1]  # the points of several ropes are numbered through
-            grab = Grab(0, point, hand.position, net.mass * rate**2, 2.0 * net.mass * rate, params.pull)
         return dataclasses.replace(
             net,
             pin_paths=() if path is None else (((0, 0), path),),
             sphere=(*before, net.sphere[3]) if net.sphere else None,
             sphere_velocity=velocity,
             epoch=t,
-            grab=grab,
+            grab=self.grab.pull(t, duration, net.shape, grab_spring(net, step, params.pull)),
         )
 
     def grab_frame(
-        self, position: NDArray[np.float64], offset: float, mass: float, step: float, max_force: float
+        self, ropes: Sequence[NDArray[np.float64]], spring_of: SpringOf, spacing: float = 0.0
     ) -> GrabFrame | None:
-        """The grab as drawn, None where nothing is grabbed.
+        """The grab as drawn, None if nothing is grabbed.
 
-        position: (3,) of the grabbed point [m]; offset: of its rope as drawn, along y [m]; mass: of the point [kg].
+        ropes: (3, 1, points) of each [m]. spacing: [m] between ropes as drawn, along y.
         """
-        if self.grab.grabbed is None:
-            return None
-        _, index, hand = self.grab.grabbed
-        x, y, z = hand.position
-        distance = float(np.linalg.norm(np.asarray(hand.position) - position))
-        load = min(1.0, distance * mass * grab_rate(step) ** 2 / max_force)
-        return GrabFrame(index, (x, y + offset, z), load)
+        number = self.grab.grabbed.particle // ropes[0].shape[2] if self.grab.grabbed else 0
+        return self.grab.frame(ropes[number], spring_of, offset_of(number, len(ropes), spacing))

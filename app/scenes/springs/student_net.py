@@ -27,7 +27,6 @@ class StudentNet:
     """Used by a scene on the simulation thread."""
 
     sheet: ClothData | None = None  # what a cloth is made of; None for a rope
-    is_comparable = True  # whether it has the same points as the program's
     unlike: tuple[str, ...] = ()  # of `StudentReport`, with the parameters as they are
 
     def __init__(self, live: LiveNet) -> None:
@@ -39,6 +38,11 @@ class StudentNet:
         self.sent: list[Segment] = []  # that are being taken
         self.points: NDArray[np.float64] | None = None  # (n, 3) [m]; None: there is none of the student's
         self.matched: NDArray[np.float64] | None = None  # (n, 3) [m] the program's at the same moment
+
+    @property
+    def is_comparable(self) -> bool:
+        """True if it has the same points as the program's."""
+        return True
 
     def begin(self, x: NDArray[np.float64], v: NDArray[np.float64], time: float) -> None:
         """Start at the program's net, x and v of shape (n, 3), at a time [s]."""

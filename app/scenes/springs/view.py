@@ -8,16 +8,14 @@ import viser
 
 from app.messages import F, P, R, Vector
 from app.render.cameras import NEAR
-from app.render.colormap import SCALE, set_tube_colours
 from app.render.dragging import GrabLine, SurfaceDrag, drag
 from app.render.gizmo import Gizmo
-from app.render.meshes import SIDES, ball, smooth_line, sweep
+from app.render.meshes import ball
 from app.render.surroundings import Surroundings, set_dark
 from app.render.viser_inside import set_arrays
 from app.scenes.contract import PostCommand, SceneView
 from app.scenes.springs.grab import GrabFrame
 
-ROOT_ARROW_LENGTH = 0.34  # [m]
 SPHERE_ROWS = 24  # of the drawn sphere, from pole to pole
 SPHERE_COLOUR = (92, 140, 190)
 
@@ -78,24 +76,42 @@ class Sphere:
             set_arrays(self.ball, vertices=self.unit_ball * sphere[3] + sphere[:3])
 
 
+class Translucent:
+    """A translucent mesh beside the others, which casts no shadow."""
+
+    def __init__(self, server: viser.ViserServer, name: str, **mesh: Any) -> None:
+        """mesh: arguments of viser's mesh."""
+        self.server, self.name, self.options = server, name, mesh
+        self.mesh: viser.MeshHandle | None = None
+        self.faces: np.ndarray | None = None
+
+    def show(self, vertices: np.ndarray, faces: np.ndarray) -> None:
+        """vertices: (n, 3) [m]. faces: (m, 3); another array makes another mesh."""
+        if self.mesh is None or faces is not self.faces:
+            self.faces = faces
+            self.mesh = self.server.scene.add_mesh_simple(self.name, vertices, faces, cast_shadow=False, **self.options)
+        else:
+            set_arrays(self.mesh, vertices=vertices)
+        self.mesh.visible = True
+
+    def hide(self) -> None:
+        """Draw nothing."""
+        if self.mesh is not None:
+            self.mesh.visible = False
+
+
 class SecondNet:
     """A translucent net, where the student's and the program's are drawn, and labels of both."""
 
     def __init__(self, server: viser.ViserServer, name: str, own: str, **mesh: Any) -> None:
         """own: words for the student's. mesh: arguments of viser's mesh."""
-        self.server, self.name, self.own, self.options = server, name, own, mesh
-        self.mesh: viser.MeshHandle | None = None
-        self.faces: np.ndarray | None = None
+        self.server, self.own, self.net = server, own, Translucent(server, name, **mesh)
         self.labels: tuple[viser.LabelHandle, ...] = ()
 
     def show(self, vertices: np.ndarray, faces: np.ndarray, own_end: np.ndarray, program_end: np.ndarray) -> None:
         """vertices (n, 3) [m] of the translucent net; faces (m, 3): another array is another net; ends (3,) [m]."""
         scene = self.server.scene
-        if self.mesh is None or faces is not self.faces:
-            self.faces = faces
-            self.mesh = scene.add_mesh_simple(self.name, vertices, faces, cast_shadow=False, **self.options)
-        else:
-            self.mesh.vertices = vertices
+        self.net.show(vertices, faces)
         if not self.labels:
             self.labels = (
                 scene.add_label("/yours", self.own, anchor="top-center"),
@@ -103,18 +119,10 @@ class SecondNet:
             )
         for label, end in zip(self.labels, (own_end, program_end), strict=True):
             label.position = tuple(end.tolist())
-        self.set_visible(True)
+            label.visible = True
 
-    def set_visible(self, visible: bool) -> None:
-        """Draw what there is, or hide it."""
-        for handle in (self.mesh, *self.labels):
-            if handle is not None:
-                handle.visible = visible
-
-
-def compile_tube() -> None:
-    """Call the kernels that draw a coloured tube."""
-    line, vertices = np.zeros((3, 3)), np.zeros((3 * SIDES + 2, 3), np.float32)
-    smooth_line(np.zeros((2, 3), np.float32), 2, line)
-    sweep(line, 1.0, SIDES, vertices)
-    set_tube_colours(np.ones(1, np.float32), 2, 1.0, SCALE, SIDES, vertices)
+    def hide(self) -> None:
+        """Draw nothing."""
+        self.net.hide()
+        for label in self.labels:
+            label.visible = False

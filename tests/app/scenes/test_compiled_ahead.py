@@ -1,5 +1,6 @@
 """After the warm-up no kernel is compiled: a new signature would stop the page for 0.1 s or more."""
 
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -7,44 +8,33 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-# In a process of its own, as other tests compile other signatures.
-PROGRAM = """
+SIGNATURES = """
 import sys
 from numba.core.dispatcher import Dispatcher
-from app.scenes import scene_named, warmup
-from app.server.viewer import Viewer
 
 def signatures():
     kernels = {id(k): k for m in list(sys.modules.values()) for k in vars(m).values() if isinstance(k, Dispatcher)}
     return {(k.py_func.__module__, k.py_func.__name__, str(s)) for k in kernels.values() for s in k.signatures}
+"""
+# How the wheel of kernels is checked.
+SHOW = runpy.run_path(str(ROOT / ".ci" / "kernels.py"))["SHOW"]
+# In a process of its own, as other tests compile other signatures.
+PROGRAM = f"""{SIGNATURES}
+from app.scenes import warmup
 
-name = sys.argv[1]
-for piece, drawn in warmup.all_pieces(name):
-    warmup.compile_piece(name, piece, drawn=drawn)
+for piece, drawn in warmup.all_pieces(sys.argv[1]):
+    warmup.compile_piece(sys.argv[1], piece, drawn=drawn)
 before = signatures()
-viewer = Viewer("127.0.0.1", 0)
-viewer.open(name)
-viewer.served.stop_threads()
-viewer.loop.run.audience = lambda: 1
-for _ in range(20):
-    viewer.loop.tick(1 / 60)
-    viewer.served.show_latest()
-assert viewer.loop.run.counts["steps"] >= 20, viewer.loop.run.halted
-new = sorted(signatures() - before)
-viewer.shut()
-print(new)
+{SHOW}
+print(sorted(signatures() - before))
 """
 
 # Presets that need few pieces come first: what these compile is known before the others add to it.
-PRESETS = """
-import sys
-from numba.core.dispatcher import Dispatcher
+PRESETS = (
+    SIGNATURES
+    + """
 from app.scenes import scene_named, warmup
 from sim.parameters import check_record
-
-def signatures():
-    kernels = {id(k): k for m in list(sys.modules.values()) for k in vars(m).values() if isinstance(k, Dispatcher)}
-    return {(k.py_func.__module__, k.py_func.__name__, str(s)) for k in kernels.values() for s in k.signatures}
 
 kind = scene_named(sys.argv[1])
 records = {preset: check_record(kind.params, values) for preset, values in kind.presets.items()}
@@ -61,6 +51,7 @@ for preset in sorted(records, key=lambda preset: len(kind.needs(records[preset])
     new = sorted(signatures() - before)
     assert not new, (preset, new)
 """
+)
 
 
 def test_each_preset_of_the_radial_sea_runs_with_what_it_says_it_needs() -> None:

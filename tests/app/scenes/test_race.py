@@ -18,12 +18,13 @@ from app.scenes.quantities import measured
 from app.scenes.race.charts import MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
 from app.scenes.race.html import results_table
-from app.scenes.race.parameters import PRESETS, RaceParams, hidden, offset_of
+from app.scenes.race.parameters import PRESETS, RaceParams, hidden
 from app.scenes.race.scene import SCENE, RaceScene, compile_gauge
 from app.scenes.race.view import LABEL_SHARE, SHOWN_ASPECT, RaceView, label_heights, shown_height
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.scenes.springs.methods import method_name
+from app.scenes.springs.rope_handles import offset_of
 from app.scenes.springs.rope_parameters import ROOT, build_rope
 from app.server.loop import SimLoop
 from sim.frames import steps_for
@@ -149,7 +150,7 @@ def test_equal_cost_is_equal_force_evaluations_a_second():
     each = [
         entrant.state.force_evals / entrant.state.t
         for entrant in scene.race.entrants
-        if entrant.record.name != "leapfrog"
+        if entrant.integrator != "leapfrog"
     ]
     np.testing.assert_allclose(each, 960.0, rtol=0.05)
 
@@ -207,6 +208,19 @@ def test_a_method_that_takes_no_damping_fails_at_once():
     )
     assert f'style="color:{ERROR_COLOUR}">{second.failure}<' in results_table(scene.readings())
     assert scene.time == pytest.approx(0.5)
+
+
+def test_a_rope_whose_method_takes_no_damping_stops_where_the_net_becomes_damped():
+    scene = race(ropes=2, integrator="rk4", integrator_2="pefrl", damping=0.0, drag=0.0, floor=False, time_step=1 / 960)
+    run(scene, 0.2)
+    assert [result.failure for result in scene.readings().results] == ["", ""]
+    change(scene, damping=3.0)
+    stopped = scene.frame().ropes[1]
+    run(scene, 0.2)
+    first, second = scene.readings().results
+    assert (first.failure, second.failure.partition(":")[0]) == ("", "allows no damping")
+    np.testing.assert_array_equal(scene.frame().ropes[1], stopped)
+    assert scene.time == pytest.approx(0.4)
 
 
 def test_all_ropes_may_fail_and_the_clock_goes_on():
@@ -325,7 +339,7 @@ def test_the_first_view_shows_the_whole_fall_of_all_ropes_and_their_labels(chang
     right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
     row = LABEL_SHARE * shown_height(params)
     for number, height in enumerate(label_heights(params.ropes)):
-        corners.append([(0.0, offset_of(params, number), ROOT[2] + row * (height + 1.0))])
+        corners.append([(0.0, offset_of(number, params.ropes, params.spacing), ROOT[2] + row * (height + 1.0))])
     seen = np.concatenate(corners) - position
     reach = np.tan(0.5 * RaceView.FIELD_OF_VIEW) * (seen @ ahead)
     assert (abs(seen @ right) < SHOWN_ASPECT * reach).all()
@@ -352,7 +366,10 @@ def test_all_ropes_look_equally_large_from_the_front():
     params = RaceParams(ropes=6)
     position, target = np.array(RaceView.first_view(object.__new__(RaceView), params))
     ahead = (target - position) / np.linalg.norm(target - position)
-    depths = [(np.array([0.0, offset_of(params, number), ROOT[2]]) - position) @ ahead for number in range(6)]
+    depths = [
+        (np.array([0.0, offset_of(number, params.ropes, params.spacing), ROOT[2]]) - position) @ ahead
+        for number in range(6)
+    ]
     assert max(depths) / min(depths) < 1.05
     swing = np.array([1.0, 0.0, 0.0])  # the direction in which ropes swing is seen at full length, within 3 %
     assert np.linalg.norm(np.cross(ahead, swing)) > 0.97

@@ -14,10 +14,11 @@ from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.quantities import measured
 from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import FULL_RATE_SPEED, QUARTER_RATE_SPEED, SCENE, RopeScene
-from app.scenes.rope.view import bead_radius
 from app.scenes.springs.divergence import divergence_text, leapfrog_alternative
 from app.scenes.springs.html import stability_bar, step_mark
-from app.scenes.springs.rope_parameters import ROOT, SPHERE
+from app.scenes.springs.net_motion import rope_lengths
+from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE
+from app.scenes.springs.ropes_view import bead_radius
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.server.loop import SimLoop
 from sim.parameters import check_record, parameters_of
@@ -152,17 +153,17 @@ def test_every_integrator_can_be_chosen_while_moving() -> None:
         change(scene, integrator=name, time_step=1 / 400)
         scene.advance(20)
         assert np.isfinite(scene.frame().points).all()
-        assert (scene.integrator.name == name) == (scene.readings().note == "")
+        assert (scene.motion.integrator == name) == (scene.readings().note == "")
 
 
 def test_where_the_chosen_method_takes_no_damping_another_runs_and_the_note_says_so() -> None:
     scene = Rope(RopeParams(integrator="pefrl"))
     scene.advance(10)
-    assert scene.integrator.name == "leapfrog"
+    assert scene.motion.integrator == "leapfrog"
     assert "pefrl takes no damping, so leapfrog runs" in scene.readings().note
     change(scene, damping=0.0, drag=0.0, floor=False)
     scene.advance(10)
-    assert (scene.integrator.name, scene.readings().note) == ("pefrl", "")
+    assert (scene.motion.integrator, scene.readings().note) == ("pefrl", "")
 
 
 def test_plots_are_recorded_while_closed_with_a_small_error_and_begin_anew_with_a_reset() -> None:
@@ -244,8 +245,8 @@ def test_a_change_of_look_leaves_the_energy_account_alone_bit_for_bit(integrator
         for loop, account in zip(loops, accounts, strict=True):
             loop.tick(FRAME_INTERVAL)
             scene, state = loop.scene, loop.scene.state
-            error = scene.account.error(scene.net, state)
-            account[state.steps] = (state.dissipated, state.work, *scene.account.initial, error)
+            error = scene.motion.energy_error()
+            account[state.steps] = (state.dissipated, state.work, *scene.motion.account.initial, error)
     assert changed.params != alone.params
     common = accounts[0].keys() & accounts[1].keys()
     assert len(common) > 30
@@ -257,7 +258,7 @@ def test_a_change_of_look_costs_no_stability_check(monkeypatch: pytest.MonkeyPat
     scene = Rope(RopeParams())
     scene.advance(2)
     monkeypatch.setattr("app.scenes.rope.scene.top_modes", None)  # a call would fail
-    monkeypatch.setattr("app.scenes.rope.scene.gauge", None)
+    monkeypatch.setattr("app.scenes.springs.net_motion.gauge", None)
     for look in LOOKS:
         change(scene, **look)
 
@@ -291,32 +292,46 @@ CHANGES = (
 def test_a_change_of_forces_is_booked_as_work_and_not_as_an_error(changes: dict[str, object]) -> None:
     scene = Rope(RopeParams(integrator="rk4", time_step=1 / 4800))
     run(scene, 60, 80)
-    state, initial, before = scene.state, scene.account.initial, scene.account.error(scene.net, scene.state)
-    stored, dissipated, work = scene.account.stored(scene.net, state), state.dissipated, state.work
+    state, initial, before = scene.state, scene.motion.account.initial, scene.motion.energy_error()
+    stored, dissipated, work = scene.motion.stored_energy(), state.dissipated, state.work
     change(scene, **changes)
-    jump = scene.account.stored(scene.net, state) - stored
-    assert (scene.account.initial, state.dissipated) == (initial, dissipated)
+    jump = scene.motion.stored_energy() - stored
+    assert (scene.motion.account.initial, state.dissipated) == (initial, dissipated)
     assert state.work == work + jump
-    assert scene.account.error(scene.net, state) == pytest.approx(before, abs=1e-10)
+    assert scene.motion.energy_error() == pytest.approx(before, abs=1e-10)
     if set(changes) & {"stiffness", "gravity", "mass"}:
         assert abs(jump) > 1.0
     run(scene, 60, 80)
-    assert abs(scene.account.error(scene.net, scene.state)) < 1e-4
+    assert abs(scene.motion.energy_error()) < 1e-4
     assert scene.state.dissipated > dissipated
 
 
 def test_another_method_goes_on_with_the_same_account() -> None:
     scene = Rope(RopeParams(time_step=1 / 2400))
     run(scene, 30, 40)
-    initial = scene.account.initial
+    initial = scene.motion.account.initial
     dissipated = scene.state.dissipated
     change(scene, integrator="implicit_euler")
-    assert (scene.account.initial, scene.state.dissipated) == (initial, dissipated)
+    assert (scene.motion.account.initial, scene.state.dissipated) == (initial, dissipated)
     cost = scene.readings().cost
     assert cost.numerical_dissipation == cost.damping_dissipation == 0.0  # counted from here
     run(scene, 30, 40)
     change(scene, stiffness=900.0)
     assert scene.readings().cost.numerical_dissipation > 0.01
+
+
+def test_the_cost_of_a_method_does_not_count_the_steps_of_the_one_before() -> None:
+    """RK4 computes the forces four times a step, and has no Newton corrections."""
+    scene = Rope(RopeParams(integrator="rk4", time_step=1 / 240))
+    run(scene, 30, 4)
+    change(scene, integrator="implicit_midpoint")
+    assert scene.readings().cost.corrections == 0.0  # it has taken no step yet
+    evals, steps = scene.state.force_evals, scene.state.steps
+    run(scene, 40, 4)
+    scene.assess_stability()
+    before = (scene.state.force_evals - evals) / (scene.state.steps - steps)
+    assert 1.0 <= scene.readings().cost.corrections < 4.0
+    assert scene.readings().cost.corrections == pytest.approx(before, abs=0.5)
 
 
 @pytest.mark.parametrize("name", [name for name, record in INTEGRATORS.items() if record.implicit])
@@ -393,15 +408,23 @@ def test_the_panel_says_what_limits_a_step_that_only_damping_limits() -> None:
     assert "200\u00a0% of the largest stable one for Runge-Kutta 4 (damping alone limits it)" in text
 
 
+@pytest.mark.parametrize("points", [2, 10, 60])
+def test_the_length_at_which_a_rope_hangs_is_that_of_the_exact_chain(points: int) -> None:
+    net = Rope(RopeParams(points=points)).net
+    length, stretch = rope_lengths(net)
+    assert length == pytest.approx(2.0, rel=1e-12)
+    assert length + stretch == pytest.approx(ROOT[2] - hanging_chain(net)[0][-1, 2], rel=1e-9)
+
+
 def test_a_rope_has_left_its_bounds_at_three_times_the_length_it_hangs_at() -> None:
     scene = Rope(RopeParams(floor=False))
     start = extremes(scene.state.x, scene.state.v).reach
-    assert scene.max_reach == pytest.approx(4.0 + 3.0 * 2.5625 + start)  # the lab's ten points hang 2.56 m deep
+    assert scene.motion.max_reach == pytest.approx(4.0 + 3.0 * 2.5625 + start)  # the lab's ten points hang 2.56 m deep
 
 
 def test_beads_are_as_large_in_every_direction_of_the_rope() -> None:
     """They are made once for a number of points: level at a start, in any shape when a run comes back."""
     along = np.array([1.0, 0.0, 0.0]), np.array([1.0, 1.0, 1.0]) / math.sqrt(3.0)
-    level, slanted = (bead_radius(0.05 * np.outer(np.arange(40), direction)) for direction in along)
+    level, slanted = (bead_radius(0.05 * np.outer(np.arange(40), direction), ROPE_RADIUS) for direction in along)
     assert level == pytest.approx(0.4 * 0.05, rel=1e-12)
     assert slanted == pytest.approx(level, rel=1e-12)

@@ -182,7 +182,7 @@ def test_a_change_of_forces_is_ended_in_its_middle_only_for_a_new_beginning(busy
         busy.give_turn()
         ended.append(int(busy.run.request[STOP]))
         if busy.run.request[STOP]:
-            busy.scene.net = None  # half of the change
+            busy.scene.motion.net = None  # half of the change
             raise InterruptionError
         whole(params)
 
@@ -231,7 +231,7 @@ def test_steps_that_are_kept_whole_are_abandoned_for_a_new_beginning(busy):
     def half_a_step(steps):
         busy.commands.put(Reset())
         with kept_whole():
-            busy.scene.net = None  # half of a step
+            busy.scene.motion.net = None  # half of a step
             raise_if_stopped()
 
     resets, reset = [], busy.scene.reset

@@ -59,7 +59,7 @@ def test_the_explosion_is_shown_slowly_up_to_beyond_its_bounds_and_then_said() -
     assert (np.diff(times) >= 0.0).all()
     assert times[-1] - times[0] == pytest.approx(59 / 60, abs=0.01)
     assert spreads[0] < 3.5
-    assert spreads[-1] > loop.scene.max_reach
+    assert spreads[-1] > loop.scene.motion.max_reach
     assert "became unstable" in loop.run.halted
     assert loop.latest.status.halted == loop.run.halted
 

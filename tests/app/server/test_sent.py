@@ -22,7 +22,7 @@ def handed_over(lab: Any, frame: Any) -> tuple[int, int]:
 
 def tube_bytes(lab: Any) -> int:
     """Size of the drawn tube, packed."""
-    return lab.view.tube._packed().nbytes
+    return lab.view.ropes.tubes[0]._packed().nbytes
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def test_a_rope_that_nobody_sees_move_is_not_sent_until_it_has(still: Any):
     creep = [first._replace(points=first.points + np.float32(k * 2e-5)) for k in range(1, 12)]
     assert [handed_over(still, frame)[1] for frame in creep[:9]] == [0] * 9
     assert handed_over(still, creep[10])[1] == tube_bytes(still) + points
-    assert np.array_equal(still.view.tension, first.tension)
+    assert np.array_equal(still.view.ropes.tension, first.tension)
     # The same holds for colours.
     tint = [creep[10]._replace(tension=first.tension + np.float32(k * 2e-4 * first.full_scale)) for k in range(1, 12)]
     assert [handed_over(still, frame)[1] for frame in tint[:9]] == [0] * 9
@@ -65,10 +65,12 @@ def test_a_rope_that_nobody_sees_move_is_not_sent_until_it_has(still: Any):
 def test_what_is_handed_over_outside_of_counting_is_not_counted(still: Any):
     still.view.show(still.scene.frame())
     before = still.transport.sent.copy()
-    still.view.tube.set(np.zeros_like(still.view.vertices))
+    still.view.ropes.tubes[0].set(np.zeros_like(still.view.ropes.vertices[0]))
     assert still.transport.sent == before
     with still.transport.counted():
-        thread = threading.Thread(target=still.view.tube.set, args=(np.ones_like(still.view.vertices),))
+        thread = threading.Thread(
+            target=still.view.ropes.tubes[0].set, args=(np.ones_like(still.view.ropes.vertices[0]),)
+        )
         thread.start()
         thread.join()
     assert still.transport.sent == before

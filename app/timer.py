@@ -1,7 +1,7 @@
 """Time on systems whose timers are coarse.
 
 Windows ends waits for locks, queues and events at its timer's steps of 1/64 s, unless a program asks for finer ones,
-and counts the processor time of a thread in the same steps. `time.sleep` is exact there since Python 3.11.
+and counts processor time in the same steps. `time.sleep` is exact there since Python 3.11.
 """
 
 import contextlib
@@ -13,8 +13,8 @@ if sys.platform == "win32":
     import ctypes
 
     TIMER_STEP = 1.0 / 64.0  # [s] by which waits may end late on an idle machine
-    # Wall time: a step of the scene is shorter than what a thread's processor time is counted in.
-    effort_clock = time.perf_counter
+    # Wall time: a step of the scene is shorter than the steps in which processor time is counted.
+    effort_clock = process_effort_clock = time.perf_counter
 
     @contextlib.contextmanager
     def fine_timer() -> Iterator[None]:
@@ -28,5 +28,5 @@ if sys.platform == "win32":
 
 else:
     TIMER_STEP = 0.0
-    effort_clock = time.thread_time
+    effort_clock, process_effort_clock = time.thread_time, time.process_time
     fine_timer = contextlib.nullcontext

@@ -1,0 +1,109 @@
+"""Rope and race on a viser server without a browser: what both views draw of ropes."""
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Any
+from unittest.mock import Mock
+
+import numpy as np
+import pytest
+import viser
+
+from app.messages import GrabTo, Release
+from app.render.dragging import GRAB_COLOUR
+from app.scenes.race.parameters import RaceParams
+from app.scenes.race.scene import RaceScene
+from app.scenes.race.view import RaceView
+from app.scenes.rope.parameters import RopeParams
+from app.scenes.rope.scene import RopeScene
+from app.scenes.rope.view import RopeView
+from app.scenes.springs.rope_handles import offset_of
+
+RaceDrawing: Any = RaceView  # whose types the tests know
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[viser.ViserServer]:
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    yield server
+    server.stop()
+
+
+@pytest.fixture(params=[(RopeScene, RopeParams, RopeView), (RaceScene, RaceParams, RaceView)], ids=["rope", "race"])
+def shown(request: pytest.FixtureRequest, server: viser.ViserServer) -> Iterator[tuple[Any, Any]]:
+    """A scene, and its view that has shown a frame."""
+    kind, params, view_of = request.param
+    scene, view = kind(params()), view_of(server, lambda command: None)
+    view.show(scene.frame())
+    yield scene, view
+    server.scene.reset()
+
+
+def grabbed_beads(colours: np.ndarray) -> list[int]:
+    """The beads in the colour of a grabbed one."""
+    return np.flatnonzero((colours == GRAB_COLOUR).all(axis=1)).tolist()
+
+
+def test_the_grabbed_bead_is_drawn_in_a_colour_of_its_own(shown: tuple[Any, Any]) -> None:
+    scene, view = shown
+    scene.handle(GrabTo(7, (0.0, 0.0, 2.0)))
+    scene.advance(1)
+    view.show(scene.frame())
+    assert grabbed_beads(view.ropes.beads.batched_colors) == [7]
+    scene.handle(Release())
+    view.show(scene.frame())
+    assert grabbed_beads(view.ropes.beads.batched_colors) == []
+
+
+def test_beads_line_of_the_grab_and_picking_have_the_points_as_drawn(shown: tuple[Any, Any]) -> None:
+    scene, view = shown
+    scene.handle(GrabTo(7, (0.0, 0.0, 2.0)))
+    scene.advance(5)
+    frame = scene.frame()
+    view.show(frame)
+    points = (frame.ropes if isinstance(view, RaceView) else frame.points).reshape(-1, 3)
+    for drawn in (view.points, view.ropes.beads.batched_positions):
+        np.testing.assert_array_equal(drawn, points)
+    np.testing.assert_array_equal(view.grab.line.points[0, 0], points[7])
+
+
+def test_another_number_of_points_makes_other_nodes(shown: tuple[Any, Any]) -> None:
+    scene, view = shown
+    scene.params = dataclasses.replace(scene.params, points=23)
+    scene.reset()
+    view.show(scene.frame())
+    ropes = getattr(scene.params, "ropes", 1)
+    assert len(view.ropes.beads.batched_positions) == 23 * ropes == len(view.points)
+    assert all(mesh.faces.max() + 1 == len(mesh.vertices) for mesh in view.ropes.meshes)
+
+
+def test_a_grabbed_bead_of_a_race_stays_dark_for_a_browser_with_a_dark_floor(
+    server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[Any] = []
+    client: Any = Mock(client_id=3)
+    client._websock_connection.queue_message = told.append
+    scene, view = RaceScene(RaceParams()), RaceDrawing(server, lambda command: None)
+    view.show(scene.frame())
+    monkeypatch.setattr(server, "get_clients", lambda: {3: client})
+    view.set_dark(client, True)
+    scene.handle(GrabTo(7, (0.0, 0.0, 2.0)))
+    view.show(scene.frame())
+    colours = next(m.updates["batched_colors"] for m in reversed(told) if "batched_colors" in getattr(m, "updates", ()))
+    assert grabbed_beads(colours) == [7]
+    others = np.delete(colours, 7, axis=0)
+    np.testing.assert_array_equal(others, np.delete(view.ropes.bead_colours(dark=True), 7, axis=0))
+    server.scene.reset()
+
+
+def test_a_rope_that_has_stopped_is_drawn_where_another_spacing_puts_it(server: viser.ViserServer) -> None:
+    scene, view = RaceScene(RaceParams(ropes=2, integrator_2="pefrl")), RaceDrawing(server, lambda command: None)
+    scene.advance(3)
+    assert scene.frame().failed == (False, True)
+    view.show(scene.frame())
+    scene.params = dataclasses.replace(scene.params, spacing=1.5)
+    view.show(scene.frame())
+    for number, mesh in enumerate(view.ropes.meshes):
+        assert mesh.vertices[:, 1].mean() == pytest.approx(offset_of(number, 2, 1.5), abs=1e-3)
+    assert [mesh.opacity for mesh in view.ropes.meshes] == [None, 0.35]
+    server.scene.reset()

@@ -154,13 +154,13 @@ function lightSea(base, sea, renderer, scene, camera, shape, light) {
   lit.grid.geometry = sea.polar.geometry;
   lit.grid.material.side = sea.mesh.material.side;
   litBy(lit.light.material, scene);
-  const shaders = [
+  const programs = [
     [`${shape.key} vertices`, TARGET_VERTEX, shape.defines + VERTICES_FRAGMENT],
     [`${shape.key} places`, PLACED + WATER_VERTEX, shape.defines + PLACES_FRAGMENT],
     ["springtide-water tiles", TARGET_VERTEX, TILES_FRAGMENT],
     [keyWithDetails(`${light.key} light`), LIGHT_VERTEX, withSky(light.defines + LIGHT_FRAGMENT, uniforms)],
   ];
-  for (const [k, [name, vertexShader, fragmentShader]] of shaders.entries()) {
+  for (const [k, [name, vertexShader, fragmentShader]] of programs.entries()) {
     replaceShader(materials[k], name, (shader) => {
       Object.assign(shader.uniforms, uniforms);
       Object.assign(shader, { vertexShader, fragmentShader });

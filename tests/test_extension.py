@@ -38,9 +38,9 @@ assert set(viewer.panel.controls) == {"length", "gravity", "angle", "speed", "gr
 assert not viewer.loop.run.halted
 
 viewer.open("radial_sea", RadialSeaParams(bodies=5))
-while not viewer.view.bodies and time.monotonic() < end:
+while not viewer.view.bodies.batches and time.monotonic() < end:
     time.sleep(0.05)
-assert "cone" in viewer.view.bodies
+assert "cone" in viewer.view.bodies.batches
 assert "Cone" in readout_of(viewer.loop.latest)
 assert measured(viewer.panel.kind, viewer.scene)["cone_draft_at_rest"].value > 0.0
 assert not viewer.loop.run.halted

@@ -11,10 +11,9 @@ MAX_FUNCTION, MAX_CLASS = 80, 300  # lines
 LONG_FUNCTIONS = {"sim/springs/integrators/embedded/march.py: march"}
 LONG_CLASSES: set[str] = set()
 MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; attributes that these assign to self
-LARGE_OBJECTS = {"FileScene", "MooringScene"}
+LARGE_OBJECTS: set[str] = set()
 MANY_ATTRIBUTES = {
-    "FileScene", "FloatingBodies", "GuideTab", "LineScene", "MooringScene", "MooringView", "NonlinearSea", "Panel",
-    "RadialSea", "RadialSeaView", "Sea", "SquareSeaScene", "Viewer",
+    "NonlinearSea", "Panel", "RadialSea", "Sea", "Viewer",
 }  # fmt: skip
 # Names that two packages of the library offer for different things. An entry goes as soon as they are one.
 NAMES_OF_TWO = {"simulate": {"sim.mooring", "sim.springs"}}

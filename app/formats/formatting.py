@@ -89,6 +89,17 @@ def seconds(value: float, digits: int = 3) -> str:
     return f"{number(float(f'{value / size:.{digits}g}'), digits)} {unit}"
 
 
+MAX_SMALL = 0.1  # below which a length [m] or time [s] is written in a multiple
+EASY = {"m": metres, "s": seconds}  # unit -> what writes a number in an easily read multiple of it
+
+
+def with_unit(value: float, unit: str, digits: int = 3) -> str:
+    """A number with its unit, a small length [m] or time [s] in an easily read multiple; "1" is no unit."""
+    if unit in EASY and 0.0 < abs(value) < MAX_SMALL:
+        return EASY[unit](value, digits)
+    return number(value, digits) if unit in ("", "1") else f"{number(value, digits)}\u00a0{unit}"
+
+
 def short_step(step: float) -> str:
     """A time step [s], for labels: 1/240 s if it is nearly one over a whole number, else in ms or µs."""
     rate = round(1.0 / step)

@@ -6,11 +6,9 @@ import string
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from app.formats.formatting import count, fixed, metres, metres_above, number, percent, seconds
+from app.formats.formatting import EASY, count, fixed, metres_above, number, percent, with_unit
 from sim.validation import argument_error
 
-EASY = {"m": metres, "s": seconds}  # unit -> what writes a number in an easily read multiple of it
-MAX_SMALL = 0.1  # below which a length [m] or time [s] is written in such a multiple
 UNKNOWN = "…"  # where the scene has no such value
 
 
@@ -33,8 +31,9 @@ class LiveNumber(NamedTuple):
             return count(self.value)
         if self.floor != 0.0:
             return metres_above(self.floor, self.value)
-        is_small = not spec and 0.0 < abs(self.value) < MAX_SMALL
-        if spec.endswith("u") or is_small:
+        if not spec:
+            return with_unit(self.value, self.unit)
+        if spec.endswith("u"):
             spec = spec[:-1]
             if self.unit in EASY:
                 return EASY[self.unit](self.value, int(spec or 3))

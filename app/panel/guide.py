@@ -4,9 +4,7 @@ Callbacks run on viser's event loop. They change the workbook and nothing on the
 thread, shows what has changed.
 """
 
-import threading
 import time
-import traceback
 from collections.abc import Callable, Iterator, Mapping
 
 import viser
@@ -15,7 +13,8 @@ from app.lab.live_values import LiveNumber, LiveValue, LiveValues, fill_in
 from app.lab.task import PREDICTION, Question, Task, TaskSetup
 from app.lab.workbook import Workbook, read_off
 from app.panel.controls import Controls
-from app.panel.picture import take_picture
+from app.panel.report_pictures import ReportPictures
+from app.panel.task_list import TaskList
 from app.render.formula import formula
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, join, note
 from app.render.viser_types import GuiHandle, ViserEvent
@@ -25,11 +24,8 @@ from sim.parameters import Value, in_words, parameters_of
 TYPING_PAUSE = 1.0  # [s] after the last keystroke, after which a text is kept
 UNANSWERED = "Choose …"  # in the list of choices
 SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
-BACK, ON = "◀", "▶"  # to the task before, and to the next; `fields.js` names them
 PICTURE = "Take a picture"
-PICTURE_WIDTH = 1280  # [pixels] of a picture for the report
 STATE_COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "given": GOOD_COLOUR}
-SIGNS = {"right": "✓", "begun": "●", "open": "○"}  # before a task, by its state
 STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Kept."}
 
 
@@ -177,6 +173,19 @@ class QuestionWidgets:
             widget.remove()
 
 
+class ControlsAgain:
+    """The controls of the panel that a task shows a second time; made in the container that is open."""
+
+    def __init__(self, gui: viser.GuiApi, controls: Controls) -> None:
+        self.controls, self.place = controls, gui.add_folder(None)
+        self.names: tuple[str, ...] = ()  # of their parameters
+
+    def show(self, names: tuple[str, ...]) -> None:
+        """Show those of these parameters, in place of the ones before."""
+        self.names = names
+        self.controls.show_again(names, self.place)
+
+
 class GuideTab:
     """The tab of the panel."""
 
@@ -199,25 +208,17 @@ class GuideTab:
         self.revision: int = workbook.revision
         self.refusal = ""  # why the last thing that was asked for was not possible
         self.unwritten = ""  # why a step could not be ticked off at the last look
-        self.busy = threading.Lock()  # one picture at a time
-        self.picture_said = ""  # what became of the last picture
+        self.pictures = ReportPictures(workbook, self.look_again)
         self.shown: Task | None = None
         self.questions: list[QuestionWidgets] = []
         workbook.go_to_scene(kind.name)
-        self.judged: tuple[object, ...] = ()  # what the signs before the titles come from
-        self.titles = self.titles_now()
-        self.controls = controls
-        self.names: tuple[str, ...] = ()  # of the parameters that the task shows again
         with tab:
-            self.chooser = gui.add_dropdown("Task", self.titles, initial_value=self.titles[workbook.index])
-            self.chooser.on_update(self.on_chooser)
-            self.turn = gui.add_button_group("", (BACK, ON))
-            self.turn.on_click(self.on_turn)
+            self.tasks = TaskList(gui, workbook)
             self.text = gui.add_html("")
             self.tools = gui.add_button_group("", (SET_UP, SHOW))
             self.tools.on_click(self.on_tool)
             # Folders without a name, so that what a task brings has its place.
-            self.control_place = gui.add_folder(None)
+            self.again = ControlsAgain(gui, controls)
             self.readings = gui.add_html("")
             self.question_place = gui.add_folder(None)
             self.answer = gui.add_html("")
@@ -228,20 +229,11 @@ class GuideTab:
 
     # ----- what browsers do
 
-    async def on_chooser(self, event: ViserEvent) -> None:
-        """A task was chosen."""
-        if event.client_id is not None and event.target.value in self.titles:
-            self.workbook.go(self.titles.index(event.target.value))
-
     async def on_name(self, event: ViserEvent) -> None:
         """The student's name, for the report."""
         if event.client_id is not None:
             self.refusal = self.attempt(lambda: self.workbook.rename(str(event.target.value)))
             self.stale = True
-
-    async def on_turn(self, event: ViserEvent) -> None:
-        """On to the next task, or back."""
-        self.workbook.go(self.workbook.index + (1 if event.target.value == ON else -1))
 
     async def on_tool(self, event: ViserEvent) -> None:
         """Set the task up, show its answer, or take a picture."""
@@ -255,32 +247,14 @@ class GuideTab:
         self.stale = True
 
     def start_picture(self, client: viser.ClientHandle | None, task: Task) -> None:
-        """Take a picture of a browser's view for the report."""
-        if client is None or not self.busy.acquire(blocking=False):
-            return
-        self.picture_said = "The picture is being taken …"
-        threading.Thread(
-            target=self.take_picture, args=(client, task), name="picture for the report", daemon=True
-        ).start()
+        """Take a picture of a browser's view for the report, named by scene and time."""
+        now = self.values.get("time")
+        at = f"-{now.value:.0f}s" if isinstance(now, LiveNumber) else ""
+        self.pictures.start(client, task, f"{self.kind.name}{at}")
 
-    def take_picture(self, client: viser.ClientHandle, task: Task) -> None:
-        """Keep a picture in the student's folder; whatever goes wrong is said. In a separate thread."""
-        try:
-            time_now = self.values.get("time")
-            at = f"-{time_now.value:.0f}s" if isinstance(time_now, LiveNumber) else ""
-            picture = take_picture(client, (PICTURE_WIDTH, 0), jpeg=True)
-            name = self.workbook.add_picture(task, f"{self.kind.name}{at}", picture)
-            self.picture_said = f"The report has the picture “{name}”."
-        except OSError as error:  # a TimeoutError is one too
-            self.picture_said = f"No picture was taken: {error.strerror or error}"
-        except (ValueError, RuntimeError) as reason:
-            self.picture_said = f"No picture was taken: {reason}"
-        except Exception as error:
-            traceback.print_exc()
-            self.picture_said = f"No picture was taken: {type(error).__name__}: {error}"
-        finally:
-            self.stale = True
-            self.busy.release()
+    def look_again(self) -> None:
+        """Show everything anew at the next update."""
+        self.stale = True
 
     def attempt(self, action: Callable[[], None]) -> str:
         """Do something; returns why it was not possible, or ""."""
@@ -312,7 +286,7 @@ class GuideTab:
         if self.workbook.revision != self.revision:
             self.revision, stale = self.workbook.revision, True
         if task is not self.shown:
-            self.refusal = self.unwritten = self.picture_said = ""
+            self.refusal = self.unwritten = self.pictures.said = ""
             self.show_task(task)
         elif refresh or stale:
             self.show_values(task)
@@ -330,8 +304,7 @@ class GuideTab:
         if self.workbook.folder is not None:
             with self.question_place:
                 self.questions = [QuestionWidgets(self, task, question) for question in task.questions]
-        self.names = self.controls_of(task)
-        self.controls.show_again(self.names, self.control_place)
+        self.again.show(self.controls_of(task))
         self.show_values(task)
         self.shown = task
 
@@ -341,12 +314,12 @@ class GuideTab:
             return ()
         in_steps = (condition.name for step in task.steps for condition in step.when)
         names = dict.fromkeys((*in_steps, *self.workbook.set_up_of(task).show))
-        return tuple(name for name in names if name in self.controls.parameters)
+        return tuple(name for name in names if name in self.again.controls.parameters)
 
     def show_values(self, task: Task) -> None:
         """Show the texts of the task with the values of now."""
         shown = self.workbook.is_shown(task)
-        self.show_titles(task)
+        self.tasks.show(task)
         compares = any(question.kind == "text" and question.why for question in task.questions)
         tools = (SET_UP, SHOW, PICTURE) if task.guide is not None or compares else (SET_UP, PICTURE)
         if self.workbook.folder is None:
@@ -358,24 +331,6 @@ class GuideTab:
         self.answer.content = note(join((self.said(), self.answer_text(task) if shown else "")))
         for widgets in self.questions:
             widgets.show()
-
-    def titles_now(self) -> tuple[str, ...]:
-        """The tasks in the list, in a workbook each with the sign of its state."""
-        book = self.workbook
-        if book.folder is None:
-            return tuple(map(title_of, book.tasks))
-        return tuple(f"{SIGNS[book.state(task)]} {title_of(task)}" for task in book.tasks)
-
-    def show_titles(self, task: Task) -> None:
-        """Show the list of tasks, with this one chosen."""
-        judged = self.workbook.revision, self.workbook.programs()
-        if judged != self.judged:  # all answers of all tasks are checked for the signs, which takes a millisecond
-            self.judged = judged
-            titles = self.titles_now()
-            if titles != self.titles:
-                self.titles = titles
-                self.chooser.options = titles
-        self.chooser.value = self.titles[self.workbook.tasks.index(task)]
 
     def statement(self, task: Task) -> Html:
         """The task, and where to look."""
@@ -394,7 +349,7 @@ class GuideTab:
 
     def now(self, task: Task) -> Html:
         """The live values that the task keeps in sight."""
-        found = [self.values.get(name) for name in self.workbook.set_up_of(task).show if name not in self.names]
+        found = [self.values.get(name) for name in self.workbook.set_up_of(task).show if name not in self.again.names]
         rows = [fill("{}: <b>{}</b>", v.meaning, format(v, "")) for v in found if isinstance(v, LiveNumber)]
         return fill("Now: {}", join(rows, " · ")) if rows else Html()
 
@@ -417,7 +372,7 @@ class GuideTab:
         """The failed action and its cause."""
         error = self.refusal or self.unwritten or self.workbook.answers.error
         said = fill('<div class="springtide-refusal" role="alert">{}</div>', error) if error else Html()
-        return join((said, faint(self.picture_said))) if self.picture_said else said
+        return join((said, faint(self.pictures.said))) if self.pictures.said else said
 
     def answer_text(self, task: Task) -> Html:
         """The law, and the answer with the present values, or the settings that the scene lacks."""
@@ -440,8 +395,3 @@ def label_of(question: Question) -> str:
     """Name of the field of an answer: the question, with its unit."""
     unit = f" [{question.unit}]" if question.unit else ""
     return f"{'Predict: ' if question.key == PREDICTION else ''}{question.ask}{unit}"
-
-
-def title_of(task: Task) -> str:
-    """Name of a task in the list."""
-    return f"{task.item} {task.title}{' (optional)' if task.optional else ''}"

@@ -1,7 +1,7 @@
 """The table of quantities of a scene: name -> unit, meaning, and the number at an instant.
 
-A name is one number in one unit for all that read it: sweeps, `lab.data()`, `run --list`, and texts and conditions of
-tasks. An instant is a snapshot, or for a sweep a scene that is read as one (`SceneInstant`).
+A name is one number in one unit for all that read it: sweeps, `lab.data()`, `run --list`, texts of the panel, and
+texts and conditions of tasks. An instant is a snapshot, or for a sweep a scene that is read as one (`SceneInstant`).
 """
 
 import functools
@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from app.formats.formatting import with_unit
 from app.messages import PlotRow
 from sim.parameters import parameters_of
 
@@ -63,17 +64,25 @@ def for_sweeps(unit: str, meaning: str, value: Callable[[Any], float | None]) ->
     return Quantity(unit, meaning, value, shown=False)
 
 
+def read(table: Quantities, name: str, instant: Any) -> float:
+    """The number of this name at an instant; NaN if the scene does not have it then."""
+    value = table[name].value(instant)
+    return math.nan if value is None else value
+
+
+def written(table: Quantities, name: str, instant: Any, digits: int = 3) -> str:
+    """The number of this name with its unit, as texts of the panel write it."""
+    return with_unit(read(table, name, instant), table[name].unit, digits)
+
+
 def measured(kind: "SceneKind[Any, Any, Any]", scene: Any, row: PlotRow = ()) -> dict[str, Measure]:
     """The recorded quantities of a scene, NaN for those that it does not have now.
 
     row: the newest plot row, for a scene without a table.
     """
     instant = kind.instant(scene) if kind.quantities else dict(zip(kind.series, row[1:], strict=False))
-    found = {}
-    for name, quantity in recorded_quantities(kind).items():
-        value = quantity.value(instant)
-        found[name] = Measure(math.nan if value is None else value, quantity.unit, quantity.meaning)
-    return found
+    table = recorded_quantities(kind)
+    return {name: Measure(read(table, name, instant), one.unit, one.meaning) for name, one in table.items()}
 
 
 def recorded_quantities(kind: "SceneKind[Any, Any, Any]") -> Quantities:

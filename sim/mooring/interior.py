@@ -144,7 +144,7 @@ class Pairs:
         """The pieces on which parts seem to be: forces against lengths, over the stiffness of the lines there."""
         stiffness = np.full(self.p.nodes, self.load / self.count / float(self.rest.mean()))
         for ends in (self.start, self.end):
-            np.maximum.at(stiffness, ends, state.pull[:, 0] / self.rest)
+            np.maximum.at(stiffness, ends, state.pull[:, 0] / state.slack[:, 0])
         lies, wet, in_surface = (np.zeros(len(self.node), dtype=bool) for _ in range(3))
         lies[self.has_bed] = state.press > stiffness[self.on_bed] * state.gap
         is_wet = state.lift > stiffness[self.afloat] * state.above

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from sim.mooring.system import System
 
 MAX_CORRECTIONS = 40  # of both methods together
-FINISHING = 5  # of them at the end
-NEAR, NEARER = 1e-9, 1e-2  # gap at which the end is tried first, and over the last one again
+FINISHING, LEAST_FINISHING = 6, 2  # of them at the end, at most, and before they run out
+NEAR, NEARER = 1e-9, 1e-4  # gap at which the end is tried first, and over the last one again
 
 
 class Rest(NamedTuple):
@@ -57,7 +57,7 @@ def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = No
     done, left, aim = 0, math.inf, NEAR
     for near in along_central_path(p, chains, x):
         done += 1
-        if not (near.gap <= aim or near.is_last or done >= MAX_CORRECTIONS - FINISHING):
+        if not (near.gap <= aim or near.is_last or done >= MAX_CORRECTIONS - LEAST_FINISHING):
             continue
         aim = NEARER * near.gap
         for tension, on in near.guesses(pieces_at(near.x, p)):

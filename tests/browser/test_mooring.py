@@ -21,7 +21,9 @@ def test_open_water_lies_around_the_mooring(open_tab: Callable[..., Tab]) -> Non
     try:
         lab.open("mooring")
         tab = open_tab(lab.port, width=400, height=260, drawn=True, ratio=1.0)
-        tab.wait(lambda: lab.view.built and lab.view.water.has_shader is True and lab.view.sand.has_shader is True)
+        tab.wait(lambda: lab.view.drawn is not None)
+        drawn = lab.view.drawn
+        tab.wait(lambda: drawn.water.surface.has_shader is True and drawn.bed.sand.has_shader is True)
         lab.loop.commands.put(Pause())
         tab.page.add_style_tag(content=NO_NOTES + PANEL_HIDDEN + "#springtide-cover { display: none }")
         tab.page.wait_for_timeout(3000)
@@ -45,9 +47,9 @@ def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Call
         lab.open("mooring", MooringParams(moordyn_file=str(FILES / "shared_line.txt"), wave_height=0.0, time_step=4e-3))
         tab = open_tab(lab.port)
         tab.wait(lambda: lab.view.built and len(tab.vertices("/line_3")) > 0)
-        assert len(lab.view.tubes) == 3
-        assert len(lab.view.anchors.batched_positions) == 2
-        assert len(lab.view.fairleads.batched_positions) == 4
+        assert len(lab.view.drawn.lines.tubes) == 3
+        assert len(lab.view.drawn.ends.anchors.batched_positions) == 2
+        assert len(lab.view.drawn.ends.fairleads.batched_positions) == 4
         assert not any(gizmo.handle.visible for gizmo in lab.view.gizmos.values())
         tab.wait(lambda: lab.loop.scene.readings().most_offset == 0.0)
         x, y = tab.pixel(lab.loop.scene.middle)
@@ -68,13 +70,14 @@ def test_files_without_a_vessel_or_without_anchors_are_drawn(tmp_path: Path, ope
         lab.open("mooring", MooringParams(moordyn_file=str(path), time_step=2e-4))
         tab = open_tab(lab.port)
         tab.wait(lambda: lab.view.built and len(tab.vertices("/line_1")) > 0)
-        assert not lab.view.body.visible
+        assert not lab.view.drawn.body.handle.visible
         tab.wait(lambda: lab.loop.scene.time > 0.1)
         assert lab.loop.scene.readings().most_offset == 0.0
         lab.open("mooring", MooringParams(moordyn_file=str(FILES / "hanging_body.txt"), time_step=5e-4))
         tab.wait(lambda: lab.view.built and len(tab.vertices("/line_2")) > 0)
-        assert lab.view.body.visible
-        assert len(lab.view.fairleads.batched_positions) == 4  # two on the vessel, and the body's with that of its drag
+        assert lab.view.drawn.body.handle.visible
+        # Two on the vessel, and the body's with that of its drag.
+        assert len(lab.view.drawn.ends.fairleads.batched_positions) == 4
         errors = [error for error in tab.errors if LATE_UPDATE not in error]
     finally:
         lab.shut()

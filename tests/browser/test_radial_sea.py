@@ -110,10 +110,10 @@ def test_a_buoy_dragged_under_bobs_back(shown: tuple[Viewer, Tab]) -> None:
     tab.page.mouse.move(*start)
     lab.loop.commands.put(Play())
     tab.drag(start, (start[0], start[1] + 110), pause=100)
-    tab.wait(lambda: bool(lab.scene.bodies.grabbed_by))
+    tab.wait(lambda: bool(lab.scene.bodies.pulls))
     tab.wait(lambda: lab.scene.bodies.fleet.position[0, 2] < rest[2] - 0.15)
     tab.release()
-    tab.wait(lambda: not lab.scene.bodies.grabbed_by)
+    tab.wait(lambda: not lab.scene.bodies.pulls)
     tab.wait(lambda: abs(lab.scene.bodies.fleet.position[0, 2] - rest[2]) < 0.02)
     assert tab.errors == []
 
@@ -134,7 +134,7 @@ def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Vie
     load(lab, spill="layer", thickness=0.3, speed=4.0)
     tab.wait(lambda: blue() < 0.3 * clear)
     theory = lab.scene.readings().bodies[0].prediction
-    tab.wait(lambda: np.abs(lab.scene.bodies.draft - theory.draft).max() < 2e-3)
-    assert (lab.scene.bodies.draft > theory.draft_in_water + 0.03).all()
+    tab.wait(lambda: np.abs(lab.scene.bodies.meters.draft - theory.draft).max() < 2e-3)
+    assert (lab.scene.bodies.meters.draft > theory.draft_in_water + 0.03).all()
     tab.wait(lambda: tab.page.get_by_text(f"{theory.draft:.3f}").count() > 0)
     assert tab.errors == []

@@ -51,12 +51,12 @@ def straight_links(now: Any, apart: int) -> int:
 
 
 QUANTITIES: Quantities = {
-    "total": for_sweeps("J", "Energy in all", lambda now: now.energy.total),
-    "kinetic": for_sweeps("J", "Kinetic energy", lambda now: now.energy.kinetic),
-    "elastic": for_sweeps("J", "Elastic energy of the springs", lambda now: now.energy.elastic),
-    "gravity_energy": for_sweeps("J", "Potential energy", lambda now: now.energy.gravity),
-    "contact": for_sweeps("J", "Elastic energy of the contacts", lambda now: now.energy.contact),
-    "dissipated": for_sweeps("J", "Energy that damping took since the start", lambda now: now.dissipated),
+    "total_energy": for_sweeps("J", "Energy in all", lambda now: now.energy.total),
+    "kinetic_energy": for_sweeps("J", "Kinetic energy", lambda now: now.energy.kinetic),
+    "elastic_energy": for_sweeps("J", "Elastic energy of the springs", lambda now: now.energy.elastic),
+    "potential_energy": for_sweeps("J", "Potential energy above z = 0", lambda now: now.energy.gravity),
+    "contact_energy": for_sweeps("J", "Elastic energy of the contacts", lambda now: now.energy.contact),
+    "dissipated_energy": for_sweeps("J", "Energy that damping took since the start", lambda now: now.dissipated),
     "largest_strain": Quantity("%", "Largest strain", lambda now: 100.0 * float(now.frame.strain.max())),
     # A sweep leaves them out: the stability of a large cloth is assessed now and then only.
     **{name: quantity._replace(recorded=False) for name, quantity in STABILITY.items()},

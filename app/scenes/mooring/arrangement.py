@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from app.messages import Vector, vector_of
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.parameters import MooringParams
+from app.scenes.mooring.rows import LineRows
 from sim import floating
 from sim.mooring import Line, LineType, MooredBody, Point, System, moored
 from sim.ocean.gerstner import draw_waves, waves_under
@@ -75,6 +76,11 @@ def width_of(params: MooringParams) -> float:
         return params.size
     found = mooring_of(params.moordyn_file)
     return min(max(VESSEL_WIDTH * found.radius, LEAST_VESSEL * found.extent), LARGEST_VESSEL * found.extent)
+
+
+def is_round(params: MooringParams) -> bool:
+    """True if the body is round as seen from above."""
+    return bool(params.moordyn_file) or params.body == "buoy"
 
 
 def hull_of(params: MooringParams) -> floating.Hull:
@@ -203,12 +209,14 @@ def build(params: MooringParams, places: Places, body: MooredBody, sea: Waves | 
     )  # fmt: skip
 
 
-def nodes_and_links(system: System, params: MooringParams) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Numbers of each line's nodes (lines, segments + 1) and links (lines, segments), from the anchor on."""
+def rows_of(system: System, params: MooringParams) -> LineRows:
+    """The lines from their anchors to the body, a piece for each segment."""
     nodes, links = [], []
     for i in range(params.lines):
         ids = [10 * (i + 1) + j for j in range(len(sections(params)))]
         chains = [system.nodes_of[one] for one in ids]
         nodes.append(np.concatenate([chains[0], *(chain[1:] for chain in chains[1:])]))
         links.append(np.concatenate([np.arange(system.links_of[one].start, system.links_of[one].stop) for one in ids]))
-    return np.array(nodes), np.array(links)
+    at, lengths = np.array(nodes), np.full(params.lines, params.length)
+    held = tuple((i, -1) for i in range(params.lines))
+    return LineRows(at, at, np.zeros((*at.shape, 1)), np.array(links), lengths, held)

@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import GrabTo, Release, SceneCommand, Vector, vector_of
+from app.messages import SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import extent, sea_of
 from app.scenes.mooring.frame import MooringFrame
-from app.scenes.mooring.from_file import FileMooring, mooring_of, slack_of
+from app.scenes.mooring.from_file import mooring_of, slack_of
 from app.scenes.mooring.line_scene import LineScene, fade_at
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.restoring import LEAST_SHARE, SHARE
+from app.scenes.mooring.restoring import LEAST_REACH, REACH
 from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.interruption import raise_if_stopped
@@ -26,8 +26,7 @@ VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
 FARTHEST = 10.0  # in `extent`s, beyond which a run has diverged
 CURVE_POINTS = 17  # offsets at which the statics of all lines are solved
 CHANGING = (
-    "state", "system", "tensions", "path", "path_count", "most_offset", "farthest", "vessel", "rest_scale",
-    "rest_stretch", "fault", "failure", "sea", "step_modes", "moved_by",
+    "state", "system", "tensions", "excursion", "start", "vessel", "sea", "step_modes", "moved_by",
 )  # fmt: skip
 
 
@@ -42,7 +41,7 @@ class FileInputs(NamedTuple):
         """Offsets [m] of the vessel along the waves, and the force [N] of all lines against each; NaN without rest."""
         file = mooring_of(self.path)
         slack = slack_of(file.system)
-        end = max(SHARE * slack[0] if slack else 0.0, LEAST_SHARE * file.extent, self.far)
+        end = max(REACH * slack[0] if slack else 0.0, LEAST_REACH * file.extent, self.far)
         offset = np.linspace(-end, end, CURVE_POINTS)
         force = np.full(len(offset), math.nan)
         for i, one in enumerate(offset):
@@ -53,19 +52,9 @@ class FileInputs(NamedTuple):
                 rest = at_rest(file.system, placed)
             except ConvergenceError:
                 continue
-            tension = np.concatenate([rest.tension[line.id] for line in file.system.lines])
-            force[i] = -float(level_force(file, rest.nodes, tension) @ self.wave)
+            tension = np.concatenate([rest.tension[line.id] for line in file.system.lines])[file.rows.links]
+            force[i] = -float(file.rows.level_force(file.rows.points(rest.nodes), tension) @ self.wave)
         return offset, force
-
-
-def level_force(file: FileMooring, x: NDArray[np.float64], tension: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Level force (2,) [N] of all lines on the vessel, with nodes at x (3, n) and these tensions (links,)."""
-    points, tension = file.shown.points(x), tension[file.shown.links]
-    found = np.zeros(2)
-    for line, end in file.ends:
-        way = points[line, 1 if end == 0 else -2] - points[line, end]
-        found += tension[line, end] * way[:2] / max(float(np.linalg.norm(way)), 1e-12)
-    return found
 
 
 class FileScene(LineScene):
@@ -81,20 +70,16 @@ class FileScene(LineScene):
         self.moved_by = np.zeros(3)
         self.sea = sea_of(p)
         self.system = self.arranged()
-        self.links = self.file.shown.links
+        self.rows = self.file.rows
 
     @property
     def middle(self) -> Vector:
         """[m] of the vessel at the surface, where it begins."""
         return self.file.middle
 
-    def find_fault(self) -> Fault | None:
-        """The fault of the state that the mooring starts with, by `rest_stretch`; None if there is none."""
-        return fault_of_file(self.file, self.rest_stretch)
-
-    def lengths(self) -> NDArray[np.float64]:
-        """(lines,) [m], unstretched."""
-        return self.file.shown.lengths
+    def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
+        """The fault of a state to start with, None if there is none; see `LineScene`."""
+        return fault_of_file(self.file, stretch)
 
     def arranged(self) -> System:
         """The file's system in the waves and the current of the parameters."""
@@ -119,18 +104,13 @@ class FileScene(LineScene):
         """True while a user moves the vessel."""
         return self.grabbed is not None or not self.vessel.at_rest
 
-    def drag(self, command: SceneCommand) -> None:
-        """Drag the vessel, or leave it where it is."""
-        match command:
-            case GrabTo(0, target, client) if self.grabbed is None or self.grabbed[0] == client:
-                self.grabbed = client, target
-                away = np.subtract(target, self.middle)[:2]
-                away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))
-                self.vessel.target = vector_of(np.append(away, 0.0))
-            case Release(client) if self.grabbed is not None and self.grabbed[0] == client:
-                self.grabbed = None
-            case _:
-                pass
+    def handle(self, command: SceneCommand) -> None:
+        """Carry out a command of the mouse, or begin the statistics again: a vessel follows as far as lines reach."""
+        super().handle(command)
+        if self.grabbed is not None:
+            away = np.subtract(self.grabbed[1], self.middle)[:2]
+            away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))
+            self.vessel.target = vector_of(np.append(away, 0.0))
 
     def body_place(self) -> NDArray[np.float64]:
         """(3,) [m] of the vessel's middle at the surface."""
@@ -143,15 +123,15 @@ class FileScene(LineScene):
     def paths(self, duration: float) -> NDArray[np.float64]:
         """(coupled points, 5, 3) for `duration` [s], as `LineArrays` has them: all points move as one."""
         t = self.state.t
-        share = self.params.follow
+        follow = self.params.follow
         x0, v0 = np.array(self.vessel.position), np.array(self.vessel.velocity)
         self.vessel.advance(t, duration)
         x1, v1 = np.array(self.vessel.position), np.array(self.vessel.velocity)
         for x, v, at in ((x0, v0, t), (x1, v1, t + duration)):
             wave, speed = water_motion(self.sea, self.middle, at)
             fade = fade_at(at)
-            x += share * fade * wave
-            v += share * fade * speed
+            x += follow * fade * wave
+            v += follow * fade * speed
         paths = np.repeat(cubic(x0, v0, x1, v1, t, duration)[None], len(self.file.vessel), axis=0)
         paths[:, 0] += self.places
         self.moved_by = x1 if self.file.vessel else np.zeros(3)
@@ -165,22 +145,7 @@ class FileScene(LineScene):
 
     def is_bounded(self) -> bool:
         """False once anything is not finite or is farther away than lines reach."""
-        return bool(np.abs(self.state.x).max() < FARTHEST * extent(self.params) + self.longest)
-
-    @property
-    def longest(self) -> float:
-        """Length [m] of all lines."""
-        return float(self.file.shown.lengths.sum())
-
-    def points_at(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(lines, n, 3) [m] of points of each line, from its anchor."""
-        return self.file.shown.points(x)
-
-    def lying(self) -> NDArray[np.float64]:
-        """(lines,) [m] of unstretched length on the bed."""
-        down = self.points[:, :, 2] <= -self.system.depth
-        pieces = self.points.shape[1] - 1
-        return (down[:, :-1] & down[:, 1:]).sum(axis=1) * self.file.shown.lengths / pieces
+        return bool(np.abs(self.state.x).max() < FARTHEST * extent(self.params) + self.rows.lengths.sum())
 
     def frame(self) -> MooringFrame:
         """Frame to draw."""
@@ -188,7 +153,7 @@ class FileScene(LineScene):
         anchors = list(self.file.anchors)
         # Of the lines that end at an anchor, any may pull it upwards.
         lifted = np.zeros(len(x), bool)
-        np.logical_or.at(lifted, self.file.shown.before[:, 0], self.tensions.uplift > 0.0)
+        np.logical_or.at(lifted, self.rows.before[:, 0], self.tensions.uplift > 0.0)
         movable = [*self.file.vessel, *self.file.others]
         return found._replace(anchors=x[anchors], uplift=lifted[anchors], fairleads=x[movable])
 
@@ -197,16 +162,10 @@ class FileScene(LineScene):
         bearing = math.radians(self.params.direction)
         return FileInputs(self.params.moordyn_file, (math.cos(bearing), math.sin(bearing)), far)
 
-    def force_of_lines(self) -> NDArray[np.float64]:
-        """Level force (2,) [N] of the lines on the vessel now."""
-        tension = np.zeros(sum(line.segments for line in self.system.lines))
-        tension[self.links.reshape(-1)] = self.tension.reshape(-1)
-        return level_force(self.file, self.state.x, tension)
-
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""
         tension = np.zeros(sum(line.segments for line in self.system.lines))
-        tension[self.links.reshape(-1)] = self.tension.reshape(-1)
+        tension[self.rows.links.reshape(-1)] = self.tension.reshape(-1)
         found: dict[str, tuple[NDArray[Any], str]] = {"vessel": (self.body_place(), "m")}
         for line in self.system.lines:
             found[f"x_{line.id}"] = (self.state.x[:, self.system.nodes_of[line.id]].T.copy(), "m")

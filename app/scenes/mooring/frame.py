@@ -52,7 +52,7 @@ class LineReading(NamedTuple):
     most_uplift: float  # [N] since the statistics began
     lying: float  # [m] of unstretched length on the bed
     slack_since: float  # [s] of simulated time; NaN: the line is taut at the fairlead
-    slack_share: float  # of the time of the statistics
+    slack_fraction: float  # of the time of the statistics
 
 
 class MooringReadings(NamedTuple):

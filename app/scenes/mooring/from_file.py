@@ -5,9 +5,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.messages import Vector, vector_of
+from app.scenes.mooring.rows import LineRows
 from sim.mooring import System, read_moordyn
 
 LEAST_EXTENT = 1e-3  # [m]
@@ -15,31 +15,15 @@ STRETCH = 0.01  # of the shortest line at the vessel, to which the vessel may be
 ELSEWHERE = 0.1  # of the extent, to which a vessel may be dragged if no line leads from it to a fixed point
 
 
-class Shown(NamedTuple):
-    """Lines of unlike numbers of segments as rows of equally many pieces, each from its anchor on."""
-
-    before: NDArray[np.int64]  # (lines, n) node before each point, or at it
-    after: NDArray[np.int64]  # (lines, n) the next one
-    share: NDArray[np.float64]  # (lines, n, 1) of the way between them
-    links: NDArray[np.int64]  # (lines, n - 1) link of each piece
-    lengths: NDArray[np.float64]  # (lines,) [m] unstretched
-
-    def points(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points (lines, n, 3) of nodes x (3, nodes)."""
-        nodes = x.T
-        return nodes[self.before] + self.share * (nodes[self.after] - nodes[self.before])
-
-
 class FileMooring(NamedTuple):
     """A file that was read."""
 
     system: System
     notes: tuple[str, ...]  # on what was left out
-    shown: Shown
+    rows: LineRows
     vessel: tuple[int, ...]  # nodes of the coupled points
     anchors: tuple[int, ...]  # nodes of the fixed points
     others: tuple[int, ...]  # nodes of free points and of those that free bodies carry
-    ends: tuple[tuple[int, int], ...]  # (line, 0 or -1) of each end at the vessel, in the rows of `shown`
     middle: Vector  # [m] of the vessel, at the surface
     radius: float  # [m] from there to its farthest point
     extent: float  # [m] that the picture is made for
@@ -60,15 +44,15 @@ def mooring_of(path: str) -> FileMooring:
     extent = max(reach, 1.2 * system.depth, LEAST_EXTENT)
     arms = np.linalg.norm(places[list(vessel), :2] - middle, axis=1)
     reverse = [is_reversed(system, line.start, line.end) for line in system.lines]
-    ends = tuple(
+    held = tuple(
         (i, end)
         for i, (line, turned) in enumerate(zip(system.lines, reverse, strict=True))
         for end, point in ((0, line.end if turned else line.start), (-1, line.start if turned else line.end))
         if kinds[point] == "coupled"
     )
     return FileMooring(
-        system, tuple(notes), shown_lines(system, reverse), vessel, nodes.get("fixed", ()),
-        (*nodes.get("free", ()), *nodes.get("body", ())), ends, vector_of(np.append(middle, 0.0)),
+        system, tuple(notes), rows_of_lines(system, reverse, held), vessel, nodes.get("fixed", ()),
+        (*nodes.get("free", ()), *nodes.get("body", ())), vector_of(np.append(middle, 0.0)),
         float(arms.max(initial=0.0)), extent, farthest_offset(system, extent),
     )  # fmt: skip
 
@@ -83,10 +67,10 @@ def is_reversed(system: System, start: int, end: int) -> bool:
     return last.position[2] < first.position[2]
 
 
-def shown_lines(system: System, reverse: list[bool]) -> Shown:
+def rows_of_lines(system: System, reverse: list[bool], held: tuple[tuple[int, int], ...]) -> LineRows:
     """The rows of all lines, with as many pieces as the line of most segments has."""
     pieces = max(line.segments for line in system.lines)
-    before, after, share, links = [], [], [], []
+    before, after, fraction, links = [], [], [], []
     for line, turned in zip(system.lines, reverse, strict=True):
         nodes, of = system.nodes_of[line.id], system.links_of[line.id]
         numbers = np.arange(of.start, of.stop)
@@ -96,12 +80,12 @@ def shown_lines(system: System, reverse: list[bool]) -> Shown:
         i = np.minimum(at.astype(np.int64), line.segments - 1)
         before.append(nodes[i])
         after.append(nodes[i + 1])
-        share.append(at - i)
+        fraction.append(at - i)
         links.append(
             numbers[np.minimum((np.arange(pieces) + 0.5) * line.segments / pieces, line.segments - 1).astype(int)]
         )
     lengths = np.array([line.length for line in system.lines])
-    return Shown(np.array(before), np.array(after), np.array(share)[..., None], np.array(links), lengths)
+    return LineRows(np.array(before), np.array(after), np.array(fraction)[..., None], np.array(links), lengths, held)
 
 
 def slack_of(system: System) -> tuple[float, float] | None:

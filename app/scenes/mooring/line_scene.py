@@ -1,41 +1,39 @@
 """Lines on the simulation thread, for a scene whose lines the parameters describe and for one of a file."""
 
 import abc
-import dataclasses
 import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import PlotRow, RestartStatistics, SceneCommand, Vector, vector_of
+from app.messages import GrabTo, PlotRow, Release, RestartStatistics, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
 from app.scenes.moments import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
+from app.scenes.mooring.excursion import Excursion
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.restoring import CurveInputs, RestoringCurve
+from app.scenes.mooring.rows import LineRows
+from app.scenes.mooring.start import MooringStart, rest_or_start
 from app.scenes.mooring.start_check import Fault
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.speed_advice import faster_steps
 from sim.floating.rotation import quaternion_by_vector
-from sim.mooring import System, at_rest
-from sim.mooring.statics import Rest, rest_of, straight
+from sim.mooring import System
 from sim.springs import INTEGRATORS
 from sim.springs.forces.bending import set_line_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of, top_modes
 from sim.springs.state import State, advance, velocities
-from sim.validation import ConvergenceError, DivergenceError
+from sim.validation import DivergenceError
 from sim.waves import AMPLITUDE, Waves
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
 SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
 FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
-MAX_PATH = 1200  # places of the body's path that are kept
-PATH_INTERVAL = 0.25  # [s]
-NO_REST = "The lines find no state of rest"
 MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
 LINE_SERIES = tuple(f"line {i + 1}" for i in range(MAX_LINES))
 ANCHOR_SERIES = tuple(f"anchor {i + 1}" for i in range(MAX_LINES))
@@ -50,8 +48,7 @@ class LineScene(abc.ABC):
     changing: tuple[str, ...]  # attributes that a checkpoint holds
     system: System
     sea: Waves | None
-
-    links: NDArray[np.int64]  # (lines, n) of each piece of a line, from its anchor
+    rows: LineRows
 
     @property
     @abc.abstractmethod
@@ -84,30 +81,23 @@ class LineScene(abc.ABC):
         """At rest in level water, with all things in their first places."""
         self.grabbed: tuple[int, Vector] | None = None
         self.arrange()
-        rest, self.failure = rest_or_start(self.system)
+        rest, failure = rest_or_start(self.system)
         self.state = State.still(rest.nodes)
-        self.rest_place = self.body_place()
-        self.check_start(rest)
-        self.rest_scale = max(float(max(tension.max() for tension in rest.tension.values())), 1.0)
-        self.path, self.path_count = np.empty((0, 2), np.float32), 0
-        self.most_offset = self.farthest = 0.0  # [m] of the statistics, and since the start
+        self.excursion = Excursion(self.body_place())
+        stretch = self.rows.stretch(rest.nodes)
+        self.start = MooringStart.of(rest, stretch, self.fault_of(stretch, failure), failure)
         self.assess_stability()
-        self.tensions = Tensions(len(self.links))
+        self.tensions = Tensions(len(self.rows.lengths))
         self.measure()
         self.plot_rows.restart()
         self.last_moments.clear()
 
-    def check_start(self, rest: Rest) -> None:
-        """Find the faults of a state to start with."""
-        spans = np.linalg.norm(np.diff(self.points_at(rest.nodes), axis=1), axis=2).sum(axis=1)
-        self.rest_stretch = spans / self.lengths() - 1.0
-        self.fault = self.find_fault()
-        if self.fault is None and self.failure:
-            self.fault = Fault(self.failure, NO_REST, "length", None, True)
-
     @abc.abstractmethod
-    def find_fault(self) -> Fault | None:
-        """The fault of the state that the mooring starts with, by `rest_stretch`; None if there is none."""
+    def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
+        """The fault of a state to start with, None if there is none.
+
+        stretch: (lines,) over the length. failure: of the search for rest, or "".
+        """
 
     @abc.abstractmethod
     def arrange(self) -> None:
@@ -126,30 +116,19 @@ class LineScene(abc.ABC):
     def is_dragged(self) -> bool:
         """True while a user moves a part of the mooring."""
 
-    @abc.abstractmethod
-    def drag(self, command: SceneCommand) -> None:
-        """Carry out a command of the mouse."""
-
     def handle(self, command: SceneCommand) -> None:
         """Carry out a command of the mouse, or begin the statistics again."""
-        if isinstance(command, RestartStatistics):
-            self.tensions.restart()
-            self.most_offset = 0.0
-            self.measure()
-        else:
-            self.drag(command)
-
-    @abc.abstractmethod
-    def lengths(self) -> NDArray[np.float64]:
-        """(lines,) [m], unstretched."""
-
-    @abc.abstractmethod
-    def points_at(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(lines, n + 1, 3) [m] of points of each line, from its anchor, with nodes at x (3, nodes)."""
-
-    @abc.abstractmethod
-    def lying(self) -> NDArray[np.float64]:
-        """(lines,) [m] of unstretched length on the bed."""
+        match command:
+            case RestartStatistics():
+                self.tensions.restart()
+                self.excursion.restart()
+                self.measure()
+            case GrabTo(0, target, client) if self.grabbed is None or self.grabbed[0] == client:
+                self.grabbed = client, target
+            case Release(client) if self.grabbed is not None and self.grabbed[0] == client:
+                self.grabbed = None
+            case _:
+                pass
 
     @abc.abstractmethod
     def body_place(self) -> NDArray[np.float64]:
@@ -169,8 +148,9 @@ class LineScene(abc.ABC):
 
     def diagnosis(self) -> str:
         """Cause of the divergence, and settings that would hold."""
-        if self.fault is not None and self.fault.is_grave:
-            return self.fault.said
+        fault = self.start.fault
+        if fault is not None and fault.is_grave:
+            return fault.said
         method = INTEGRATORS[self.params.integrator]
         other = leapfrog_alternative(method, self.stability)
         return divergence_text(self.time, method, self.step, self.stability, other)
@@ -183,9 +163,13 @@ class LineScene(abc.ABC):
     def static_inputs(self, far: float = 0.0) -> CurveInputs:
         """Everything that the restoring curve depends on. far: [m] offset to which it goes at least."""
 
-    @abc.abstractmethod
+    def lying(self) -> NDArray[np.float64]:
+        """(lines,) [m] of unstretched length on the bed."""
+        return self.rows.lying(self.points, -self.system.depth)
+
     def force_of_lines(self) -> NDArray[np.float64]:
         """Level force (2,) [N] of the lines on the body or vessel now."""
+        return self.rows.level_force(self.points, self.tension)
 
     def assess_stability(self) -> None:
         """Find the modes about the state, and with them the longest stable step."""
@@ -212,8 +196,8 @@ class LineScene(abc.ABC):
 
     def advance(self, steps: int) -> None:
         """Take steps. Raises DivergenceError where the state leaves its bounds, and keeps the last good one."""
-        if self.failure:
-            raise DivergenceError(self.failure if self.fault is None else self.fault.said)
+        if self.start.failure:
+            raise DivergenceError(self.start.failure if self.start.fault is None else self.start.fault.said)
         self.add_due_row()  # of the start
         method, h = INTEGRATORS[self.params.integrator], self.step
         piece = max(1, round(SAMPLE / h))
@@ -239,18 +223,11 @@ class LineScene(abc.ABC):
         tension = np.empty(len(p.ends))
         v = velocities(self.system, state).reshape(-1)
         set_line_tensions(state.x.reshape(-1), v, p, tension)
-        self.tension, self.points = tension[self.links], self.points_at(state.x)
+        self.tension, self.points = tension[self.rows.links], self.rows.points(state.x)
         if self.is_dragged:
             self.tensions.leave_out(state.t, self.params.wave_period)
         self.tensions.measure(state.t, self.tension, self.points)
-        place = self.body_place()
-        self.offset = float(np.linalg.norm((place - self.rest_place)[:2]))
-        self.farthest = max(self.farthest, self.offset)
-        if self.tensions.counts:
-            self.most_offset = max(self.most_offset, self.offset)
-        if state.t >= PATH_INTERVAL * self.path_count:
-            self.path = np.concatenate((self.path[1 - MAX_PATH :], place[None, :2].astype(np.float32)))
-            self.path_count += 1
+        self.excursion.measure(state.t, self.body_place(), counts=self.tensions.counts)
 
     def add_plot_row(self) -> None:
         """Add tensions and offset at the scene's time."""
@@ -259,16 +236,15 @@ class LineScene(abc.ABC):
         missing = (math.nan,) * (MAX_LINES - len(fairleads))
         self.plot_rows.add(
             self.time, *fairleads.tolist(), *missing, 1e-3 * float(now.at_fairlead.largest.max()), *anchors.tolist(),
-            *missing, self.offset,
+            *missing, self.excursion.offset,
         )  # fmt: skip
 
     def readings(self) -> MooringReadings:
         """Numbers for the panel."""
-        now = self.tensions
-        lines = now.readings(self.lying())
+        now, lines = self.tensions, self.tensions.readings(self.lying())
         return MooringReadings(
-            lines, self.offset, self.most_offset, now.most_at, self.stability, self.fault, now.since,
-            now.at_fairlead.duration, now.counts, now.dragged,
+            lines, self.excursion.offset, self.excursion.largest, now.most_at, self.stability, self.start.fault,
+            now.since, now.at_fairlead.duration, now.counts, now.dragged,
         )  # fmt: skip
 
     def frame(self) -> MooringFrame:
@@ -281,12 +257,12 @@ class LineScene(abc.ABC):
             rotation=np.array(quaternion_by_vector(self.rotation()), np.float32),
             points=self.points.astype(np.float32),
             tension=self.tension.astype(np.float32),
-            full_scale=MAX_TENSION_SCALE * self.rest_scale,
+            full_scale=MAX_TENSION_SCALE * self.start.scale,
             surface=surface_heights(p, self.sea, self.time, self.fade),
             side=surface_side(p),
-            path=self.path,
-            rest=vector_of(self.rest_place),
-            offset=self.most_offset,
+            path=self.excursion.path,
+            rest=vector_of(self.excursion.rest),
+            offset=self.excursion.largest,
             anchors=self.points[:, 0].astype(np.float32),
             fairleads=self.points[:, -1].astype(np.float32),
             uplift=self.tensions.uplift > 0.0,
@@ -321,18 +297,5 @@ class LineScene(abc.ABC):
 
 def fade_at(t: float) -> float:
     """Factor on what begins smoothly, at time t [s]."""
-    share = min(t / FADE, 1.0)
-    return share * share * (3.0 - 2.0 * share)
-
-
-def rest_or_start(system: System) -> tuple[Rest, str]:
-    """The state of rest in still water: a current would carry away what lies, which only friction holds.
-
-    If none is found, the shape that the search begins with, and the reason: the panel stays, and nothing moves.
-    """
-    still = dataclasses.replace(system, current=(0.0, 0.0, 0.0))
-    try:
-        return at_rest(still), ""
-    except ConvergenceError as error:
-        reason = f"{NO_REST} ({error}). Change their length, their anchors or EA."
-        return rest_of(still, straight(still), still.kernel_view(1.0)), reason
+    fraction = min(t / FADE, 1.0)
+    return fraction * fraction * (3.0 - 2.0 * fraction)

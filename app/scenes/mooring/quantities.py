@@ -28,10 +28,10 @@ def of_line_1(value: "Callable[[LineReading], float]") -> Callable[[Any], float]
 largest_tension = over_lines(max, lambda line: line.at_fairlead.largest)
 
 
-def breaking_load_use(now: Any) -> float:
-    """Largest tension over the breaking load; NaN if that is not known."""
-    load = 1e3 * now.params.breaking_load  # [N]
-    return largest_tension(now) / load if load > 0.0 else math.nan
+def load_use(tension: float, params: "MooringParams") -> float:
+    """A tension [N] over the breaking load; NaN if that is not known."""
+    load = 1e3 * params.breaking_load  # [N]
+    return tension / load if load > 0.0 else math.nan
 
 
 def hanging_length(now: Any) -> float:
@@ -56,15 +56,19 @@ QUANTITIES: Quantities = {
         "Largest standard deviation of the tension at a fairlead",
         over_lines(max, lambda line: line.at_fairlead.deviation),
     ),
-    "breaking_load_use": Quantity("1", "Largest tension at a fairlead over the breaking load", breaking_load_use),
+    "breaking_load_use": Quantity(
+        "1",
+        "Largest tension at a fairlead over the breaking load",
+        lambda now: load_use(largest_tension(now), now.params),
+    ),
     "largest_at_anchor": Quantity(
         "N", "Largest tension at an anchor", over_lines(max, lambda line: line.at_anchor.largest)
     ),
     "largest_uplift": Quantity(
         "N", "Largest upward force on an anchor", over_lines(max, lambda line: line.most_uplift)
     ),
-    "slack_share": Quantity(
-        "1", "Largest fraction of time that a line is slack", over_lines(max, lambda line: line.slack_share)
+    "slack_fraction": Quantity(
+        "1", "Largest fraction of time that a line is slack", over_lines(max, lambda line: line.slack_fraction)
     ),
     "lying_length": Quantity("m", "Length of all lines on the bed", over_lines(sum, lambda line: line.lying)),
     "largest_offset": Quantity(
@@ -76,7 +80,7 @@ QUANTITIES: Quantities = {
         lambda now: float(now.scene.body_place()[2] - now.scene.middle[2]),
     ),
     "rest_stretch": for_sweeps(
-        "1", "Largest stretch of a line at rest", lambda now: float(now.scene.rest_stretch.max())
+        "1", "Largest stretch of a line at rest", lambda now: float(now.scene.start.stretch.max())
     ),
     **STABILITY,
     "fairlead_tension": for_tasks("N", "Tension of line 1 at the fairlead", of_line_1(lambda line: line.fairlead)),
@@ -90,8 +94,8 @@ QUANTITIES: Quantities = {
         lambda now: float(now.frame.points[0, -1, 2]) + water_of(now.params).depth,
     ),
     "line_weight": for_tasks("N/m", "Weight of a metre of line in water", lambda now: weight_in_water(now.params)),
-    "line_1_slack_share": for_tasks(
-        "1", "Fraction of time that line 1 is slack", of_line_1(lambda line: line.slack_share)
+    "line_1_slack_fraction": for_tasks(
+        "1", "Fraction of time that line 1 is slack", of_line_1(lambda line: line.slack_fraction)
     ),
     "offset": for_tasks("m", "Level distance of the body from its place of rest", lambda now: now.readings.offset),
 }

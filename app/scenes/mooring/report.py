@@ -9,8 +9,10 @@ from app.messages import Snapshot
 from app.render.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
 from app.scenes.mooring.frame import EndStatistics, LineReading, MooringReadings
 from app.scenes.mooring.from_file import mooring_of
-from app.scenes.mooring.quantities import breaking_load_use, largest_tension
-from app.scenes.mooring.start_check import ADVISED, Fault, raised_points
+from app.scenes.mooring.parameters import MooringParams
+from app.scenes.mooring.quantities import QUANTITIES, load_use
+from app.scenes.mooring.start_check import BLAMED, Fault, raised_points
+from app.scenes.quantities import read, written
 from app.scenes.springs.html import colour_scale, step_mark
 
 TENSIONS = "Tensions"  # heading
@@ -28,40 +30,40 @@ def figures_of(snapshot: Snapshot) -> str:
     if found.fault is not None and not snapshot.status.halted:  # which says it all
         return coloured(found.fault.short, WARNING_COLOUR)
     line, t = found.most_at
-    share = breaking_load_use(snapshot)
-    use = "" if math.isnan(share) else fill(" ({})", percent(share))
-    largest = bold(kilonewtons(largest_tension(snapshot)))
+    used = read(QUANTITIES, "breaking_load_use", snapshot)
+    use = "" if math.isnan(used) else fill(" ({})", percent(used))
+    largest = bold(kilonewtons(read(QUANTITIES, "largest_tension", snapshot)))
     return fill("Largest tension: {} kN{}, line {} at {}", largest, use, line + 1, seconds(t))
 
 
 def slack_text(found: LineReading, now: float) -> Html:
-    """Time since a line went slack, or the share of time that it was slack."""
+    """Time since a line went slack, or the fraction of time that it was slack."""
     if math.isnan(found.slack_since):
-        return fill("{}", percent(found.slack_share) if found.slack_share > 0.0 else "never")
+        return fill("{}", percent(found.slack_fraction) if found.slack_fraction > 0.0 else "never")
     return coloured(f"since {seconds(now - found.slack_since)}", ERROR_COLOUR)
 
 
-def tension_table(name: str, ends: Sequence[tuple[float, EndStatistics]], breaking_load: float) -> Html:
-    """Tensions at one end of all lines: now, and their statistics. breaking_load: [kN], 0 if it is not known."""
+def tension_table(name: str, ends: Sequence[tuple[float, EndStatistics]], params: MooringParams) -> Html:
+    """Tensions at one end of all lines: now, and their statistics, with their use if the breaking load is known."""
     columns = [(name, ""), *((word, "kN") for word in ("now", "min", "mean", "max", "SD"))]
     rows = [
         [i + 1, *map(kilonewtons, (now, of.least, of.mean, of.largest, of.deviation))]
         for i, (now, of) in enumerate(ends)
     ]
-    if breaking_load > 0.0:
+    if params.breaking_load > 0.0:
         columns.append(("use", "%"))
         for row, (_, of) in zip(rows, ends, strict=True):
-            row.append(number(0.1 * of.largest / breaking_load, 2))
+            row.append(number(100.0 * load_use(of.largest, params), 2))
     return table(columns, rows)
 
 
 def tension_tables(snapshot: Snapshot) -> Html:
     """The tensions at the fairleads of all lines, and those at their anchors."""
     found: MooringReadings = snapshot.readings
-    load = snapshot.params.breaking_load
+    params = snapshot.params
     fairleads = [(one.fairlead, one.at_fairlead) for one in found.lines]
     anchors = [(one.anchor, one.at_anchor) for one in found.lines]
-    return join((tension_table("Fairlead", fairleads, load), tension_table("Anchor", anchors, load)))
+    return join((tension_table("Fairlead", fairleads, params), tension_table("Anchor", anchors, params)))
 
 
 def statistics_text(snapshot: Snapshot) -> Html:
@@ -89,15 +91,13 @@ def bed_table(snapshot: Snapshot) -> Html:
 
 def offset_text(snapshot: Snapshot) -> Html:
     """Offset and watch circle."""
-    found: MooringReadings = snapshot.readings
-    return fill(
-        "<div>Offset {}, watch circle of {} radius</div>", bold(metres(found.offset)), bold(metres(found.most_offset))
-    )
+    now, largest = (bold(written(QUANTITIES, name, snapshot)) for name in ("offset", "largest_offset"))
+    return fill("<div>Offset {}, watch circle of {} radius</div>", now, largest)
 
 
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
-    said = faint("Slack: the share of time, or since when, in which the last segment is not stretched.")
+    said = faint("Slack: the fraction of time, or since when, in which the last segment is not stretched.")
     notes: dict[str, str] = {
         TENSIONS: join((offset_text(snapshot), tension_tables(snapshot), statistics_text(snapshot))),
         "Bed and slack": join((bed_table(snapshot), said)),
@@ -132,7 +132,7 @@ def readout_of(snapshot: Snapshot) -> Html:
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     found: MooringReadings = snapshot.readings
-    lines = {"time_step": step_mark(found.stability.critical_step), **dict.fromkeys(ADVISED, "")}
+    lines = {"time_step": step_mark(found.stability.critical_step), **dict.fromkeys(BLAMED, "")}
     if found.fault is not None and found.fault.parameter:
         lines[found.fault.parameter] = coloured(found.fault.said, WARNING_COLOUR)
     return lines

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 SPANS = 32  # places at which a line's statics are solved
 POINTS = 41  # of the drawn curve
-SHARE = 0.9  # of the way to where the first line is straight, which the curve goes to either side
-LEAST_SHARE = 0.03  # of the distance of the anchors, of lines that are straight at rest
+REACH = 0.9  # of the way to where the first line is straight, which the curve goes to either side
+LEAST_REACH = 0.03  # of the distance of the anchors, of lines that are straight at rest
 
 STATIC_LINE, NOW_LINE = ChartLine("static", PALETTE[0], 2.0), ChartLine("now", PALETTE[1], 5.0)
 
@@ -51,8 +51,8 @@ class StaticInputs(NamedTuple):
         """Those of a scene as it is arranged now."""
         system, (x, y) = scene.system, direction_of(scene).tolist()
         return cls(
-            scene.places, system.lines, vector_of(scene.rest_place), (x, y), scene.params.length, scene.params.reach,
-            far, system.depth, system.gravity, system.density,
+            scene.attached.places, system.lines, vector_of(scene.excursion.rest), (x, y), scene.params.length,
+            scene.params.reach, far, system.depth, system.gravity, system.density,
         )  # fmt: skip
 
     def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -70,14 +70,14 @@ class RestoringCurve:
     def chart(self, scene: "LineScene") -> Chart:
         """The chart; the curve is found again where anything that it depends on is another."""
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
-        far = 2.0 ** math.ceil(math.log2(max(scene.farthest, 1e-3)))
+        far = 2.0 ** math.ceil(math.log2(max(scene.excursion.farthest, 1e-3)))
         key = scene.static_inputs(far)
         if key != self.made_of:
             self.curve = key.curve()
             self.made_of = key
         offset, force = self.curve
         wave = direction_of(scene)
-        now = float((scene.body_place() - scene.rest_place)[:2] @ wave)
+        now = float((scene.body_place() - scene.excursion.rest)[:2] @ wave)
         pull = -float(scene.force_of_lines() @ wave)
         # A bar from the lowest force of the curve to the force now, at the offset now.
         x = np.concatenate((offset, [now, now]))
@@ -94,13 +94,6 @@ def direction_of(scene: "LineScene") -> NDArray[np.float64]:
     return np.array([math.cos(bearing), math.sin(bearing)])
 
 
-def force_of_lines(scene: "MooringScene") -> NDArray[np.float64]:
-    """Level force (2,) [N] of the lines on the body now."""
-    last = scene.points[:, -2] - scene.points[:, -1]
-    unit = last / np.maximum(np.linalg.norm(last, axis=1), 1e-12)[:, None]
-    return (scene.tension[:, -1:] * unit[:, :2]).sum(axis=0)
-
-
 def static_curve(inputs: StaticInputs) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Offsets [m] along the waves, and the force [N] against each: of each line by its span.
 
@@ -111,7 +104,7 @@ def static_curve(inputs: StaticInputs) -> tuple[NDArray[np.float64], NDArray[np.
     ways = fairleads - anchors
     straight = np.sqrt(np.maximum(inputs.length**2 - ways[:, 2] ** 2, 0.0))
     slack = float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
-    offset = max(SHARE * slack, LEAST_SHARE * inputs.reach, inputs.far) * np.linspace(-1.0, 1.0, POINTS)
+    offset = max(REACH * slack, LEAST_REACH * inputs.reach, inputs.far) * np.linspace(-1.0, 1.0, POINTS)
     away = -ways[:, None, :2] - offset[:, None] * wave  # (lines, points, 2) from the fairlead to the anchor
     span = np.linalg.norm(away, axis=2)
     along = (away @ wave) / np.maximum(span, 1e-9)

@@ -67,7 +67,7 @@ def advice(snapshot: Any) -> Advice | None:
 def warnings(scene: LineScene) -> list[str]:
     """Sentences on the state at the start."""
     path = scene.params.moordyn_file
-    said = [] if scene.fault is None else [scene.fault.said]
+    said = [] if scene.start.fault is None else [scene.start.fault.said]
     return [*said, *(raised_points(mooring_of(path)) if path else ())]
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from app.formats.formatting import number, percent
 from app.messages import Vector
 from app.scenes.contract import Advice
-from app.scenes.mooring.arrangement import Places
+from app.scenes.mooring.arrangement import DENSITY, GRAVITY, Places, hull_of
 from app.scenes.mooring.from_file import FileMooring
 from app.scenes.mooring.parameters import MooringParams
 from sim.parameters import parameters_of
@@ -20,7 +20,7 @@ MAX_REST_STRETCH = 0.05  # of a line at rest, over its length: moorings are laid
 MAX_STRETCH = 0.2
 DIGITS = 3  # of an advised value, rounded up
 EQUAL = 1e-6  # between the stretches of lines that are stretched equally
-ADVISED = ("length", "axial_stiffness")  # parameters of which a value may be advised
+BLAMED = ("length", "axial_stiffness", "steady_force")  # parameters under which a fault may stand
 HEIGHT_ROUNDING = 1e-3  # of the depth, by which an anchor may lie above the bed
 
 
@@ -74,6 +74,29 @@ def fault_of(params: MooringParams, places: Places, body: Vector, stretch: NDArr
         head = f"Line {line} is stretched by {percent(longest)} at rest"
         least = "" if advice is None else f", at least {advice.words}"
         return Fault(f"{head}: EA is low for its load{least}.", head, "axial_stiffness", advice, is_grave)
+    return None
+
+
+def overload_of(params: MooringParams) -> Fault | None:
+    """The steady force, if it is beyond what lines or body bear: the fault of a mooring without a state of rest.
+
+    Of n lines one carries at least the nth part of a level force. A force beyond the buoyancy of the whole body turns
+    it over or lifts it, and its statics are those of small angles.
+    """
+    force = 1e3 * params.steady_force  # [N]
+    stretch = force / (params.lines * params.axial_stiffness)
+    if stretch > MAX_STRETCH:
+        advice = advice_on("axial_stiffness", force / (params.lines * MAX_REST_STRETCH))
+        least = "" if advice is None else f", at least {advice.words}"
+        head = f"A steady force of {number(params.steady_force)} kN stretches a line by {percent(stretch)} or more"
+        return Fault(f"{head}: EA is low for its load{least}.", head, "axial_stiffness", advice, True)
+    most = DENSITY * GRAVITY * hull_of(params).volume
+    if force > most:
+        said = (
+            f"A steady force of {number(params.steady_force)} kN is more than the buoyancy of the whole body, "
+            f"{number(1e-3 * most)} kN: reduce it, or enlarge the body."
+        )
+        return Fault(said, "The steady force is too large for the body", "steady_force", None, True)
     return None
 
 

@@ -87,8 +87,8 @@ class Tensions:
 
     def readings(self, lying: Array) -> tuple[LineReading, ...]:
         """Each line. lying: (lines,) [m] of each on the bed."""
-        share = self.slack_time / max(self.at_fairlead.duration, 1e-9)
-        columns = self.uplift, self.most_uplift, lying, self.slack_since, share
+        fraction = self.slack_time / max(self.at_fairlead.duration, 1e-9)
+        columns = self.uplift, self.most_uplift, lying, self.slack_since, fraction
         ends = zip(
             self.fairlead.tolist(), self.anchor.tolist(), self.at_fairlead.each(), self.at_anchor.each(), strict=True
         )

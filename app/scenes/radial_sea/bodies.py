@@ -6,11 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.scenes.radial_sea.meters import BodyMeters
+from app.scenes.radial_sea.moorings import BED_DEPTH, BodyMoorings
 from sim.floating import (
     SHAPES,
     Body,
     Fleet,
-    HeaveMeter,
     Hull,
     HydrostaticPrediction,
     MotionCoefficients,
@@ -23,9 +24,6 @@ from sim.floating import (
 )
 from sim.floating.body import pack_linear
 from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
-from sim.floating.heave_meter import WindowMean
-from sim.floating.mooring_lines import MooringLines, fairleads, just_taut, pulls
-from sim.floating.rotation import body_z_axes
 from sim.floating.shapes import Appearance
 from sim.interruption import raise_if_stopped
 from sim.ocean.fluid_column import FluidColumn
@@ -36,11 +34,7 @@ FIRST_PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the f
 FILE_PLACE = (-0.2, 2.4)  # [m] at size 1 of a hull from a file that is 2 m wide; a wider one floats farther out
 FILE_DIRECTION = (0.35, 0.94)  # in which a wider one is moved
 SPIRAL_SPACING = 4.2  # [m] at size 1 between the turns of the spiral of the other bodies
-BED_DEPTH = 60.0  # [m] of the anchors, and of what has sunk
-LINE_REACH = 180.0  # [m] from a body to its anchors, level
-LINE_STIFFNESS = 8e3  # [N] EA of a line, per m3 of its body: an elastic rope, by which bodies surge slower than waves
 MAX_READINGS = 6  # bodies of the scene's own in the table
-MIN_COSINE = 0.2  # of the angle between a body's axis and the normal of the water, where drafts still mean something
 MAX_ACCELERATION = 2.0  # of gravity, of the water; where the sea is exchanged it jumps
 SLICK_RESOLUTION = 1e-4  # [m] of a slick's thickness in predictions
 
@@ -97,6 +91,13 @@ def place_of_file_hull(hull: Hull, size: float) -> tuple[float, float]:
 def box_of(bodies: "FloatingBodies") -> int | None:
     """The number of the first box, None where there is none."""
     return next((i for i, kind in enumerate(bodies.body_kinds) if kind.shape.name == "box"), None)
+
+
+class BodyPull(NamedTuple):
+    """The pull of a browser on a body."""
+
+    client: int
+    target: tuple[float, float, float]  # [m]
 
 
 class BodyReading(NamedTuple):
@@ -157,19 +158,14 @@ class FloatingBodies:
             initial_draft = prediction.draft if math.isfinite(prediction.draft) else 0.5 * prediction.height
             bodies.append(Body(hull, self.densities[i], (x, y, -hull.extents[2, 0] - initial_draft)))
         self.fleet: Fleet = make_fleet(bodies, column.layers)
-        hulls = [self.hulls[kind.name] for kind in body_kinds]
-        self.keel = np.array([hull.extents[2, 0] for hull in hulls])  # (n,) [m] height over the centre, negative
-        self.is_round = np.array([kind.shape.is_round for kind in body_kinds], bool)
-        self.lines = self.taut_lines(self.fleet.position[:, :2])
-        self.tension = np.zeros((self.count, 4))  # [N] of each mooring line
+        hulls = self.hull_of_each()
+        keel = np.array([hull.extents[2, 0] for hull in hulls])
+        self.meters = BodyMeters(keel, np.array([kind.shape.is_round for kind in body_kinds], bool))
+        self.moorings = BodyMoorings(self.fleet.position[:, :2], self.drafts_at_rest(), hulls)
         self.widths = np.array([np.ptp(hull.extents[0]) for hull in hulls])  # (n,) [m]
         self.excitation = self.make_excitation()
         self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water at the bodies, the newest first
-        self.heave_meter, self.lift = self.make_meters()
-        self.grabbed_by: dict[int, int] = {}  # body -> the browser that has grabbed it
-        self.targets: dict[int, tuple[float, float, float]] = {}  # body -> where it is pulled [m]
-        self.draft = np.zeros(self.count)  # [m]
-        self.stain = np.zeros(self.count)  # [m] of the body above its lowest point that oil has wetted
+        self.pulls: dict[int, BodyPull] = {}  # of the bodies that are grabbed
         self.impulse = np.zeros(self.count)  # [N s] on the water since the scene last took it
 
     @property
@@ -195,13 +191,14 @@ class FloatingBodies:
             self.known_predictions[key] = found
         return self.known_predictions[key]
 
-    def taut_lines(self, level: NDArray[np.float64]) -> MooringLines:
-        """Mooring lines that do not pull at the drafts of rest, about these places (n, 2) [m]."""
-        hulls = [self.hulls[kind.name] for kind in self.body_kinds]
-        drafts = [p.draft if math.isfinite(p.draft) else p.height for p in map(self.prediction, range(self.count))]
-        stiffness = LINE_STIFFNESS * np.array([hull.volume for hull in hulls])
-        rest = np.column_stack([level, -np.array(drafts)])
-        return just_taut(rest, self.keel, stiffness, BED_DEPTH, LINE_REACH)
+    def hull_of_each(self) -> list[Hull]:
+        """The hull of each body."""
+        return [self.hulls[kind.name] for kind in self.body_kinds]
+
+    def drafts_at_rest(self) -> NDArray[np.float64]:
+        """(n,) [m] of each body; the height of one that sinks."""
+        predictions = map(self.prediction, range(self.count))
+        return np.array([p.draft if math.isfinite(p.draft) else p.height for p in predictions])
 
     def set_fluids(self, density: float, column: FluidColumn, own_densities: tuple[float, ...] = ()) -> None:
         """Take other densities of the bodies [kg/m3], or other fluids; nothing is moved."""
@@ -210,27 +207,22 @@ class FloatingBodies:
         self.known_predictions.clear()
         self.fleet.mass[:] *= self.densities / self.fleet.density
         self.fleet.density[:] = self.densities
-        hulls = [self.hulls[kind.name] for kind in self.body_kinds]
+        hulls = self.hull_of_each()
         linear_hull, linear = pack_linear(hulls, self.densities, column.layers)
         self.fleet = self.fleet._replace(linear_hull=linear_hull, linear=linear)
-        self.lines = self.taut_lines(self.lines.anchors.mean(axis=1)[:, :2])
+        self.moorings.tie(self.moorings.places, self.drafts_at_rest(), hulls)
         self.excitation = self.make_excitation()
-        self.heave_meter, self.lift = self.make_meters()
+        self.meters.restart()
 
     def set_down(self, i: int, draft: float) -> None:
         """Put body i at rest, with its lowest point this deep [m] below the mean level."""
-        self.fleet.position[i, 2] = -self.keel[i] - draft
+        self.fleet.position[i, 2] = -self.meters.keel[i] - draft
         self.fleet.velocity[i] = 0.0
-        self.heave_meter, self.lift = self.make_meters()
-
-    def make_meters(self) -> tuple[HeaveMeter, WindowMean]:
-        """New meters of heave and of the upward forces."""
-        return HeaveMeter(self.count), WindowMean(self.count, 4)
+        self.meters.restart()
 
     def make_excitation(self) -> WaveExcitation:
         """Wave forces on these bodies in these fluids."""
-        hulls = [self.hulls[kind.name] for kind in self.body_kinds]
-        bodies = [Body(hull, density) for hull, density in zip(hulls, self.densities, strict=True)]
+        bodies = [Body(hull, density) for hull, density in zip(self.hull_of_each(), self.densities, strict=True)]
         return WaveExcitation(bodies, self.widths, self.column.layers)
 
     def grab(self, index: int, target: tuple[float, float, float], limit: float, client: int = 0) -> None:
@@ -238,34 +230,29 @@ class FloatingBodies:
 
         A body that another browser holds stays with that one. A browser holds one body at a time.
         """
-        if not 0 <= index < self.count or self.grabbed_by.get(index, client) != client:
+        held = {number: one.client for number, one in self.pulls.items()}
+        if not 0 <= index < self.count or held.get(index, client) != client:
             return
-        if self.grabbed_by.get(index) != client:
+        if index not in held:
             self.release(client)
-        self.grabbed_by[index], self.targets[index] = client, target
+        self.pulls[index] = BodyPull(client, target)
         pull(self.fleet, index, (0.0, 0.0, 0.0), target, limit * GRAVITY * float(self.fleet.mass[index]))
 
     def release(self, client: int = 0) -> None:
         """Release the body that a browser holds; it keeps its velocity."""
-        for index in [index for index, grabber in self.grabbed_by.items() if grabber == client]:
+        for index in [index for index, one in self.pulls.items() if one.client == client]:
             self.fleet.pull_limit[index] = 0.0
-            self.heave_meter.restart(index)
-            self.lift.restart(index)
-            del self.grabbed_by[index], self.targets[index]
+            self.meters.restart_of(index)
+            del self.pulls[index]
+
+    def release_all(self) -> None:
+        """Release all bodies."""
+        for client in {one.client for one in self.pulls.values()}:
+            self.release(client)
 
     def moor(self, h: float, *, moored: bool = True) -> None:
-        """Let the lines pull as in the middle of a step of h [s]: by a body's place before it they would drive it."""
-        fleet = self.fleet
-        if not moored:
-            fleet.mooring[:] = self.tension[:] = 0.0
-            return
-        fleet.mooring[:], self.tension = pulls(self.lines, fleet.position + 0.5 * h * fleet.velocity, fleet.rotation)
-
-    def fairleads(self, *, moored: bool) -> NDArray[np.float32]:
-        """Where the lines of each body are fixed to it (n, 3) [m]; (0, 3) without lines."""
-        if not moored:
-            return np.empty((0, 3), np.float32)
-        return fairleads(self.lines, self.fleet.position, self.fleet.rotation).astype(np.float32)
+        """Let the lines pull as in the middle of a step of h [s]."""
+        self.moorings.pull(self.fleet, h, moored=moored)
 
     def step(
         self,
@@ -306,7 +293,7 @@ class FloatingBodies:
             **interface,
         )
         step(self.fleet, water, h, coefficients)
-        self.lift.update(self.fleet.lift, h)
+        self.meters.lift.update(self.fleet.lift, h)
         # A body that presses on the water with more or less than the weight it carries makes waves.
         carried = self.fleet.mass * coefficients.gravity
         self.impulse += np.where(self.fleet.buoyancy > 0.0, self.fleet.buoyancy - carried, 0.0) * h
@@ -329,27 +316,13 @@ class FloatingBodies:
         return self.excitation.forces(self.fleet, at.label, sea.waves_at(t), t, h)
 
     def measure(self, t: float, at: SurfaceAt, duration: float, lead: float = 0.0) -> None:
-        """Measure drafts at time t [s]: the length of each body below the plane of the water, along its own axis.
-
-        lead [s]: how long after that time the sea is as it is `at` the bodies.
-        That length, times the area of the cross-section, is the wet volume of a hull with straight sides, however it
-        leans. Of a sphere every diameter is an axis; it is measured along the normal of the water.
-        """
-        normal = np.column_stack([-at.slope, np.ones(self.count)])
-        normal /= np.sqrt((normal * normal).sum(axis=1, keepdims=True))
-        up = np.where(self.is_round[:, None], normal, body_z_axes(self.fleet.rotation))
-        keel = self.keel[:, None] * up  # from a body's centre
-        rise = at.velocity[:, 2] - (at.velocity[:, :2] * at.slope).sum(axis=1)
-        keel[:, 2] += self.fleet.position[:, 2] - (at.height - lead * rise)
-        lean = np.maximum((normal * up).sum(axis=1), MIN_COSINE)
-        self.draft[:] = -(normal * keel).sum(axis=1) / lean
-        self.heave_meter.update(t, self.draft, duration)
-        oiled = (self.slick > 0.0) | (self.column.kind != "water")
-        np.maximum(self.stain, np.where(oiled, self.draft, 0.0), out=self.stain)
+        """Measure drafts and stains at time t [s], `lead` [s] before the sea is as it is `at` the bodies."""
+        self.meters.measure(self.fleet, t, at, duration, lead)
+        self.meters.wet_with_oil((self.slick > 0.0) | (self.column.kind != "water"))
 
     def readings(self, t: float, count: int = MAX_READINGS) -> tuple[BodyReading, ...]:
         """The first `count` bodies at time t [s], and the one from a file."""
-        offsets = np.hypot(*(self.fleet.position - self.lines.anchors.mean(axis=1)).T[:2])
+        meters, offsets = self.meters, np.hypot(*(self.fleet.position[:, :2] - self.moorings.places).T)
         return tuple(
             BodyReading(
                 kind.name,
@@ -358,13 +331,13 @@ class FloatingBodies:
                 volume=self.hulls[kind.name].volume,
                 mass=float(self.fleet.mass[i]),
                 buoyancy=float(self.fleet.buoyancy[i]),
-                mean_lift=tuple(self.lift.of(i).tolist()),
+                mean_lift=tuple(meters.lift.of(i).tolist()),
                 wet_volume=(float(self.fleet.wet_volume[i, 0]), float(self.fleet.wet_volume[i, 1])),
-                draft=float(self.draft[i]),
-                mean_draft=float(self.heave_meter.mean.of(i)[0]),
-                period=self.heave_meter.period(i, t),
+                draft=float(meters.draft[i]),
+                mean_draft=float(meters.heave.mean.of(i)[0]),
+                period=meters.heave.period(i, t),
                 offset=float(offsets[i]),
-                tension=float(self.tension[i].max()),
+                tension=float(self.moorings.tension[i].max()),
                 prediction=self.prediction(i),
                 has_own_coefficients=bool(kind.shape.linear) or kind.shape.table is not None,
             )

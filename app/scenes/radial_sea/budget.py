@@ -2,7 +2,9 @@
 
 from app.formats.formatting import fixed, metres, number, percent
 from app.render.html import Html, faint, fill, join, table
+from app.scenes.quantities import read
 from app.scenes.radial_sea.parameters import RadialSeaParams
+from app.scenes.radial_sea.quantities import OF_SPILL
 from sim.ocean.weathering import OilRecord, WeatheredOil, Weathering, can_weather, oil_at, oil_records
 from sim.ocean.weathering.components import CELSIUS, api_gravity, boiled_off
 from sim.ocean.weathering.laws import fingas, stiver_mackay
@@ -34,18 +36,32 @@ def budget_html(params: RadialSeaParams, weathering: Weathering | None) -> Html:
 
 def row_of(state: WeatheredOil, label: str) -> tuple[str, ...]:
     """A row of the table."""
-    shares = (state.evaporated, state.dispersed, state.remaining, state.water_content)
-    return (label, *(fixed(100.0 * share, 1) for share in shares))
+    evaporated, dispersed, water = fractions_of(state)
+    fractions = evaporated, dispersed, state.remaining, water
+    return (label, *(fixed(100.0 * fraction, 1) for fraction in fractions))
+
+
+def square_kilometres(state: WeatheredOil) -> str:
+    """Area of the slick in the unit in which it is easily read."""
+    return f"{number(1e-6 * read(OF_SPILL, 'slick_area', state))} km²"
+
+
+def fractions_of(state: WeatheredOil) -> tuple[float, float, float]:
+    """Fractions of the spill that have evaporated and are in drops, and that of water in the emulsion."""
+    return (
+        read(OF_SPILL, "evaporated", state),
+        read(OF_SPILL, "dispersed", state),
+        read(OF_SPILL, "water_content", state),
+    )
 
 
 def now_html(params: RadialSeaParams, now: WeatheredOil) -> Html:
     """The slick at the time that is shown."""
     fresh = oil_at(params.oil, params.temperature)
     return fill(
-        "<div>Now: {} on {} km², {} kg/m³ (fresh {}), {} mPa·s (fresh {}). At 3 % of the wind it has drifted {} km."
-        "</div>",
+        "<div>Now: {} on {}, {} kg/m³ (fresh {}), {} mPa·s (fresh {}). At 3 % of the wind it has drifted {} km.</div>",
         metres(now.thickness, 2),
-        number(now.area * 1e-6),
+        square_kilometres(now),
         fixed(now.density, 1),
         fixed(fresh.density, 1),
         number(now.viscosity * now.density * 1e3),
@@ -81,7 +97,7 @@ def origin_text(record: OilRecord) -> str:
     if record.emulsion_water > 0.0:
         onset = f"once {percent(record.emulsion_onset)} has evaporated" if record.emulsion_onset else "from the start"
         emulsion = f"It takes up water {onset}, at most {percent(record.emulsion_water)}."
-    return f"Shares of the mass spilled, by the laws of NOAA's PyGNOME. {known} {emulsion}"
+    return f"Fractions of the mass spilled, by the laws of NOAA's PyGNOME. {known} {emulsion}"
 
 
 def budget_marks(params: RadialSeaParams, weathering: Weathering | None) -> dict[str, str]:
@@ -95,9 +111,9 @@ def budget_marks(params: RadialSeaParams, weathering: Weathering | None) -> dict
     if weathering is None:
         return marks
     now = weathering.at(params.spill_hours)
+    evaporated, dispersed, water = map(percent, fractions_of(now))
     marks["spill_hours"] = (
-        f"{percent(now.evaporated)} evaporated, {percent(now.dispersed)} in drops, "
-        f"{percent(now.remaining)} on the sea, with {percent(now.water_content)} water in it"
+        f"{evaporated} evaporated, {dispersed} in drops, {percent(now.remaining)} on the sea, with {water} water in it"
     )
-    marks["spread"] = f"{metres(now.thickness, 2)} on {number(now.area * 1e-6)} km²"
+    marks["spread"] = f"{metres(now.thickness, 2)} on {square_kilometres(now)}"
     return marks

@@ -51,7 +51,7 @@ class RadialSeaParams:
     thickness: float = in_main(
         0.2, 0.0, 2.0, "m", "Thickness d of the layer of oil", log_from=1e-5, title="Layer thickness"
     )
-    fraction: float = in_main(0.5, 0.01, 0.99, "", "Share of oil in the mixture, by volume", title="Share of oil")
+    fraction: float = in_main(0.5, 0.01, 0.99, "", "Fraction of oil in the mixture, by volume", title="Fraction of oil")
     cutaway: bool = in_main(
         False, doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both",
         affects="look", title="Cutaway",
@@ -286,7 +286,13 @@ def spill_of(params: RadialSeaParams) -> Spill | None:
 def weathered_oil(params: RadialSeaParams) -> WeatheredOil | None:
     """The oil of the spill as it is by then; None where there is no spill to follow."""
     spill = spill_of(params)
-    return None if spill is None else weather(spill).at(params.spill_hours)
+    return None if spill is None else spill_at(spill, params.spill_hours)
+
+
+@functools.lru_cache(maxsize=8)
+def spill_at(spill: Spill, hours: float) -> WeatheredOil:
+    """A spill so many hours later; cached, as several quantities and the fluids read it."""
+    return weather(spill).at(hours)
 
 
 def oil_of(params: RadialSeaParams) -> Fluid:

@@ -19,6 +19,7 @@ from sim.water import SEA_DENSITY
 
 if TYPE_CHECKING:
     from app.scenes.radial_sea.bodies import BodyReading
+    from app.scenes.radial_sea.well_blowout import OilBudget
     from sim.ocean.weathering import WeatheredOil
 
 LONG_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves
@@ -47,7 +48,20 @@ OF_BODY: Quantities = {  # of a `BodyReading`
         "m", "deeper than in clean water", lambda body: body.mean_draft - body.prediction.draft_in_water
     ),
     "height": for_tasks("m", "height", lambda body: body.prediction.height),
-    "share": for_tasks("1", "fraction below sea water", lambda body: body.mass / (body.volume * SEA_DENSITY)),
+    "fraction_below": for_tasks("1", "fraction below sea water", lambda body: body.mass / (body.volume * SEA_DENSITY)),
+}
+
+OF_SPILL: Quantities = {  # of a `WeatheredOil`
+    "evaporated": Quantity("1", "Fraction of the spill that has evaporated", lambda spill: spill.evaporated),
+    "dispersed": Quantity("1", "Fraction of the spill in drops in the water", lambda spill: spill.dispersed),
+    "water_content": Quantity("1", "Fraction of water in the emulsion", lambda spill: spill.water_content),
+    "slick_area": Quantity("m²", "Area of the spill", lambda spill: spill.area),
+}
+OF_OIL_BUDGET: Quantities = {  # of an `OilBudget`
+    "oil_released": for_tasks("m³", "Oil released", lambda budget: budget.ejected),
+    "oil_in_air": for_tasks("m³", "Oil in the air", lambda budget: budget.in_flight),
+    "oil_on_sea": for_tasks("m³", "Oil on the sea", lambda budget: budget.fed),
+    "slick_radius": for_tasks("m", "Radius of the slick", lambda budget: budget.radius),
 }
 
 
@@ -63,7 +77,7 @@ def of_kind(kind: BodyKind) -> Quantities:
     }
 
 
-def of_spill(value: "Callable[[WeatheredOil], float]") -> Callable[[Any], float | None]:
+def of_spill(value: "Callable[[WeatheredOil], float | None]") -> Callable[[Any], float | None]:
     """A number of the spill at the time of the parameters; None without a spill to follow."""
 
     def of_weathered(now: Any) -> float | None:
@@ -71,6 +85,11 @@ def of_spill(value: "Callable[[WeatheredOil], float]") -> Callable[[Any], float 
         return None if spill is None else value(spill)
 
     return of_weathered
+
+
+def of_oil_budget(value: "Callable[[OilBudget], float | None]") -> Callable[[Any], float | None]:
+    """A number of the oil of the jet."""
+    return lambda now: value(now.readings.oil_budget)
 
 
 def of_column(value: Callable[[FluidColumn], float | None]) -> Callable[[Any], float | None]:
@@ -152,10 +171,7 @@ def square_points(now: Any) -> float:
 
 
 QUANTITIES: Quantities = {name: quantity for kind in BODY_KINDS for name, quantity in of_kind(kind).items()} | {
-    "evaporated": Quantity("1", "Fraction of the spill that has evaporated", of_spill(lambda spill: spill.evaporated)),
-    "dispersed": Quantity("1", "Fraction of the spill in drops in the water", of_spill(lambda spill: spill.dispersed)),
-    "water_content": Quantity("1", "Fraction of water in the emulsion", of_spill(lambda spill: spill.water_content)),
-    "slick_area": Quantity("m²", "Area of the spill", of_spill(lambda spill: spill.area)),
+    **{name: one._replace(value=of_spill(one.value)) for name, one in OF_SPILL.items()},
     "oil_viscosity": Quantity("Pa·s", "Viscosity of the oil", of_column(lambda column: column.oil.viscosity)),
     "oil_density": Quantity("kg/m³", "Density of the oil", of_column(lambda column: column.oil.density)),
     "significant_height": Quantity("m", "Significant height of the waves", lambda now: now.readings.height),
@@ -218,10 +234,7 @@ QUANTITIES: Quantities = {name: quantity for kind in BODY_KINDS for name, quanti
         "Distance that a drop flies",
         lambda now: math.hypot(LANDING[0] - NOZZLE[0], LANDING[1] - NOZZLE[1]),
     ),
-    "oil_released": for_tasks("m³", "Oil released", lambda now: now.readings.oil_budget.ejected),
-    "oil_in_air": for_tasks("m³", "Oil in the air", lambda now: now.readings.oil_budget.in_flight),
-    "oil_on_sea": for_tasks("m³", "Oil on the sea", lambda now: now.readings.oil_budget.fed),
-    "slick_radius": for_tasks("m", "Radius of the slick", lambda now: now.readings.oil_budget.radius),
+    **{name: one._replace(value=of_oil_budget(one.value)) for name, one in OF_OIL_BUDGET.items()},
     "grid_points": for_tasks("1", "Points of the radial grid", lambda now: len(now.frame.grid)),
     "inner_spacing": for_tasks("m", "Spacing in the middle", lambda now: float(now.frame.grid.spacing[0])),
     "rim_spacing": for_tasks("m", "Spacing at the rim", lambda now: float(now.frame.grid.spacing[-2])),

@@ -2,6 +2,7 @@
 
 import functools
 import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -9,9 +10,12 @@ from app.formats.formatting import fixed, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import Html, bold, faint, fill, info, join, table
 from app.scenes.measured_sea import measured_text
+from app.scenes.quantities import read, written
+from app.scenes.radial_sea.bodies import BodyReading
 from app.scenes.radial_sea.budget import budget_html, budget_marks
 from app.scenes.radial_sea.frame import RadialReadings
 from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
+from app.scenes.radial_sea.quantities import OF_BODY, OF_OIL_BUDGET, QUANTITIES
 from app.scenes.radial_sea.well_blowout import CROSSING_WAVE, OilBudget
 from sim.ocean.emulsions import MIXTURE_LAWS
 from sim.ocean.fluid_column import FluidColumn
@@ -46,35 +50,49 @@ def readout_of(snapshot: Snapshot) -> Html:
     return join(parts)
 
 
+def hundredths(value: float) -> str:
+    """A number with two decimals."""
+    return fixed(value, 2)
+
+
+def bold_draft(value: float) -> Html:
+    """The draft that a table is about."""
+    return bold(draft_text(value))
+
+
+def body_table(title: str, bodies: Sequence[BodyReading], *columns: tuple[str, str, Callable[[float], object]]) -> Html:
+    """Quantities of bodies. columns: name of the quantity, heading, and what writes the number."""
+    heads = ((title, ""), *((heading, OF_BODY[name].unit) for name, heading, _ in columns))
+    return table(
+        heads, [(one.title, *(write(read(OF_BODY, name, one)) for name, _, write in columns)) for one in bodies]
+    )
+
+
 def drafts_html(readings: RadialReadings, waves: bool) -> Html:
     """The draft of each body; waves: whether there are any."""
     if not readings.bodies:
         return Html("<div>No bodies.</div>")
-    drafts = [(body.title, fixed(body.draft, 3), bold(fixed(body.mean_draft, 3))) for body in readings.bodies]
+    drafts = body_table(
+        "draft", readings.bodies, ("draft", "now", draft_text), ("mean_draft", "mean of 60 s", bold_draft)
+    )
     disturbed = " Waves disturb it: switch them off to compare it with theory." if waves else ""
     return join((
-        table((("draft", ""), ("now", "m"), ("mean of 60 s", "m")), drafts),
+        drafts,
         faint(f"Draft: how deep a body reaches into the water.{disturbed}"),
     ))  # fmt: skip
 
 
 def theory_html(readings: RadialReadings) -> Html:
     """The draft of each body at rest by Archimedes' principle."""
-    rows = []
-    for body in readings.bodies:
-        p = body.prediction
-        added = "sinks" if math.isinf(p.draft) else fixed(p.draft - p.draft_in_water, 3, sign=True)
-        rows.append((body.title, bold(draft_text(p.draft)), added))
+    added = "added_draft", "oil adds", lambda value: fixed(value, 3, sign=True) if math.isfinite(value) else "sinks"
     return join((
-        table((("draft", ""), ("at rest", "m"), ("oil adds", "m")), rows),
+        body_table("draft", readings.bodies, ("draft_at_rest", "at rest", bold_draft), added),
         faint("A body at rest displaces its own weight of these fluids."),
     ))  # fmt: skip
 
 
 def forces_html(readings: RadialReadings) -> Html:
     """Weight, buoyancy, mooring and heave period of each body."""
-    moored = [(body.title, fixed(body.offset, 2), number(body.tension)) for body in readings.bodies]
-    periods = [(body.title, fixed(body.period, 2), fixed(body.prediction.period, 2)) for body in readings.bodies]
     approximated = [body.title for body in readings.bodies if not body.has_own_coefficients]
     note = faint(
         f"{', '.join(approximated)}: added mass, damping and wave forces are those of the box with its volume and "
@@ -90,8 +108,14 @@ def forces_html(readings: RadialReadings) -> Html:
     ]
     return join((
         *weight_tables(readings),
-        table((("heave period", ""), ("measured", "s"), ("theory", "s")), periods),
-        table((("mooring lines", ""), ("offset", "m"), ("largest tension", "N")), moored),
+        body_table(
+            "heave period", readings.bodies, ("heave_period", "measured", hundredths),
+            ("heave_period_theory", "theory", hundredths),
+        ),
+        body_table(
+            "mooring lines", readings.bodies, ("offset", "offset", hundredths),
+            ("line_tension", "largest tension", number),
+        ),
         *([note] if approximated else []),
         *outside,
     ))  # fmt: skip
@@ -144,9 +168,8 @@ def oil_budget_text(budget: OilBudget) -> Html:
         "" if math.isnan(budget.wave_left) else f" A wave of {CROSSING_WAVE:g} m keeps {left} of its height across it."
     )
     return fill(
-        "<div>Oil released: {} m³; {} m³ in the air, {} m³ on the sea. Slick: radius {} m, thickness {}.{}</div>",
-        number(budget.ejected), number(budget.in_flight), number(budget.fed), number(budget.radius),
-        metres(budget.thickness, 2), calmed,
+        "<div>Oil released: {}; {} in the air, {} on the sea. Slick: radius {}, thickness {}.{}</div>",
+        *(written(OF_OIL_BUDGET, name, budget) for name in OF_OIL_BUDGET), metres(budget.thickness, 2), calmed,
     )  # fmt: skip
 
 
@@ -244,16 +267,18 @@ def surfaces_html(snapshot: Snapshot) -> Html:
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     readings: RadialReadings = snapshot.readings
-    column, grid = readings.column, snapshot.frame.grid
+    column = readings.column
     oil = column.oil
     marks = {
-        "wind_speed": f"waves of {number(readings.clean_height)} m, middle period {seconds(readings.middle_period, 2)}"
+        "wind_speed": f"waves of {written(QUANTITIES, 'clean_height', snapshot)}, "
+        f"middle period {written(QUANTITIES, 'middle_period', snapshot, 2)}"
         if readings.clean_height > 0.0
         else "no waves",
         "oil": f"{number(oil.density, 4)} kg/m³, {number(oil.viscosity * 1e3)} mPa·s, "
         f"refractive index {oil.refractive_index:.3f}",
-        "rings": f"{number(len(grid))} points, spacing {metres(grid.spacing[0], 2)} in the middle, "
-        f"{metres(grid.spacing[-2], 2)} at the rim",
+        "rings": f"{written(QUANTITIES, 'grid_points', snapshot)} points, "
+        f"spacing {written(QUANTITIES, 'inner_spacing', snapshot, 2)} in the middle, "
+        f"{written(QUANTITIES, 'rim_spacing', snapshot, 2)} at the rim",
     }
     if readings.bodies:
         prediction = readings.bodies[0].prediction

@@ -170,8 +170,7 @@ class RadialSeaScene:
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`."""
         restore(self, kept)
-        for client in set(self.bodies.grabbed_by.values()):
-            self.bodies.release(client)
+        self.bodies.release_all()
         self.tile, self.drawing.drawn = None, ()
         self.plot_rows.resume()
         self.drawing.forget_costs()
@@ -330,7 +329,7 @@ class RadialSeaScene:
         """Add a plot row; `surface` [m] is the height of the sea at the first body."""
         bodies = self.bodies
         draft = np.full(PLOTTED_BODIES, math.nan)  # of a body that is not there
-        draft[: min(PLOTTED_BODIES, bodies.count)] = bodies.draft[:PLOTTED_BODIES]
+        draft[: min(PLOTTED_BODIES, bodies.count)] = bodies.meters.draft[:PLOTTED_BODIES]
         self.plot_rows.add(self.time, *draft.tolist(), surface, float(bodies.fleet.position[0, 2]))
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
@@ -343,7 +342,7 @@ class RadialSeaScene:
         self.set_grid()
         drawing = self.drawing
         drawing.update(self)
-        grabbed = [(bodies.fleet.position[i].tolist(), target) for i, target in bodies.targets.items()]
+        grabbed = [(bodies.fleet.position[i].tolist(), one.target) for i, one in bodies.pulls.items()]
         fire, jet = self.well_blowout.fire, self.well_blowout.jet
         return RadialFrame(
             params=p,
@@ -358,9 +357,9 @@ class RadialSeaScene:
             hulls=bodies.hulls,
             positions=bodies.fleet.position.astype(np.float32),
             rotations=bodies.fleet.rotation.astype(np.float32),
-            stains=bodies.stain.astype(np.float32),
-            fairleads=bodies.fairleads(moored=p.mooring),
-            anchors=bodies.lines.anchors,
+            stains=bodies.meters.stain.astype(np.float32),
+            fairleads=bodies.moorings.fairleads(bodies.fleet, moored=p.mooring),
+            anchors=bodies.moorings.lines.anchors,
             grabs=tuple(((x, y, z), target) for (x, y, z), target in grabbed),
             fire=None if fire is None else parcels_of(fire),
             jet=None if jet is None else flying_parcels(jet),
@@ -407,7 +406,7 @@ class RadialSeaScene:
             "position": (fleet.position.copy(), "m"),
             "rotation": (fleet.rotation.copy(), "quaternion (w, x, y, z)"),
             "velocity": (fleet.velocity.copy(), "m/s"),
-            "draft": (self.bodies.draft.copy(), "m"),
+            "draft": (self.bodies.meters.draft.copy(), "m"),
         }
 
 

@@ -1,6 +1,5 @@
 """The radial sea as water, its bodies as models, the rig with its fire, and the cutaway."""
 
-import importlib.resources
 import time
 from collections.abc import Callable
 from typing import Any, ClassVar
@@ -17,22 +16,20 @@ from app.render.dragging import GrabLine, drag
 from app.render.follow_camera import FollowCamera
 from app.render.html import bold, fill
 from app.render.material import Material
-from app.render.meshes import ball, rod, tube_faces
 from app.render.skies import set_sky
-from app.render.viser_inside import set_arrays
 from app.render.water import DrawnWater
 from app.scenes.contract import Pieces, SceneView
-from app.scenes.radial_sea.bodies import BODY_KINDS
+from app.scenes.radial_sea.bodies_view import DrawnBodies, model
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.fire_view import Flames
 from app.scenes.radial_sea.frame import RadialFrame, RadialReadings
 from app.scenes.radial_sea.materials import material_of, waterlines_of
+from app.scenes.radial_sea.moorings_view import DrawnMoorings
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.stain_view import Stains
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
-from sim.floating.shapes import Appearance
 from sim.ocean.radial import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
 
@@ -41,10 +38,6 @@ SUN_LAMP_INTENSITY = 2.2  # of the lamp that stands for a sun of SUN_LAMP_STRENG
 SUN_LAMP_STRENGTH = 5.0
 FILL_LAMP = (-0.6, -0.7, 0.5), 0.45  # direction towards the lamp that lights the shadows, and its share of the sun's
 GLOW_INTENSITY = 900.0  # of the lamp in the fire
-HANDLE_RADIUS = 0.75  # [m] at size 1 of the invisible ball about a body, which is dragged
-LINE_COLOUR = (191, 158, 92)  # of mooring lines
-LINE_RADIUS, LINE_SIDES = 0.02, 4  # [m] at size 1 of a drawn mooring line, a rod
-NEAR_END = [*range(LINE_SIDES), 2 * LINE_SIDES]  # vertices of the rod at the fairlead
 CAMERA_INTERVAL = 0.2  # [s] between two messages to the scene about where the camera is
 VIEWS = {  # position and target [m] of the camera when one of them is chosen to be followed
     "rig": ((RIG[0] - 62.0, RIG[1] - 84.0, 40.0), (RIG[0] + 10.0, RIG[1] - 4.0, 16.0)),
@@ -57,13 +50,6 @@ CUTAWAY_VIEW = (
 )
 VIEW_SIZE = 1.5  # of the bodies that these two views are made for
 FOLLOWED_BODY = {"first buoy": 0, "second buoy": 1, "box": 2, "cutaway": 0}  # number of the body that is followed
-APPEARANCES = {kind.name: kind.appearance for kind in BODY_KINDS}
-NO_SHADOWS: dict[str, Any] = {"cast_shadow": False, "receive_shadow": False}
-
-
-def model(name: str) -> bytes:
-    """The GLB file of this name in the assets."""
-    return importlib.resources.files("assets").joinpath(f"{name}.glb").read_bytes()
 
 
 class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
@@ -80,12 +66,7 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
         self.sky = ""
         self.light = self.material = Material()
         self.surface: RadialSurface | None = None  # as drawn
-        self.kinds: tuple[str, ...] = ()
-        self.size = 0.0
-        self.bodies: dict[str, tuple[Any, np.ndarray]] = {}  # kind -> handle, numbers of its bodies
-        self.handles: viser.BatchedMeshHandle | None = None
-        self.moorings: viser.MeshHandle | None = None
-        self.anchors = self.rods = self.at_fairleads = np.empty(0)  # of the lines: see `add_moorings`
+        self.bodies, self.moorings = DrawnBodies(server, self.on_body_drag), DrawnMoorings(server)
         self.followed, self.follow_camera = "free", FollowCamera()
         self.followed_body: np.ndarray | None = None  # (3,) [m] where the followed body is, at mean water
         self.camera_told_at = 0.0
@@ -115,8 +96,8 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
             self.place_lamps()
         self.show_sea(frame)
         self.show_cutaway(frame)
-        self.show_bodies(frame)
-        self.show_moorings(frame)
+        self.bodies.show(frame)
+        self.moorings.show(frame)
         self.stains.show(frame)
         self.show_pulls(frame)
         if self.rig.visible != p.rig:
@@ -181,59 +162,6 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
             flicker = float(np.sin(23.0 * frame.time) * np.sin(8.3 * frame.time))
             self.glow.intensity = GLOW_INTENSITY * (1.0 + 0.25 * flicker)
 
-    def show_bodies(self, frame: RadialFrame) -> None:
-        """Draw each kind of body as one batch, and place the handles that are dragged."""
-        if (frame.kinds, frame.params.size) != (self.kinds, self.size):
-            for handle, _ in self.bodies.values():
-                handle.remove()
-            self.kinds, self.size = frame.kinds, frame.params.size
-            self.bodies = {kind: self.add_bodies(frame, kind) for kind in sorted(set(self.kinds))}
-            self.add_handles(frame)
-        for handle, chosen in self.bodies.values():
-            set_arrays(handle, batched_positions=frame.positions[chosen], batched_wxyzs=frame.rotations[chosen])
-        if self.handles is not None:
-            set_arrays(self.handles, batched_positions=frame.positions)
-
-    def add_bodies(self, frame: RadialFrame, kind: str) -> tuple[Any, np.ndarray]:
-        """A batch of all bodies of a kind, as its model or else as its hull; and their numbers."""
-        chosen = np.array([i for i, other in enumerate(frame.kinds) if other == kind])
-        poses: dict[str, Any] = {"batched_wxyzs": frame.rotations[chosen], "batched_positions": frame.positions[chosen]}
-        appearance, add = APPEARANCES.get(kind, Appearance(kind, kind)), self.server.scene
-        if appearance.model:
-            scales = np.full(len(chosen), frame.params.size, np.float32)
-            glb = model(appearance.model)
-            return add.add_batched_glb(
-                f"/bodies/{kind}", glb, batched_scales=scales, lod="off", **poses, **NO_SHADOWS
-            ), chosen
-        hull = frame.hulls[kind]
-        vertices, faces = hull.vertices.astype(np.float32), hull.faces.astype(np.uint32)
-        return add.add_batched_meshes_simple(
-            f"/bodies/{kind}", vertices, faces, batched_colors=appearance.color, flat_shading=True, lod="off",
-            **poses, **NO_SHADOWS,
-        ), chosen  # fmt: skip
-
-    def add_handles(self, frame: RadialFrame) -> None:
-        """Invisible balls about the bodies, to be dragged: viser 1.1 loses a page that drags instances of a GLB."""
-        if self.handles is not None:
-            self.handles.remove()
-            self.handles = None
-        n = len(frame.positions)
-        if n == 0:
-            return
-        vertices, faces = ball(4)
-        self.handles = self.server.scene.add_batched_meshes_simple(
-            "/handles",
-            HANDLE_RADIUS * vertices,
-            faces,
-            batched_wxyzs=np.tile([1.0, 0.0, 0.0, 0.0], (n, 1)),
-            batched_positions=frame.positions,
-            batched_scales=np.array([handle_scale(frame, kind) for kind in frame.kinds], np.float32),
-            opacity=0.0,
-            lod="off",
-            **NO_SHADOWS,
-        )
-        self.handles.on_drag("left")(self.on_body_drag)
-
     async def on_body_drag(self, event: Any) -> None:
         """A browser drags a body, or lets it go."""
         drag(self.post, event, event.instance_index)
@@ -244,38 +172,6 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
             self.grab_lines.append(GrabLine(self.server, f"/pull{len(self.grab_lines)}"))
         for i, line in enumerate(self.grab_lines):
             line.show(frame.grabs[i] if i < len(frame.grabs) else None)
-
-    def show_moorings(self, frame: RadialFrame) -> None:
-        """Draw the mooring lines as rods: a stroke that passes the camera would be drawn where it is not.
-
-        Only the rings at the fairleads move from frame to frame. The cutaway shows the lines of the body beside it
-        only: others would cross it as sticks that hang in the air.
-        """
-        fairleads = frame.fairleads if frame.cutaway is None else frame.fairleads[:1]
-        drawn = len(fairleads)
-        if self.moorings is not None and (drawn != len(self.rods) or frame.anchors is not self.anchors):
-            self.moorings.remove()
-            self.moorings = None
-        if drawn == 0:
-            return
-        if self.moorings is None:
-            self.anchors = frame.anchors
-            self.moorings = self.add_moorings(frame.params.size, fairleads)
-        self.rods[:, :, NEAR_END] = self.at_fairleads + fairleads[:, None, None]
-        set_arrays(self.moorings, vertices=self.rods.reshape(-1, 3))
-
-    def add_moorings(self, size: float, fairleads: np.ndarray) -> viser.MeshHandle:
-        """The rods of the lines of the first bodies, of this size, as one mesh; fairleads: (n, 3) [m] of these."""
-        anchors = self.anchors[: len(fairleads)]
-        radius, (n, lines) = LINE_RADIUS * size, anchors.shape[:2]
-        ways = np.stack(np.broadcast_arrays(fairleads[:, None], anchors), axis=2)
-        self.rods = np.array([[rod(way, radius, LINE_SIDES) for way in body] for body in ways])
-        self.at_fairleads = self.rods[:, :, NEAR_END] - fairleads[:, None, None]
-        first = self.rods.shape[2] * np.arange(n * lines, dtype=np.uint32)  # vertex of each rod
-        faces = (tube_faces(2, LINE_SIDES) + first[:, None, None]).reshape(-1, 3)
-        return self.server.scene.add_mesh_simple(
-            "/moorings", self.rods.reshape(-1, 3), faces, color=LINE_COLOUR, **NO_SHADOWS
-        )
 
     def move_camera(self, frame: RadialFrame) -> None:
         """Move to the followed object when it is chosen, then along with it; report the camera's place to the scene."""
@@ -331,14 +227,6 @@ def keel_of(frame: RadialFrame) -> float | None:
 def offset_of_view(params: RadialSeaParams) -> np.ndarray:
     """(2, 3) [m] from the followed body to a camera that has not been moved, and to its target."""
     return np.array(CUTAWAY_VIEW if params.follow == "cutaway" else BODY_VIEW) * params.size / VIEW_SIZE
-
-
-def handle_scale(frame: RadialFrame, kind: str) -> float:
-    """Factor on the handle of a body of this kind: by the size of the bodies, or of a hull that has its own."""
-    hull = frame.hulls[kind]
-    if hull.shape.lengths:
-        return frame.params.size
-    return 0.5 * float(np.ptp(hull.extents, axis=1).mean()) / HANDLE_RADIUS
 
 
 VIEW = RadialSeaView

@@ -8,13 +8,15 @@ from sim.ocean.foam import threshold, whitecaps
 FULL_FOAM_DEPTH = 0.35  # the Jacobian of full foam lies this many standard deviations of the Jacobian below the limit
 FOAM_CORRECTION_RATE = 0.15  # [1/s] standard deviations by which the limit moves where e times too little is drawn
 INITIAL_FOAM_CORRECTION = 0.5  # standard deviations that the limit starts above the formula's
-MIN_FOAM_COVER = 1e-4  # share of the sea below which differences of foam do not count
+MIN_FOAM_COVER = 1e-4  # fraction of the sea below which differences of foam do not count
 FOAM_VISIBLE_SHARE = 1.2  # multiple of the fading time for which a patch of foam counts as foam
 
 
 def cover_in(wind_speed: float, before: float, since: float, transition: float) -> float:
-    """Share of the sea that is foam in a wind [m/s] by Monahan's law, `since` [s] after it was `before`; it adapts as
-    the waves do, within `transition` [s]."""
+    """Fraction of the sea that is foam in a wind [m/s] by Monahan's law, `since` [s] after it was `before`.
+
+    It adapts as the waves do, within `transition` [s].
+    """
     cover = whitecaps(wind_speed)
     return cover if transition == 0.0 else cover + (before - cover) * math.exp(-since / transition)
 
@@ -32,8 +34,8 @@ class FoamLimit:
     ) -> float:
         """Update the limit over dt [s]. Returns the Jacobian's distance below it at which foam is full.
 
-        slope: mean square slope of the waves, which changes at `frequency` [rad/s]; expected and drawn: shares of the
-        sea that are foam.
+        slope: mean square slope of the waves, which changes at `frequency` [rad/s]; expected and drawn: fractions of
+        the sea that are foam.
         """
         deviation = self.deviation or max(p.choppiness * p.amplitude * math.sqrt(slope), 1e-6)
         self.value = p.foam_threshold

@@ -67,9 +67,9 @@ def unpack_frame(packed: PackedSeaFrame) -> SeaFrame:
 class SeaReadings(NamedTuple):
     """The numbers of the sea for the panel."""
 
-    foam_cover: float  # share of the drawn sea that is foam
-    expected_foam_cover: float  # by Monahan's law, times the share of the slope that is left
-    slope_left: float  # share of the mean square slope that damping and a small height factor leave
+    foam_cover: float  # fraction of the drawn sea that is foam
+    expected_foam_cover: float  # by Monahan's law, times the fraction of the slope that is left
+    slope_left: float  # fraction of the mean square slope that damping and a small height factor leave
     foam_limit: float  # Jacobian below which there is foam; -inf without foam
     is_choppy: bool  # whether water moves level at all, which presses the surface together
     viscous_area: float  # [m2] sum of viscosity times time, since the start
@@ -81,12 +81,12 @@ def readings_of(scene: "SquareSeaScene") -> SeaReadings:
     """The numbers for the panel at the time of the last frame."""
     p = scene.params
     return SeaReadings(
-        foam_cover=scene.foam_cover,
+        foam_cover=scene.foam.cover,
         expected_foam_cover=scene.expected_foam_cover(scene.time),
-        slope_left=scene.slope_left,
-        foam_limit=scene.foam_limit.value,
+        slope_left=scene.waves.slope_left,
+        foam_limit=scene.foam.limit.value,
         is_choppy=scene.marching is not None or scene.sea.choppiness > 0.0,
-        viscous_area=scene.viscous_area + p.viscosity * (scene.time - scene.changed_at),
+        viscous_area=scene.change.viscous_area_at(scene.time, p.viscosity),
         rain=None if scene.rainfall is None else scene.rainfall.readings(),
         report=scene.statistics.report if p.statistics else None,
     )

@@ -27,7 +27,7 @@ class Heights(NamedTuple):
     skewness: float
     kurtosis: float
     theory: HighCrests
-    lost: float  # share of the energy at the start that breaking has taken
+    lost: float  # fraction of the energy at the start that breaking has taken
 
 
 def nonlinear_sea(p: SquareSeaParams, linear: Sea, t: float, place: tuple[float, float]) -> NonlinearSea:

@@ -137,7 +137,7 @@ class SquareSeaParams:
     gauge: bool = in_look(True, doc="Draw the wave gauge, a buoy", title="Wave gauge")
     sky: str = in_look("park", choices=SKY_TITLES, doc="Sky and its light")
     sun: float = in_look(18.0, -180.0, 180.0, "°", "Where the sun stands, from +x towards +y", title="Sun direction")
-    clouds: float = in_look(0.4, 0.0, 1.0, "", "Share of the sky that clouds cover", title="Cloud cover")
+    clouds: float = in_look(0.4, 0.0, 1.0, "", "Fraction of the sky that clouds cover", title="Cloud cover")
     daylight: float = in_look(0.85, 0.05, 3.0, "", "Brightness", title="Brightness")
     visibility: float = in_look(3000.0, 50.0, 20000.0, "m", "Distance at which haze hides the sea", log_from=50.0)
 

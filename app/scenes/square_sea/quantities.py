@@ -117,12 +117,12 @@ def height_by_wind(now: Any) -> float:
     return ratio(in_twice_the_wind(now.frame.params).height, here(now.frame.params).height)
 
 
-def of_report(value: Callable[[Report], float]) -> Callable[[Any], float | None]:
+def of_report(value: Callable[[Report], float | None]) -> Callable[[Any], float | None]:
     """A number of the report; None before the sea has been measured."""
     return lambda now: None if now.readings.report is None else value(now.readings.report)
 
 
-def of_rain(value: "Callable[[RainReadings], float]") -> Callable[[Any], float | None]:
+def of_rain(value: "Callable[[RainReadings], float | None]") -> Callable[[Any], float | None]:
     """A number of the rain; None without rain."""
     return lambda now: None if now.readings.rain is None else value(now.readings.rain)
 
@@ -133,14 +133,36 @@ def measured_over_earth(now: Any) -> float | None:
     return None if report is None else ratio(report.measured.significant_height, on_earth(now.frame.params).height)
 
 
-QUANTITIES: Quantities = {
+MEASURED: Quantities = {  # of a `Report`
     "significant_height": Quantity(
-        "m", "Significant wave height of the drawn sea", of_report(lambda r: r.measured.significant_height)
+        "m", "Significant wave height of the drawn sea", lambda r: r.measured.significant_height
     ),
-    "peak_period": Quantity("s", "Peak period of the drawn sea", of_report(lambda r: r.measured.peak_period)),
-    "mean_square_slope": Quantity(
-        "1", "Mean square slope of the drawn sea", of_report(lambda r: r.measured.mean_square_slope)
+    "peak_period": Quantity("s", "Peak period of the drawn sea", lambda r: r.measured.peak_period),
+    "mean_square_slope": Quantity("1", "Mean square slope of the drawn sea", lambda r: r.measured.mean_square_slope),
+}
+EXPECTED: Quantities = {  # of a `Report`
+    "expected_height": Quantity(
+        "m", "Significant wave height by theory, of this tile", lambda r: r.theory.statistics.significant_height
     ),
+    "expected_period": Quantity("s", "Peak period by theory, of this tile", lambda r: r.theory.statistics.peak_period),
+    "expected_slope": Quantity(
+        "1", "Mean square slope by theory, of this tile", lambda r: r.theory.statistics.mean_square_slope
+    ),
+    "height_scatter": Quantity("1", "Relative standard deviation of one tile's height", lambda r: r.theory.scatter),
+    "endless_height": Quantity("m", "Significant wave height of an endless sea", lambda r: r.theory.whole),
+    "wave_length": Quantity("m", "Length of the dominant waves", lambda r: r.theory.wave[0]),
+    "wave_speed": Quantity("m/s", "Phase speed of the dominant waves", lambda r: r.theory.wave[1]),
+}
+OF_REPORT = {**MEASURED, **EXPECTED}
+OF_RAIN: Quantities = {  # of `RainReadings`
+    "drops_shown": for_tasks("1", "Drops that are drawn in the air", lambda rain: rain.drawn),
+    "drops_falling": for_tasks("1", "Drops in the air", lambda rain: rain.drawn * rain.weight),
+    "drops_fallen": for_tasks("1", "Drops that have met the sea", lambda rain: rain.fallen),
+}
+
+
+QUANTITIES: Quantities = {
+    **{name: one._replace(value=of_report(one.value)) for name, one in MEASURED.items()},
     "crest_height": for_sweeps(
         "m", "Highest crest of the drawn sea", lambda now: now.params.amplitude * float(now.height.max())
     ),
@@ -149,23 +171,7 @@ QUANTITIES: Quantities = {
     "breaking_loss": for_sweeps(
         "J/m²", "Energy that breaking has taken since the start", lambda now: now.breaking_loss
     ),
-    "expected_height": Quantity(
-        "m",
-        "Significant wave height by theory, of this tile",
-        of_report(lambda r: r.theory.statistics.significant_height),
-    ),
-    "expected_period": Quantity(
-        "s", "Peak period by theory, of this tile", of_report(lambda r: r.theory.statistics.peak_period)
-    ),
-    "expected_slope": Quantity(
-        "1", "Mean square slope by theory, of this tile", of_report(lambda r: r.theory.statistics.mean_square_slope)
-    ),
-    "height_scatter": Quantity(
-        "1", "Relative standard deviation of one tile's height", of_report(lambda r: r.theory.scatter)
-    ),
-    "endless_height": Quantity("m", "Significant wave height of an endless sea", of_report(lambda r: r.theory.whole)),
-    "wave_length": Quantity("m", "Length of the dominant waves", of_report(lambda r: r.theory.wave[0])),
-    "wave_speed": Quantity("m/s", "Phase speed of the dominant waves", of_report(lambda r: r.theory.wave[1])),
+    **{name: one._replace(value=of_report(one.value)) for name, one in EXPECTED.items()},
     "gravity_here": for_tasks("m/s²", "Gravity", lambda now: gravity(now.frame.params)),
     "gravity_light": for_tasks("m/s²", "Gravity of 1/100 Earth mass", lambda now: gravity_of(LIGHT, "same_density")),
     "gravity_heavy": for_tasks("m/s²", "Gravity of 100 Earth masses", lambda now: gravity_of(HEAVY, "same_density")),
@@ -203,7 +209,5 @@ QUANTITIES: Quantities = {
     "square_spacing": for_tasks(
         "m", "Spacing of the square grid", lambda now: now.frame.params.length / int(now.frame.params.size)
     ),
-    "drops_shown": for_tasks("1", "Drops that are drawn in the air", of_rain(lambda rain: rain.drawn)),
-    "drops_falling": for_tasks("1", "Drops in the air", of_rain(lambda rain: rain.drawn * rain.weight)),
-    "drops_fallen": for_tasks("1", "Drops that have met the sea", of_rain(lambda rain: rain.fallen)),
+    **{name: one._replace(value=of_rain(one.value)) for name, one in OF_RAIN.items()},
 }

@@ -6,10 +6,11 @@ from app.formats.formatting import count, fixed, metres, number, percent, second
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, lines, table
 from app.scenes.measured_sea import measured_text
+from app.scenes.quantities import read, written
 from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import SquareSeaParams, gravity, marches, solved_points
-from app.scenes.square_sea.quantities import here, spectrum_conditions
+from app.scenes.square_sea.quantities import OF_RAIN, OF_REPORT, QUANTITIES, here, spectrum_conditions
 from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
@@ -19,8 +20,8 @@ from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
 from sim.ocean.spectra.regular import RegularConditions
 from sim.ocean.statistics import BREAKING_HEIGHT, beaufort, resolved_in_time
 
-MIN_SLOPE_LEFT = 0.98  # share of the mean square slope below which the sea counts as damped
-MAX_SHARE_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
+MIN_SLOPE_LEFT = 0.98  # fraction of the mean square slope below which the sea counts as damped
+MAX_FRACTION_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather
 HEIGHT = (
     "Significant height: the mean of the highest third of the waves, from trough to crest. "
     "The band holds 19 of 20 seas."
@@ -58,7 +59,8 @@ def readout(snapshot: Snapshot) -> Html:
 
 def heights_table(r: Report, frame: SeaFrame) -> Html:
     """Crest, skewness and kurtosis of a sea that is solved step by step, beside theory; its highest wave, its loss."""
-    found, hs, hs_expected = r.heights, r.measured.significant_height, r.theory.statistics.significant_height
+    found = r.heights
+    hs, hs_expected = (read(OF_REPORT, name, r) for name in ("significant_height", "expected_height"))
     assert found is not None
     if not hs > 0.0 or not hs_expected > 0.0:
         return Html("")
@@ -135,18 +137,19 @@ def rain_text(rain: "RainReadings") -> str:
     rings = "The grid is too coarse for rings."
     if rain.drops_per_ring:
         rings = f"Each ring stands for {count(rain.drops_per_ring)} drops."
-    falling = count(rain.drawn * rain.weight)
-    return f"Rain {number(rain.rate)} mm/h. Shown: {rain.drawn} of {falling} falling drops. {rings}"
+    shown, falling = (count(read(OF_RAIN, name, rain)) for name in ("drops_shown", "drops_falling"))
+    return f"Rain {number(rain.rate)} mm/h. Shown: {shown} of {falling} falling drops. {rings}"
 
 
 def statistics_table(r: Report, source: str = "an open sea") -> Html:
     """The statistics: as drawn, as expected of this tile, and of an endless sea, which `source` names."""
-    m, e, endless = r.measured, r.theory.statistics, r.theory.whole
-    band = BAND_WIDTH * r.theory.scatter * e.significant_height
-    inside = abs(m.significant_height - e.significant_height) <= band + 1e-9
-    height = number(m.significant_height)
-    direction = bold(fixed(math.degrees(m.direction), 0))
-    if e.peak_period > 0.0 and not resolved_in_time(e.peak_period, r.interval):
+    now = {name: read(OF_REPORT, name, r) for name in OF_REPORT}
+    expected, endless = now["expected_height"], now["endless_height"]
+    band = BAND_WIDTH * now["height_scatter"] * expected
+    inside = abs(now["significant_height"] - expected) <= band + 1e-9
+    height = number(now["significant_height"])
+    direction = bold(fixed(math.degrees(r.measured.direction), 0))
+    if now["expected_period"] > 0.0 and not resolved_in_time(now["expected_period"], r.interval):
         direction = coloured("not resolved in time", WARNING_COLOUR)
     measured = table(
         (("", ""), ("as drawn", ""), ("theory", "95 % band")),
@@ -154,22 +157,22 @@ def statistics_table(r: Report, source: str = "an open sea") -> Html:
             (
                 fill("significant height [m] {}", info(HEIGHT, "2. Waves")),
                 bold(height) if inside else coloured(height, WARNING_COLOUR),
-                f"{number(e.significant_height)} ± {number(band, 2)}",
+                f"{number(expected)} ± {number(band, 2)}",
             ),
-            ("peak period [s]", bold(number(m.peak_period)), number(e.peak_period)),
+            ("peak period [s]", bold(number(now["peak_period"])), number(now["expected_period"])),
             (
                 fill("mean square slope {}", info(SLOPE, "2. Waves")),
-                bold(number(m.mean_square_slope)),
-                number(e.mean_square_slope),
+                bold(number(now["mean_square_slope"])),
+                number(now["expected_slope"]),
             ),
-            ("direction [°]", direction, fixed(math.degrees(e.direction), 0)),
+            ("direction [°]", direction, fixed(math.degrees(r.theory.statistics.direction), 0)),
         ),
     )
     if not endless > 0.0:
         return measured
-    share = e.significant_height / endless
-    if share < MAX_SHARE_OF_ENDLESS_SEA:
-        text = fill("These waves have {} of the height of {} ({} m).", percent(share, 3), source, number(endless))
+    fraction = expected / endless
+    if fraction < MAX_FRACTION_OF_ENDLESS_SEA:
+        text = fill("These waves have {} of the height of {} ({} m).", percent(fraction, 3), source, number(endless))
     else:
         text = fill("Waves of the earlier weather are still here; this wind alone makes {} m.", number(endless))
     return join((measured, faint(text)))
@@ -192,7 +195,7 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     found = {
         "order": order_line(p, snapshot.frame),
         "wind_speed": wind_line(p),
-        "planet": f"gravity {number(gravity(p))} m/s²",
+        "planet": f"gravity {written(QUANTITIES, 'gravity_here', snapshot)}",
         "radius_rule": radius_line(p),
         "low_pass": low_pass_line(p),
         "viscosity": viscosity_line(p, snapshot.readings.viscous_area),
@@ -209,9 +212,8 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
     if isinstance(c, FetchConditions) and not chosen_spectrum(p).is_level(c):
         found["fetch"] = fetch_line(c)
     if isinstance(c, RegularConditions) and snapshot.readings.report is not None:
-        length, _ = snapshot.readings.report.theory.wave
-        period = snapshot.readings.report.theory.statistics.peak_period
-        found["wave_period"] = f"the nearest wave that fits the tile: {metres(length)}, {seconds(period)}"
+        length, period = (written(QUANTITIES, name, snapshot) for name in ("wave_length", "expected_period"))
+        found["wave_period"] = f"the nearest wave that fits the tile: {length}, {period}"
     return found
 
 

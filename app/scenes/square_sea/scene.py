@@ -15,7 +15,7 @@ from app.scenes.contract import Awaited, FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
-from app.scenes.square_sea.foam_limit import FoamLimit, cover_in
+from app.scenes.square_sea.foam import MeshFoam, WavePace
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings, pack_frame, readings_of, unpack_frame
 from app.scenes.square_sea.parameters import (
     ABOUT,
@@ -31,9 +31,10 @@ from app.scenes.square_sea.parameters import (
 from app.scenes.square_sea.quantities import QUANTITIES, SeaInstant
 from app.scenes.square_sea.rainfall import SeaRain
 from app.scenes.square_sea.statistics import INTERVAL, LiveStatistics
-from app.scenes.square_sea.tile_mesh import Fields, set_mesh_of
+from app.scenes.square_sea.tile_mesh import Fields
+from app.scenes.square_sea.weather_change import WeatherChange
 from sim.ocean import Sea
-from sim.ocean.foam import pace, whitecaps
+from sim.ocean.foam import whitecaps
 from sim.ocean.wave_gauge import WaveGauge, where_hit
 from sim.parameters import effect_of_change
 
@@ -45,8 +46,7 @@ if TYPE_CHECKING:
 
 SERIES = ("wave gauge",)
 CHANGING = (  # as time passes
-    "steps", "sea", "rainfall", "foam", "drawn_at", "foam_cover", "foam_limit", "foam_cover_before", "slope_left",
-    "pace", "paced_at", "paced_of", "changed_at", "transition", "viscous_area", "marching",
+    "steps", "sea", "rainfall", "foam", "drawn_at", "waves", "change", "marching",
 )  # fmt: skip
 PLOTS = {"plot_wave_gauge": PlotAxes("Height at the wave gauge", "m", SERIES)}
 CURVES = {"plot_wave_spectrum": CurveAxes("Spectrum at the wave gauge", "m²/Hz", "f [Hz]", ("measured", "theory"))}
@@ -55,11 +55,8 @@ AWAITED_HINT = "Of the significant height Hs, as high as a rogue wave. The lab p
 NONLINEAR = "nonlinear waves"
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 START_WIND_SPEEDS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea at a reset, by the parameter `start`
-SETTLING_TRANSITIONS = 16.0  # transition times after which nothing is left of the old weather (e^-16 = 1e-7)
 PLOT_ROW_INTERVAL = 0.1  # [s] of simulated time between two plot rows
 MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] of a wave gauge near the camera, before a click has placed it
-
-PACE_INTERVAL = 0.5  # [s] of simulated time between two calculations of the sea's slope and frequency, for the foam
 
 
 def gauge_home(length: float, *, is_near: bool = True) -> tuple[float, float]:
@@ -153,7 +150,7 @@ class SquareSeaScene:
 
     def keep(self) -> dict[str, object]:
         """Sea, foam and rain, as they are now."""
-        return copied({name: getattr(self, name) for name in CHANGING}, self.foam)
+        return copied({name: getattr(self, name) for name in CHANGING}, self.foam.values)
 
     def resume(self, kept: object) -> None:
         """Go on from a checkpoint of `keep`; the wave gauge keeps its place and forgets later values."""
@@ -179,13 +176,13 @@ class SquareSeaScene:
         start_wind = None if marches(p) else START_WIND_SPEEDS.get(p.start)
         self.sea = Sea(int(p.size), p.length, seed=p.seed, **conditions(p, start_wind))
         self.sea.choppiness = p.choppiness * p.amplitude
-        self.foam_cover_before = whitecaps(p.wind_speed if start_wind is None else start_wind)
         if self.student is not None:
             self.student.want(p)
         transition = 0.0 if start_wind is None else p.transition
         if start_wind is not None or self.student is not None:
             self.sea.change(self.time, transition, **self.conditions())
-        self.changed_at, self.transition, self.viscous_area = self.time, transition, 0.0
+        foam_cover = whitecaps(p.wind_speed if start_wind is None else start_wind)
+        self.change = WeatherChange(self.time, transition, foam_cover, 0.0)
         self.statistics = LiveStatistics()
         self.begin_marching()
         self.clear_mesh()
@@ -215,19 +212,14 @@ class SquareSeaScene:
     def clear_mesh(self) -> None:
         """Start a new drawn mesh, without foam."""
         n = min(int(self.params.mesh), solved_points(self.params))
-        self.foam = np.zeros((n, n), np.float32)
+        self.foam, self.waves = MeshFoam(n), WavePace()
         self.drawn: SeaFrame | None = None
         self.drawn_at = self.time
-        self.slope_left = 1.0  # share of the mean square slope that damping and a small height factor leave
-        self.pace = 0.0, 0.0  # mean square slope, and the frequency [rad/s] at which it changes
-        self.paced_of: tuple[int, float] | None = None  # of which waves they are, where these are steady
-        self.paced_at = self.statistics.measured_at = -math.inf
-        self.statistics.earlier_height = None
-        self.foam_cover, self.foam_limit = 0.0, FoamLimit()
+        self.statistics.measured_at, self.statistics.earlier_height = -math.inf, None
 
     def change_forces(self, params: SquareSeaParams) -> None:
         """Take new parameters: new weather grows out of the present sea, another grid shows the same sea."""
-        old, foam_cover = self.params, self.undamped_foam_cover(self.time)
+        old, foam_cover = self.params, self.change.foam_cover_at(self.time, self.params.wind_speed)
         self.params = params
         self.statistics.theory = None
         if params.size != old.size:
@@ -237,24 +229,26 @@ class SquareSeaScene:
         if params.size != old.size or params.mesh != old.mesh:
             self.clear_mesh()
         if conditions(params) != conditions(old):
-            self.foam_cover_before = foam_cover
-            self.viscous_area += old.viscosity * (self.time - self.changed_at)
             if self.student is not None:
                 self.student.want(params)
-            self.change_sea(params.transition)
+            self.change_sea(params.transition, foam_cover, old.viscosity)
         elif self.student is not None and params.size != old.size:
             self.student.want(params)
         self.sea.choppiness = params.choppiness * params.amplitude
         if rain_settings(params) != rain_settings(old):
             self.make_rainfall()
 
-    def change_sea(self, transition: float) -> None:
-        """Let the sea adapt to its conditions in this time [s]; a nonlinear one begins again with them."""
+    def change_sea(self, transition: float, foam_cover: float, viscosity: float) -> None:
+        """Let the sea adapt to its conditions in this time [s]; a nonlinear one begins again with them.
+
+        foam_cover: fraction of the sea that is foam now, if no wave is damped. viscosity: [m2/s] until now.
+        """
         transition = 0.0 if marches(self.params) else transition
         self.sea.change(self.time, transition, **self.conditions())
         self.begin_marching()
-        self.changed_at, self.transition = self.time, transition
-        self.paced_at = self.statistics.measured_at = -math.inf
+        viscous_area = self.change.viscous_area_at(self.time, viscosity)
+        self.change = WeatherChange(self.time, transition, foam_cover, viscous_area)
+        self.waves.found_at = self.statistics.measured_at = -math.inf
 
     def conditions(self) -> dict[str, Any]:
         """The arguments of `Sea.change`, by a student's functions where the sea runs by them."""
@@ -266,8 +260,7 @@ class SquareSeaScene:
         if transition is None:
             return
         before = self.sea.conditions.gravity
-        self.viscous_area += self.params.viscosity * (self.time - self.changed_at)
-        self.change_sea(transition)
+        self.change_sea(transition, self.change.foam_cover, self.params.viscosity)
         self.statistics.theory = self.drawn = None
         if self.sea.conditions.gravity != before:
             self.make_rainfall()
@@ -337,7 +330,7 @@ class SquareSeaScene:
         if self.gauge_shown or self.plot_rows.is_due(t):
             self.read_gauge()
         gauge = (*self.gauge.at, self.gauge.height) if self.gauge_shown else None
-        changing = p.viscosity > 0.0 or t - self.changed_at < SETTLING_TRANSITIONS * self.transition
+        changing = p.viscosity > 0.0 or self.change.is_under_way(t)
         new = self.statistics.update(self.sea, p, t, fields.height, dt, changing=changing, marching=self.marching)
         self.counts["statistics"] += new
         self.update_spectrum()
@@ -354,16 +347,10 @@ class SquareSeaScene:
 
     def make_frame(self, fields: Fields, dt: float) -> SeaFrame:
         """The mesh of these fields with the foam of the last one faded over dt [s]."""
-        p, n = self.params, len(self.foam)
-        self.update_pace()
-        full_depth = self.foam_limit.update(p, dt, *self.pace, self.expected_foam_cover(self.time), self.foam_cover)
-        limit, fade = self.foam_limit.value, math.exp(-dt / p.foam_fade)
-        vertices, slopes = np.empty((n, n, 3), np.float32), np.empty((n, n, 2), np.float32)
-        self.foam = self.foam.copy()
-        self.foam_cover, self.foam_limit.deviation = set_mesh_of(
-            fields, p.amplitude, p.length, limit, full_depth, fade, vertices, slopes, self.foam
-        )
-        return SeaFrame(p, self.time, vertices, slopes, self.foam, self.pace[0], None, None, SentSurface())
+        p = self.params
+        self.counts["paces"] += self.waves.update(self.sea, self.time, p.amplitude)
+        vertices, slopes = self.foam.make_mesh(fields, p, dt, self.waves, self.expected_foam_cover(self.time))
+        return SeaFrame(p, self.time, vertices, slopes, self.foam.values, self.waves.slope, None, None, SentSurface())
 
     def update_spectrum(self) -> None:
         """The spectrum at the wave gauge, where it is shown and out of date."""
@@ -375,24 +362,8 @@ class SquareSeaScene:
             self.counts["gauge spectra"] += 1
 
     def expected_foam_cover(self, t: float) -> float:
-        """Share of the sea that is foam by Monahan's law, times the slope that damping left; adapts as the waves do."""
-        return self.undamped_foam_cover(t) * self.slope_left
-
-    def undamped_foam_cover(self, t: float) -> float:
-        """The same as if no wave were damped."""
-        return cover_in(self.params.wind_speed, self.foam_cover_before, t - self.changed_at, self.transition)
-
-    def update_pace(self) -> None:
-        """Calculate slope and frequency of the waves anew, where they are out of date."""
-        p, t = self.params, self.time
-        if abs(t - self.paced_at) < PACE_INTERVAL:
-            return
-        waves = (self.sea.version, p.amplitude) if self.sea.is_steady(t) else None
-        if waves is None or waves != self.paced_of:
-            self.pace = pace(self.sea, t)
-            self.slope_left = self.sea.slope_left(t) * min(p.amplitude, 1.0) ** 2
-            self.counts["paces"] += 1
-        self.paced_at, self.paced_of = t, waves
+        """Fraction of the sea that is foam by Monahan's law, times the slope that damping left."""
+        return self.change.foam_cover_at(t, self.params.wind_speed) * self.waves.slope_left
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
         """The plot rows since the last call."""

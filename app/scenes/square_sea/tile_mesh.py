@@ -82,7 +82,7 @@ def set_row(x, y_step, dx, dy, z, lift, sx, sy, points, slopes):
 
 @kernel(noalias=True)
 def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade, vertices, slopes, foam):
-    """Set the mesh and fade its foam; returns (share of the mesh that is foam, rms of J - 1).
+    """Set the mesh and fade its foam; returns (fraction of the mesh that is foam, rms of J - 1).
 
     height, dx, dy: (n, n) [m], dx and dy unread unless `choppy`; scale: factor on the height; cell [m] of the grid.
     foam: (n/stride, n/stride), 0 to 1, kept from the last frame: times `fade`, and at least (threshold - J)/soft.
@@ -124,7 +124,7 @@ def set_mesh(height, dx, dy, choppy, scale, stride, cell, threshold, soft, fade,
 def set_foam(jacobian, scale, stride, threshold, soft, fade, foam):
     """Fade the foam of the mesh and add new foam by a given Jacobian (n, n), as `set_mesh` does.
 
-    scale: factor on the height. Returns (share of the mesh that is foam, rms of J - 1).
+    scale: factor on the height. Returns (fraction of the mesh that is foam, rms of J - 1).
     """
     limit, sharpness, kept, lift = np.float32(threshold), np.float32(1.0 / soft), np.float32(fade), np.float32(scale)
     rows, cols = foam.shape

@@ -14,8 +14,9 @@ from app.lab.folder import PICTURES, make_folder
 from app.lab.live_values import LiveNumber
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.panel.guide import BACK, HIDE, ON, PICTURE, SET_UP, SHOW, UNANSWERED, GuideTab, QuestionWidgets
+from app.panel.guide import HIDE, PICTURE, SET_UP, SHOW, UNANSWERED, GuideTab, QuestionWidgets
 from app.panel.panel import Panel
+from app.panel.task_list import BACK, ON
 from app.render.html import escape
 from app.scenes.race.html import error_text
 from app.server.viewer import Viewer
@@ -78,12 +79,12 @@ def test_the_guide_of_a_scene_begins_with_its_first_question_and_turns(plain: Vi
     assert guide.shown is not None
     assert guide.shown.item == "3.2-1"
     assert "Complete the rope" in guide.text.content
-    does(guide.on_turn, ON)
+    does(guide.tasks.on_turn, ON)
     wait_for(lambda: "Euler" in guide.text.content)
-    assert guide.chooser.value.startswith("3.2-2")
-    does(guide.on_turn, BACK)
+    assert guide.tasks.chooser.value.startswith("3.2-2")
+    does(guide.tasks.on_turn, BACK)
     wait_for(lambda: "Complete the rope" in guide.text.content)
-    does(guide.on_chooser, guide.titles[0])
+    does(guide.tasks.on_chooser, guide.tasks.titles[0])
     wait_for(lambda: "Which fluid is on top" in guide.text.content)
     assert not guide.questions
 
@@ -135,7 +136,7 @@ def test_a_task_without_an_answer_offers_none(student: Viewer) -> None:
 
 def test_a_control_that_means_nothing_is_hidden_in_a_task_too(plain: Viewer) -> None:
     controls = plain.panel.shown
-    controls.show_again(("sphere_radius",), guide_of(plain).control_place)
+    controls.show_again(("sphere_radius",), guide_of(plain).again.place)
     assert not controls.again[0].visible
     plain.panel.set("sphere", True)
     assert controls.again[0].visible
@@ -211,7 +212,7 @@ def test_a_text_is_kept_when_the_typing_pauses_and_when_the_task_is_left(student
     assert ("reflectance", "explain") not in read_answers(folder).values or not read_answers(folder).values[
         "reflectance", "explain"
     ]
-    does(guide.on_turn, ON)
+    does(guide.tasks.on_turn, ON)
     wait_for(lambda: guide.shown is not None and guide.shown.name != "reflectance")
     assert read_answers(folder).values["reflectance", "explain"] == "Hardly any light comes"
     again = widgets_of(show(student, "reflectance"), "explain")
@@ -249,14 +250,14 @@ def test_a_picture_is_kept_for_the_task_that_is_shown(student: Viewer, folder: P
     guide = show(student, "spring_force")
     wait_for(lambda: "time" in guide.values)
     event = SimpleNamespace(target=SimpleNamespace(value=PICTURE), client_id=1, client=object())
-    monkeypatch.setattr("app.panel.guide.take_picture", lambda client, size, *, jpeg: b"\xff\xd8\xff")
+    monkeypatch.setattr("app.panel.report_pictures.take_picture", lambda client, size, *, jpeg: b"\xff\xd8\xff")
     coroutines.run(guide.on_tool(event))
     wait_for(lambda: "The report has the picture" in guide.answer.content)
     name = next((folder / PICTURES).iterdir()).name
     assert name.startswith("spring_force-rope-")
     assert name in guide.answer.content
-    monkeypatch.setattr("app.panel.guide.take_picture", refuse)
-    wait_for(lambda: not guide.busy.locked())
+    monkeypatch.setattr("app.panel.report_pictures.take_picture", refuse)
+    wait_for(lambda: not guide.pictures.busy.locked())
     coroutines.run(guide.on_tool(event))
     wait_for(lambda: "No picture was taken: the browser has gone" in guide.answer.content)
     assert len(list((folder / PICTURES).iterdir())) == 1
@@ -335,7 +336,7 @@ def test_the_signs_of_all_tasks_are_worked_out_where_an_answer_or_a_check_is_new
     states: dict[str, str] = {}
     asked = []
     guide.workbook.programs = lambda: dict(states)
-    guide.titles_now = lambda: asked.append(1) or guide.titles  # type: ignore[method-assign]
+    guide.tasks.titles_now = lambda: asked.append(1) or guide.tasks.titles  # type: ignore[method-assign]
     guide.update(student.loop.latest, True)
     asked.clear()
     for state, count in (({}, 0), ({"gravity": "right"}, 1), ({"gravity": "right"}, 1), ({"gravity": "wrong"}, 2)):
@@ -355,9 +356,9 @@ def test_what_is_asked_for_in_the_middle_of_a_look_is_shown_by_the_next(
     said = "The report has the picture “rope”."
 
     def ask_meanwhile() -> None:
-        guide.picture_said, guide.stale = said, True  # as the thread that takes a picture does
+        guide.pictures.said, guide.stale = said, True  # as the thread that takes a picture does
 
-    guide.picture_said, guide.stale = "", True
+    guide.pictures.said, guide.stale = "", True
     with monkeypatch.context() as patch:
         patch.setattr(guide.questions[-1], "show", ask_meanwhile)
         guide.update(student.loop.latest, False)

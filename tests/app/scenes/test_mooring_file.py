@@ -11,7 +11,7 @@ from app.messages import GrabTo, Release
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted, recording_npz
 from app.scenes.mooring.arrangement import depth_of, extent, has_body, water_of
-from app.scenes.mooring.file_scene import FileScene, level_force, water_motion
+from app.scenes.mooring.file_scene import FileScene, water_motion
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import MooringParams, hidden
@@ -128,11 +128,11 @@ def test_the_restoring_curve_is_the_force_of_the_lines_on_the_vessel():
     assert offset[middle] == pytest.approx(0.0, abs=1e-9)
     assert force[middle] == pytest.approx(-scene.force_of_lines()[0], rel=1e-6)
     rest = scene.system.at_rest()
-    tension = np.concatenate([rest.tension[line.id] for line in scene.system.lines])
+    tension = np.concatenate([rest.tension[line.id] for line in scene.system.lines])[scene.rows.links]
     ends = {i: np.array(p.position) for i, p in enumerate(scene.system.points)}
     first, last = rest.x[1][-2] - ends[1], rest.x[3][-2] - ends[4]
     pull = rest.tension[1][-1] * first / np.linalg.norm(first) + rest.tension[3][-1] * last / np.linalg.norm(last)
-    assert level_force(scene.file, rest.nodes, tension) == pytest.approx(pull[:2], rel=1e-6)
+    assert scene.rows.level_force(scene.rows.points(rest.nodes), tension) == pytest.approx(pull[:2], rel=1e-6)
     chart = (scene.curves() or {})["plot_restoring"]
     assert len(chart.columns) == 3
 

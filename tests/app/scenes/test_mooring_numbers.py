@@ -12,7 +12,6 @@ from app.scenes.mooring.arrangement import DENSITY, GRAVITY, bearings, first_pla
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.restoring import force_of_lines
 from app.scenes.mooring.scene import SCENE
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.quantities import measured
@@ -41,7 +40,7 @@ def test_tensions_of_both_ends_of_each_line_are_those_of_the_library(scene):
         tension = rest.tension[10 * (i + 1)]
         assert (reading.anchor, reading.fairlead) == pytest.approx((tension[0], tension[-1]), rel=1e-6)
         assert (reading.at_anchor.largest, reading.at_fairlead.largest) == (reading.anchor, reading.fairlead)
-        assert scene.frame().points[i, 0] == pytest.approx(scene.places.anchors[i], abs=1e-4)
+        assert scene.frame().points[i, 0] == pytest.approx(scene.attached.places.anchors[i], abs=1e-4)
         assert scene.frame().tension[i] == pytest.approx(tension, rel=1e-5)
         first = rest.x[10 * (i + 1)][1] - rest.x[10 * (i + 1)][0]
         up = tension[0] * first[2] / np.linalg.norm(first)
@@ -51,8 +50,8 @@ def test_tensions_of_both_ends_of_each_line_are_those_of_the_library(scene):
 
 
 def test_level_forces_of_the_lines_balance_the_steady_force(scene):
-    assert force_of_lines(scene) == pytest.approx([-15e3, 0.0], rel=0.05, abs=50.0)
-    assert scene.rest_place[0] > 0.0
+    assert scene.force_of_lines() == pytest.approx([-15e3, 0.0], rel=0.05, abs=50.0)
+    assert scene.excursion.rest[0] > 0.0
 
 
 def test_an_anchor_that_is_pulled_upwards_is_flagged_and_one_pushed_down_is_not():
@@ -66,10 +65,10 @@ def test_an_anchor_that_is_pulled_upwards_is_flagged_and_one_pushed_down_is_not(
     assert first[:2] + first[4:7] == pytest.approx((25.0, 8.0, 6.4, 8.0, 7.0))
     assert (first.at_fairlead.largest, first.at_anchor.largest) == (25.0, 10.0)
     assert math.isnan(first.slack_since)
-    assert first.slack_share == 0.0
+    assert first.slack_fraction == 0.0
     assert second[:2] + second[4:7] == (0.0, 31.0, 0.0, 0.0, 9.0)
     assert (second.at_fairlead.largest, second.at_anchor.largest) == (5.0, 31.0)
-    assert (second.slack_since, second.slack_share) == (3.0, pytest.approx(2.0 / 3.0))
+    assert (second.slack_since, second.slack_fraction) == (3.0, pytest.approx(2.0 / 3.0))
     assert tensions.most_at == (0, 3.0)
 
 
@@ -79,7 +78,7 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
     expected = {
         "fairlead_tension": first.fairlead, "anchor_tension": first.anchor, "uplift": first.uplift,
         "largest_tension": max(line.at_fairlead.largest for line in found.lines), "line_1_lying_length": first.lying,
-        "hanging_length": p.length - first.lying, "line_1_slack_share": 0.0, "offset": found.offset,
+        "hanging_length": p.length - first.lying, "line_1_slack_fraction": 0.0, "offset": found.offset,
         "fairlead_height": float(scene.points[0, -1, 2]) + p.depth,
         "line_weight": 9.81 * (80.0 - 1025.0 * math.pi / 4.0 * 0.09**2),
     }  # fmt: skip
@@ -89,10 +88,10 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
     expected = {
         "largest_tension": max(line.at_fairlead.largest for line in found.lines),
         "largest_at_anchor": max(line.at_anchor.largest for line in found.lines),
-        "largest_uplift": max(line.most_uplift for line in found.lines), "slack_share": 0.0,
+        "largest_uplift": max(line.most_uplift for line in found.lines), "slack_fraction": 0.0,
         "lying_length": found.lines[0].lying + found.lines[1].lying, "largest_offset": found.most_offset,
         "heave": float(scene.state.x[2, scene.system.node_count]),
-        "critical_step": critical_step(scene.system, "leapfrog"), "rest_stretch": float(scene.rest_stretch.max()),
+        "critical_step": critical_step(scene.system, "leapfrog"), "rest_stretch": float(scene.start.stretch.max()),
         "least_tension": min(line.fairlead for line in found.lines),  # of one sample
         "mean_tension": max(line.fairlead for line in found.lines), "tension_deviation": 0.0,
         "breaking_load_use": max(line.fairlead for line in found.lines) / 3450e3,
@@ -116,8 +115,8 @@ def test_the_panel_says_the_readings(scene):
     slack = found.lines[0]._replace(slack_since=2.0)
     assert "since 3" in str(report.slack_text(slack, 5.0))
     assert str(report.slack_text(found.lines[0], 5.0)) == "never"
-    assert "25" in str(report.slack_text(found.lines[0]._replace(slack_share=0.25), 5.0))
-    assert f"{report.kilonewtons(2.0 * scene.rest_scale)} kN" in str(report.readout_of(shown))
+    assert "25" in str(report.slack_text(found.lines[0]._replace(slack_fraction=0.25), 5.0))
+    assert f"{report.kilonewtons(2.0 * scene.start.scale)} kN" in str(report.readout_of(shown))
 
 
 def test_lying_length_counts_links_with_both_ends_on_the_bed(scene):
@@ -147,7 +146,7 @@ def test_offset_is_level_and_from_the_place_of_rest(scene):
     assert moved.readings().offset == pytest.approx(5.0)
     moved.state.x[:, moved.system.node_count] -= (3.0, 4.0, 12.0)
     moved.measure()
-    assert (moved.offset, moved.most_offset) == (pytest.approx(0.0, abs=1e-9), pytest.approx(5.0))
+    assert (moved.excursion.offset, moved.excursion.largest) == (pytest.approx(0.0, abs=1e-9), pytest.approx(5.0))
 
 
 def test_waves_and_current_begin_smoothly():

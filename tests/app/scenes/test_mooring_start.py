@@ -13,10 +13,11 @@ from app.__main__ import main
 from app.scenes.contract import Advice
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
-from app.scenes.mooring.line_scene import NO_REST, LineScene
+from app.scenes.mooring.line_scene import LineScene
 from app.scenes.mooring.parameters import PRESETS, MooringParams
 from app.scenes.mooring.report import figures_of, marks_of, notes_of
 from app.scenes.mooring.scene import advice, remedy, scene_of, warnings
+from app.scenes.mooring.start import NO_REST
 from app.scenes.mooring.start_check import MAX_REST_STRETCH, rounded_up
 from app.server.loop import SimLoop
 from sim.parameters import check_record
@@ -50,7 +51,7 @@ def edited(tmp_path: Path, name: str, *changes: tuple[str, str]) -> str:
 @pytest.mark.parametrize("preset", PRESETS)
 def test_no_preset_has_a_fault(preset):
     scene = scene_of(check_record(MooringParams, PRESETS[preset]))
-    assert scene.fault is None
+    assert scene.start.fault is None
     assert warnings(scene) == []
 
 
@@ -65,7 +66,7 @@ def test_lines_that_cannot_reach_their_anchors_are_named_before_the_first_step(v
     scene = scene_with(**values)
     height = 0.55 * 9.0
     way = math.hypot(reach - 4.5, 40.0 - 450.0 / 1025.0 * height)
-    fault = scene.fault
+    fault = scene.start.fault
     assert fault is not None
     assert fault.parameter == "length"
     assert fault.advice is not None
@@ -81,27 +82,28 @@ def test_lines_that_cannot_reach_their_anchors_are_named_before_the_first_step(v
 
 def test_a_line_that_is_a_little_too_short_is_named_with_its_stretch():
     taut, short = scene_with(length=82.0), scene_with(length=78.0)
-    assert taut.fault is None  # by 3 %, as taut moorings are laid
-    assert short.rest_stretch.max() == pytest.approx(0.0545, abs=2e-3)
-    assert short.fault is not None
-    assert short.fault.said.startswith("Line 1 is stretched by 5.4\u00a0% at rest: shorter than the way to its anchor")
-    assert not short.fault.is_grave  # a run that diverges then is said to have too long a step
+    assert taut.start.fault is None  # by 3 %, as taut moorings are laid
+    assert short.start.stretch.max() == pytest.approx(0.0545, abs=2e-3)
+    fault = short.start.fault
+    assert fault is not None
+    assert fault.said.startswith("Line 1 is stretched by 5.4\u00a0% at rest: shorter than the way to its anchor")
+    assert not fault.is_grave  # a run that diverges then is said to have too long a step
 
 
 def test_a_line_that_is_too_soft_for_its_load_is_advised_the_stiffness_that_its_load_needs():
     values = {"lines": 1, "axial_stiffness": 2e6, "steady_force": 500.0, "integrator": "leapfrog"}
     scene = scene_with(**values)
     load = scene.readings().lines[0].fairlead
-    assert scene.fault is not None
-    assert scene.fault.parameter == "axial_stiffness"
-    assert scene.fault.advice is not None
-    assert 1.0 < scene.fault.advice.value / (load / MAX_REST_STRETCH) < 1.4
-    scene.change_forces(dataclasses.replace(scene.params, axial_stiffness=scene.fault.advice.value))
-    assert scene.fault is None  # at once, as the motion goes on
+    assert scene.start.fault is not None
+    assert scene.start.fault.parameter == "axial_stiffness"
+    assert scene.start.fault.advice is not None
+    assert 1.0 < scene.start.fault.advice.value / (load / MAX_REST_STRETCH) < 1.4
+    scene.change_forces(dataclasses.replace(scene.params, axial_stiffness=scene.start.fault.advice.value))
+    assert scene.start.fault is None  # at once, as the motion goes on
     scene.change_forces(dataclasses.replace(scene.params, axial_stiffness=2e6))
-    assert scene.fault is not None
+    assert scene.start.fault is not None
     scene.change_forces(dataclasses.replace(scene.params, steady_force=10.0))
-    assert scene.fault is None
+    assert scene.start.fault is None
 
 
 def test_advice_that_is_followed_helps():
@@ -126,7 +128,7 @@ def test_a_shorter_step_is_advised_only_if_the_start_is_not_at_fault(monkeypatch
     def fail(system):
         raise ConvergenceError("static state of the mooring", "3 N", 40)
 
-    monkeypatch.setattr("app.scenes.mooring.line_scene.at_rest", fail)
+    monkeypatch.setattr("app.scenes.mooring.start.at_rest", fail)
     restless = scene_with()
     assert remedy(snapshot_of(restless)) is None
     assert NO_REST in figures_of(snapshot_of(restless))
@@ -138,10 +140,10 @@ def test_a_shorter_step_is_advised_only_if_the_start_is_not_at_fault(monkeypatch
 
 def test_a_fault_is_that_of_the_place_of_a_dragged_anchor():
     scene = MooringScene(check_record(MooringParams, {**FEW, "lines": 1}))
-    scene.places = scene.places._replace(anchors=((-140.0, 0.0, -40.0),))
+    scene.attached.anchors[0].place_at((-140.0, 0.0, -40.0))
     scene.change_forces(dataclasses.replace(scene.params, axial_stiffness=6e7))
-    assert scene.fault is not None
-    assert scene.fault.said.startswith("96 m cannot reach an anchor 140 m away")
+    assert scene.start.fault is not None
+    assert scene.start.fault.said.startswith("96 m cannot reach an anchor 140 m away")
 
 
 def test_lines_and_points_of_a_file(tmp_path):

@@ -3,6 +3,7 @@
 import collections
 import dataclasses
 import functools
+import math
 import re
 from collections.abc import Callable
 from typing import Any
@@ -10,14 +11,18 @@ from typing import Any
 import pytest
 
 from app.__main__ import main
+from app.formats.formatting import fixed
 from app.lab.live_values import LiveNumber, names_in
 from app.lab.task import Task, load_tasks
 from app.notebook.dataset import to_dataset
 from app.panel.guide import SnapshotValues
 from app.scenes import NAMES, scene_named
-from app.scenes.quantities import Quantity, measured, recorded_quantities
+from app.scenes.mooring import report as mooring_report
+from app.scenes.quantities import Quantity, measured, read, recorded_quantities, written
+from app.scenes.radial_sea import report as radial_report
 from app.server.loop import SimLoop
 from app.sweep.case import run_case
+from sim.ocean.weathering import Weathering
 from sim.parameters import parameters_of
 
 SECOND = 60  # frames
@@ -135,6 +140,35 @@ def test_a_sweep_computes_each_part_once_and_draws_no_frame(
         monkeypatch.setattr(scene, part, functools.partial(counted, part, getattr(scene, part)))
     measured(kind, scene)
     assert calls == [method] * count
+
+
+def test_a_spill_is_found_once_for_all_its_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    kind: Any = scene_named("radial_sea")
+    found: list[float] = []
+    plain = Weathering.at
+    monkeypatch.setattr(Weathering, "at", lambda self, hours: (found.append(hours), plain(self, hours))[1])
+    scene = kind.make(kind.params(spill="layer", spill_hours=37.5, bodies=0))
+    spilled = measured(kind, scene)
+    assert found == [37.5]
+    assert 0.0 < spilled["evaporated"].value < 1.0
+    assert spilled["slick_area"].value > 0.0
+
+
+def test_texts_of_the_panel_have_the_numbers_of_the_table() -> None:
+    table = {"length": Quantity("m", "", lambda now: now), "force": Quantity("N", "", lambda now: now),
+             "gone": Quantity("1", "", lambda now: None)}  # fmt: skip
+    assert [written(table, "length", value) for value in (12.345, 0.0123)] == ["12.3\u00a0m", "12.3 mm"]
+    assert [written(table, name, 0.0123) for name in ("force", "gone")] == ["0.0123\u00a0N", "–"]
+    assert math.isnan(read(table, "gone", 1.0))
+    for name, number, heading, notes_of in (
+        ("mooring", "offset", "Tensions", mooring_report.notes_of),
+        ("radial_sea", "red_buoy_draft_at_rest", "Archimedes' principle", radial_report.notes_of),
+    ):
+        kind, loop = loop_of(name, 2)
+        loop.run.snapshots.publish()
+        shown = fixed(read(kind.quantities, number, loop.latest), 3)
+        said = shown if name == "radial_sea" else written(kind.quantities, number, loop.latest)
+        assert said in notes_of(loop.latest)[heading]
 
 
 def test_a_quantity_of_a_snapshot_is_computed_once_and_only_if_it_is_asked_for() -> None:

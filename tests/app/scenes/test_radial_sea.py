@@ -17,8 +17,9 @@ from app.__main__ import main
 from app.formats.formatting import fixed
 from app.messages import GrabTo, Place, Release
 from app.scenes.contract import AnyScene
-from app.scenes.radial_sea.bodies import BED_DEPTH, BODY_KINDS, LINE_REACH, place_of
+from app.scenes.radial_sea.bodies import BODY_KINDS, place_of
 from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
+from app.scenes.radial_sea.moorings import BED_DEPTH, LINE_REACH
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden
 from app.scenes.radial_sea.report import forces_html, marks_of
 from app.scenes.radial_sea.scene import RadialSeaScene
@@ -65,11 +66,11 @@ def test_bodies_let_go_too_high_settle_at_the_drafts_of_the_readout(changes: dic
 def test_oil_poured_on_adds_d_times_one_minus_the_ratio() -> None:
     scene = RadialSeaScene(with_parameters(**CALM))
     run(scene, 10.0)
-    before = scene.bodies.draft.copy()
+    before = scene.bodies.meters.draft.copy()
     scene.change_forces(with_parameters(**CALM, spill="layer", thickness=0.2))
     run(scene, 50.0)
     extra = 0.2 * (1.0 - fluids()["Alaska North Slope 2002"].density / 1025.0)
-    np.testing.assert_allclose(scene.bodies.draft - before, extra, atol=1e-4)
+    np.testing.assert_allclose(scene.bodies.meters.draft - before, extra, atol=1e-4)
     theory = scene.readings().bodies[0].prediction
     assert theory.draft - theory.draft_in_water == pytest.approx(extra, abs=1e-9)
 
@@ -174,8 +175,8 @@ def test_lines_pull_as_in_the_middle_of_a_step() -> None:
     level = fleet.mooring[0, :2] / fleet.velocity[0, :2]
     assert (level < 0.0).all()
     assert level[0] == pytest.approx(level[1], rel=0.02)
-    length = scene.bodies.lines.length[0, 0]
-    stiffness = scene.bodies.lines.stiffness[0] / length * (LINE_REACH / length) ** 2
+    length = scene.bodies.moorings.lines.length[0, 0]
+    stiffness = scene.bodies.moorings.lines.stiffness[0] / length * (LINE_REACH / length) ** 2
     assert level[0] == pytest.approx(-0.25 * stiffness, rel=0.02)
 
 

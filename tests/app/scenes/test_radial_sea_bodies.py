@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.scenes.quantities import measured
-from app.scenes.radial_sea.bodies import LINE_REACH
+from app.scenes.radial_sea.moorings import LINE_REACH
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, weathered_oil
 from app.scenes.radial_sea.report import forces_html
 from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
@@ -34,20 +34,20 @@ def test_in_waves_bodies_float_on_average_as_archimedes_says(preset: str) -> Non
     The mooring lines are level here, as others pull down.
     """
     scene = scene_with(**PRESETS[preset])
-    lines = scene.bodies.lines
-    lines.anchors[:, :, 2] = scene.bodies.fleet.position[:, None, 2] + scene.bodies.keel[:, None]
+    lines = scene.bodies.moorings.lines
+    lines.anchors[:, :, 2] = scene.bodies.fleet.position[:, None, 2] + scene.bodies.meters.keel[:, None]
     lines.length[:] = LINE_REACH
     bodies, drafts, forces = scene.bodies, [], []
     for _ in range(70 * 60):
         scene.advance(1)
-        drafts.append(bodies.draft.copy())
+        drafts.append(bodies.meters.draft.copy())
         forces.append(bodies.fleet.lift.copy())
     rest = np.array([bodies.prediction(i).draft for i in range(bodies.count)])
     last = np.array(drafts[-3600:])
     curved = np.zeros(bodies.count)
     radius = np.array([bodies.hulls[kind].size[0] / 2 for kind in bodies.kinds])
     area_change = (radius - rest) / (rest * (2 * radius - rest))
-    curved[bodies.is_round] = (-area_change * (last.var(axis=0)))[bodies.is_round]
+    curved[bodies.meters.is_round] = (-area_change * (last.var(axis=0)))[bodies.meters.is_round]
     assert (WINDOW * last).sum(axis=0) - rest - curved == pytest.approx(np.zeros(bodies.count), abs=1e-3)
     shown = np.array([body.mean_draft for body in bodies.readings(scene.time, bodies.count)])
     assert shown - rest - curved == pytest.approx(np.zeros(bodies.count), abs=1e-3)
@@ -82,7 +82,7 @@ def test_a_leaning_box_has_the_draft_of_its_wet_volume() -> None:
     scene.bodies.fleet.rotation[2] = (math.cos(angle / 2), math.sin(angle / 2), 0.0, 0.0)
     at = scene.sea.at(scene.bodies.fleet.position[:, :2], 0.0)
     scene.bodies.measure(0.0, at, 1 / 60)
-    leaning = scene.bodies.draft[2]
+    leaning = scene.bodies.meters.draft[2]
     hull = scene.bodies.hulls["crate"]
     found = submerged(hull, scene.bodies.fleet.position[2], scene.bodies.fleet.rotation[2])
     assert leaning == pytest.approx(found.volume / (1.2 * 1.5) ** 2, rel=1e-6)

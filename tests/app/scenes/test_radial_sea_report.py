@@ -226,7 +226,7 @@ def test_lines_on_the_waves_are_jonswap_s_and_those_of_the_exact_root(
     values = {"spill": "layer", "oil": oil, "thickness": thickness, "wind_speed": wind, "exposure": exposure}
     loop = Loop(RadialSeaScene(check_record(RadialSeaParams, {**values, "bodies": 0, "ageing": False})))
     loop.tick(0.1)
-    said = {name: text.replace("\u202f", "") for name, text in marks_of(loop.latest).items()}
+    said = {name: text.replace("\u202f", "").replace("\xa0", " ") for name, text in marks_of(loop.latest).items()}
     # JONSWAP from 100 km, at most full growth (22 x 1.026/0.87716)^3, where the peak factor is 1.
     g, grown = 9.81, 1.704e4
     chi = min(g * 1e5 / wind**2, grown)

@@ -28,19 +28,19 @@ def test_a_stain_reaches_to_the_deepest_that_a_body_has_been_in_oil_and_stays() 
     deepest = np.zeros(scene.bodies.count)
     for _ in range(120):
         scene.advance(1)
-        deepest = np.maximum(deepest, scene.bodies.draft)
-    np.testing.assert_allclose(scene.bodies.stain, deepest)
-    assert (scene.bodies.stain > scene.bodies.draft.min() + 0.01).all()
+        deepest = np.maximum(deepest, scene.bodies.meters.draft)
+    np.testing.assert_allclose(scene.bodies.meters.stain, deepest)
+    assert (scene.bodies.meters.stain > scene.bodies.meters.draft.min() + 0.01).all()
     np.testing.assert_allclose(scene.frame().stains, deepest, rtol=1e-6)
     scene.bodies.set_fluids(500.0, scene_with().column)  # the oil is taken away
     scene.advance(30)
-    np.testing.assert_allclose(scene.bodies.stain, deepest)
+    np.testing.assert_allclose(scene.bodies.meters.stain, deepest)
 
 
 def test_clean_water_leaves_no_stain() -> None:
     scene = scene_with()
     scene.advance(60)
-    assert not scene.bodies.stain.any()
+    assert not scene.bodies.meters.stain.any()
 
 
 def test_the_skin_lies_on_the_hull_up_to_its_height() -> None:

@@ -13,7 +13,8 @@ from app.scenes.radial_sea import cutaway_view
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.materials import SPILL_RADIUS, material_of
-from app.scenes.radial_sea.view import LINE_SIDES, NEAR_END, RadialSeaView, keel_of
+from app.scenes.radial_sea.moorings_view import LINE_SIDES, NEAR_END, DrawnMoorings
+from app.scenes.radial_sea.view import keel_of
 
 
 @pytest.fixture
@@ -55,13 +56,13 @@ def test_the_labels_of_the_window_say_what_is_there(server: viser.ViserServer) -
 
 def test_the_cutaway_has_only_the_lines_of_the_body_beside_it(server: viser.ViserServer) -> None:
     """Others cross it as sticks that hang in the air."""
-    view = RadialSeaView(server, lambda _: None)
+    moorings = DrawnMoorings(server)
     rod = 2 * LINE_SIDES + 2  # vertices
     for cutaway, bodies in ((True, 1), (False, 3), (True, 1)):
         frame = frame_of(bodies=3, cutaway=cutaway)
-        view.show_moorings(frame)
-        assert view.moorings is not None
-        rods = view.moorings.vertices.reshape(-1, 4, rod, 3)
+        moorings.show(frame)
+        assert moorings.rods is not None
+        rods = moorings.rods.handle.vertices.reshape(-1, 4, rod, 3)
         fairleads = rods[:, :, NEAR_END].mean(axis=2)
         np.testing.assert_allclose(fairleads, np.repeat(frame.fairleads[:bodies, None], 4, axis=1), atol=1e-4)
 

@@ -182,14 +182,14 @@ def test_slope_and_frequency_of_waves_that_stay_the_same_are_found_once() -> Non
         scene.advance(4)
         scene.frame()
     assert scene.counts["paces"] == 1
-    before = scene.pace
+    before = scene.waves.slope, scene.waves.frequency
     scene.change_forces(SquareSeaParams(size="64", mesh="64", viscosity=0.0, wind_speed=20.0, transition=0.2))
     for _ in range(120):  # 8 s, or 40 transition times: the last are steady again
         scene.advance(4)
         scene.frame()
-    assert scene.pace != before
+    assert (scene.waves.slope, scene.waves.frequency) != before
     assert 3 <= scene.counts["paces"] < 14
-    assert scene.pace == pace(scene.sea, scene.time)
+    assert (scene.waves.slope, scene.waves.frequency) == pace(scene.sea, scene.time)
     decaying = Scene(SquareSeaParams(size="64", mesh="64", viscosity=1e-3))
     for _ in range(60):  # 4 s, every half of one
         decaying.advance(4)
@@ -239,7 +239,7 @@ def test_the_sea_is_as_white_as_monahan_measured():
         cover = []
         for _ in range(900):
             run(scene, 1)
-            cover.append(scene.foam_cover / whitecaps(wind))
+            cover.append(scene.foam.cover / whitecaps(wind))
         first.append(np.mean(cover[:150]))
         later.append(np.mean(cover[450:]))
     assert np.mean(first) == pytest.approx(1.0, abs=0.1)

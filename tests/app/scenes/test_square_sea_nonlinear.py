@@ -141,7 +141,7 @@ def test_foam_is_where_crests_fall_by_half_of_gravity() -> None:
     scene.advance(600)
     frame = scene.frame()
     jacobian = scene.fields().jacobian[::2, ::2]
-    assert 0.0 < scene.foam_cover < 0.1
+    assert 0.0 < scene.foam.cover < 0.1
     assert (frame.foam[jacobian > 0.5] == 0.0).all()
     assert (frame.foam[jacobian < 0.4] > 0.5).all()
 

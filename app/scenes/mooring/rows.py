@@ -1,0 +1,40 @@
+"""Lines as rows of equally many pieces, whatever numbers of segments they have."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class LineRows(NamedTuple):
+    """The points and pieces of all lines as they are shown, each line from its anchor on."""
+
+    before: NDArray[np.int64]  # (lines, n + 1) node before each point, or at it
+    after: NDArray[np.int64]  # (lines, n + 1) the next one
+    fraction: NDArray[np.float64]  # (lines, n + 1, 1) of the way between them
+    links: NDArray[np.int64]  # (lines, n) link of each piece
+    lengths: NDArray[np.float64]  # (lines,) [m] unstretched
+    held: tuple[tuple[int, int], ...]  # (line, 0 or -1) of each end at the body or vessel
+
+    def points(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points (lines, n + 1, 3) [m] of nodes x (3, nodes)."""
+        nodes = x.T
+        return nodes[self.before] + self.fraction * (nodes[self.after] - nodes[self.before])
+
+    def stretch(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Stretch (lines,) of each line, over its length, with nodes x (3, nodes)."""
+        spans = np.linalg.norm(np.diff(self.points(x), axis=1), axis=2).sum(axis=1)
+        return spans / self.lengths - 1.0
+
+    def lying(self, points: NDArray[np.float64], bed: float) -> NDArray[np.float64]:
+        """Unstretched length (lines,) [m] of the pieces with both ends at the height `bed` [m] or below it."""
+        down = points[:, :, 2] <= bed
+        return (down[:, :-1] & down[:, 1:]).sum(axis=1) * self.lengths / self.links.shape[1]
+
+    def level_force(self, points: NDArray[np.float64], tension: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Level force (2,) [N] of all lines on the body or vessel. tension: (lines, n) [N]."""
+        found = np.zeros(2)
+        for line, end in self.held:
+            way = points[line, 1 if end == 0 else -2] - points[line, end]
+            found += tension[line, end] * way[:2] / max(float(np.linalg.norm(way)), 1e-12)
+        return found

@@ -65,7 +65,9 @@ def instructions(source: str, folder: Path) -> int:
 def test_the_shader_of_the_water_has_few_instructions(source: str, tmp_path: Path) -> None:
     levels = [source.replace("#define DETAILS 2", f"#define DETAILS {details}") for details in (2, 1, 0)]
     counts = [instructions(level, tmp_path) for level in levels]
-    fullest = instructions(source.replace("#define DETAILS 2", "#define DETAILS 2\n#define OIL\n#define HULLS"), tmp_path)
+    fullest = instructions(
+        source.replace("#define DETAILS 2", "#define DETAILS 2\n#define OIL\n#define HULLS"), tmp_path
+    )
     print(f"instructions at full, less and least detail: {counts}; with oil and hulls: {fullest}")
     assert LIMIT >= counts[0] > counts[1] > counts[2] > 0
     assert FULLEST >= fullest > counts[0]

@@ -34,7 +34,7 @@ RUN = """([constants, shader, expression, table, uniforms, tileSide, tile, detai
         precision highp float;
         #define MAX_WATERLINES 13
         #define DETAILS ${details}
-        uniform vec3 cameraPosition;
+        uniform vec3 eye;
         uniform mat4 toSea;
         uniform highp sampler2D inputs;
         out vec4 result;

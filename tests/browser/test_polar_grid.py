@@ -37,7 +37,7 @@ AIM = """([source, fineness, cameras, widest, highest, cell]) => {
     const found = [], still = { elements: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] };
     for (let k = 0; k < numbers.length; k += 32) {
         const polar = { userData: { fineness }, geometry: { setDrawRange: (from, count) => (polar.count = count) } };
-        const uniforms = { toSea: { value: still }, polarPlace: {}, polarSteps: {}, polarTurn: {} };
+        const uniforms = { toSea: { value: still }, eye: {}, polarPlace: {}, polarSteps: {}, polarTurn: {} };
         const camera = { matrixWorld: { elements: numbers.slice(k, k + 16) },
                          projectionMatrixInverse: { elements: numbers.slice(k + 16, k + 32) } };
         aimPolar({ polar, uniforms, mesh: { position: new Vector() }, widest, highest, cell }, camera);

@@ -195,6 +195,19 @@ def test_foam_another_material_and_another_size_reach_the_pixels(picture: Pictur
     assert wait(page, lambda: picture.water.has_shader is True and picture.redness() < 0.0)
 
 
+def test_the_sky_is_blue_and_without_gaps_down_to_the_sea(picture: Picture) -> None:
+    """Seen across the water, away from the sun: sea and sky are shaded in tiles, those with both of them twice."""
+    (client,) = picture.server.get_clients().values()
+    client.camera.position = (LENGTH, LENGTH, 30.0)
+    client.camera.look_at = (0.0, LENGTH + 40.0, 30.0)
+
+    def is_whole() -> bool:
+        rows = picture.shot()[: WIDTH // 2 - 4]  # the horizon is in the middle
+        return bool((rows[..., 2] - rows[..., 0]).min() > 5.0 and np.abs(np.diff(rows, axis=0)).max() < 10.0)
+
+    assert wait(picture.page, is_whole)
+
+
 def test_colours_reach_the_vertices_of_a_streaming_mesh(picture: Picture) -> None:
     """It lies over the sea."""
     picture.rise_to(20.0)

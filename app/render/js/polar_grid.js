@@ -73,6 +73,7 @@ function aimPolar(sea, camera) {
   const { polar, uniforms } = sea, { rings, spokes, step } = POLAR[polar.userData.fineness];
   const v = sea.mesh.position.clone(), e = camera.matrixWorld.elements;
   const eye = v.setFromMatrixPosition(camera.matrixWorld).applyMatrix4(uniforms.toSea.value).toArray();
+  uniforms.eye.value = eye;
   const turned = (x, y, z) => v.set(x, y, z).transformDirection(uniforms.toSea.value).toArray();
   const up = turned(e[4], e[5], e[6]), ahead = turned(-e[8], -e[9], -e[10]);
   // Ahead, and where the camera looks steeply up or down, what is up in its picture.

@@ -10,7 +10,6 @@ const SKY_TABLE_FRAGMENT = `
   ${SKY_TABLE.replace("#define SKY_TABLE", "")}
   #define STANDARD
   #define DETAILS 0
-  uniform mat4 toSea;
   ${WATER_GLSL.noise}
   ${WATER_GLSL.sky}
   void main() {

@@ -25,7 +25,9 @@ function uniformsOf(base, mesh) {
   if (!uniformsByName.has(base)) {
     const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
-    for (const name of ["wavePlaces", "waveSlopes", "skyTable", "seaPlaces", "seaRest", "seaLight"]) uniforms[name] = { value: null };
+    const textures = ["wavePlaces", "waveSlopes", "skyTable", "seaVertices", "seaPlaces", "seaRest", "seaTiles", "seaLight"];
+    for (const name of textures) uniforms[name] = { value: null };
+    uniforms.eye = { value: [0, 0, 0] };
     for (const name of ["polarPlace", "polarSteps"]) uniforms[name] = { value: [0, 0, 0, 0] };
     for (const name of ["polarTurn", "farDepth"]) uniforms[name] = { value: 0 };
     uniforms.waterlines = { value: Array.from({ length: 4 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
@@ -36,7 +38,8 @@ function uniformsOf(base, mesh) {
 
 function makeSea(mesh, uniforms) {
   // widest, highest: greatest displacement [m] along the level and upwards; cell: of the simulated grid [m]
-  return { mesh, geometry: mesh.geometry, uniforms, filled: -1, polar: null, lit: null, dome: null, widest: 0, highest: 0, cell: 1 };
+  const made = { polar: null, lit: null, dome: null, triangle: null }, size = { widest: 0, highest: 0, cell: 1 };
+  return { mesh, geometry: mesh.geometry, uniforms, filled: -1, hasOil: false, hasHulls: false, ...made, ...size };
 }
 
 // Fill a texture with width x height x 4 half-precision numbers (half.js), and its smaller copies with their means where
@@ -132,7 +135,7 @@ function disposeSea(sea) {
   disposeLit(sea);
   if (!sea.dome) return;
   sea.dome.removeFromParent();
-  sea.dome.geometry.dispose();
+  sea.triangle.dispose();
   sea.dome.material.dispose();
   sea.dome = null;
 }
@@ -179,24 +182,31 @@ shaders.push({
       const numbers = lines.geometry.attributes.position.array;
       sea.uniforms.waterlines.value.forEach((vector, k) => vector.fromArray(numbers, 3 * k));
     }
-    const [drawSky, wireframe] = sea.uniforms.shown.value.toArray();
-    const parts = { RINGS: sea.uniforms.ringLaw.value.y, CUTOUT: sea.uniforms.cutout.value.z, WIRE: wireframe };
-    const named = Object.keys(parts).filter((name) => parts[name] > 0);
-    const defines = named.map((name) => `#define ${name}\n`).join("");
+    const { shown, ringLaw, cutout, slick, waterlines } = sea.uniforms, [drawSky, wireframe] = shown.value.toArray();
+    // Compiling takes seconds: a sea keeps the programs for oil and hulls when they have gone.
+    sea.hasOil ||= slick.value.z > 0;
+    sea.hasHulls ||= waterlines.value[1].z > 0;
+    const parts = { RINGS: ringLaw.value.y, CUTOUT: cutout.value.z, WIRE: wireframe, OIL: sea.hasOil, HULLS: sea.hasHulls };
+    const variantOf = (...names) => {
+      const defined = names.filter((name) => parts[name] > 0);
+      const defines = defined.map((name) => `#define ${name}\n`).join("");
+      return { key: [`springtide-water${base}`, ...defined].join(" "), defines };
+    };
+    const shape = variantOf("RINGS", "CUTOUT", "WIRE"), light = variantOf("RINGS", "OIL", "HULLS");
+    const whole = variantOf(...Object.keys(parts));
     // viser asks three for a reversed depth buffer; a browser without clip control has none.
     sea.uniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     const fineness = finenessOf(renderer.getContext());
     if (sea.polar?.userData.fineness !== fineness) disposePolar(sea);
     sea.polar ??= makePolar(sea, fineness);
     aimPolar(sea, camera);
-    const key = [`springtide-water${base}`, ...named].join(" ");
-    const isLit = sea.polar.visible && lightSea(base, sea, renderer, scene, camera, defines, key);
+    const isLit = sea.polar.visible && lightSea(base, sea, renderer, scene, camera, shape, light);
     const edit = (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
-      shader.vertexShader = defines + WATER_VERTEX;
-      shader.fragmentShader = isLit ? defines + LIT_FRAGMENT : withSky(defines + WATER_FRAGMENT, sea.uniforms);
+      shader.vertexShader = (isLit ? PLACED : shape.defines) + WATER_VERTEX;
+      shader.fragmentShader = isLit ? shape.defines + LIT_FRAGMENT : withSky(whole.defines + WATER_FRAGMENT, sea.uniforms);
     };
-    if (!replaceShader(mesh.material, isLit ? `${key} lit` : keyWithDetails(key), edit)) {
+    if (!replaceShader(mesh.material, isLit ? `${shape.key} lit` : keyWithDetails(whole.key), edit)) {
       disposeSea(sea);
       mesh.layers.mask = 1;
       delete mesh.geometry.computeVertexNormals;
@@ -205,12 +215,16 @@ shaders.push({
     }
     sea.polar.material = mesh.material;
 
-    if (drawSky && !sea.dome) sea.dome = makeDome(sea);
+    if (drawSky && !sea.dome) {
+      sea.dome = makeDome(sea);
+      sea.triangle = sea.dome.geometry;
+    }
     if (sea.dome) {
       sea.dome.visible = drawSky > 0;
-      replaceShader(sea.dome.material, keyWithDetails("springtide-dome"), (shader) => {
+      sea.dome.geometry = isLit ? sea.lit.tiles : sea.triangle;
+      replaceShader(sea.dome.material, keyWithDetails(`springtide-dome${isLit ? " in tiles" : ""}`), (shader) => {
         Object.assign(shader.uniforms, sea.uniforms);
-        shader.vertexShader = DOME_VERTEX;
+        shader.vertexShader = isLit ? `#define TILES\n${DOME_VERTEX}` : DOME_VERTEX;
         shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
       });
     }

@@ -564,17 +564,20 @@ const WATER_GLSL = {
     }
 
     // The light from a point of the sea. at: the point [m]; rest: its position in still water [m]; steps: to the places of
-    // the next pixels along and down the picture [m].
+    // the next pixels along and down the picture [m]. OIL: there is a slick; HULLS: something stands in the water.
     vec3 shadeSea(vec3 at, vec2 rest, vec2 steps) {
-      float oil = slickCover(at.xy);
-      float film = oilThickness(at.xy, oil);
-      vec3 clear = lightThrough(film);
-      vec3 deep = mix(oilColor, deepColor, clear), scatter = mix(1.8 * oilColor, scatterColor, clear);
-      vec3 optics = mix(optics, vec3(optics.x, slickOptics.y, optics.z), oil);
-      // A film that is much thinner than a wave of light mirrors as the water below it does.
-      optics.x = mix(optics.x, oilFilm.x, film / (film + THIN_FILM));
-      optics.z *= mix(1.0, oilFilm.z, oil);
-      vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
+      #ifdef OIL
+        float oil = slickCover(at.xy), film = oilThickness(at.xy, oil);
+        vec3 clear = lightThrough(film);
+        vec3 deep = mix(oilColor, deepColor, clear), scatter = mix(1.8 * oilColor, scatterColor, clear);
+        vec3 optics = mix(optics, vec3(optics.x, slickOptics.y, optics.z), oil);
+        // A film that is much thinner than a wave of light mirrors as the water below it does.
+        optics.x = mix(optics.x, oilFilm.x, film / (film + THIN_FILM));
+        optics.z *= mix(1.0, oilFilm.z, oil);
+      #else
+        const float oil = 0.0;
+        vec3 deep = deepColor, scatter = scatterColor;
+      #endif
       vec3 toEye = eye - at;
       float far = length(toEye);
       vec3 V = toEye / far;
@@ -603,8 +606,10 @@ const WATER_GLSL = {
       #endif
       foamShare *= 1.0 - oil;
       vec4 fine = ripples(at.xy, footprint);
-      float calm = mix(1.0, slickOptics.z, min(2.5 * oil, 1.0)); // a sheen calms ripples as a thick layer does
-      fine.xyz *= vec3(calm, calm, calm * calm);
+      #ifdef OIL
+        float calm = mix(1.0, slickOptics.z, min(2.5 * oil, 1.0)); // a sheen calms ripples as a thick layer does
+        fine.xyz *= vec3(calm, calm, calm * calm);
+      #endif
       slope += fine.xy;
       // Beyond the last ring, noise of the same slope continues the swell while a pixel can show it.
       #ifdef RINGS
@@ -625,10 +630,13 @@ const WATER_GLSL = {
       }
       #endif
       // Water that washes around a hull foams, the wider the higher the waves; close to it less light comes in.
-      float hull = distanceToHull(at.xy);
-      float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
-      wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
-      float whitened = clamp(max(foamShare, 0.8 * wash * wash), 0.0, 1.0);
+      float whitened = clamp(foamShare, 0.0, 1.0);
+      #ifdef HULLS
+        float hull = distanceToHull(at.xy);
+        float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
+        wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
+        whitened = clamp(max(whitened, 0.8 * wash * wash), 0.0, 1.0);
+      #endif
       vec4 bubbles = foamCover(rest, whitened, footprint);
       // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816): their bubbles are
       // a thin layer, and half of what is seen there is the water.
@@ -645,7 +653,9 @@ const WATER_GLSL = {
       float F = mirroring.x;
       vec3 N = normalize(vec3(-slope + level * mirroring.y, 1.0));
       vec3 mirror = vec3(F);
-      if (film > 0.0) mirror *= mix(filmGain(film, fwidth(film), facing, optics.x), vec3(1.0), F);
+      #ifdef OIL
+        if (film > 0.0) mirror *= mix(filmGain(film, fwidth(film), facing, optics.x), vec3(1.0), F);
+      #endif
       mirror *= optics.z;
       vec3 R = reflect(-V, N);
       R.z = abs(R.z) + 0.01;
@@ -653,10 +663,12 @@ const WATER_GLSL = {
       float dim = clamp(sqrt(sigma) * 0.7, 0.0, 0.8);
       vec3 ambient = ambientLight();
       vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient, true).rgb, R);
-      if (hull < 60.0) {
-        vec4 hulls = mirroredHulls(at, R, 1.5 * sigma, around);
-        mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a);
-      }
+      #ifdef HULLS
+        if (hull < 60.0) {
+          vec4 hulls = mirroredHulls(at, R, 1.5 * sigma, around);
+          mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a);
+        }
+      #endif
 
       float glints = DETAILS > 1 ? GLINT_SHARE : WIDE_GLINT_SHARE;
       vec3 facet = facetAt(rest, facetWidth(steps), glints * variance);
@@ -693,7 +705,9 @@ const WATER_GLSL = {
       color = mix(color, white * bubbles.w, foam);
       color = mix(color, skylight, 0.5 * rings.w);
 
-      color *= 0.65 + 0.35 * smoothstep(0.0, 0.6, hull);
+      #ifdef HULLS
+        color *= 0.65 + 0.35 * smoothstep(0.0, 0.6, hull);
+      #endif
       return mix(color, haze, lost) * lens.y;
     }`,
 
@@ -711,34 +725,50 @@ const WATER_GLSL = {
     }`,
 };
 
-// The vertices of the polar grid (polar_grid.js): ring and spoke, counted from the first that are drawn.
-const WATER_VERTEX = `
-  uniform mat4 toSea;
-  uniform mat4 fromSea;
+// A vertex of the polar grid (polar_grid.js) by ring and spoke, counted from the first that are drawn: where it rests, and
+// where the waves move it.
+const POLAR_GLSL = `
+  uniform vec3 eye; // [m]
   uniform vec4 polarPlace; // x, y of the middle of the grid, its distance from below the eye, height that sets steps [m]
   uniform vec4 polarSteps; // of rings: the first, step, the last with waves; angle between spokes [rad]
   uniform float polarTurn; // [rad] of the first spoke
-  uniform float farDepth;
-  varying vec3 vSea;
-  varying vec2 vRest;
   ${WATER_GLSL.noise}
   ${WATER_GLSL.waves}
-  void main() {
-    float last = polarSteps.z, s = polarSteps.x + polarSteps.y * position.x, angle = polarTurn + polarSteps.w * position.y;
+  vec3 placeOf(float ring, float spoke, out vec2 rest) {
+    float last = polarSteps.z, s = polarSteps.x + polarSteps.y * ring, angle = polarTurn + polarSteps.w * spoke;
     float reach = polarPlace.z + polarPlace.w * sinh(last);
     float far = s > last + 0.5 * polarSteps.y ? reach * exp2((s - last) / polarSteps.y) : polarPlace.z + polarPlace.w * sinh(s);
-    vRest = polarPlace.xy + far * vec2(cos(angle), sin(angle));
-    vec3 eye = (toSea * vec4(cameraPosition, 1.0)).xyz;
+    rest = polarPlace.xy + far * vec2(cos(angle), sin(angle));
     // Heights are means over about half a triangle, so that waves do not flicker where the grid moves over them.
     #ifdef RINGS
-      vec3 moved = ringsAt(wavePlaces, vRest).xyz * (1.0 - ringFlatness(vRest));
+      vec3 moved = ringsAt(wavePlaces, rest).xyz * (1.0 - ringFlatness(rest));
     #else
       float wide = max(polarSteps.y * polarPlace.w * cosh(min(s, last)), polarSteps.w * far);
       float level = max(log2(0.5 * wide * (grid.x - 1.0) / grid.z), 0.0);
-      vec3 moved = wavesAt(wavePlaces, vRest, pieceShare(vRest, eye), level, false).xyz;
+      vec3 moved = wavesAt(wavePlaces, rest, pieceShare(rest, eye), level, false).xyz;
       moved *= 1.0 - smoothstep(0.7, 1.0, far / reach);
     #endif
-    vSea = vec3(vRest, 0.0) + moved;
+    return vec3(rest, 0.0) + moved;
+  }`;
+// PLACED: the vertices are in a texture (lit_sea.js), as two texels each.
+const WATER_VERTEX = `
+  uniform mat4 fromSea;
+  uniform float farDepth;
+  varying vec3 vSea;
+  varying vec2 vRest;
+  #ifdef PLACED
+    uniform highp sampler2D seaVertices;
+  #else
+    ${POLAR_GLSL}
+  #endif
+  void main() {
+    #ifdef PLACED
+      ivec2 at = ivec2(2.0 * position.y, position.x);
+      vSea = texelFetch(seaVertices, at, 0).xyz;
+      vRest = texelFetch(seaVertices, at + ivec2(1, 0), 0).xy;
+    #else
+      vSea = placeOf(position.x, position.y, vRest);
+    #endif
     gl_Position = projectionMatrix * viewMatrix * fromSea * vec4(vSea, 1.0);
     // What is beyond the camera's range is drawn at its end, as the sea reaches the horizon.
     float end = (farDepth > 0.5 ? 1.0 - 1e-6 : 1e-9) * gl_Position.w;
@@ -762,7 +792,7 @@ const WIRE_GLSL = `
 // The place of the sea that a pixel shows, and where there is no water.
 const WATER_PLACE = `
   #define STANDARD
-  uniform mat4 toSea;
+  uniform vec3 eye;
   varying vec3 vSea;
   varying vec2 vRest;
   uniform vec3 cutout; // middle x, y of a side of the rectangle without surface, half its length [m] (0: no cutout)
@@ -775,10 +805,8 @@ const WATER_PLACE = `
       if (across > 0.0 && across < cutoutDirection.z && abs(along) < cutout.z) discard;
     #endif
   }
-  vec3 eyePlace() { return (toSea * vec4(cameraPosition, 1.0)).xyz; }
   // The middle of a pixel at the horizon may lie beyond the mesh, where places have passed through infinity.
   vec3 seaPlace() {
-    vec3 eye = eyePlace();
     if (gl_FragCoord.w >= 1e-6) return vSea;
     return eye + 1e6 * normalize((vSea - eye) * (gl_FragCoord.w < 0.0 ? -1.0 : 1.0));
   }
@@ -804,14 +832,30 @@ const WATER_FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
-// A triangle that covers the view at the far plane, drawn after everything opaque, so that only free pixels are shaded.
+const TILE = 16; // [pixels] side of the squares in which sea and sky are shaded
+// The corners of tiles of the canvas (lit_sea.js), by position: column, row, and which corner. Other tiles than those of
+// one kind, sea (0) or anything else (1), have no area.
+const TILE_GLSL = `
+  uniform highp sampler2D seaTiles, seaPlaces;
+  vec4 tileCorner(int kind, float depth) {
+    float isDrawn = texelFetch(seaTiles, ivec2(position.xy), 0)[kind];
+    vec2 corner = isDrawn * vec2(mod(position.z, 2.0), floor(0.5 * position.z));
+    return vec4(2.0 * ${TILE}.0 * (position.xy + corner) / vec2(textureSize(seaPlaces, 0)) - 1.0, depth, 1.0);
+  }`;
+// The tiles that are not all sea, or a triangle that covers the view, at the far plane. They are drawn after everything
+// opaque, so that only free pixels are shaded.
 const DOME_VERTEX = `
   uniform mat4 toSea;
   uniform float farDepth;
   varying vec3 vRay;
+  ${TILE_GLSL}
   void main() {
-    gl_Position = vec4(position.xy, farDepth, 1.0);
-    vec4 view = inverse(projectionMatrix) * vec4(position.xy, 0.5, 1.0);
+    #ifdef TILES
+      gl_Position = tileCorner(1, farDepth);
+    #else
+      gl_Position = vec4(position.xy, farDepth, 1.0);
+    #endif
+    vec4 view = inverse(projectionMatrix) * vec4(gl_Position.xy, 0.5, 1.0);
     vRay = mat3(toSea) * (inverse(mat3(viewMatrix)) * (view.xyz / view.w));
   }`;
 const DOME_FRAGMENT = `

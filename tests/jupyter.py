@@ -46,12 +46,12 @@ class Jupyter:
         while time.monotonic() < end and self.process.poll() is None:
             for path in self.runtime.glob("jpserver-*.json"):
                 with contextlib.suppress(ValueError, OSError):  # half written, or nobody listens yet
-                    port = int(json.loads(path.read_text())["port"])
+                    port = int(json.loads(path.read_text("utf-8"))["port"])
                     socket.create_connection(("127.0.0.1", port), timeout=10).close()
                     return port
             time.sleep(0.05)
         self.end()
-        raise AssertionError((self.folder / "jupyter.log").read_text())
+        raise AssertionError((self.folder / "jupyter.log").read_text("utf-8"))
 
     def address(self, path: str = "", host: str = "127.0.0.1") -> str:
         """Of a page below the base path, with the token."""

@@ -88,7 +88,7 @@ def other(x):
 
 
 def test_a_line_is_reached_by_what_calls_it_and_a_kernel_by_what_mentions_it(tmp_path):
-    (tmp_path / "m.py").write_text(KERNELS)
+    (tmp_path / "m.py").write_text(KERNELS, "utf-8")
     sources = {"m.py": read_source(tmp_path / "m.py", "m.py")}
     line_of = {text: number for number, text in enumerate(KERNELS.split("\n"), 1)}
     kernels = {"m.py:weight", "m.py:total", "m.py:Net.heavy"}

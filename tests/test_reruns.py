@@ -22,7 +22,7 @@ def test_it(name):
 
 @pytest.mark.parametrize(("processes", "reruns"), [("0", MAX_RERUNS), ("2", MAX_RERUNS + 1)])
 def test_more_than_three_reruns_fail_the_suite(tmp_path, processes, reruns):
-    (tmp_path / "test_second_try.py").write_text(SECOND_TRY.format(number=reruns))
+    (tmp_path / "test_second_try.py").write_text(SECOND_TRY.format(number=reruns), "utf-8")
     command = [sys.executable, "-m", "pytest", "-p", "tests.reruns", "-n", processes, "--rootdir", str(tmp_path), "."]
     paths = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
     run = subprocess.run(command, cwd=tmp_path, env=paths, capture_output=True, text=True, timeout=100, check=False)

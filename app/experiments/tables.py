@@ -22,7 +22,9 @@ def machine() -> str:
     """The machine and the versions that results were measured with, in one line."""
     name = platform.processor() or platform.machine()
     try:
-        models = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
+        models = [
+            line for line in Path("/proc/cpuinfo").read_text("utf-8").splitlines() if line.startswith("model name")
+        ]
         name = models[0].partition(":")[2].strip() if models else name
     except OSError:
         pass

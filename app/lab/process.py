@@ -27,7 +27,7 @@ def lower_priority(niceness: int) -> None:
         return
     for _ in range(GROUP_TRIES):
         try:
-            Path("/proc/self/autogroup").write_text(str(total))
+            Path("/proc/self/autogroup").write_text(str(total), "utf-8")
         except BlockingIOError:
             time.sleep(GROUP_INTERVAL)
         except OSError:  # no Linux, or sessions do not count

@@ -216,7 +216,7 @@ def limit_memory() -> None:
         return
     import resource
 
-    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    pages = int(Path("/proc/self/statm").read_text("utf-8").split()[0])
     bound = pages * resource.getpagesize() + MEMORY
     with contextlib.suppress(ValueError, OSError):  # where a lower limit is set already
         resource.setrlimit(resource.RLIMIT_AS, (bound, bound))

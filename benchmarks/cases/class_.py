@@ -165,8 +165,8 @@ def usage(pid: int) -> Usage:
     private = proportional = ticks = 0.0
     for one in family(pid):
         try:
-            lines = Path(f"/proc/{one}/smaps_rollup").read_text().splitlines()[1:]
-            fields = Path(f"/proc/{one}/stat").read_text().rpartition(")")[2].split()
+            lines = Path(f"/proc/{one}/smaps_rollup").read_text("utf-8").splitlines()[1:]
+            fields = Path(f"/proc/{one}/stat").read_text("utf-8").rpartition(")")[2].split()
         except OSError:  # it has ended
             continue
         size = {line.partition(":")[0]: float(line.split()[1]) for line in lines}  # [kB]
@@ -182,7 +182,7 @@ def family(pid: int) -> list[int]:
     for one in found:
         for path in Path(f"/proc/{one}/task").glob("*/children"):
             try:
-                found += map(int, path.read_text().split())
+                found += map(int, path.read_text("utf-8").split())
             except OSError:  # the thread has ended
                 continue
     return found

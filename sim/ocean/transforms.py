@@ -81,7 +81,7 @@ def load_wisdom(path: Path) -> bool:
     import pyfftw
 
     try:
-        texts = [base64.b64decode(text, validate=True) for text in json.loads(path.read_text())["wisdom"]]
+        texts = [base64.b64decode(text, validate=True) for text in json.loads(path.read_text("utf-8"))["wisdom"]]
     except (OSError, ValueError, KeyError, TypeError, binascii.Error):
         return False
     if len(texts) != 3 or not all(text.isascii() for text in texts):
@@ -97,7 +97,7 @@ def save_wisdom(path: Path) -> bool:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with replacing(path) as draft:
-            draft.write_text(text)
+            draft.write_text(text, "utf-8")
     except OSError:
         return False
     return True

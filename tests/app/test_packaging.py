@@ -17,7 +17,7 @@ from packaging.utils import parse_wheel_filename
 from tests.fresh import noted
 
 ROOT = Path(__file__).parents[2]
-SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text())
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 PROJECT = SETTINGS["project"]
 OWN = {"app", "assets", "benchmarks", "sim"}
 # Peers that are no extras of ours: pypbd and bpy are installed by hand, warp's distribution is warp-lang.

@@ -54,7 +54,7 @@ def test_the_module_is_the_command():
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
-    (tmp_path / "file").write_text("")
+    (tmp_path / "file").write_text("", "utf-8")
     with pytest.raises(ValueError, match=r"^--out: "):
         command.run(["realtime"], out=tmp_path / "file" / "inner")
 
@@ -70,7 +70,7 @@ def test_a_run_prints_its_table_and_keeps_it(tmp_path, monkeypatch, capsys):
         rows = list(csv.DictReader(file))
     assert rows[0] == {"what": "a [b]", "time [ms]": "1.23456", "note": "", "extra": ""}
     assert rows[1]["extra"] == "3"
-    assert "numba" in (tmp_path / "machine.txt").read_text()
+    assert "numba" in (tmp_path / "machine.txt").read_text("utf-8")
 
 
 def test_work_precision_figures_have_units_orders_and_both_formats(tmp_path):

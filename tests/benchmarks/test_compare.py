@@ -41,7 +41,7 @@ def repository(tmp_path):
         ("fast", PROGRAM.format(time=1.0)),
         ("broken", "raise SystemExit('no such bench')"),
     ):
-        (root / "app" / "__main__.py").write_text(text)
+        (root / "app" / "__main__.py").write_text(text, "utf-8")
         git(root, "add", ".")
         git(root, "commit", "-qm", tag)
         git(root, "tag", tag)
@@ -52,7 +52,7 @@ def test_two_commits_are_compared_and_their_folders_are_gone(repository, tmp_pat
     monkeypatch.setattr(compare, "REPEATS", 2)
     out = tmp_path / "out"
     assert compare.compare(["tiny"], ("slow", "fast"), out=out, root=repository) == 0
-    kept = json.loads((out / "compare.json").read_text())
+    kept = json.loads((out / "compare.json").read_text("utf-8"))
     assert kept["commits"] == [git(repository, "rev-parse", tag) for tag in ("slow", "fast")]
     assert [(row["row"], row["time"], row["B / A"], row["largest"]) for row in kept["rows"]] == [
         ("tiny: rk4 10", "time [ms]", 0.25, 0.25),
@@ -90,6 +90,6 @@ def test_what_cannot_be_compared_is_refused(repository, names, commits, message)
 
 
 def test_changes_that_are_not_committed_are_refused(repository):
-    (repository / "app" / "__main__.py").write_text("")
+    (repository / "app" / "__main__.py").write_text("", "utf-8")
     with pytest.raises(ValueError, match=r"^--compare: commit or stash changes first.*app/__main__\.py$"):
         compare.compare(["tiny"], ("slow", "fast"), root=repository)

@@ -31,7 +31,7 @@ def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
         tab = open_tab(viewer.port)
         tab.wait(lambda: len(tab.vertices("/rope")) > 0)
         assert len(tab.vertices("/reference")) == 0
-        (folder / "rope.py").write_text(RIGHT)
+        (folder / "rope.py").write_text(RIGHT, "utf-8")
         start = time.monotonic()
         tab.wait(lambda: len(tab.vertices("/reference")) > 0)
         print(f"from saving to the rope moving by it in the page: {time.monotonic() - start:.2f} s")
@@ -40,10 +40,10 @@ def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
         frame = viewer.loop.latest.frame
         assert np.allclose(frame.points, frame.reference, atol=1e-6)  # two ropes in one place
         viewer.loop.commands.put(Play())
-        (folder / "rope.py").write_text(RIGHT.replace("    r = np", "    r = nq\n    r = np"))
+        (folder / "rope.py").write_text(RIGHT.replace("    r = np", "    r = nq\n    r = np"), "utf-8")
         tab.wait(lambda: tab.page.get_by_text("rope.py, line 11: NameError: name 'nq' is not defined").count())
         assert tab.page.get_by_text("The last version that worked goes on.").count() == 1
-        (folder / "rope.py").write_text(RIGHT)
+        (folder / "rope.py").write_text(RIGHT, "utf-8")
         tab.wait(lambda: tab.page.locator("[data-function=spring_force][data-state=right]").count())
         assert tab.page.get_by_text("NameError").count() == 0
         assert tab.errors == []

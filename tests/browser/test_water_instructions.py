@@ -49,7 +49,7 @@ def instructions(source: str, folder: Path) -> int:
     for word, other in ALLOWED:
         source = re.sub(word, other, source)
     shader, code, best = (folder / f"water.{kind}" for kind in ("frag", "spv", "best.spv"))
-    shader.write_text(source)
+    shader.write_text(source, "utf-8")
     for command in (
         ["glslangValidator", "-G", "--aml", "--amb", "-o", code, shader],
         ["spirv-opt", "-O", code, "-o", best],

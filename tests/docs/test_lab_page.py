@@ -72,7 +72,8 @@ def test_the_teacher_s_example_works(teacher: Path) -> None:
 def test_the_mistakes_of_the_example_are_named(teacher: Path, capsys, body: str, said: str) -> None:
     main(["lab", "new", "solved", "--solutions", "--tasks", "my_tasks"])
     (teacher / "solved" / "pendulum.py").write_text(
-        f"import numpy as np\ndef pendulum_period(length, gravity):\n    return {body}\n"
+        f"import numpy as np\ndef pendulum_period(length, gravity):\n    return {body}\n",
+        "utf-8",
     )
     capsys.readouterr()
     assert main(["lab", "check", "solved", "--tasks", "my_tasks", "--json"]) == 1
@@ -84,6 +85,6 @@ def test_the_page_lists_every_entry_and_every_name_that_a_check_may_have() -> No
         assert re.search(rf"`[\[]*(question\.)?{word}[\]]*`", PAGE), word
     for kind in QUESTION_KINDS:
         assert f'`"{kind}"`' in PAGE
-    sources = "".join(path.read_text() for path in (ROOT / "app" / "lab" / "tasks").glob("*.py"))
+    sources = "".join(path.read_text("utf-8") for path in (ROOT / "app" / "lab" / "tasks").glob("*.py"))
     for name in {"inputs", *re.findall(r"^([A-Z]{5,}) = ", sources, re.MULTILINE)}:
         assert f"`{name}" in PAGE, name

@@ -41,7 +41,7 @@ class Place:
 
     def __init__(self, folder: Path) -> None:
         self.module, self.own, self.shared = folder / "twice.py", folder / "own", folder / "shared"
-        self.module.write_text(SOURCE.format(""))
+        self.module.write_text(SOURCE.format(""), "utf-8")
 
     def run(self, own: Path | None = None, shared: Path | None = None, level: str = "") -> str:
         """What two kernels do with these folders."""
@@ -67,12 +67,14 @@ def test_a_folder_of_another_is_read_and_not_written(place: Place) -> None:
     assert place.run(own=place.shared) == COMPILED
     before = place.files(place.shared)
     assert place.run(shared=place.shared) == LOADED
-    place.module.write_text(SOURCE.format("# A comment that moves the kernels.\n\n").replace("Docstring", "Another"))
+    place.module.write_text(
+        SOURCE.format("# A comment that moves the kernels.\n\n").replace("Docstring", "Another"), "utf-8"
+    )
     assert place.run(shared=place.shared) == LOADED
     nowhere = place.module  # a file: no folder can be made there
     assert place.run(own=nowhere, shared=place.shared) == LOADED
     assert not list(place.own.rglob("*.nb?"))
-    place.module.write_text(SOURCE.format("").replace("1.0", "2.0"))
+    place.module.write_text(SOURCE.format("").replace("1.0", "2.0"), "utf-8")
     assert place.run(shared=place.shared) == "0 1 5.0"
     assert list(place.own.rglob("*.nbc"))
     assert place.files(place.shared) == before
@@ -89,7 +91,7 @@ def test_what_is_broken_in_such_a_folder_is_compiled_anew(place: Place) -> None:
     assert place.run(shared=place.shared) == LOADED
     assert place.files(place.shared) == before
     for path in place.shared.rglob("*.nbi"):
-        path.write_text("no index")
+        path.write_text("no index", "utf-8")
     shutil.rmtree(place.own)
     assert place.run(shared=place.shared) == COMPILED
 
@@ -113,7 +115,7 @@ def test_kernels_of_the_distribution_are_found_where_it_is_installed(place: Plac
     surroundings = {"SPRINGTIDE_CACHE": str(place.own), "PYTHONPATH": paths, **NO_BYTE_CODE}
     assert python(TWICE, **surroundings) == LOADED
     assert not list(place.own.rglob("*.nb?"))
-    place.module.write_text(SOURCE.format("").replace("1.0", "2.0"))
+    place.module.write_text(SOURCE.format("").replace("1.0", "2.0"), "utf-8")
     assert python(TWICE, **surroundings) == "0 1 5.0"
     assert place.files(package) == before
 

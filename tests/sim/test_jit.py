@@ -33,12 +33,12 @@ def add(x, y):
 
 
 def test_the_hash_changes_with_any_edit_and_any_new_name(tmp_path):
-    (tmp_path / "a.py").write_text("x = 1\n")
+    (tmp_path / "a.py").write_text("x = 1\n", "utf-8")
     (tmp_path / "inner").mkdir()
-    (tmp_path / "inner" / "b.py").write_text("y = 1\n")
+    (tmp_path / "inner" / "b.py").write_text("y = 1\n", "utf-8")
     first = sources_hash(tmp_path)
     assert sources_hash(tmp_path) == first
-    (tmp_path / "inner" / "b.py").write_text("y = 2\n")
+    (tmp_path / "inner" / "b.py").write_text("y = 2\n", "utf-8")
     second = sources_hash(tmp_path)
     (tmp_path / "inner" / "b.py").rename(tmp_path / "inner" / "c.py")
     assert len({first, second, sources_hash(tmp_path)}) == 3
@@ -58,9 +58,9 @@ def test_another_python_numba_or_llvm_finds_no_kernels_of_this_one(monkeypatch):
 
 
 def test_other_files_do_not_change_the_hash(tmp_path):
-    (tmp_path / "a.py").write_text("x = 1\n")
+    (tmp_path / "a.py").write_text("x = 1\n", "utf-8")
     first = sources_hash(tmp_path)
-    (tmp_path / "notes.txt").write_text("nothing")
+    (tmp_path / "notes.txt").write_text("nothing", "utf-8")
     assert sources_hash(tmp_path) == first
 
 
@@ -88,11 +88,11 @@ def test_the_hash_of_a_kernel_follows_its_imports_and_nothing_else(tmp_path, mon
         return reachable_hash(tmp_path / "sim" / "kernel.py")
 
     for name, text in sources.items():
-        (tmp_path / "sim" / f"{name}.py").write_text(text)
+        (tmp_path / "sim" / f"{name}.py").write_text(text, "utf-8")
     first = reached()
-    (tmp_path / "sim" / "other.py").write_text("y = 2\n")
+    (tmp_path / "sim" / "other.py").write_text("y = 2\n", "utf-8")
     assert reached() == first
-    (tmp_path / "sim" / "far.py").write_text("x = 2\n")
+    (tmp_path / "sim" / "far.py").write_text("x = 2\n", "utf-8")
     assert reached() != first
     monkeypatch.undo()
     forget_sources()
@@ -159,7 +159,7 @@ class Second:
 
 
 def test_code_is_a_source_without_comments_and_docstrings(tmp_path):
-    (tmp_path / "a.py").write_text(COMMENTED)
+    (tmp_path / "a.py").write_text(COMMENTED, "utf-8")
     assert jit.code_of(tmp_path / "a.py") == BARE
 
 
@@ -197,7 +197,7 @@ make_scratch(rope().kernel_view(1.0))
 
 def test_without_a_writable_cache_kernels_still_compile(tmp_path):
     nowhere = tmp_path / "file"
-    nowhere.write_text("not a folder")
+    nowhere.write_text("not a folder", "utf-8")
     code = """
 from sim.jit import CACHE, kernel
 @kernel
@@ -206,7 +206,7 @@ def doubled(x):
 print(CACHE, doubled(21.0))
 """  # of a kernel without a file, too
     assert python(code, SPRINGTIDE_CACHE=str(nowhere)) == "None 42.0"
-    assert nowhere.read_text() == "not a folder"
+    assert nowhere.read_text("utf-8") == "not a folder"
 
 
 def test_directories_of_long_edited_sources_are_removed(tmp_path):
@@ -313,7 +313,7 @@ def add_four(x):
 
 
 def test_a_kernel_from_the_cache_starts_the_threads_its_callees_need(tmp_path):
-    (tmp_path / "callers.py").write_text(CALLERS)
+    (tmp_path / "callers.py").write_text(CALLERS, "utf-8")
     call = "import callers, numpy as np; x = np.zeros(4); callers.{}(x); print(x.sum())"
     folders = {"SPRINGTIDE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
     # The second compiles its caller on what the first kept, the third only loads what the second did.

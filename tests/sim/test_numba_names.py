@@ -103,8 +103,8 @@ def run_without(names: tuple[str, ...], tmp_path: Path) -> dict[str, tuple[float
         sources.mkdir(parents=True)
         for module in ("__init__", "cache", "files", "jit", "validation"):
             (sources / f"{module}.py").write_bytes((ROOT / "sim" / f"{module}.py").read_bytes())
-        (sources / "compiler.py").write_text(re.sub(rf"\b{name}\b", f"{name}_changed", compiler))
-        (tmp_path / name / "kernels.py").write_text(KERNELS)
+        (sources / "compiler.py").write_text(re.sub(rf"\b{name}\b", f"{name}_changed", compiler), "utf-8")
+        (tmp_path / name / "kernels.py").write_text(KERNELS, "utf-8")
     rows = of_each(WITHOUT, names, tmp_path, {"SPRINGTIDE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""})
     return {row[0]: (float(row[1]), int(row[2])) if len(row) == 3 else (float("nan"), 0) for row in rows}
 

@@ -27,9 +27,9 @@ def process(tmp_path: Path) -> Iterator[tuple[subprocess.Popen, Any]]:
     )  # fmt: skip
     try:
         port = tmp_path / "DevToolsActivePort"
-        until(lambda: port.exists() and port.read_text().count("\n"), "Chromium starts")
+        until(lambda: port.exists() and port.read_text("utf-8").count("\n"), "Chromium starts")
         with playwright.sync_playwright() as driver:
-            browser = driver.chromium.connect_over_cdp(f"http://127.0.0.1:{port.read_text().split()[0]}")
+            browser = driver.chromium.connect_over_cdp(f"http://127.0.0.1:{port.read_text('utf-8').split()[0]}")
             yield chromium, browser
     finally:
         chromium.kill()

@@ -49,7 +49,7 @@ class Hub:
         self.port = ports[0]
         home = str(folder / "home" / "{username}")
         config = CONFIG.format(port=ports[0], hub=ports[1], api=ports[2], proxy=PROXY, home=home)
-        (folder / "config.py").write_text(config)
+        (folder / "config.py").write_text(config, "utf-8")
         kept = {name: value for name, value in os.environ.items() if not name.startswith(("JUPYTER", "SPRINGTIDE_"))}
         self.log = (folder / "hub.log").open("w")
         self.process = subprocess.Popen(

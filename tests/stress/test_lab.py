@@ -36,8 +36,8 @@ VALUES = (
 @pytest.mark.parametrize("body", ACCIDENTS)
 @pytest.mark.parametrize("task", FUNCTIONS, ids=lambda task: task.name)
 def test_every_accident_in_every_function_is_named_within_three_seconds(tmp_path: Path, task, body: str) -> None:
-    (tmp_path / task.file).write_text(f"import numpy as np\n\ndef {task.name}(*arguments):\n    {body}\n")
-    (tmp_path / "warm.py").write_text("def f():\n    return 1\n")
+    (tmp_path / task.file).write_text(f"import numpy as np\n\ndef {task.name}(*arguments):\n    {body}\n", "utf-8")
+    (tmp_path / "warm.py").write_text("def f():\n    return 1\n", "utf-8")
     with Runner(tmp_path) as runner:
         runner.call("warm.py", "f")  # the process runs while a student works
         start = time.monotonic()
@@ -103,7 +103,9 @@ def test_no_odd_result_stops_the_check_or_is_taken_for_right(tmp_path: Path, tas
     with Runner(tmp_path) as runner:
         for number, value in enumerate(made):
             file = f"try_{number}.py"
-            (tmp_path / file).write_text(f"import numpy as np\n\ndef {task.name}(*arguments):\n    return {value}\n")
+            (tmp_path / file).write_text(
+                f"import numpy as np\n\ndef {task.name}(*arguments):\n    return {value}\n", "utf-8"
+            )
             verdict = check_program(tmp_path, runner, replace(task, file=file))
             assert verdict.state in ("failed", "wrong"), value
         assert runner.starts == 1

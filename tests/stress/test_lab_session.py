@@ -60,7 +60,7 @@ def test_the_rope_moves_by_what_is_saved_within_a_second(session: Session, monke
         for i in range(5):
             time.sleep(2.0)
             start, before = time.monotonic(), taken(session)
-            (session.folder / "rope.py").write_text(f"{RIGHT}\n# {i}\n")
+            (session.folder / "rope.py").write_text(f"{RIGHT}\n# {i}\n", "utf-8")
             wait_for(lambda before=before: session.rope.report.version > before)
             wait_for(lambda: viewer.loop.latest.frame.reference is not None)
             times.append(time.monotonic() - start)

@@ -85,7 +85,7 @@ def test_what_is_optional_need_not_be_done(finished: Path) -> None:
 
 def test_a_wrong_function_and_a_wrong_answer_are_told(finished: Path, capsys) -> None:
     path = finished / "rope.py"
-    path.write_text(path.read_text().replace("(length - rest_length) * r", "length * r", 1))
+    path.write_text(path.read_text("utf-8").replace("(length - rest_length) * r", "length * r", 1), "utf-8")
     answers = read_answers(finished)
     write_answers(finished, TASKS, answers._replace(values={**answers.values, ("top_fluid", "on_top"): "water"}))
     capsys.readouterr()
@@ -96,7 +96,7 @@ def test_a_wrong_function_and_a_wrong_answer_are_told(finished: Path, capsys) ->
 
 
 def test_a_folder_that_holds_something_is_left_alone(tmp_path: Path, capsys) -> None:
-    (tmp_path / "mine.txt").write_text("mine")
+    (tmp_path / "mine.txt").write_text("mine", "utf-8")
     assert "a new or empty folder" in error_of(capsys, "new", str(tmp_path))
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
     assert "a new or empty folder" in error_of(capsys, "new", str(tmp_path / "mine.txt"))
@@ -155,11 +155,11 @@ def test_folders_of_one_name_are_told_apart(tmp_path: Path, capsys) -> None:
     table, page = tmp_path / "c.csv", tmp_path / "r.html"
     main(["lab", "check", *map(str, folders), "--csv", str(table), "--report", str(page)])
     shown = capsys.readouterr().out
-    assert [row[0] for row in csv.reader(table.read_text().splitlines())][1:] == ["a/lab", "b/lab"]
+    assert [row[0] for row in csv.reader(table.read_text("utf-8").splitlines())][1:] == ["a/lab", "b/lab"]
     assert "a/lab" in shown
     assert "b/lab" in shown
-    assert "folder b/lab" in page.read_text()
-    assert ">b/lab</a>" in page.read_text()
+    assert "folder b/lab" in page.read_text("utf-8")
+    assert ">b/lab</a>" in page.read_text("utf-8")
 
 
 @pytest.mark.parametrize(
@@ -184,7 +184,7 @@ def test_a_folder_has_the_shortest_name_that_no_other_has(
 
 
 def test_a_file_that_does_not_run_is_one_line(empty: Path, capsys) -> None:
-    text = (empty / "rope.py").read_text()
+    text = (empty / "rope.py").read_text("utf-8")
     for name in ("spring_force", "step_euler"):
         head, _, rest = text.partition(f"def {name}(")
         text = (
@@ -192,7 +192,7 @@ def test_a_file_that_does_not_run_is_one_line(empty: Path, capsys) -> None:
             + f"def {name}("
             + rest.replace("    ...\n", "    return (1\n" if name == "spring_force" else "    return 1\n", 1)
         )
-    (empty / "rope.py").write_text(text)
+    (empty / "rope.py").write_text(text, "utf-8")
     capsys.readouterr()
     assert main(["lab", "check", str(empty)]) == 1
     shown = " ".join(capsys.readouterr().out.split())
@@ -210,8 +210,8 @@ def test_the_report_is_one_page_that_runs_and_fetches_nothing(finished: Path, tm
         file.write(f"# {EVIL}\ndef spring_force(*a):\n    raise ValueError({EVIL!r})\n")
     name = "a <b> 'c'.png" if os.name == "posix" else "a 'c'.png"  # Windows has no angle brackets in names
     (finished / "pictures" / name).write_bytes(PIXEL)
-    (finished / "pictures" / "page.png").write_text(EVIL)
-    (finished / "pictures" / "drawing.svg").write_text("<svg onload='alert(1)'/>")
+    (finished / "pictures" / "page.png").write_text(EVIL, "utf-8")
+    (finished / "pictures" / "drawing.svg").write_text("<svg onload='alert(1)'/>", "utf-8")
     report = tmp_path / "report.html"
     assert main(["lab", "check", str(finished), "--report", str(report)]) == 1
     text = report.read_text("utf-8")
@@ -274,8 +274,8 @@ def test_the_report_shows_laws_what_was_done_and_pictures_beside_their_task(fini
 def test_odd_folders_end_with_results_and_no_traceback(finished: Path, empty: Path, tmp_path: Path, capsys) -> None:
     (finished / "answers.toml").write_bytes(b"\xff\xfe broken")
     (finished / "rope.py").write_bytes(b"\xff\xfe\x00 = 1")
-    (finished / "cloth.py").write_text("def cloth_links(:")
-    (finished / "radial_sea.py").write_text("import os\nos._exit(7)\n")
+    (finished / "cloth.py").write_text("def cloth_links(:", "utf-8")
+    (finished / "radial_sea.py").write_text("import os\nos._exit(7)\n", "utf-8")
     (finished / "square_sea.py").unlink()
     (finished / "mooring.py").unlink()
     capsys.readouterr()

@@ -72,7 +72,7 @@ def test_what_cannot_be_read_is_as_if_nothing_was_left(data: Path, text: str) ->
 
 
 def test_where_nothing_can_be_written_the_lab_goes_on(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (data / "file").write_text("")
+    (data / "file").write_text("", "utf-8")
     monkeypatch.setenv("SPRINGTIDE_DATA", str(data / "file" / "below"))
     Keeper(lab_with(STIFF)).store()
     for viewer in (None, SimpleNamespace(current=None)):  # before there is a lab, and before a scene is open

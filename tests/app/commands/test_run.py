@@ -17,7 +17,7 @@ def run(out: Path | str, *more: str) -> int:
 @pytest.mark.parametrize("out", ["/proc/a.npz", "x" * 300 + ".npz", "folder.npz", "file/a.npz"])
 def test_an_out_that_cannot_be_written_is_refused_before_any_work(out, tmp_path, capsys):
     (tmp_path / "folder.npz").mkdir()
-    (tmp_path / "file").write_text("")
+    (tmp_path / "file").write_text("", "utf-8")
     assert run(tmp_path / out, "--seconds", "1e4") == 2
     assert "--out" in capsys.readouterr().err
 
@@ -30,7 +30,7 @@ def test_a_method_that_refuses_the_net_is_refused_where_nobody_looks(tmp_path, c
 
 
 def test_run_writes_arrays_units_and_all_parameters(tmp_path):
-    (tmp_path / "other").write_text("")
+    (tmp_path / "other").write_text("", "utf-8")
     out = tmp_path / "rope.npz"
     assert run(out, "--seconds", "1", "--set", "points=20", "integrator=rk4") == 0
     with np.load(out) as file:  # Windows replaces no file that is open

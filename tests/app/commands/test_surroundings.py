@@ -65,7 +65,7 @@ def parameters_in(path: Path) -> dict[str, object]:
 
 def test_a_preset_is_a_name_or_a_file(tmp_path):
     out, file = tmp_path / "a.npz", tmp_path / "mine.json"
-    file.write_text(json.dumps({"scene": "rope", "parameters": {"points": 7}}))
+    file.write_text(json.dumps({"scene": "rope", "parameters": {"points": 7}}), "utf-8")
     assert main([*RUN, str(out), "--preset", "Pendulum"]) == 0
     assert parameters_in(out)["points"] == 2
     assert main([*RUN, str(out), "--preset", "Pendulum", "--set", "points=3"]) == 0
@@ -125,7 +125,7 @@ def test_the_lab_is_served_where_nothing_can_be_printed(tmp_path):
     """As a newcomer has it, without compiled kernels."""
     command = [sys.executable, "-m", "app", "--port", "0", "--no-open"]
     cold = {**os.environ, "SPRINGTIDE_CACHE": str(tmp_path)}
-    with open("/dev/full", "w") as full:
+    with open("/dev/full", "w", encoding="utf-8") as full:
         process = subprocess.Popen(command, cwd=ROOT, env=cold, stdout=full, stderr=subprocess.PIPE, text=True)
     try:
         end = time.monotonic() + 60
@@ -196,7 +196,7 @@ def test_a_mesh_of_huge_coordinates_is_refused_without_warnings(capsys, recwarn,
     mesh = tmp_path / "huge.obj"
     for size in ("1e300", "1e15"):
         corners = "".join(f"v {x} {y} {z}\n" for x, y, z in ((0, 0, 0), (size, 0, 0), (0, size, 0), (0, 0, size)))
-        mesh.write_text(corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        mesh.write_text(corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", "utf-8")
         out = str(tmp_path / "a.npz")
         argument_error(capsys, "run", "radial_sea", "--seconds", "1", "--out", out, "--hull", str(mesh))
         assert not recwarn.list

@@ -69,9 +69,9 @@ def test_the_lab_says_one_line_a_task_and_each_problem_with_its_place(capsys: py
     assert main(["lab", "new", "mine"]) == 0
     path = Path("mine/rope.py")
     wrong = "    return stiffness * (np.linalg.norm(x2 - x1) - rest_length) * (x2 - x1) - damping * (v1 - v2)\n"
-    path.write_text(path.read_text().replace("    ...\n", wrong, 1))
-    line = path.read_text().splitlines().index(wrong.rstrip("\n")) + 1
-    start = next(i for i in range(line, 0, -1) if path.read_text().splitlines()[i - 1].startswith("def "))
+    path.write_text(path.read_text("utf-8").replace("    ...\n", wrong, 1), "utf-8")
+    line = path.read_text("utf-8").splitlines().index(wrong.rstrip("\n")) + 1
+    start = next(i for i in range(line, 0, -1) if path.read_text("utf-8").splitlines()[i - 1].startswith("def "))
     capsys.readouterr()
     assert main(["lab", "check", "mine"]) == 1
     said = capsys.readouterr().out
@@ -108,7 +108,8 @@ def test_a_sweep_says_how_far_it_is_and_what_it_wrote(
     monkeypatch.setattr(workers, "on_cores", lambda jobs: ((i, run_case(*job)) for i, job in jobs.items()))
     Path("s.toml").write_text(
         'scene = "rope"\nseconds = 1.0\n[set]\npoints = 2\nintegrator = "explicit_euler"\n'
-        "[parameters]\ntime_step = [0.001, 0.1]\ndrag = [0.0, 1.0]\n"
+        "[parameters]\ntime_step = [0.001, 0.1]\ndrag = [0.0, 1.0]\n",
+        "utf-8",
     )
     bar = io.StringIO()
     monkeypatch.setattr("rich._console", Console(file=bar, force_terminal=True, width=WIDTH))

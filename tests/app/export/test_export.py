@@ -26,7 +26,7 @@ SEA = SquareSeaParams(
 
 def write_sea(out: Path, form: str | None) -> dict:
     assert export("square_sea", SEA, FRAMES / RATE, RATE, START, form, out) == 0
-    return json.loads((out / "sequence.json").read_text())
+    return json.loads((out / "sequence.json").read_text("utf-8"))
 
 
 def field_of(pixels: np.ndarray) -> np.ndarray:
@@ -124,18 +124,18 @@ def test_the_cloth_is_a_sequence_of_meshes(tmp_path):
         assert len(mesh.faces) == 2 * 5 * 8
         assert mesh.area == pytest.approx(trimesh.Trimesh(x, mesh.faces, process=False).area)
         np.testing.assert_allclose(mesh.visual.uv[[0, 8, -1]], [[0, 1], [1, 1], [1, 0]])
-    assert json.loads((tmp_path / "a" / "sequence.json").read_text())["rows"] == 6
+    assert json.loads((tmp_path / "a" / "sequence.json").read_text("utf-8"))["rows"] == 6
 
 
 def test_steps_are_shortened_where_they_do_not_divide_a_frame(tmp_path):
     assert export("cloth", ClothParams(rows=4, cols=4, time_step=0.001), 0.2, 24.0, 0.0, None, tmp_path / "a") == 0
-    assert json.loads((tmp_path / "a" / "sequence.json").read_text())["time_step"] == pytest.approx(1 / 24 / 42)
+    assert json.loads((tmp_path / "a" / "sequence.json").read_text("utf-8"))["time_step"] == pytest.approx(1 / 24 / 42)
 
 
 def test_a_run_that_diverges_keeps_the_frames_before_that(tmp_path, capsys):
     params = ClothParams(rows=6, cols=6, time_step=0.02, stiffness=1e4)
     assert export("cloth", params, 5.0, 50.0, 0.0, None, tmp_path / "a") == 1
-    about = json.loads((tmp_path / "a" / "sequence.json").read_text())
+    about = json.loads((tmp_path / "a" / "sequence.json").read_text("utf-8"))
     assert about["diverged"]
     assert len(list((tmp_path / "a").glob("*.obj"))) == about["frames"] < 250
     assert "ended early" in capsys.readouterr().out
@@ -145,10 +145,10 @@ def test_a_run_that_diverges_keeps_the_frames_before_that(tmp_path, capsys):
 def test_nothing_is_overwritten(taken, tmp_path, capsys):
     out = tmp_path / "a"
     if taken == "file":
-        out.write_text("mine")
+        out.write_text("mine", "utf-8")
     elif taken == "folder":
         out.mkdir()
-        (out / "mine").write_text("mine")
+        (out / "mine").write_text("mine", "utf-8")
     else:
         out.symlink_to(tmp_path / "nowhere")
     assert main(["export", "cloth", "--seconds", "0.1", "--out", str(out)]) == 2

@@ -60,7 +60,7 @@ def test_every_question_has_its_place(tmp_path: Path) -> None:
 def test_a_number_is_read_however_it_is_written(tmp_path: Path, text: str, expected: object) -> None:
     task = next(task for task in TASKS if any(question.kind == "number" for question in task.questions))
     question = next(question for question in task.questions if question.kind == "number")
-    (tmp_path / FILE).write_text(f"[{task.name}]\n{question.key} = {text}\n")
+    (tmp_path / FILE).write_text(f"[{task.name}]\n{question.key} = {text}\n", "utf-8")
     assert read_answers(tmp_path).of(task, question) == expected
 
 

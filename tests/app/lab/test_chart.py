@@ -62,7 +62,7 @@ def test_every_curve_of_a_task_has_the_reference_and_the_student(tmp_path) -> No
     for task in load_tasks():
         if not hasattr(task.check, "CURVE"):
             continue
-        (tmp_path / task.file).write_text(f"import numpy as np\ndef {task.name}(*a):\n    return 1 / 0\n")
+        (tmp_path / task.file).write_text(f"import numpy as np\ndef {task.name}(*a):\n    return 1 / 0\n", "utf-8")
         with Runner(tmp_path) as runner:
             points = draw(runner, task)
         assert points is not None

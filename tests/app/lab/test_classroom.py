@@ -73,9 +73,9 @@ def state_of() -> Iterator[Callable[[Path], Student]]:
 
 def save(folder: Path, sign: str, more: str = "") -> None:
     """Write the function in place of its three dots. more: lines above it."""
-    head, name, rest = (folder / "rope.py").read_text().partition("\ndef spring_force(")
+    head, name, rest = (folder / "rope.py").read_text("utf-8").partition("\ndef spring_force(")
     body = FORCE.format(sign).partition("\n\n\ndef spring_force(")[2].partition(":\n")[2]
-    (folder / "rope.py").write_text(more + head + name + rest.replace("    ...\n", body, 1))
+    (folder / "rope.py").write_text(more + head + name + rest.replace("    ...\n", body, 1), "utf-8")
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def save(folder: Path, sign: str, more: str = "") -> None:
     ],
 )
 def test_a_rope_is_drawn_as_far_as_it_gets(code: str, text: str, poses: int | None, tmp_path: Path) -> None:
-    (tmp_path / "rope.py").write_text(code)
+    (tmp_path / "rope.py").write_text(code, "utf-8")
     with Runner(tmp_path) as runner:
         picture = rope_picture(runner, store(read_files(tmp_path), tmp_path, 1, TASKS))
     assert text in picture.text
@@ -100,7 +100,7 @@ def test_a_rope_is_drawn_as_far_as_it_gets(code: str, text: str, poses: int | No
 
 
 def test_a_rope_falls_from_the_level_and_hangs_in_the_end(tmp_path: Path) -> None:
-    (tmp_path / "rope.py").write_text(FORCE.format("-"))
+    (tmp_path / "rope.py").write_text(FORCE.format("-"), "utf-8")
     with Runner(tmp_path) as runner:
         picture = rope_picture(runner, store(read_files(tmp_path), tmp_path, 1, TASKS))
     tips = picture.own[:, -1, 2]
@@ -127,7 +127,7 @@ def test_a_saved_file_changes_its_tasks_and_the_one_the_student_is_at(folders: l
 def test_mistakes_are_counted_by_students_and_a_file_that_does_not_run_once(folders: list[Path], state_of) -> None:
     save(folders[0], "+")
     save(folders[1], "+")
-    (folders[2] / "rope.py").write_text("def spring_force(:\n")
+    (folders[2] / "rope.py").write_text("def spring_force(:\n", "utf-8")
     change_answer(folders[1], TASKS, read_answers(folders[1]), "spring_force", "stretch", 0.5625)
     names = folder_names(folders)
     found = mistakes((names[folder], state_of(folder).results) for folder in folders)
@@ -174,7 +174,7 @@ def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.M
     folders = [tmp_path / "class" / name for name in ("ada", "bo")]
     for folder in folders:
         folder.mkdir(parents=True)
-        (folder / "rope.py").write_text("version 000")
+        (folder / "rope.py").write_text("version 000", "utf-8")
     busy: dict[Path, int] = {}
     rng, checks, overlaps = np.random.default_rng(7), [], []
 
@@ -184,7 +184,7 @@ def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.M
             overlaps.append(owner)
         time.sleep(rng.uniform(0.0, 0.05))
         checks.append(owner)
-        return Verdict("wrong", (copies / task.file).read_text())
+        return Verdict("wrong", (copies / task.file).read_text("utf-8"))
 
     def picture(runner: Runner, saved: Saved) -> RopePicture:  # it comes last
         busy.pop(saved.folder.parent, None)
@@ -202,7 +202,7 @@ def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.M
         wait_for(lambda: all(shown(folder) == {"version 000"} for folder in folders))
         for number in range(1, 101):
             for folder in folders:
-                (folder / "rope.py").write_text(f"version {number:03}")
+                (folder / "rope.py").write_text(f"version {number:03}", "utf-8")
             time.sleep(rng.uniform(0.0, 0.05))
         wait_for(lambda: all(shown(folder) == {"version 100"} for folder in folders))
     assert not any("could not be checked" in student.error for student in classroom.students.values())
@@ -237,7 +237,9 @@ def test_folders_of_one_name_are_told_apart_on_the_page(tmp_path: Path, state_of
 
 def endless(folder: Path) -> None:
     """Write an endless loop into every function of the rope."""
-    (folder / "rope.py").write_text((folder / "rope.py").read_text().replace("    ...\n", "    while True: pass\n"))
+    (folder / "rope.py").write_text(
+        (folder / "rope.py").read_text("utf-8").replace("    ...\n", "    while True: pass\n"), "utf-8"
+    )
 
 
 def test_the_end_does_not_wait_for_endless_functions(folders: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -293,13 +295,15 @@ def test_a_folder_that_is_as_it_was_changes_nothing_on_the_page(
 
 def test_a_broken_file_is_where_its_line_is(folders: list[Path], state_of) -> None:
     save(folders[0], "-")
-    (folders[0] / "rope.py").write_text((folders[0] / "rope.py").read_text().replace("    ...\n", "    return 1\n", 1))
+    (folders[0] / "rope.py").write_text(
+        (folders[0] / "rope.py").read_text("utf-8").replace("    ...\n", "    return 1\n", 1), "utf-8"
+    )
     first = state_of(folders[0])
     begun = [name for name, verdict in first.programs.items() if verdict.state != "not begun"]
     assert begun[0] == "spring_force"
     assert len(begun) == 2
-    text = (folders[0] / "rope.py").read_text().replace("(length - rest_length)", "(length - rest_length")
-    (folders[0] / "rope.py").write_text(text)
+    text = (folders[0] / "rope.py").read_text("utf-8").replace("(length - rest_length)", "(length - rest_length")
+    (folders[0] / "rope.py").write_text(text, "utf-8")
     second = state_of(folders[0])
     assert second.at == "spring_force"
     states = {name: verdict.state for name, verdict in second.programs.items()}

@@ -63,7 +63,7 @@ class Folder:
         self.live = LiveCode(rope, cloth, self.tables)
 
     def save(self, text: str, file: str = "square_sea.py") -> int:
-        (self.path / file).write_text(text)
+        (self.path / file).write_text(text, "utf-8")
         saved = self.versions.look()
         assert saved is not None
         self.tables.look()
@@ -192,7 +192,7 @@ def test_an_endless_function_is_called_once_however_the_scene_changes(folder: Fo
     for mass in (2.0, 3.0):
         scene.change_forces(dataclasses.replace(scene.params, planet_mass=mass))
         wait_for(lambda mass=mass: folder.tables.asked["gravity"][1].columns[0][0] == mass)
-    assert (folder.versions.copies / str(number) / "calls").read_text() == "x"
+    assert (folder.versions.copies / str(number) / "calls").read_text("utf-8") == "x"
     assert "endless loop" in folder.tables.errors["gravity"].text
 
 

@@ -45,7 +45,7 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Desk]:
 def verdict_of(desk: Desk, task: Task, source: str) -> Verdict:
     """What the check says; each solution is in a file of its own, as the process loads a file once."""
     file = f"solution_{len(list(desk.folder.iterdir()))}.py"
-    (desk.folder / file).write_text(HEAD + source)
+    (desk.folder / file).write_text(HEAD + source, "utf-8")
     return check_program(desk.folder, desk.runner, replace(task, file=file))
 
 
@@ -220,8 +220,8 @@ def test_a_file_that_does_not_run_is_one_error_for_all_its_functions(tmp_path: P
         HEAD + "x = 1 / 0\n": "rope.py does not run: line 3: ZeroDivisionError: division by zero.",
         HEAD + "import own\n": "rope.py does not run: own.py, line 1: ModuleNotFoundError: No module named 'nothing'.",
     }.items():
-        (tmp_path / "rope.py").write_text(code)
-        (tmp_path / "own.py").write_text("import nothing\n")
+        (tmp_path / "rope.py").write_text(code, "utf-8")
+        (tmp_path / "own.py").write_text("import nothing\n", "utf-8")
         with Runner(tmp_path) as runner:
             verdict = check_program(tmp_path, runner, TASKS[name])
         begun = code is not BROKEN or name == "spring_force"
@@ -230,7 +230,7 @@ def test_a_file_that_does_not_run_is_one_error_for_all_its_functions(tmp_path: P
 
 def test_an_endless_file_is_run_once_for_all_its_functions(tmp_path: Path) -> None:
     own = [task for task in TASKS.values() if task.file == "rope.py"]
-    (tmp_path / "rope.py").write_text(HEAD + FORCE + "while True: pass\n")
+    (tmp_path / "rope.py").write_text(HEAD + FORCE + "while True: pass\n", "utf-8")
     with Runner(tmp_path, time_limit=0.3) as runner:
         verdicts = [check_program(tmp_path, runner, task) for task in own]
         assert runner.starts == 1
@@ -279,7 +279,8 @@ def test_a_task_may_take_as_long_as_others_keep_the_processor(monkeypatch: pytes
 def test_the_effort_of_a_function_is_its_processor_time(tmp_path: Path) -> None:
     works = "end = time.process_time() + 0.2\n    while time.process_time() < end: pass"
     (tmp_path / "mine.py").write_text(
-        f"import time\ndef f(x):\n    {works}\n    return x\ndef g(x):\n    time.sleep(0.3)\n    return x\n"
+        f"import time\ndef f(x):\n    {works}\n    return x\ndef g(x):\n    time.sleep(0.3)\n    return x\n",
+        "utf-8",
     )
     with Runner(tmp_path, time_limit=20.0) as runner:
         runner.call("mine.py", "f", 1.0)
@@ -303,7 +304,7 @@ def test_a_busy_machine_is_no_failure_and_the_check_is_made_again(
 
     monkeypatch.setattr("app.lab.program_check.RETRY_INTERVAL", 0.0)
     monkeypatch.setattr(Runner, "_started", start)
-    (tmp_path / "rope.py").write_text(HEAD + FORCE)
+    (tmp_path / "rope.py").write_text(HEAD + FORCE, "utf-8")
     with Runner(tmp_path) as runner:
         assert check_program(tmp_path, runner, TASKS["spring_force"]).state == "right"
         assert runner.starts == 3

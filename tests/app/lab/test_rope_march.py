@@ -55,7 +55,7 @@ class Folder:
 
     def save(self, *outcomes: object) -> None:
         """Save a version, which takes over. outcomes: of its marches, the last one of all later ones too."""
-        (self.path / "rope.py").write_text(f"{FORCE}# {len(self.processes)}\n")
+        (self.path / "rope.py").write_text(f"{FORCE}# {len(self.processes)}\n", "utf-8")
         assert self.versions.look() is not None
         left = list(outcomes)
 

@@ -46,7 +46,9 @@ LINUX_ONLY = {body for body, (kind, said) in ACCIDENTS.items() if kind == "memor
 
 
 def write(folder: Path, body: str) -> None:
-    (folder / "mine.py").write_text(f"import numpy as np\n\ndef f(x):\n    {body}\n\ndef right(x):\n    return 2 * x\n")
+    (folder / "mine.py").write_text(
+        f"import numpy as np\n\ndef f(x):\n    {body}\n\ndef right(x):\n    return 2 * x\n", "utf-8"
+    )
 
 
 @pytest.mark.parametrize(
@@ -134,7 +136,7 @@ with Runner(Path(sys.argv[1])) as runner:
 @pytest.mark.skipif(not hasattr(os, "getpriority"), reason="priorities are POSIX")
 @pytest.mark.parametrize(("user", "added"), [("ada", 19), ("", 0)])
 def test_a_rope_is_tried_at_once_and_then_yields_to_the_labs_of_a_hub(tmp_path: Path, user: str, added: int) -> None:
-    (tmp_path / "rope.py").write_text(PRIORITIES)
+    (tmp_path / "rope.py").write_text(PRIORITIES, "utf-8")
     surroundings = {key: value for key, value in os.environ.items() if key != "JUPYTERHUB_USER"}
     output = subprocess.run(
         [sys.executable, "-c", ROPE_TWICE, tmp_path],
@@ -158,10 +160,10 @@ def test_an_abort_before_the_process_runs_is_not_lost(tmp_path: Path) -> None:
 
 def test_an_error_names_file_and_line(tmp_path: Path) -> None:
     write(tmp_path, "import own\n    return own.g(x)")
-    (tmp_path / "own.py").write_text("def g(x):\n    y = 1\n    return x + 'a'\n")
+    (tmp_path / "own.py").write_text("def g(x):\n    y = 1\n    return x + 'a'\n", "utf-8")
     with Runner(tmp_path) as runner, pytest.raises(RunError, match=r"own\.py, line 3: TypeError"):
         runner.call("mine.py", "f", 1.0)
-    (tmp_path / "broken.py").write_text("x = 1\ndef f(:\n")
+    (tmp_path / "broken.py").write_text("x = 1\ndef f(:\n", "utf-8")
     with Runner(tmp_path) as runner, pytest.raises(RunError, match=r"broken\.py, line 2: SyntaxError"):
         runner.call("broken.py", "f", 1.0)
 
@@ -199,7 +201,7 @@ def test_values_that_cannot_pass_are_named_by_their_type(tmp_path: Path) -> None
 
 
 def test_a_function_among_the_arguments_is_computed_here(tmp_path: Path) -> None:
-    (tmp_path / "mine.py").write_text("def f(x, h, a):\n    return x + h * a(x, 2.0)\n")
+    (tmp_path / "mine.py").write_text("def f(x, h, a):\n    return x + h * a(x, 2.0)\n", "utf-8")
     seen = []
 
     def acceleration(x: np.ndarray, v: float) -> np.ndarray:
@@ -209,7 +211,7 @@ def test_a_function_among_the_arguments_is_computed_here(tmp_path: Path) -> None
     with Runner(tmp_path) as runner:
         assert np.array_equal(runner.call("mine.py", "f", np.ones(3), 0.5, acceleration), np.full(3, 3.5))
         assert len(seen) == 1
-        (tmp_path / "other.py").write_text("def f(x, h, a):\n    return a(x)\n")
+        (tmp_path / "other.py").write_text("def f(x, h, a):\n    return a(x)\n", "utf-8")
         with pytest.raises(RunError, match=r"other\.py, line 2: ValueError: .*cannot take these arguments"):
             runner.call("other.py", "f", np.ones(3), 0.5, acceleration)
 
@@ -229,7 +231,7 @@ def gone(pid: int) -> bool:
     except ProcessLookupError:
         return True
     state = Path(f"/proc/{pid}/stat")
-    return state.exists() and state.read_text().rpartition(")")[2].split()[0] == "Z"
+    return state.exists() and state.read_text("utf-8").rpartition(")")[2].split()[0] == "Z"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs process groups")
@@ -257,9 +259,9 @@ def test_an_endless_loop_ends_when_the_lab_is_killed(tmp_path: Path) -> None:
         cwd=ROOT,
     )
     end = time.monotonic() + 30.0
-    while not ((tmp_path / "pid").exists() and (tmp_path / "pid").read_text()) and time.monotonic() < end:
+    while not ((tmp_path / "pid").exists() and (tmp_path / "pid").read_text("utf-8")) and time.monotonic() < end:
         time.sleep(0.02)
-    pid = int((tmp_path / "pid").read_text())
+    pid = int((tmp_path / "pid").read_text("utf-8"))
     lab.send_signal(signal.SIGKILL)
     lab.wait()
     while not gone(pid) and time.monotonic() < end:
@@ -365,8 +367,8 @@ def children(parent: int, word: str = "") -> list[int]:
     found = []
     for path in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
-            state, its_parent = (path / "stat").read_text().rpartition(")")[2].split()[:2]
-            words = (path / "cmdline").read_text().split("\0")
+            state, its_parent = (path / "stat").read_text("utf-8").rpartition(")")[2].split()[:2]
+            words = (path / "cmdline").read_text("utf-8").split("\0")
             if int(its_parent) == parent and (not word or (state != "Z" and word in words)):
                 found.append(int(path.name))
     return found

@@ -82,7 +82,7 @@ def test_a_function_without_a_number_is_left_to_its_check(values: LiveTables, wr
     assert calls["cloth_links"].program == 77.0
     values.want(calls)
     for number, body in enumerate(("[0] * rows", wrong), 1):
-        (values.versions.folder / "cloth.py").write_text(f"def cloth_links(rows, cols):\n    return {body}\n")
+        (values.versions.folder / "cloth.py").write_text(f"def cloth_links(rows, cols):\n    return {body}\n", "utf-8")
         assert values.versions.look() is not None
         values.look()
         wait_for(lambda expected=number == 2: bool(values.tables) and bool(values.errors) is expected)

@@ -264,7 +264,7 @@ def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Ses
         saved = right.state.version
         assert right.versions.spare is not None
         right.versions.spare.close()
-        (right.folder / "rope.py").write_text(RIGHT + "\n# once more\n")
+        (right.folder / "rope.py").write_text(RIGHT + "\n# once more\n", "utf-8")
         wait_for(lambda: right.state.version > saved and right.state.error)
     wait_for(lambda: taken(right) == right.state.version and right.state.error is None)  # nothing is saved
     run(scene, 3)
@@ -293,7 +293,7 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
     before = right.state.version
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.lab.versions.store", full_disk)
-        (right.folder / "rope.py").write_text(RIGHT + "\n# later\n")
+        (right.folder / "rope.py").write_text(RIGHT + "\n# later\n", "utf-8")
         wait_for(lambda: right.state.error and "cannot be taken up" in right.state.error.text)
         assert right.state.version == before
     wait_for(lambda: right.state.version > before and right.state.error is None)
@@ -335,7 +335,7 @@ def test_a_forged_answer_is_named(right: Session) -> None:
 
 
 def test_the_end_does_not_wait_for_an_endless_function(tmp_path: Path) -> None:
-    (tmp_path / "rope.py").write_text(with_line("while True: pass"))
+    (tmp_path / "rope.py").write_text(with_line("while True: pass"), "utf-8")
     session = Session(tmp_path, TASKS, time_limit=600.0)
     wait_for(lambda: [runner for runner in session.versions.processes.values() if runner.starts])
     with ThreadPoolExecutor(1) as pool:
@@ -372,7 +372,7 @@ def test_the_functions_of_a_saved_file_are_checked_as_lab_check_does(right: Sess
 
 
 def test_a_check_that_is_killed_is_made_once_more_and_then_said(tmp_path: Path) -> None:
-    (tmp_path / "rope.py").write_text("import time\ntime.sleep(60)\ndef spring_force(): return 1\n")
+    (tmp_path / "rope.py").write_text("import time\ntime.sleep(60)\ndef spring_force(): return 1\n", "utf-8")
     versions = Versions(tmp_path, [task for task in TASKS if task.name == "spring_force"])
     check = BackgroundCheck(versions)
     try:

@@ -205,7 +205,7 @@ BROKEN = {
 @pytest.mark.parametrize("text", BROKEN, ids=range(len(BROKEN)))
 def test_a_file_that_is_no_task_is_named_with_what_is_wrong(tmp_path: Path, text: str) -> None:
     path = tmp_path / "bad.toml"
-    path.write_text(text)
+    path.write_text(text, "utf-8")
     with pytest.raises(ValueError, match=re.escape(BROKEN[text][1])) as caught:
         read_task(path)
     assert BROKEN[text][0] in str(caught.value)
@@ -220,14 +220,14 @@ def test_a_file_that_is_no_task_is_named_with_what_is_wrong(tmp_path: Path, text
     ],
 )  # fmt: skip
 def test_a_check_that_lacks_a_part_is_named(tmp_path: Path, code: str, said: str) -> None:
-    (tmp_path / "bad.toml").write_text(GOOD.replace("statement", 'file = "mine.py"\nstatement'))
-    (tmp_path / "bad.py").write_text(code)
+    (tmp_path / "bad.toml").write_text(GOOD.replace("statement", 'file = "mine.py"\nstatement'), "utf-8")
+    (tmp_path / "bad.py").write_text(code, "utf-8")
     with pytest.raises(ValueError, match=said):
         read_task(tmp_path / "bad.toml")
 
 
 def test_a_task_of_a_teacher_replaces_the_one_of_its_name(tmp_path: Path) -> None:
-    (tmp_path / "top_fluid.toml").write_text(GOOD)
+    (tmp_path / "top_fluid.toml").write_text(GOOD, "utf-8")
     tasks = load_tasks(tmp_path)
     assert len(tasks) == len(TASKS)
     assert tasks[-1].name == "top_fluid"

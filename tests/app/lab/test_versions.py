@@ -21,8 +21,8 @@ def test_a_look_finds_what_was_written_made_and_removed(tmp_path: Path) -> None:
     folder.mkdir()
     assert look.has_changed()
     for change in (
-        lambda: (folder / "a.py").write_text("x"),
-        lambda: (folder / "a.py").write_text("xy"),
+        lambda: (folder / "a.py").write_text("x", "utf-8"),
+        lambda: (folder / "a.py").write_text("xy", "utf-8"),
         lambda: os.utime(folder / "a.py", ns=(1, 1)),
         lambda: (folder / "a.py").rename(folder / "b.py"),
         lambda: (folder / "b.py").unlink(),
@@ -31,7 +31,7 @@ def test_a_look_finds_what_was_written_made_and_removed(tmp_path: Path) -> None:
         change()
         assert stamps(folder, ".py") != before
         assert look.has_changed()
-    (folder / "notes.txt").write_text("x")
+    (folder / "notes.txt").write_text("x", "utf-8")
     look.sure_at = 0.0
     assert not look.has_changed()
     look.forget()
@@ -55,7 +55,7 @@ def test_a_second_save_that_changes_no_stamp_is_found(tmp_path: Path, monkeypatc
     look = Versions(path.parent, ())
 
     def save(text: str) -> None:
-        path.write_text(text)
+        path.write_text(text, "utf-8")
         os.utime(path, ns=(2 * 10**9, 2 * 10**9))  # of a file system that counts in steps of 2 s
 
     save("x = 1")
@@ -73,7 +73,7 @@ def test_a_second_save_that_changes_no_stamp_is_found(tmp_path: Path, monkeypatc
 
 
 def test_a_version_that_could_not_be_copied_is_found_again(tmp_path: Path) -> None:
-    (tmp_path / "rope.py").write_text("x = 1")
+    (tmp_path / "rope.py").write_text("x = 1", "utf-8")
     look = Versions(tmp_path, ())
     look.copies.rmdir()
     for _ in range(2):
@@ -110,7 +110,7 @@ def versions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Versio
 def save(versions: Versions, **texts: str) -> int:
     """Save files, by name without ending; returns the number of the version."""
     for name, text in texts.items():
-        (versions.folder / f"{name}.py").write_text(text)
+        (versions.folder / f"{name}.py").write_text(text, "utf-8")
     saved = versions.look()
     assert saved is not None
     return saved.number
@@ -200,7 +200,7 @@ def test_a_trial_leaves_the_process_alone_that_runs_meanwhile(versions: Versions
 
 
 def test_what_a_function_writes_beside_the_copies_harms_nothing(versions: Versions) -> None:
-    (versions.copies / "notes.txt").write_text("x")
+    (versions.copies / "notes.txt").write_text("x", "utf-8")
     assert save(versions, rope="x = 1") == 2
 
 

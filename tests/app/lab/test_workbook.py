@@ -153,21 +153,21 @@ def test_what_is_seen_to_be_done_is_ticked_off_for_good(folder: Path) -> None:
 def test_a_new_value_stands_above_the_heading_of_the_next_task(folder: Path) -> None:
     book = Workbook(TASKS, folder)
     book.answer(DRAFT, EXPLAIN, "One line.\n# no comment")
-    before = (folder / FILE).read_text()
+    before = (folder / FILE).read_text("utf-8")
     book.store(DRAFT.name, "done", "1")
-    assert (folder / FILE).read_text() == before.replace('# no comment"""\n', '# no comment"""\ndone = "1"\n')
+    assert (folder / FILE).read_text("utf-8") == before.replace('# no comment"""\n', '# no comment"""\ndone = "1"\n')
 
 
 def test_only_one_value_changes_and_comments_and_edits_stay(folder: Path) -> None:
     book = Workbook(TASKS, folder)
     path = folder / FILE
-    text = path.read_text().replace('name = ""', 'name = "Ada"  # mine')
-    path.write_text(text.replace("[extra_draft]", "# my own note\n[extra_draft]"))
+    text = path.read_text("utf-8").replace('name = ""', 'name = "Ada"  # mine')
+    path.write_text(text.replace("[extra_draft]", "# my own note\n[extra_draft]"), "utf-8")
     book.answer(DRAFT, MEASURE, "0.03")
     book.answer(DRAFT, EXPLAIN, "One line.\n# no comment\nmeasure = 4")
     book.answer(DRAFT, MEASURE, "0.031")
     book.store("extra_draft", DONE, "1")
-    now = path.read_text()
+    now = path.read_text("utf-8")
     assert "# my own note\n[extra_draft]" in now
     assert 'name = "Ada"  # mine' in now
     assert read_answers(folder).name == "Ada"
@@ -183,7 +183,7 @@ def test_only_one_value_changes_and_comments_and_edits_stay(folder: Path) -> Non
      "[extra_draft]\nmeasure = [\n1,\n2]\n", "['extra_draft']\nmeasure = 1\n"],
 )  # fmt: skip
 def test_a_file_written_in_another_way_gets_the_answer_too(folder: Path, text: str) -> None:
-    (folder / FILE).write_text(text)
+    (folder / FILE).write_text(text, "utf-8")
     before = read_answers(folder)
     Workbook(TASKS, folder).answer(DRAFT, MEASURE, "0.031")
     after = read_answers(folder)
@@ -196,10 +196,10 @@ def test_a_file_written_in_another_way_gets_the_answer_too(folder: Path, text: s
 
 def test_a_broken_file_is_said_and_never_written_over(folder: Path) -> None:
     book = Workbook(TASKS, folder)
-    (folder / FILE).write_text("[extra_draft\nmine")
+    (folder / FILE).write_text("[extra_draft\nmine", "utf-8")
     with pytest.raises(ValueError, match="Nothing is written until this is repaired"):
         book.answer(DRAFT, MEASURE, "0.031")
-    assert (folder / FILE).read_text() == "[extra_draft\nmine"
+    assert (folder / FILE).read_text("utf-8") == "[extra_draft\nmine"
     book.refresh()
     assert FILE in book.answers.error
 
@@ -229,7 +229,7 @@ def test_a_look_at_the_file_that_began_before_a_change_does_not_undo_it(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     book = Workbook(TASKS, folder)
-    (folder / FILE).write_text("[extra_draft]\nmeasure = 1\n")
+    (folder / FILE).write_text("[extra_draft]\nmeasure = 1\n", "utf-8")
     has_read = threading.Event()
 
     def read_slowly(folder: Path) -> Answers:
@@ -253,7 +253,7 @@ def test_edits_of_the_file_are_seen(folder: Path) -> None:
     revision = book.revision
     book.refresh()
     assert book.revision == revision
-    (folder / FILE).write_text("[extra_draft]\nmeasure = 7\n")
+    (folder / FILE).write_text("[extra_draft]\nmeasure = 7\n", "utf-8")
     book.refresh()
     assert book.revision == revision + 1
     assert book.verdict(DRAFT, MEASURE).state == "wrong"
@@ -278,7 +278,7 @@ def test_pictures_are_named_by_their_task_and_none_replaces_another(folder: Path
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
 def test_the_name_is_changed_in_its_place(folder: Path, end: str) -> None:
-    before = (folder / FILE).read_text().replace("\n", end)
+    before = (folder / FILE).read_text("utf-8").replace("\n", end)
     (folder / FILE).write_bytes(before.encode())
     book = Workbook(TASKS, folder)
     book.rename('  Ada "L." \\1  Lovelace ')
@@ -287,7 +287,7 @@ def test_the_name_is_changed_in_its_place(folder: Path, end: str) -> None:
     assert book.answers.name == 'Ada "L." \\1 Lovelace'
     with pytest.raises(ValueError, match="at most 100"):
         book.rename("x" * 101)
-    (folder / FILE).write_text('# mine\n[extra_draft]\nexplain = """\nname = 1\n"""\n')
+    (folder / FILE).write_text('# mine\n[extra_draft]\nexplain = """\nname = 1\n"""\n', "utf-8")
     book.rename("Ada")
     assert read_answers(folder).name == "Ada"
     assert read_answers(folder).values["extra_draft", "explain"] == "name = 1\n"

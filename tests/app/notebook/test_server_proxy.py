@@ -33,21 +33,21 @@ def test_the_students_folder_is_made_once_and_run(
     monkeypatch.setenv(LAB_VARIABLE, "~/{mine}")
     assert words() == ["app", "lab", str(tmp_path / "{{mine}}"), *end]
     readme = tmp_path / "{mine}" / "README.md"
-    readme.write_text("changed")
+    readme.write_text("changed", "utf-8")
     words()
-    assert readme.read_text() == "changed"
+    assert readme.read_text("utf-8") == "changed"
     monkeypatch.setenv(LAB_VARIABLE, str(readme / "below"))
     assert words() == ["app", *end]
     assert capsys.readouterr().err.startswith("springtide: SPRINGTIDE_LAB: ")
 
 
 def test_exercises_are_made_beside_other_files_and_change_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "untitled.txt").write_text("")
+    (tmp_path / "untitled.txt").write_text("", "utf-8")
     (tmp_path / ".data").mkdir()
-    (tmp_path / "rope.py").write_text("mine")
+    (tmp_path / "rope.py").write_text("mine", "utf-8")
     monkeypatch.setenv(LAB_VARIABLE, str(tmp_path))
     springtide()
-    assert (tmp_path / "rope.py").read_text() == "mine"
+    assert (tmp_path / "rope.py").read_text("utf-8") == "mine"
     for name in ("answers.toml", "README.md", "cloth.py", "pictures"):
         assert (tmp_path / name).exists(), name
     (tmp_path / "cloth.py").unlink()  # the folder has its answers: what is missing there was removed
@@ -56,7 +56,7 @@ def test_exercises_are_made_beside_other_files_and_change_none(tmp_path: Path, m
 
 
 def test_the_entry_point_is_declared_and_is_taken_by_the_proxy() -> None:
-    entries = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]
+    entries = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["entry-points"]
     assert entries == {"jupyter_serverproxy_servers": {"springtide": "app.notebook.server_proxy:springtide"}}
     config = pytest.importorskip("jupyter_server_proxy.config", reason="the extra jupyter is not installed")
     process = config.ServerProcess(name="springtide", **springtide())

@@ -195,10 +195,10 @@ def test_everything_is_there_again_on_another_day_and_an_editor_is_seen(student:
         assert widgets_of(again, "predict").field.value == "higher"
         assert widgets_of(again, "evaluations").field.value == "4"
         assert widgets_of(again, "stiffness").field.value == ""
-        (folder / FILE).write_text("[step_rk4]\nevaluations = 5\n")
+        (folder / FILE).write_text("[step_rk4]\nevaluations = 5\n", "utf-8")
         wait_for(lambda: widgets_of(again, "evaluations").field.value == "5")
         assert widgets_of(again, "predict").field.value == UNANSWERED
-        (folder / FILE).write_text("[step_rk4\n")
+        (folder / FILE).write_text("[step_rk4\n", "utf-8")
         wait_for(lambda: "answers.toml" in again.answer.content)
     finally:
         other.shut()

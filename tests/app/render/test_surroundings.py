@@ -22,7 +22,7 @@ class Browser:
 
 
 def test_the_page_has_the_same_skies() -> None:
-    css = (Path(app.render.__file__).parent / "js" / "page.css").read_text()
+    css = (Path(app.render.__file__).parent / "js" / "page.css").read_text("utf-8")
     assert re.findall(BACKGROUND, css) == [LIGHT_SKY.css, DARK_SKY.css]
 
 

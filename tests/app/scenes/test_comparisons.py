@@ -40,7 +40,7 @@ def test_set_ups_are_read_as_scene_preset_link_and_file(tmp_path: Path) -> None:
     kind = scene_named("rope")
     stiff = check_record(kind.params, {"stiffness": 2000.0})
     file = tmp_path / "stiff.json"
-    file.write_text(write_file(kind, stiff))
+    file.write_text(write_file(kind, stiff), "utf-8")
     assert read_setup("rope").params == make_setup(kind).params
     assert read_setup("rope:Stiff rope").params == check_record(kind.params, kind.presets["Stiff rope"])
     assert read_setup("?scene=rope&stiffness=2000").params == stiff

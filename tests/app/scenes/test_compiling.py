@@ -42,7 +42,7 @@ def queue(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Compiling
 
 
 def asked(tmp_path: Path) -> list[str]:
-    return [line.split("\t")[1] for line in (tmp_path / "asked").read_text().splitlines()]
+    return [line.split("\t")[1] for line in (tmp_path / "asked").read_text("utf-8").splitlines()]
 
 
 def jobs(*pieces: str) -> list[Job]:

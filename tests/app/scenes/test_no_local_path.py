@@ -47,7 +47,7 @@ def mesh(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp(SECRET)
     lines = [f"v {x} {y} {z}" for x, y, z in CUBE]
     path = folder / "boat.obj"
-    path.write_text("\n".join([*lines, *(f"f {face}" for face in FACES)]) + "\n")
+    path.write_text("\n".join([*lines, *(f"f {face}" for face in FACES)]) + "\n", "utf-8")
     return path
 
 
@@ -125,7 +125,7 @@ def test_a_sweep_keeps_the_name_of_its_preset_only(tmp_path: Path, written: Call
     folder = tmp_path if os.name == "nt" else tmp_path / r"with\Users"
     folder.mkdir(exist_ok=True)
     file, path = folder / "setup.json", tmp_path / "spec.toml"
-    file.write_text(write_file(KIND, KIND.params(**SMALL)))
+    file.write_text(write_file(KIND, KIND.params(**SMALL)), "utf-8")
     head = 'scene = "radial_sea"\nseconds = 1\n'
     path.write_text(f"{head}preset = {written(str(file))}\n[parameters]\nwind_speed = [5.0, 9.0]\n", "utf-8")
     kept = about(read_spec(path))
@@ -138,8 +138,8 @@ def test_a_sweep_keeps_the_name_of_its_preset_only(tmp_path: Path, written: Call
 
 def test_without_a_mesh_nothing_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "setup.json"
-    file.write_text(write_file(KIND, KIND.params(**SMALL)))
-    assert json.loads(file.read_text())["version"] == 1
+    file.write_text(write_file(KIND, KIND.params(**SMALL)), "utf-8")
+    assert json.loads(file.read_text("utf-8"))["version"] == 1
     assert missing_files(preset_setup("--preset", str(file), KIND)) == ""
     assert missing_files(read_query("?scene=rope")) == ""
     with warnings.catch_warnings():
@@ -162,7 +162,9 @@ def test_of_a_path_of_any_system_only_the_last_part_is_read_and_written() -> Non
 def test_a_measured_spectrum_is_named_too(scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A recording opens with it again, and says how without it."""
     table = tmp_path / "buoy.csv"
-    table.write_text("f,S\n" + "".join(f"{0.01 * i:g},{max(0.0, 4.0 - (i - 12) ** 2):g}\n" for i in range(5, 40)))
+    table.write_text(
+        "f,S\n" + "".join(f"{0.01 * i:g},{max(0.0, 4.0 - (i - 12) ** 2):g}\n" for i in range(5, 40)), "utf-8"
+    )
     out = tmp_path / "run.npz"
     command = ["run", scene, "--seconds", "0.1", "--out", str(out)]
     small = ["size=64", "mesh=32"] if scene == "square_sea" else ["bodies=0", "rig=false", "rings=16", "spokes=16"]

@@ -44,10 +44,10 @@ def test_files_that_are_no_set_ups_are_left_out_and_the_number_is_bounded(
 ) -> None:
     keep(kind, "Good", 9)
     folder = folder_of(kind)
-    (folder / "a.json").write_text("{")
+    (folder / "a.json").write_text("{", "utf-8")
     (folder / "b.json").write_bytes(b"\xff" * 100)
-    (folder / "c.json").write_text("x" * 1_000_000)
-    (folder / "d.json").write_text('{"scene": "race", "parameters": {}}')
+    (folder / "c.json").write_text("x" * 1_000_000, "utf-8")
+    (folder / "d.json").write_text('{"scene": "race", "parameters": {}}', "utf-8")
     (folder / "e.json").mkdir()
     assert [*own_files(kind)] == ["Good"]
     monkeypatch.setattr(own_setups, "MAX_OWN", 1)

@@ -538,7 +538,7 @@ def write_boat(path: Path, *, closed: bool = True) -> Path:
         lines += ["facet normal 0 0 0", "outer loop"]
         lines += ["vertex {} {} {}".format(*corners[v]) for v in face]
         lines += ["endloop", "endfacet"]
-    path.write_text("\n".join([*lines, "endsolid boat"]))
+    path.write_text("\n".join([*lines, "endsolid boat"]), "utf-8")
     return path
 
 

@@ -54,7 +54,7 @@ def test_what_runs_on_a_cluster_outlives_workers_and_ends_with_the_scheduler(sta
     scheduler = start("scheduler", "--port", "0")
     with Client(scheduler_file=str(tmp_path / FILE), timeout=60, set_as_default=False) as client:
         address = client.scheduler.address
-        (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n')
+        (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n', "utf-8")
         command = ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc"), "--scheduler", address]
         with monkeypatch.context() as patch:
             patch.setattr(workers, "MAX_ANSWER_TIME", 2.0)
@@ -114,7 +114,7 @@ def test_what_runs_on_a_cluster_outlives_workers_and_ends_with_the_scheduler(sta
 
 def test_an_address_where_nothing_answers_is_refused(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(workers, "MAX_ANSWER_TIME", 2.0)
-    (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n')
+    (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n', "utf-8")
     for address in ("tcp://127.0.0.1:9", "nonsense", "", "127.0.0.1:99999"):
         command = ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc"), "--scheduler", address]
         assert main(command) == 2
@@ -125,8 +125,8 @@ def test_an_address_where_nothing_answers_is_refused(tmp_path, capsys, monkeypat
 
 
 def test_a_refused_scheduler_does_not_cost_what_is_finished(tmp_path, capsys):
-    (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n')
-    (tmp_path / "out.nc.cases").write_text("finished cases")
+    (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n', "utf-8")
+    (tmp_path / "out.nc.cases").write_text("finished cases", "utf-8")
     command = ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc"), "--fresh", "--scheduler", "x"]
     assert main(command) == 2
-    assert (tmp_path / "out.nc.cases").read_text() == "finished cases"
+    assert (tmp_path / "out.nc.cases").read_text("utf-8") == "finished cases"

@@ -72,7 +72,7 @@ PARAMETERS = "[parameters]\nmass = [1, 2]\n"
     ],
 )
 def test_a_bad_spec_is_refused_in_words_before_any_work(text, words, tmp_path, capsys):
-    (tmp_path / "s.toml").write_text(text)
+    (tmp_path / "s.toml").write_text(text, "utf-8")
     assert main(["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc")]) == 2
     lines = capsys.readouterr().err.strip().splitlines()
     assert len(lines) == 1
@@ -82,7 +82,7 @@ def test_a_bad_spec_is_refused_in_words_before_any_work(text, words, tmp_path, c
 
 
 def test_a_spec_that_cannot_be_read_or_is_no_toml_is_refused(tmp_path, capsys):
-    (tmp_path / "s.toml").write_text("scene = ")
+    (tmp_path / "s.toml").write_text("scene = ", "utf-8")
     (tmp_path / "b.toml").write_bytes(b"\xff\xfe")
     for name in ("s.toml", "b.toml", "none.toml", "."):
         assert main(["sweep", str(tmp_path / name), "--out", str(tmp_path / "out.nc")]) == 2
@@ -90,7 +90,7 @@ def test_a_spec_that_cannot_be_read_or_is_no_toml_is_refused(tmp_path, capsys):
 
 
 def test_an_out_that_cannot_be_is_refused(tmp_path, capsys):
-    (tmp_path / "s.toml").write_text(HEAD + PARAMETERS)
+    (tmp_path / "s.toml").write_text(HEAD + PARAMETERS, "utf-8")
     (tmp_path / "folder.nc").mkdir()
     for out in ("out.txt", "no/out.nc", "folder.nc", "x" * 300 + ".nc"):
         assert main(["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / out)]) == 2
@@ -107,8 +107,8 @@ def test_presets_set_and_swept_parameters_go_over_each_other_in_that_order():
 
 
 def test_a_preset_of_a_file_lies_beside_the_spec(tmp_path):
-    (tmp_path / "p.json").write_text('{"scene": "rope", "parameters": {"points": 7}}')
-    (tmp_path / "s.toml").write_text(HEAD + 'preset = "p.json"\n' + PARAMETERS)
+    (tmp_path / "p.json").write_text('{"scene": "rope", "parameters": {"points": 7}}', "utf-8")
+    (tmp_path / "s.toml").write_text(HEAD + 'preset = "p.json"\n' + PARAMETERS, "utf-8")
     assert read_spec(tmp_path / "s.toml").params(0).points == 7
 
 

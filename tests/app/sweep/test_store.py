@@ -18,7 +18,7 @@ GOOD = Outcome(FINISHED, "", math.nan, 0.5, {"a": [1.0]}, {"a": ("m", "A length"
 
 def file_of(tmp_path, about: str | None, *outcomes: str, columns: str = "number INTEGER PRIMARY KEY, outcome TEXT"):
     """A store beside the spec, with this text in `about` (None: what the sweep has) and these outcomes."""
-    (tmp_path / "s.toml").write_text(SPEC)
+    (tmp_path / "s.toml").write_text(SPEC, "utf-8")
     text = json.dumps(identity(read_spec(tmp_path / "s.toml"))) if about is None else about
     with sqlite3.connect(tmp_path / "out.nc.cases") as connection:
         connection.execute("CREATE TABLE about (content TEXT)")

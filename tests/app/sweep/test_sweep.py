@@ -54,7 +54,7 @@ def here(monkeypatch):
 
 
 def sweep(spec: str, folder: Path, *more: str) -> int:
-    (folder / "s.toml").write_text(spec)
+    (folder / "s.toml").write_text(spec, "utf-8")
     return main(["sweep", str(folder / "s.toml"), "--out", str(folder / "out.nc"), *more])
 
 
@@ -110,7 +110,7 @@ def test_a_random_design_has_a_dimension_of_cases_and_its_seed(here, tmp_path):
     ],
 )
 def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, here, tmp_path, capsys):
-    (tmp_path / "s.toml").write_text(LONG)
+    (tmp_path / "s.toml").write_text(LONG, "utf-8")
     kept, out = tmp_path / "out.nc.cases", tmp_path / "out.nc"
     command = [sys.executable, "-m", "app", "sweep", str(tmp_path / "s.toml"), "--out", str(out)]
     # A shell's background job ignores SIGINT, and so would what it starts.
@@ -155,9 +155,9 @@ def test_a_changed_spec_is_refused_and_fresh_starts_over(here, tmp_path, capsys)
     assert "seconds" in capsys.readouterr().err
     assert (tmp_path / "out.nc").read_bytes() == before
     assert sweep(spec.replace("0.1", "0.2"), tmp_path, "--fresh") == 0
-    (tmp_path / "out.nc").write_text("my notes")
+    (tmp_path / "out.nc").write_text("my notes", "utf-8")
     assert sweep(spec, tmp_path) == 2
-    assert (tmp_path / "out.nc").read_text() == "my notes"
+    assert (tmp_path / "out.nc").read_text("utf-8") == "my notes"
 
 
 def test_a_store_of_another_sweep_or_in_use_is_refused(tmp_path, capsys):
@@ -206,7 +206,7 @@ def test_a_case_that_kills_its_process_fails_and_all_others_are_finished(monkeyp
 )
 def test_ctrl_c_while_workers_start_is_quiet(command, delays, tmp_path):
     """delays: [s] after the first worker is there, all along its imports."""
-    (tmp_path / "s.toml").write_text(LONG)
+    (tmp_path / "s.toml").write_text(LONG, "utf-8")
     arguments = {"sweep": ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc")]}
     given = arguments.get(command, [command, "--quick"])
     for delay in delays:
@@ -242,7 +242,7 @@ def test_a_sweep_without_matplotlib_has_no_figure_and_says_so(here, tmp_path, ca
 
 
 def test_an_out_whose_store_would_have_too_long_a_name_is_refused(here, tmp_path, capsys):
-    (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2]\n')
+    (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2]\n', "utf-8")
     for length in range(231, 256, 8):
         name = "x" * (length - 3) + ".nc"
         if main(["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / name)]) != 0:

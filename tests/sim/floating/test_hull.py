@@ -94,7 +94,7 @@ def test_a_hull_in_gltf_stands_upright_as_its_specification_says(tmp_path, endin
 
 @pytest.mark.parametrize("ending", ["dae", "3mf"])
 def test_a_file_with_a_unit_and_an_axis_of_its_own_is_refused(tmp_path, ending):
-    (tmp_path / f"hull.{ending}").write_text("")
+    (tmp_path / f"hull.{ending}").write_text("", "utf-8")
     assert_refused("path", lambda: Hull.load(tmp_path / f"hull.{ending}"), "in metres")
 
 

@@ -117,6 +117,6 @@ def test_a_dataset_that_does_not_fit_is_refused(tmp_path, dataset, name, change,
 
 
 def test_what_is_no_dataset_is_refused(tmp_path):
-    (tmp_path / "text.nc").write_text("no")
+    (tmp_path / "text.nc").write_text("no", "utf-8")
     for path in (tmp_path / "text.nc", tmp_path / "none.nc"):
         assert_refused("path", lambda path=path: with_dataset(Hull.box(1.0, 1.0, 1.0), path), "export_dataset")

@@ -38,7 +38,7 @@ def test_wisdom_is_written_once_and_found_again(cache):
     ["", "{", "null", "[]", '{"wisdom": 3}', '{"wisdom": ["*", "", ""]}', '{"wisdom": ["YQ==", "YQ==", "YQ=="]}'],
 )
 def test_corrupt_wisdom_is_ignored_and_replaced(cache, text):
-    wisdom_paths()[0].write_text(text)
+    wisdom_paths()[0].write_text(text, "utf-8")
     assert not load_wisdom(wisdom_paths()[0])
     assert np.isfinite(Sea(12, 50.0).surface(1.0).height).all()
     assert load_wisdom(wisdom_paths()[0])
@@ -50,7 +50,7 @@ def test_unreadable_and_unwritable_wisdom_is_no_error(cache, monkeypatch):
     assert not save_wisdom(wisdom_paths()[0])
     assert np.isfinite(Sea(12, 50.0).surface(1.0).height).all()
     assert list(cache.iterdir()) == [wisdom_paths()[0]]
-    (cache / "file").write_text("")
+    (cache / "file").write_text("", "utf-8")
     monkeypatch.setenv("SPRINGTIDE_CACHE", str(cache / "file" / "below"))
     assert not save_wisdom(wisdom_paths()[0])
     assert np.isfinite(Sea(14, 50.0).surface(1.0).height).all()

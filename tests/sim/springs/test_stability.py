@@ -72,7 +72,9 @@ def test_links_without_rest_length_are_as_stiff_where_their_points_meet():
     net = dataclasses.replace(net, families=(net.families[0]._replace(rest=0.0),))
     k = net.families[0].stiffness / net.mass
     chain = k * np.array([[0.0, 0.0, 0.0], [0.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
-    np.testing.assert_allclose(products(net, np.zeros_like(net.x0), STIFFNESS), np.kron(np.eye(3), chain), atol=1e-9 * k)
+    np.testing.assert_allclose(
+        products(net, np.zeros_like(net.x0), STIFFNESS), np.kron(np.eye(3), chain), atol=1e-9 * k
+    )
 
 
 def test_a_capped_grab_is_stiff_across_only():

@@ -12,7 +12,18 @@ from typing import NamedTuple
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "contributing.md"
 BLOCK = re.compile(r"^```(?P<language>\w+)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
-COPIED = ("sim", "app", "benchmarks", "tests", "docs", "README.md", "CHANGELOG.md", "CITATION.cff", "pyproject.toml")
+COPIED = (
+    ".ci",
+    "sim",
+    "app",
+    "benchmarks",
+    "tests",
+    "docs",
+    "README.md",
+    "CHANGELOG.md",
+    "CITATION.cff",
+    "pyproject.toml",
+)
 SECONDS = 240  # [s] that one command may take, kernels compiled
 
 

@@ -70,7 +70,7 @@ def call(function: Callable[..., object], left_out: tuple[str, ...] = (), **righ
 LOAD = {"hull": BOX, "density": None, "mass": None, "center_of_gravity": None, "inertia": None}
 POSE = {"position": ORIGIN, "rotation": UPRIGHT, "velocity": ORIGIN, "spin": ORIGIN}
 CALLS = (
-    call(springs.rope), call(springs.cloth, rows=4, cols=4), call(springs.simulate, system=NET, duration=0.1, frames=3),
+    call(springs.rope), call(springs.cloth, rows=4, cols=4), call(springs.simulate, system=NET),
     call(springs.critical_step, system=NET, integrator="rk4"), call(springs.State.at_rest, system=NET),
     call(springs.advance, system=NET, state=springs.State.at_rest(NET), integrator="rk4", h=0.01, steps=1),
     call(springs.lab_units, points=4, length=1.0, axial_stiffness=1.0, mass_per_length=1.0, axial_viscosity=1.0,

@@ -126,7 +126,7 @@ def test_the_shaders_declare_every_uniform_that_travels_and_no_other() -> None:
     declared = set()
     for name in SCRIPTS:
         declared |= set(re.findall(r"uniform vec3 (\w+);", source_of(name)))
-    assert declared == {*WATER_UNIFORMS, *RAIN_UNIFORMS, "underwater"}
+    assert declared == {*WATER_UNIFORMS, *RAIN_UNIFORMS, "underwater", "eye"}  # the page sets the last two
     assert len(set(WATER_UNIFORMS)) == len(WATER_UNIFORMS)
 
 
@@ -157,18 +157,20 @@ def test_each_program_that_depends_on_the_details_has_three_variants() -> None:
     """Those of water, dome and rain; a program whose name does not tell them apart would stay as it is."""
     variants = {int(n) for n in re.findall(r"details: (\d)[ }]", source_of("quality.js"))}
     assert variants == {0, 1, 2}
-    scripts = source_of("water.js") + source_of("lit_sea.js") + source_of("rain.js")
+    scripts = source_of("water.js") + source_of("rain.js")
     sources = re.findall(r"fragmentShader = (.*);", scripts)
     assert sorted(sources) == [
-        "defines + PLACES_FRAGMENT",
-        "isLit ? defines + LIT_FRAGMENT : withSky(defines + WATER_FRAGMENT, sea.uniforms)",
+        "isLit ? shape.defines + LIT_FRAGMENT : withSky(whole.defines + WATER_FRAGMENT, sea.uniforms)",
         "withSky(DOME_FRAGMENT, sea.uniforms)",
         "withSky(RAIN_FRAGMENT, sea.uniforms)",
-        "withSky(defines + LIGHT_FRAGMENT, uniforms)",
     ]
     keys = re.findall(r"replaceShader\([\w.]+, (.*), (?:edit\)|\(shader)", scripts)
-    assert [key for key in keys if "keyWithDetails(" not in key] == ["`${key} places`"]
     assert len(keys) == len(sources)
+    assert all("keyWithDetails(" in key for key in keys)
+    lit = re.findall(r"^ +\[(.+), [\w +]+_VERTEX, (.+_FRAGMENT.*)\],$", source_of("lit_sea.js"), re.MULTILINE)
+    assert [("keyWithDetails(" in key, "withSky(" in source) for key, source in lit] == 3 * [(False, False)] + [
+        (True, True)
+    ]
     assert "withDetails(" in source_of("sky_table.js")
     assert "DETAILS" in source_of("water_shader.js")
 

@@ -44,7 +44,7 @@ def test_a_symbol_without_a_word_is_found() -> None:
     assert unexplained("Step: 34 % of the largest stable (hω 0.68 of 2.00)") == []
 
 
-NOT_DRAWN: Any = SimpleNamespace(tube=None, tubes=[], mesh=None, water=None)  # a view before anything is drawn
+NOT_DRAWN: Any = SimpleNamespace(ropes=None, drawn=None, mesh=None, water=None)  # a view before anything is drawn
 
 
 def texts_of(name: str, changes: dict[str, Any]) -> Iterator[str]:

@@ -76,10 +76,11 @@ class RopesDrawing(abc.ABC):
 
     def shape_tubes(self, ropes: NDArray[np.float32], *, always: bool = False) -> None:
         """Compute the vertices of ropes (ropes, points, 3) [m] that have moved. always: of all."""
-        moved = always | (np.abs(ropes - self.points).max(axis=(1, 2)) >= POSITION_TOLERANCE)
-        for number in np.flatnonzero(moved):
-            self.points[number] = ropes[number]
-            self.vertices[number] = self.tube.vertices(ropes[number], self.RADIUS)
+        moved = np.abs(ropes - self.points).reshape(len(ropes), -1).max(1).tolist()  # [m]
+        for number, distance in enumerate(moved):
+            if always or distance >= POSITION_TOLERANCE:
+                self.points[number] = ropes[number]
+                self.vertices[number] = self.tube.vertices(ropes[number], self.RADIUS)
 
     def show_beads(self, visible: bool, grab: GrabFrame | None) -> bool:
         """Assign the places of the beads, and the colour of the grabbed one. True if a colour has changed."""

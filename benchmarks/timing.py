@@ -1,11 +1,18 @@
 """Ways to time a call. Calls that are compared are timed in turns, so that other load on the machine hits all alike."""
 
+import math
+import os
 import statistics
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from app.timer import effort_clock
+
+
+def load() -> float:
+    """Processes that run or wait for the processor, on average over a minute; NaN on Windows, which does not count."""
+    return os.getloadavg()[0] if hasattr(os, "getloadavg") else math.nan
 
 
 def processor_time(call: Callable[[], Any]) -> float:

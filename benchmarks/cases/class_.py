@@ -24,6 +24,7 @@ from app.lab.folder import make_folder
 from app.lab.task import load_tasks
 from benchmarks.labs import served
 from benchmarks.pupil import Pupil
+from benchmarks.timing import load
 from sim.validation import argument_error
 
 STUDENTS, QUICK_STUDENTS, MAX_STUDENTS = 8, 2, 100
@@ -94,7 +95,7 @@ def rows(quick: bool = False, students: int | None = None) -> list[dict[str, Any
         {"what": "processor of a client [% of a core]", "median": 100.0 * of_clients / count},
         {"what": "private memory of a lab [MB]", **spread([u.private for u in after])},
         {"what": "memory of all labs [MB]", "median": sum(u.proportional for u in after)},
-        {"what": "processes waiting (load)", "median": os.getloadavg()[0]},
+        {"what": "processes waiting (load)", "median": load()},
     ]  # fmt: skip
 
 

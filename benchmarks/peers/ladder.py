@@ -5,7 +5,6 @@ import datetime
 import functools
 import importlib
 import math
-import os
 import statistics
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -19,6 +18,7 @@ from app.timer import process_effort_clock
 from benchmarks.peers.own_runs import OwnRuns
 from benchmarks.peers.record import Peer
 from benchmarks.reference import RESOLUTION, largest_distances
+from benchmarks.timing import load
 from sim.springs.stability import critical_step
 
 FRACTIONS = (0.8, 0.4, 0.2, 0.1)  # over leapfrog's critical step, for peers that take steps
@@ -123,7 +123,7 @@ def compared(peer: Peer, task: Task, quick: bool) -> Rows:
                 "our error at the end [m]": ours.result(best).errors[-1],
                 RATIO: statistics.median(peer_times) / statistics.median(our_times[0]),
             }
-        row |= {"turns": len(peer_times), "load": os.getloadavg()[0], "date": datetime.date.today().isoformat()}
+        row |= {"turns": len(peer_times), "load": load(), "date": datetime.date.today().isoformat()}
         if 2.0 * statistics.median(peer_times) > MAX_RUN_TIME:
             left = (left if quick else left[1:]) if peer.tolerances else []
     return table

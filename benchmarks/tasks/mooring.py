@@ -23,6 +23,7 @@ from app.formats.text_tables import Rows
 from app.timer import process_effort_clock
 from benchmarks.peers.ladder import RATIO
 from benchmarks.peers.record import is_installed
+from benchmarks.timing import load
 from sim.mooring import Line, LineType, Point, System, critical_step, simulate, write_moordyn
 from sim.mooring.statics import Rest
 from sim.springs import State
@@ -153,6 +154,6 @@ def compared(system: System, quick: bool) -> Rows:
         row |= {
             "peer [ms]": 1e3 * peer, "ours": method, "with": setting, "ours [ms]": 1e3 * ours,
             "our error at the end [m]": own, RATIO: peer / ours, "first call [ms]": 1e3 * peer, "turns": len(times),
-            "load": os.getloadavg()[0], "date": datetime.date.today().isoformat(),
+            "load": load(), "date": datetime.date.today().isoformat(),
         }  # fmt: skip
     return table

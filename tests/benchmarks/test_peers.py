@@ -1,5 +1,6 @@
 import csv
 import dataclasses
+import sys
 import time
 
 import numpy as np
@@ -161,6 +162,7 @@ def test_the_figure_has_every_ladder_and_our_runs():
     assert len(lines["Springtide"].get_xdata()) == 3
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="processor time is counted too coarsely on Windows")
 def test_waits_do_not_count_as_time_of_a_run():
     assert undisturbed_time(lambda: time.sleep(0.05)) < 0.049
     assert undisturbed_time(lambda: sum(range(10_000))) > 0.0

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 
 
 def load() -> float:

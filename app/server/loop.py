@@ -32,13 +32,13 @@ from app.messages import (
     TogglePlay,
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
+from app.scenes.timer import effort_clock, fine_timer
 from app.server.activity import NOTHING, OTHER_FORCES, STEPS
 from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
 from app.server.run import SceneRun
 from app.server.runs import Runs
 from app.server.shared_clock import Seat
 from app.server.tick_clock import Clock, TickClock
-from app.timer import effort_clock, fine_timer
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do

@@ -4,7 +4,7 @@ import contextlib
 from collections.abc import Callable, Generator
 from typing import TypeAlias
 
-from app.timer import TIMER_STEP
+from app.scenes.timer import TIMER_STEP
 
 Clock: TypeAlias = Callable[[], float]  # [s]
 

@@ -13,7 +13,7 @@ from app.scenes import scene_named
 from app.scenes.quantities import Measure, measured
 from app.scenes.setups import make_setup
 from app.scenes.stepping import steps_to
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 from sim.jit import sources_hash
 from sim.validation import DivergenceError
 

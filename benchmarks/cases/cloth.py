@@ -21,7 +21,7 @@ import numpy as np
 from rich.progress import track
 
 from app.experiments.tables import front
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 from benchmarks.reference import RESOLUTION, Positions, Reference, largest_distances
 from benchmarks.timing import processor_time
 from sim.frames import steps_for

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 from benchmarks.cases.cloth import benchmark_cloth
 from benchmarks.native.build import build
 from sim.jit import MAX_THREADS, kernel, set_threads

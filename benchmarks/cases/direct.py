@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 from sim.jit import kernel
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from app.scenes.cloth.parameters import PRESETS, ClothParams
 from app.scenes.cloth.scene import ClothScene
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 from sim.parameters import check_record
 
 FRAME_INTERVAL = 1 / 60  # [s]

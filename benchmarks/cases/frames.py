@@ -4,7 +4,7 @@ import statistics
 from typing import Any
 
 from app.scenes import NAMES
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 from benchmarks.labs import viewer_here
 
 FRAME_INTERVAL = 1 / 30  # [s] of simulated time in a frame, for every scene

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 from benchmarks.native.build import build
 from benchmarks.tasks.rope import benchmark_rope
 from sim.springs import INTEGRATORS

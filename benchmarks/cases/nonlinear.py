@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from app.timer import effort_clock
+from app.scenes.timer import effort_clock
 from benchmarks.peers.nonlinear import PlainSea
 from benchmarks.timing import processor_time
 from sim.ocean import Sea

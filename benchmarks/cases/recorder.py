@@ -6,9 +6,9 @@ from app.panel.recorder import Recorder
 from app.scenes import NAMES, scene_named
 from app.scenes.moments import arrays_in
 from app.scenes.setups import make_setup
+from app.scenes.timer import effort_clock
 from app.server.loop import SimLoop
 from app.server.snapshots import KEEP_INTERVAL, KEEP_SHARE
-from app.timer import effort_clock
 
 DURATION, QUICK_DURATION = 130.0, 1.0  # [s] of wall time that are recorded
 

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from rich.progress import track
 
 from app.formats.text_tables import Rows
-from app.timer import process_effort_clock
+from app.scenes.timer import process_effort_clock
 from benchmarks.peers.own_runs import OwnRuns
 from benchmarks.peers.record import Peer
 from benchmarks.reference import RESOLUTION, largest_distances

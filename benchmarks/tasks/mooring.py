@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.formats.text_tables import Rows
-from app.timer import process_effort_clock
+from app.scenes.timer import process_effort_clock
 from benchmarks.peers.ladder import RATIO
 from benchmarks.peers.record import is_installed
 from benchmarks.timing import load

@@ -14,7 +14,7 @@ PICTURE_WIDTH = 1280  # [pixels]
 
 
 class ReportPictures:
-    """Takes one picture at a time, in a thread of its own, and says what came of it."""
+    """Takes pictures for the report, one at a time in a separate thread, and reports success or the error."""
 
     def __init__(self, workbook: Workbook, finished: Callable[[], None]) -> None:
         """finished: called when `said` has changed."""

@@ -81,7 +81,7 @@ const LIT_FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
-// What this needs of a sea: the grid with a material of its own, a triangle, tiles, and what they are drawn into.
+// Resources of a lit sea: the grid with a second material, a triangle, tiles, and their render targets.
 function makeLit(sea) {
   const grid = new sea.mesh.constructor(sea.polar.geometry, new sea.mesh.material.constructor());
   grid.frustumCulled = false;

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 class LineRows(NamedTuple):
-    """The points and pieces of all lines as they are shown, each line from its anchor on."""
+    """The drawn points and pieces of all lines, each line from its anchor to its fairlead."""
 
     before: NDArray[np.int64]  # (lines, n + 1) node before each point, or at it
     after: NDArray[np.int64]  # (lines, n + 1) the next one

@@ -25,7 +25,7 @@ class MooringStart(NamedTuple):
 
     @classmethod
     def of(cls, rest: Rest, stretch: NDArray[np.float64], fault: Fault | None, failure: str) -> "MooringStart":
-        """That of a state; a failure is a fault of its own if there is no other."""
+        """Make the start from a state of rest. A failure is the fault if there is no other."""
         scale = max(float(max(tension.max() for tension in rest.tension.values())), LEAST_SCALE)
         if fault is None and failure:
             fault = Fault(failure, NO_REST, "length", None, True)

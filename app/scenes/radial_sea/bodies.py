@@ -316,7 +316,7 @@ class FloatingBodies:
         return self.excitation.forces(self.fleet, at.label, sea.waves_at(t), t, h)
 
     def measure(self, t: float, at: SurfaceAt, duration: float, lead: float = 0.0) -> None:
-        """Measure drafts and stains at time t [s], `lead` [s] before the sea is as it is `at` the bodies."""
+        """Measure drafts and stains at time t [s], `lead` [s] before the time of the surface `at` the bodies."""
         self.meters.measure(self.fleet, t, at, duration, lead)
         self.meters.wet_with_oil((self.slick > 0.0) | (self.column.kind != "water"))
 

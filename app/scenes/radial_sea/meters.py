@@ -33,7 +33,7 @@ class BodyMeters:
     def measure(self, fleet: Fleet, t: float, at: SurfaceAt, duration: float, lead: float = 0.0) -> None:
         """Measure drafts at time t [s]: the length of each body below the plane of the water, along its own axis.
 
-        lead [s]: how long after that time the sea is as it is `at` the bodies.
+        lead [s]: from that time to the time of the surface `at` the bodies.
         That length, times the area of the cross-section, is the wet volume of a hull with straight sides, however it
         leans. Of a sphere every diameter is an axis; it is measured along the normal of the water.
         """

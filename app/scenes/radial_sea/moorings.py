@@ -27,7 +27,7 @@ class BodyMoorings:
 
     @property
     def places(self) -> NDArray[np.float64]:
-        """(n, 2) [m] where they hold the bodies."""
+        """Places (n, 2) [m] of rest of the bodies."""
         return self.lines.anchors.mean(axis=1)[:, :2]
 
     def pull(self, fleet: Fleet, h: float, *, moored: bool) -> None:
@@ -39,7 +39,7 @@ class BodyMoorings:
             fleet.mooring[:] = self.tension[:] = 0.0
 
     def fairleads(self, fleet: Fleet, *, moored: bool) -> NDArray[np.float32]:
-        """Where the lines of each body are fixed to it (n, 3) [m]; (0, 3) without lines."""
+        """Fairleads (n, 3) [m] of the bodies; (0, 3) without lines."""
         if not moored:
             return np.empty((0, 3), np.float32)
         return fairleads(self.lines, fleet.position, fleet.rotation).astype(np.float32)

@@ -143,7 +143,7 @@ def reflectance_ratio(column: FluidColumn) -> float:
 
 
 def light_of(fluid: str) -> Quantities:
-    """What the oil or the water of the column reflects."""
+    """Refractive index and reflectance of the oil or the water of the column."""
 
     def of_index(value: Callable[[float], float]) -> Callable[[Any], float | None]:
         return of_column(lambda column: value(getattr(column, fluid).refractive_index))

@@ -51,7 +51,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @property
     def net(self) -> Net:
-        """The net as it is."""
+        """The present net."""
         return self.motion.net
 
     @property

@@ -156,9 +156,11 @@ def opened(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> Iter
     tab.wait(lambda: tab.page.locator(FOLDED).count() > 3)
 
     def unfold() -> bool:
+        tab.show("Controls")  # a slow page places the tabs late, and can end at another
         tab.page.evaluate("folded => document.querySelectorAll(folded).forEach(title => title.click())", FOLDED)
         tab.page.wait_for_timeout(500)  # folders that come late are folded, too
-        return not tab.page.locator(FOLDED).count()
+        is_shown = tab.page.get_by_role("tab", name="Controls", exact=True).get_attribute("aria-selected") == "true"
+        return is_shown and not tab.page.locator(FOLDED).count()
 
     tab.wait(unfold)
     yield viewer, tab

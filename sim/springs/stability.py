@@ -14,7 +14,9 @@ line is about to be taut, and a wave carries the strain of one link of a stiffen
 further later needs a shorter step then.
 """
 
+import functools
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,6 +45,7 @@ STIFF = 0.4  # omega^2 over the largest one, above which a less damped mode may 
 DAMPED = 0.2  # damping ratio of the stiffest mode of a net, below which it is the first
 SECANTS = 8  # most of them, to 1e-4 of a step
 NEARLY = 1e-7  # relative width at which the search for a stiffness ends
+FURTHER, LARGEST_RATIO = 4.0, 3.0  # ratio of the ends of its steps, and the logarithm of the largest first one
 
 
 class Mode(NamedTuple):
@@ -391,31 +394,58 @@ def critical_stiffness(
         # Beside a contact, and between stiffness and damping, the vectors change with the links' stiffness: once more
         # from the new ones.
         alike = all(math.isclose(mode.links, mode.stiffness) and not mode.mixed for mode in modes)
-        if scale == 0.0 or math.isinf(scale) or alike:
+        if scale == 0.0 or math.isinf(scale) or alike or math.isclose(found, 1.0, rel_tol=10.0 * NEARLY):
             break
         modes = None
     return scale * stiffest
 
 
 def largest_scale(modes: list[Mode], integrator: Integrator, h: float) -> float:
-    """How many times as stiff the links of `modes` may be at step h [s]: 0 for under 1e-12, inf for over 1e12."""
+    """How many times as stiff the links of `modes` may be at step h [s]: 0 for under 1e-12, inf for over 1e12.
 
-    def margin(scale: float) -> float:
-        step = min((step_limit(mode.with_links(scale), integrator) for mode in modes), default=math.inf)
+    Few of the modes ever limit the step: the search asks these, and all of them only where it has ended.
+    """
+
+    def margin(among: list[Mode], scale: float) -> float:
+        step = min((step_limit(mode.with_links(scale), integrator) for mode in among), default=math.inf)
         return math.log(step / h) if step > 0.0 else -math.inf
 
-    low = high = 1.0
-    above = below = margin(1.0)
+    scale, limiting = 1.0, list[Mode]()
+    while True:
+        first = min(modes, key=lambda mode: margin([mode], scale), default=None)
+        if first is None or first in limiting or (limiting and margin([first], scale) >= 0.0):
+            return scale if limiting else math.inf
+        limiting.append(first)
+        scale = last_stable(functools.partial(margin, limiting), scale)
+        if math.isinf(scale):  # where another mode still may limit the step
+            return last_stable(functools.partial(margin, modes), 1.0)
+        if scale == 0.0:
+            return 0.0
+
+
+def last_stable(margin: Callable[[float], float], start: float) -> float:
+    """The scale of the links' stiffness at which the margin falls below 0: 0 for under 1e-12, inf for over 1e12.
+
+    margin: the logarithm of the largest stable step over the step, of a scale. start: where the search begins.
+    """
+    low = high = start
+    above = below = margin(start)
+    if abs(above) <= NEARLY:
+        return start
+    # Undamped, a stable step goes as the inverse root of the stiffness: a little beyond that lies the other end.
+    ratio = math.exp(min(2.2 * abs(above), LARGEST_RATIO))
     while above < 0.0:
         high, below = low, above
-        low *= 0.25
+        low /= ratio
         above = margin(low)
+        ratio = FURTHER
         if low < 1e-12:
             return 0.0
     while below >= 0.0:
         low, above = high, below
-        high *= 4.0
+        high *= ratio
         below = margin(high)
+        ratio = FURTHER
         if high > 1e12:
             return math.inf
     # Steps go nearly as a power of the stiffness, so false position in the logarithms (its Illinois form) is quick.

@@ -65,6 +65,7 @@ shaders.push({
   update({ base, mesh, data }) {
     if (!applyPacked(mesh, data, "vertexColor", null)) return null;
     const dark = isDark(), underwater = underwaterOf(base, mesh), open = openPartOf(base, underwater);
+    const isAmbient = skyTerms.value && isRough(mesh.material);
     const edit = (shader) => {
       if (open) shader.fragmentShader = OPEN_BASE[open];
       insertAfter(shader, "vertexShader", "common", "attribute vec3 vertexColor; varying vec3 vVertexColor;");
@@ -75,12 +76,13 @@ shaders.push({
       insertAfter(shader, "fragmentShader", "color_fragment",
                   `diffuseColor.rgb = ${underwater ? "seenUnderwater(vVertexColor)" : "vVertexColor"};`);
       if (open) addOpenWater(shader, open);
+      else if (isAmbient) addAmbient(shader);
       if (!underwater) return;
       Object.assign(shader.uniforms, { underwater });
       insertAfter(shader, "fragmentShader", "common", UNDERWATER_GLSL);
       addPlace(shader);
     };
-    const key = `springtide-vertex-colors-${dark ? "dark" : "light"}${underwater ? base : ""}${open}`;
+    const key = `springtide-vertex-colors-${dark ? "dark" : "light"}${underwater ? base : ""}${open}${isAmbient ? "-ambient" : ""}`;
     return replaceShader(mesh.material, key, edit) ? mesh.material : null;
   },
 });
@@ -129,6 +131,7 @@ function beforeRender(renderer, scene, camera) {
   });
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
   drawOneLightOfEachSun(scene);
+  lightMeshes(renderer, scene);
   dressSmoke(scene);
   dressLabels(renderer, scene, camera);
   drawn = active.sort().join("\n");

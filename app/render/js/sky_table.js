@@ -48,6 +48,16 @@ function litBy(material, { environment, environmentIntensity, environmentRotatio
   material.envMapRotation.copy(environmentRotation);
 }
 
+// Draw the dome of a table into its target, with the shader that `edit` makes.
+function drawInto(renderer, { target, dome }, key, edit) {
+  dome.material.fog = dome.material.toneMapped = dome.material.depthTest = false;
+  replaceShader(dome.material, key, edit);
+  const before = renderer.getRenderTarget();
+  renderer.setRenderTarget(target);
+  renderer.render(dome, window.__viserMutable.camera);
+  renderer.setRenderTarget(before);
+}
+
 // Draw the table of the sea `base` if it is not that of this photograph and these uniforms.
 function drawSkyTable(base, sea, renderer, scene) {
   const photograph = scene.environment, Target = photograph?.renderTarget?.constructor;
@@ -68,16 +78,11 @@ function drawSkyTable(base, sea, renderer, scene) {
   skiesDrawn += 1;
   const { material } = table.dome;
   litBy(material, scene);
-  material.fog = material.toneMapped = material.depthTest = false;
-  replaceShader(material, "springtide-sky-table", (shader) => {
+  drawInto(renderer, table, "springtide-sky-table", (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = TARGET_VERTEX;
     shader.fragmentShader = SKY_TABLE_FRAGMENT;
   });
-  const before = renderer.getRenderTarget();
-  renderer.setRenderTarget(table.target);
-  renderer.render(table.dome, window.__viserMutable.camera);
-  renderer.setRenderTarget(before);
   uniforms.skyTable.value = isLinked(renderer, material) ? table.target.texture : null;
 }
 

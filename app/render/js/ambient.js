@@ -1,0 +1,96 @@
+// The light of the sky on rough surfaces as a polynomial of second degree in the direction, instead of two lookups a
+// pixel in the photograph of the sky: these are a quarter of the cost of a cloth. Spherical harmonics: R. Ramamoorthi,
+// P. Hanrahan, "An efficient representation for irradiance environment maps", SIGGRAPH 2001.
+//
+// The photograph is read once. Without float targets three's own lookups stay.
+
+const AMBIENT = "springtide-ambient"; // key of viser's shader with this light
+const ROUGH = 0.9; // roughness, from which on a reflection is as blurred as this light
+const DIRECTIONS = 256, GOLDEN_ANGLE = Math.PI * (3 - Math.sqrt(5)); // evenly over all directions, along a spiral
+const MEAN_SQUARES = [1, 1 / 3, 1 / 3, 1 / 3, 1 / 15, 1 / 15, 1 / 15, 4 / 15, 4 / 5]; // of the terms below
+const SKY_SAMPLES_FRAGMENT = `
+  #define STANDARD
+  #include <common>
+  #include <cube_uv_reflection_fragment>
+  #include <envmap_common_pars_fragment>
+  #include <envmap_physical_pars_fragment>
+  void main() {
+    float k = floor(gl_FragCoord.x), z = 1.0 - (2.0 * k + 1.0) / float(${DIRECTIONS}), a = float(${GOLDEN_ANGLE}) * k;
+    vec3 d = vec3(sqrt(1.0 - z * z) * vec2(cos(a), sin(a)), z);
+    gl_FragColor = vec4(textureCubeUV(envMap, envMapRotation * d, 1.0).rgb, 1.0);
+  }`;
+const AMBIENT_GLSL = `
+  uniform vec3 skyTerms[9];
+  vec3 skyLight(vec3 normal) {
+    vec3 d = inverseTransformDirection(normal, viewMatrix);
+    return max(skyTerms[0] + skyTerms[1] * d.x + skyTerms[2] * d.y + skyTerms[3] * d.z + skyTerms[4] * d.x * d.y +
+               skyTerms[5] * d.y * d.z + skyTerms[6] * d.z * d.x + skyTerms[7] * (d.x * d.x - d.y * d.y) +
+               skyTerms[8] * (3.0 * d.z * d.z - 1.0), 0.0);
+  }
+  #define getIBLIrradiance(normal) (PI * envMapIntensity * skyLight(normal))
+  #define getIBLRadiance(view, normal, roughness) (envMapIntensity * skyLight(normal))`;
+
+const skyTerms = { value: null };
+let samples = null; // { target, dome, key } with which the photograph is read
+
+function addAmbient(shader) {
+  Object.assign(shader.uniforms, { skyTerms });
+  insertAfter(shader, "fragmentShader", "envmap_physical_pars_fragment", AMBIENT_GLSL);
+}
+
+// The terms of the polynomial in a direction.
+function termsOf(x, y, z) {
+  return [1, x, y, z, x * y, y * z, z * x, x * x - y * y, 3 * z * z - 1];
+}
+
+// Read the photograph if it is another one, or is turned.
+function readSky(renderer, scene, mesh) {
+  const photograph = scene.environment, Target = photograph?.renderTarget?.constructor;
+  if (!Target || !renderer.extensions.has("EXT_color_buffer_float")) return;
+  const key = [photograph.uuid, photograph.version, ...scene.environmentRotation.toArray()].join();
+  if (samples?.key === key) return;
+  if (!samples) {
+    const how = { type: FLOAT, format: RGBA, minFilter: NEAREST, magFilter: NEAREST, depthBuffer: false };
+    const dome = makeDome({ geometry: mesh.geometry, mesh });
+    dome.removeFromParent();
+    samples = { target: new Target(DIRECTIONS, 1, how), dome };
+  }
+  samples.key = key;
+  litBy(samples.dome.material, scene);
+  drawInto(renderer, samples, "springtide-sky-samples", (shader) => {
+    shader.vertexShader = TARGET_VERTEX;
+    shader.fragmentShader = SKY_SAMPLES_FRAGMENT;
+  });
+  const numbers = new Float32Array(4 * DIRECTIONS);
+  renderer.readRenderTargetPixels(samples.target, 0, 0, DIRECTIONS, 1, numbers);
+  skyTerms.value = MEAN_SQUARES.map(() => mesh.position.clone().set(0, 0, 0));
+  for (let k = 0; k < DIRECTIONS; k++) {
+    const z = 1 - (2 * k + 1) / DIRECTIONS, level = Math.sqrt(1 - z * z), a = GOLDEN_ANGLE * k;
+    const color = mesh.position.clone().fromArray(numbers, 4 * k);
+    termsOf(level * Math.cos(a), level * Math.sin(a), z).forEach((term, i) => {
+      skyTerms.value[i].addScaledVector(color, term / (DIRECTIONS * MEAN_SQUARES[i]));
+    });
+  }
+}
+
+// Whether a material is lit so. At the lowest quality everything is, and nothing mirrors.
+const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0;
+
+// Light viser's own meshes so; those with a shader of ours ask for it themselves.
+function lightMeshes(renderer, scene) {
+  const lit = [];
+  let plain = null; // a mesh of which another can be made: not of instances
+  scene.traverse((object) => {
+    if (!object.isMesh) return;
+    lit.push(...[object.material].flat().filter((one) => one.isMeshStandardMaterial));
+    const isPlain = Object.getPrototypeOf(object.constructor) === Object.getPrototypeOf(scene.constructor);
+    if (isPlain && object.material.isMeshStandardMaterial) plain ??= object;
+  });
+  if (plain) readSky(renderer, scene, plain);
+  for (const one of skyTerms.value ? lit : []) {
+    const { springtide } = one.userData;
+    if (springtide && springtide !== AMBIENT) continue;
+    if (isRough(one)) replaceShader(one, AMBIENT, addAmbient);
+    else if (springtide) replaceShader(one, "", () => {});
+  }
+}

@@ -1,0 +1,24 @@
+"""The fading in of the nonlinear terms, with which a sea without bound waves may start (Dommermuth 2000)."""
+
+import dataclasses
+import math
+
+POWER = 4  # of time
+WHOLE = 40.0 ** (1.0 / POWER)  # durations until the nonlinear part is whole to rounding
+
+
+@dataclasses.dataclass(frozen=True)
+class FadeIn:
+    """Nonlinear terms grow as 1 - exp(-((t - start)/duration)^4)."""
+
+    start: float  # [s]
+    duration: float  # [s], or 0: they act at once
+
+    @property
+    def end(self) -> float:
+        """Time [s] from which they are whole."""
+        return self.start + WHOLE * self.duration
+
+    def factor(self, t: float) -> float:
+        """Factor on the nonlinear terms at time t [s]."""
+        return 1.0 if t >= self.end else -math.expm1(-(((t - self.start) / self.duration) ** POWER))

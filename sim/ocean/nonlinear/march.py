@@ -84,8 +84,9 @@ class March:
     def copied(self) -> "March":
         """An independent copy for the same thread: it shares arrays that are set before they are read."""
         other = copy.copy(self)
-        other.start, other.end = (
-            dataclasses.replace(end, u=end.u.copy(), rate=end.rate.copy()) for end in (self.start, self.end)
+        # The third too: it is the end of the next step.
+        other.start, other.end, other._new = (
+            dataclasses.replace(end, u=end.u.copy(), rate=end.rate.copy()) for end in (self.start, self.end, self._new)
         )
         return other
 

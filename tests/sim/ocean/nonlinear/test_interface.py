@@ -99,6 +99,20 @@ def test_a_copy_goes_its_own_way() -> None:
     assert sea.energy == other.energy
 
 
+def test_a_sea_and_its_copy_may_move_in_turns() -> None:
+    alone, sea = (NonlinearSea(start=Sea(**LINEAR), order=3, fade=5.0) for _ in range(2))
+    sea.advance(3.0)
+    other = copy.deepcopy(sea)
+    sea.advance(6.0)
+    other.advance(4.0)  # a step of the copy is no step of the sea
+    sea.advance(8.0)
+    alone.advance(4.0)
+    assert np.array_equal(other.height, alone.height)
+    alone.advance(8.0)
+    assert np.array_equal(sea.height, alone.height)
+    assert sea.energy == alone.energy
+
+
 def test_another_grid_goes_on_with_the_same_waves() -> None:
     sea = NonlinearSea(start=Sea(**LINEAR), order=3, fade=5.0)
     sea.advance(8.0)

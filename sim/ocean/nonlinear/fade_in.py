@@ -1,6 +1,7 @@
 """The fading in of the nonlinear terms, with which a sea without bound waves may start (Dommermuth 2000)."""
 
 import dataclasses
+import functools
 import math
 
 POWER = 4  # of time
@@ -14,7 +15,7 @@ class FadeIn:
     start: float  # [s]
     duration: float  # [s], or 0: they act at once
 
-    @property
+    @functools.cached_property
     def end(self) -> float:
         """Time [s] from which they are whole."""
         return self.start + WHOLE * self.duration

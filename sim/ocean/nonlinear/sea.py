@@ -17,6 +17,7 @@ time at once. Limits:
 """
 
 import copy
+import dataclasses
 import math
 from typing import Any
 
@@ -138,7 +139,7 @@ class NonlinearSea:
         equations = self._equations.on_grid(modes)
         other._begin(equations, u, t)
         other._march = self._march.restarted(equations.propagator, equations.set_rates, t, u)
-        other._balance = self._balance.on_another_grid()
+        other._balance = dataclasses.replace(self._balance, lost=self._balance.lost + self._march.lost(t))
         return other
 
     def advance(self, t: float) -> None:
@@ -150,7 +151,7 @@ class NonlinearSea:
         faded = self._equations.fade_in.end
         if self._balance.fade_in is None and t >= faded:
             self._move(faded)
-            self._balance = self._balance.after_fade_in(sum(self._now.energies))
+            self._balance = dataclasses.replace(self._balance, fade_in=self.energy.fade_in)
         if t > self.time:
             self._move(t)
 
@@ -197,7 +198,7 @@ class NonlinearSea:
     @property
     def energy(self) -> SeaEnergy:
         """The energy account at the present time."""
-        return self._balance.account(*self._now.energies)
+        return self._balance.account(*self._now.energies, self._march.lost(self.time))
 
     @property
     def steps(self) -> int:
@@ -262,5 +263,4 @@ class NonlinearSea:
             self._march.advance(t)
         finally:  # without the whole way: at the end of the last step
             t = min(t, self._march.reached)
-            self._balance = self._balance.with_loss(self._march.lost(t))
             self._now = self._now.moved_to(self._march.at(t), t)

@@ -130,7 +130,7 @@ class RadialSea:
         self._interface: tuple[Waves | None, np.ndarray, np.ndarray] = None, rate, rate
 
     def _forget_wavenumbers(self) -> None:
-        """Other waves than before are there, or fewer."""
+        """Forget what is kept of the wavenumbers of `waves_at`."""
         self._plan: BandPlan | None = None
         self._footprints: Footprints | None = None
 

@@ -1,4 +1,4 @@
-"""The fading in of the nonlinear terms, with which a sea without bound waves may start (Dommermuth 2000)."""
+"""The fading in of the nonlinear terms, for starts without bound waves (Dommermuth 2000, Wave Motion 32:307)."""
 
 import dataclasses
 import functools

@@ -180,7 +180,7 @@ class March:
 
 
 class LinearMarch:
-    """The same of a linear sea: any time is within reach, without steps."""
+    """The march of a linear sea: any time is within reach, without steps."""
 
     steps, reached = 0, math.inf
 

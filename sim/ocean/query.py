@@ -45,17 +45,17 @@ def query(surface: "Surface", points: np.ndarray, exact: bool = False) -> tuple[
 
     It can be cancelled.
     """
-    sea = surface.sea
+    numbers = surface.numbers
     labels, height, residual = points.copy(), np.empty(len(points)), np.empty(len(points))
-    cell = sea.length / sea.size
+    cell = numbers.length / numbers.size
     if surface.choppiness == 0.0 and not exact:
         for piece in pieces(len(points), PIECE):
             sample(points[piece], surface.height, cell, height[piece])
         residual[:] = 0.0
         return height, residual, labels
     if exact:
-        table = np.empty((AMPLITUDE + 1, sea.size**2 // 2))
-        set_standing_waves(sea.heights_spectrum(surface.t), 2.0 * math.pi / sea.length, table)
+        table = np.empty((AMPLITUDE + 1, numbers.size**2 // 2))
+        set_standing_waves(surface.heights.spectrum(surface.t), 2.0 * math.pi / numbers.length, table)
         fields = WaveFields(table, table[AMPLITUDE:], 0.0, surface.choppiness)
     else:
         fields = grid_fields(surface)
@@ -68,8 +68,8 @@ def query(surface: "Surface", points: np.ndarray, exact: bool = False) -> tuple[
 
 def grid_fields(surface: "Surface") -> GridFields:
     """The fields of a surface of a tile."""
-    sea, D = surface.sea, surface.displacement
-    return GridFields(surface.height, D[..., 0], D[..., 1], sea.length / sea.size)
+    numbers, D = surface.numbers, surface.displacement
+    return GridFields(surface.height, D[..., 0], D[..., 1], numbers.length / numbers.size)
 
 
 @kernel

@@ -24,12 +24,14 @@ from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped, stop_request
 from sim.jit import kernel
+from sim.ocean.band_plan import BandPlan
+from sim.ocean.departing_waves import DepartingWaves
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import widened
+from sim.ocean.footprints import Footprints
 from sim.ocean.query import WaveFields, find_labels
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.slick import SlickCover
-from sim.ocean.wave_sum import Bands, Calm, VertexSums, add_waves, calm_waves, set_mesh, wave_rows
+from sim.ocean.wave_sum import set_mesh
 from sim.validation import argument_error, as_array, check_finite, check_kind, check_not_negative, check_positions
 from sim.water import SAME_WATER, Water
 from sim.waves import RESPONSES, Kinematics, Waves, sums_at
@@ -74,9 +76,7 @@ class RadialSea:
         """
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs
         self.choppiness = check_not_negative("choppiness", choppiness, "")
-        self._fade = 0.0
-        self._old: tuple[Waves, np.ndarray] | None = None  # waves that fade out, and their interface ratios
-        self._grid: RadialGrid | None = None
+        self._departing: DepartingWaves | None = None
         self.slick: SlickCover | None = None  # what calms the waves under it
         self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
         self.past: dict[FluidColumn, float] = {}
@@ -104,13 +104,12 @@ class RadialSea:
             exposure, past = check_not_negative("exposure", exposure, "s"), {}
         own, loss = self._own, self._lost
         if waves is None:
-            self._old = None if self._share(t) >= 1.0 else self._old
+            self._drop_departed(t)
             loss = loss if exposure is None else np.zeros(len(own.kx))
             self._set(self.waves, column or self.column, phases_at(own, t), loss, t)
         else:
-            self._old = own, self.ratio
+            self._departing = DepartingWaves(own, self.ratio, t, fade)
             self._set(waves, column or self.column, waves.phase, lost(past, waves.k), t)
-            self._began, self._fade = t, fade
         self.past = past
         self.expose(exposure or 0.0)
 
@@ -125,10 +124,15 @@ class RadialSea:
         phase = phase + rate / (2.0 * math.pi) * t
         water = Water(math.inf, column.gravity, column.surface.density)
         self._own = Waves(waves.kx, waves.ky, amplitude, phase - np.rint(phase), rate, water)
-        self._grid = self._loss = None
-        self._weights: dict[bytes, np.ndarray] = {}
+        self._loss = None
+        self._forget_wavenumbers()
         # Of which waves, and `interface_of` them.
         self._interface: tuple[Waves | None, np.ndarray, np.ndarray] = None, rate, rate
+
+    def _forget_wavenumbers(self) -> None:
+        """Forget what is kept of the wavenumbers of `waves_at`."""
+        self._plan: BandPlan | None = None
+        self._footprints: Footprints | None = None
 
     def expose(self, duration: float) -> None:
         """Let the waves decay at once as they would in `duration` [s] on this medium; phases stay as they are.
@@ -161,27 +165,21 @@ class RadialSea:
         """sum (ka)^2/2 of the waves as they are."""
         return 0.5 * float(np.square(self.waves.k * self.amplitude).sum())
 
-    def _share(self, t: float) -> float:
-        return 1.0 if self._old is None or self._fade == 0.0 else min(max((t - self._began) / self._fade, 0.0), 1.0)
+    def _drop_departed(self, t: float) -> None:
+        """Forget the waves that have faded out by time t [s]."""
+        if self._departing is not None and self._departing.share_taken(t) >= 1.0:
+            self._departing = None
+            self._forget_wavenumbers()
 
     def waves_at(self, t: float) -> Waves:
         """All waves as high as at time t [s], without the slick; those that fade out first."""
         t = check_finite("t", t, "s")
-        share = self._share(t)
-        if self._old is not None and share >= 1.0:
-            self._old, self._grid, self._weights = None, None, {}
-        if self._old is None:
-            return self._own
-        old, _ = self._old
-        # Energies add, as the two seas are independent.
-        heights = old.amplitude * math.sqrt(1.0 - share), self._own.amplitude * math.sqrt(share)
-        names = ("kx", "ky", "phase", "omega")
-        both = {name: np.append(getattr(old, name), getattr(self._own, name)) for name in names}
-        return dataclasses.replace(self._own, amplitude=np.append(*heights), **both)
+        self._drop_departed(t)
+        return self._own if self._departing is None else self._departing.joined_by(self._own, t)
 
     def _ratios(self) -> np.ndarray:
         """Height of the interface over the surface's of each of the waves of `waves_at`."""
-        return self.ratio if self._old is None else np.append(self._old[1], self.ratio)
+        return self.ratio if self._departing is None else np.append(self._departing.ratio, self.ratio)
 
     def losses(self, k: np.ndarray) -> np.ndarray:
         """Loss [1/m] of waves of wavenumber k [rad/m] under the slick; kept while slick and waves stay the same."""
@@ -193,28 +191,14 @@ class RadialSea:
 
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
-        waves = self.waves_at(t)
-        kx, ky, amplitude, phase = waves.kx, waves.ky, waves.amplitude, phases_at(waves, t)
-        if self._grid is not grid:
-            self._plan(grid, waves.k)
-        order, weight, active = self._order, self._weight, self._active
-        loss = np.zeros(len(kx)) if self.slick is None else self.losses(waves.k)
-        kx, ky, a = kx[order], ky[order], amplitude[order]
-        k = np.maximum(np.hypot(kx, ky), 1e-30)
-        turns = phase[order] + (kx * centre[0] + ky * centre[1]) / (2.0 * math.pi)
-        n, count = len(grid), weight.shape[1]
-        rows = wave_rows(kx, ky, turns, a, self.choppiness, count)
-        bands, sums = Bands(grid.x, grid.y, grid.start, active, weight), VertexSums(*np.zeros((8, n), np.float32))
-        mean = 0.5 * self.choppiness * np.square(weight[:, : len(a)] * a) @ k
-        sums.z[:] = np.repeat(mean, np.diff(grid.start.astype(np.int64)))
-        add_waves(bands, rows, sums)
-        if self.slick is not None:
-            place = np.zeros((3, count), np.float32)
-            place[:, : len(k)] = kx / k, ky / k, loss[order]
-            x, y, radius = np.array([*self.slick.centre, self.slick.radius]) - (*centre, 0.0)
-            calm_waves(bands, rows, Calm(np.float32(x), np.float32(y), np.float32(radius), *place), sums)
-        self.evaluated += self._pairs
-        self.skipped += n * len(a) - self._pairs
+        waves, n = self.waves_at(t), len(grid)
+        plan = self._plan
+        if plan is None or plan.grid is not grid:
+            plan = self._plan = BandPlan(grid, waves.k)
+        slick = None if self.slick is None else (self.slick, self.losses(waves.k))
+        sums = plan.sums(waves, phases_at(waves, t), self.choppiness, centre, slick)
+        self.evaluated += plan.evaluated
+        self.skipped += plan.skipped
         vertices, slope = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
         jacobian = np.empty(n, np.float32)
         set_mesh(grid.x, grid.y, sums, vertices.reshape(-1), slope.reshape(-1), jacobian)
@@ -222,18 +206,6 @@ class RadialSea:
             vertices[:, 0] += np.float32(centre[0])
             vertices[:, 1] += np.float32(centre[1])
         return RadialSurface(vertices, slope, jacobian)
-
-    def _plan(self, grid: RadialGrid, k: np.ndarray) -> None:
-        """Plan the waves that each band shows: the longest first, in pairs."""
-        self._order = np.argsort(k, kind="stable")
-        shown = grid.weights(k[self._order])
-        even = len(k) + len(k) % 2
-        self._weight = np.zeros((len(shown), even), np.float32)
-        self._weight[:, : len(k)] = shown
-        count = (shown > 0.0).sum(axis=1)
-        self._active = (count + count % 2).astype(np.uint64)
-        self._pairs = int((count * np.diff(grid.start.astype(np.int64))).sum())
-        self._grid = grid
 
     def at(self, points: ArrayLike, t: float, size: ArrayLike = 0.0) -> SurfaceAt:
         """The sea above points (n, 2) [m] at time t [s]; its mean level is that of still water, see above.
@@ -247,7 +219,9 @@ class RadialSea:
         if widths.shape not in ((), (n,)) or not (widths >= 0.0).all():
             raise argument_error("size", size, f"one number [m], or {n} of them")
         waves = self.waves_at(t)
-        weight = self._footprint(np.broadcast_to(widths, (n,)), waves)
+        if self._footprints is None:
+            self._footprints = Footprints(waves.k)
+        weight = self._footprints.factors(np.broadcast_to(widths, (n,)))
         if self.slick is not None:
             weight = weight * np.exp(-self.losses(waves.k) * self.slick.paths(where, waves.kx, waves.ky))
         surface = WaveFields(waves.table, weight * waves.amplitude, float(t), self.choppiness)
@@ -280,17 +254,6 @@ class RadialSea:
         if self.column.kind == "layer":
             raise argument_error("column", self.column.kind, "clean water or a mixture, which is one fluid")
         return self.waves_at(t).kinematics(points, t, stretching)
-
-    def _footprint(self, size: np.ndarray, waves: Waves) -> np.ndarray:
-        """Factors (points, waves) of hulls of these sizes; cached, because each step needs those of the same hulls."""
-        k = waves.k
-        key = size.tobytes() + len(k).to_bytes(4, "little")
-        if key not in self._weights:
-            if len(self._weights) > 8:
-                self._weights.clear()
-            unique, which = np.unique(size, return_inverse=True)
-            self._weights[key] = np.array([widened(k, float(s)) for s in unique]).reshape(-1, len(k))[which]
-        return self._weights[key]
 
 
 def check_carried(waves: Waves, column: FluidColumn) -> None:

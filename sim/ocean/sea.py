@@ -25,17 +25,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.amplitudes import KINDS, integers, resolved, unit_amplitudes, waves_of_tile, with_line
+from sim.ocean.amplitudes import KINDS, resolved, unit_amplitudes, with_line
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.medium import Medium, medium_of
 from sim.ocean.query import query
 from sim.ocean.ripples import Ripples
+from sim.ocean.slope_spectrum import SlopeSpectrum
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
 from sim.ocean.surface import Surface
-from sim.ocean.tile_heights import TileHeights, key_of
+from sim.ocean.tile_heights import TileHeights
 from sim.ocean.tile_surface import TileSurface
+from sim.ocean.tile_waves import DrawnWaves, TileWaves
 from sim.ocean.transforms import PRECISIONS, Transforms
-from sim.ocean.wave_sizes import WaveSizes
+from sim.ocean.wavenumbers import Wavenumbers
 from sim.parameters import similar
 from sim.validation import (
     argument_error,
@@ -94,25 +96,9 @@ class Sea(TileSurface):
         self.size, self.length, self.seed = int(size), check_number("length", length, *LENGTHS, "m"), int(seed)
         self.precision, self.amplitudes = precision, amplitudes
         self.choppiness = choppiness
-        self._real = PRECISIONS[precision][0]
-        self._waves = WaveSizes(unit_amplitudes(self.size, self.seed, amplitudes), *PRECISIONS[precision])
-        self._last = 0.0  # [s] of the last surface computed, or of the last change if that is later
-        self.version = 0  # counts changes of the conditions
-        self._latest: tuple[tuple, dict[str, np.ndarray]] | None = None
-        self._known_waves: tuple[tuple | None, Waves | None] = None, None  # key of the amplitudes, and the waves
-        self._ripples: Ripples | None = None
-
-        self.k = integers(self.size) * (2.0 * math.pi / self.length)  # [rad/m], FFT order
-        quarter = self.k[: self.size // 2]
-        self._k = np.hypot(quarter[:, None], quarter[None, :])
-        inverse = np.divide(1.0, self._k, out=np.zeros_like(self._k), where=self._k > 0.0)
-        self.radial: dict[str, np.ndarray] = {"1": np.ones_like(self._k, self._real), "1/k": inverse.astype(self._real)}
-        self.radial["k"] = self._k.astype(self._real)
-        self.rows: dict[str, np.ndarray] = {"1": np.ones(self.size, self._real), "k": self.k.astype(self._real)}
-        self.rows["k2"] = (self.k**2).astype(self._real)
-
-        self.transforms = Transforms(self.size, precision)
-        self._heights = TileHeights(self.transforms, self.radial, self._real)
+        self._wavenumbers = Wavenumbers(self.size, self.length, precision)
+        self.k = self._wavenumbers.k  # [rad/m], FFT order
+        self._slopes: SlopeSpectrum | None = None  # of the last call of `slope_left`
         given = {
             "wind_speed": wind_speed,
             "wind_direction": wind_direction,
@@ -122,12 +108,10 @@ class Sea(TileSurface):
             "viscosity": viscosity,
         }
         self._given: dict[str, Any] = {}  # conditions as given, those that the spectrum uses
-        # ((medium, conditions), decay rates) of the last call of `expose`
-        self._other_decay: tuple[tuple[Medium, Conditions], np.ndarray] | None = None
-        # for `slope_left`: under which spectrum and conditions, and the slope
-        self._sloped_under: tuple[tuple[Spectrum[Any], Conditions] | None, np.ndarray] = None, self._k
-        self._set_conditions(spectrum, given | more, Medium())
-        self._waves.begin(0.0, 0.0, self._waves.target)
+        drawn = self._draw(spectrum, given | more, Medium(), unit_amplitudes(self.size, self.seed, amplitudes))
+        self._waves = TileWaves(self._wavenumbers, drawn)
+        self.transforms = Transforms(self.size, precision)
+        self._heights = TileHeights(self._waves, self.transforms)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "Sea":
         """An independent copy of the sea.
@@ -135,9 +119,14 @@ class Sea(TileSurface):
         It shares arrays that are never changed in place, and the transforms: both seas are for the same thread.
         """
         other = copy.copy(self)
-        other._waves, other._ripples = self._waves.copied(), copy.deepcopy(self._ripples, memo)
-        other._heights, other._latest = TileHeights(self.transforms, self.radial, self._real), None
+        other._waves = self._waves.copied()
+        other._heights = self._heights.copied(other._waves, memo)
         return other
+
+    @property
+    def version(self) -> int:
+        """Number of changes of the waves so far, by `change` and `expose`."""
+        return self._waves.version
 
     @property
     def choppiness(self) -> float:
@@ -151,12 +140,7 @@ class Sea(TileSurface):
     def surface(self, t: float) -> Surface:
         """The surface at time t [s]; each field is computed when first read. Raises ValueError for a time not allowed:
         not finite, or before the last change where waves decay or relax."""
-        t = self._waves.checked_time(t)
-        key = self._choppiness, key_of(t, self.version, self._ripples)
-        if self._latest is None or self._latest[0] != key:
-            self._latest = key, {}
-        self._last = t
-        return Surface(self, t, self._latest[1])
+        return self._heights.surface(self._waves.checked_time(t), self._choppiness)
 
     def height_at(self, points: ArrayLike, t: float, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Height (n,) [m] of the displaced surface above points (n, 2) [m] at time t, and the residual (n,) [m].
@@ -175,14 +159,8 @@ class Sea(TileSurface):
 
         They hold at all times unless waves decay, relax or are changed. Raises ValueError as `surface`.
         """
-        t = self._last if t is None else self._waves.checked_time(t)
-        key = self.version, None if self.is_steady(t) else t
-        known, waves = self._known_waves
-        if waves is None or known != key:
-            h0, omega = self.amplitudes_at(t), self.frequencies
-            waves = waves_of_tile(self.k, h0, omega, self._waves.base, self.conditions.water)
-            self._known_waves = key, waves
-        return waves
+        t = self.time if t is None else self._waves.checked_time(t)
+        return self._waves.waves_at(t, self.conditions.water)
 
     def change(self, t: float, relax: float = 0.0, spectrum: str | Spectrum[Any] | None = None, **changes: Any) -> None:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
@@ -193,21 +171,16 @@ class Sea(TileSurface):
         spectrum does not use, TypeError for an unknown name.
         """
         t, relax = self._waves.checked_time(t), check_not_negative("relax", relax, "s")
-        if self._ripples is not None:
-            self._ripples.check_time(t)
-        waves, duration = self._waves, t - self._waves.base
-        before, rate = waves.undecayed(t), waves.rate
-        medium, conditions, decay = self.medium, self.conditions, waves.decay
+        waves, ripples, chosen = self._waves, self._heights.ripples, self.spectrum if spectrum is None else spectrum
+        if ripples is not None:
+            ripples.check_time(t)
+        medium, conditions = self.medium, self.conditions
         raise_if_stopped()
-        self._set_conditions(self.spectrum if spectrum is None else spectrum, changes, self.medium)
-        waves.spend(medium, conditions, decay, duration)
-        waves.turn(rate * duration)
-        raise_if_stopped()
-        self._last = max(self._last, t)
-        self.version += 1
-        waves.begin(t, relax, before)
-        if self._ripples is not None:
-            self._ripples.set_medium(t, self._k, waves.rate, waves.decay, self.conditions)
+        drawn = self._draw(chosen, changes, medium, waves.unit)
+        waves.change(t, relax, drawn, medium, conditions)
+        self._heights.time = max(self.time, t)
+        if ripples is not None:
+            ripples.set_medium(t, self._wavenumbers.quarter, waves.rate, waves.decay, self.conditions)
 
     def expose(self, duration: float, medium: Medium | FluidColumn | None = None) -> None:
         """Let the waves decay at once as they would in `duration` [s] in a medium, by default in the sea's own.
@@ -222,17 +195,8 @@ class Sea(TileSurface):
         chosen = self.medium if medium is None else check_kind("medium", medium, Medium, kinds)
         if duration == 0.0:
             return
-        decay = self._waves.decay if medium is None else self._decay_in(medium)
-        self._waves.spend(chosen, self.conditions, decay, duration)
-        self.version += 1
-        self._waves.set_planes()
-
-    def _decay_in(self, medium: Medium) -> np.ndarray:
-        """Decay rates [1/s] in another medium, solved once for the same medium and conditions."""
-        asked = medium, self.conditions
-        if self._other_decay is None or self._other_decay[0] != asked:
-            self._other_decay = asked, medium.roots(self._k, self.conditions)[1]
-        return self._other_decay[1]
+        decay = self._waves.decay if medium is None else self._waves.decay_in(medium, self.conditions)
+        self._waves.expose(chosen, self.conditions, decay, duration)
 
     def resized(self, size: int) -> "Sea":
         """The same sea on a grid of another size: shared waves and rings go on as they are.
@@ -251,23 +215,20 @@ class Sea(TileSurface):
             **{f.name: getattr(self.medium, f.name) for f in dataclasses.fields(self.medium)},
         )
         other._waves.take_over(self._waves)
-        other._last = self._last
-        for (medium, water), duration in self._waves.past.items():
-            other._waves.spend(medium, water, medium.roots(other._k, water)[1], duration)
-        other._waves.set_planes()
-        if self._ripples is not None:
-            other.ripples.take_over(self._ripples)
+        other._heights.time = self.time
+        if self._heights.ripples is not None:
+            other.ripples.take_over(self._heights.ripples)
         return other
 
     @property
     def significant_height(self) -> float:
         """Hs = 4 sqrt(m0) [m] of the amplitudes as drawn, at `time`."""
-        return self.significant_height_at(self._last)
+        return self.significant_height_at(self.time)
 
     @property
     def time(self) -> float:
         """Time [s] of the last surface computed, or of the last change if that is later."""
-        return self._last
+        return self._heights.time
 
     def significant_height_at(self, t: float) -> float:
         """Hs = 4 sqrt(m0) [m] of the amplitudes at time t [s]; rings are not counted."""
@@ -279,7 +240,7 @@ class Sea(TileSurface):
         The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
         Raises ValueError for a time that `surface` does not take either.
         """
-        return self._waves.unit * self._waves.magnitude(t)
+        return self._waves.amplitudes(t)
 
     def energy_at(self, t: float) -> np.ndarray:
         """S(k) dk^2 of each wave at time t, relaxed and decayed, (size, size) [m2], 0 where the tile has no wave."""
@@ -291,66 +252,63 @@ class Sea(TileSurface):
         It is that of the tile's waves under the present wind, whether or not they have grown yet.
         """
         lost = self._waves.lost_at(t)
-        c = dataclasses.replace(self.conditions, low_pass=0.0)
-        if (self.spectrum, c) != self._sloped_under[0]:
-            S = self.spectrum(self.k[:, None], self.k[None, :], c)
-            folded = self._waves.folded_sum(S * resolved(self.size))
-            self._sloped_under = (self.spectrum, c), folded * self._k**2
-        slope = self._sloped_under[1]
-        whole = float(slope.sum())
-        return float((slope * self._passed * np.exp(-2.0 * lost)).sum()) / whole if whole > 0.0 else 1.0
+        spectrum, unfiltered = self.spectrum, dataclasses.replace(self.conditions, low_pass=0.0)
+        slopes = self._slopes
+        if slopes is None or (slopes.spectrum, slopes.conditions) != (spectrum, unfiltered):
+            slopes = self._slopes = SlopeSpectrum(self._wavenumbers, spectrum, unfiltered)
+        return slopes.share_left(self.conditions.low_pass, lost)
 
     def is_steady(self, t: float) -> bool:
         """True if no wave grows or decays any more after time t [s], unless the conditions change."""
-        return not self._waves.decays and self._waves.left_to_come(t) == 0.0
+        return self._waves.is_steady(t)
 
     @property
     def frequencies(self) -> np.ndarray:
         """omega(k) [rad/s] as propagated, (size, size), FFT order; 0 on the mean and the Nyquist lines."""
-        return self._waves.full(2.0 * np.pi * self._waves.rate) * resolved(self.size)
+        return self._waves.frequencies
 
     @property
     def decay_rates(self) -> np.ndarray:
         """Decay rate [1/s] of each wave, (size, size), FFT order."""
-        return self._waves.full(self._waves.decay) * resolved(self.size)
+        return self._wavenumbers.full(self._waves.decay) * resolved(self.size)
 
     @property
     def ripples(self) -> Ripples:
         """The rings on this sea, made on first use."""
-        if self._ripples is None:
-            self._ripples = Ripples(self.size, self.length, self._real)
-            self._ripples.set_medium(-math.inf, self._k, self._waves.rate, self._waves.decay, self.conditions)
-        return self._ripples
+        heights, waves, numbers = self._heights, self._waves, self._wavenumbers
+        if heights.ripples is None:
+            heights.ripples = Ripples(self.size, self.length, numbers.real)
+            heights.ripples.set_medium(-math.inf, numbers.quarter, waves.rate, waves.decay, self.conditions)
+        return heights.ripples
 
     def heights_spectrum(self, t: float) -> np.ndarray:
         """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2). Cached for the last t."""
-        return self._heights.spectrum(t, self.version, self._waves, self._ripples)
+        return self._heights.spectrum(t)
 
     def mean_height(self, t: float) -> float:
         """Mean height [m] of the displaced points at time t [s], see `Surface.mean_height`. Kept until another t."""
-        if self._choppiness == 0.0:
-            return 0.0
-        return self._choppiness * self._heights.mean_height(t, self.version, self._waves, self._ripples)
+        return self._heights.mean_height(t, self._choppiness)
 
-    def set_input(self, t: float) -> None:
-        """The transform's input: `heights_spectrum` and the mean height."""
-        self._heights.set_input(t, self.version, self._waves, self._ripples, self._choppiness)
+    def _draw(
+        self, spectrum: str | Spectrum[Any], values: dict[str, Any], medium: Medium, unit: np.ndarray
+    ) -> DrawnWaves:
+        """Check everything, then set spectrum, conditions and medium, and return their waves.
 
-    def _set_conditions(self, spectrum: str | Spectrum[Any], values: dict[str, Any], medium: Medium) -> None:
-        """Check everything, then set spectrum, conditions, medium, and all arrays that depend on them."""
+        unit: amplitudes over their size, a full plane.
+        """
         chosen, given = checked_conditions(spectrum, values, self._given)
         conditions = chosen.conditions(**given)
         medium = dataclasses.replace(medium, **{n: v for n, v in values.items() if n in _MEDIUM})
-        omega, decay = medium.roots(self._k, conditions)
-        self.spectrum, self.conditions, self.medium, self._given = chosen, conditions, medium, given
+        omega, decay = medium.roots(self._wavenumbers.quarter, conditions)
         raise_if_stopped()
         S = chosen(self.k[:, None], self.k[None, :], conditions)
         dk = 2.0 * math.pi / self.length
-        self._passed = np.exp(-((self._k * conditions.low_pass) ** 2))
         if chosen.line is not None:
-            self._waves.unit = with_line(S, self._waves.unit, chosen.line(conditions), dk)
-        self._waves.set_conditions(np.sqrt(S) * dk, omega, decay)
+            unit = with_line(S, unit, chosen.line(conditions), dk)
+        target = np.sqrt(S) * dk
         raise_if_stopped()
+        self.spectrum, self.conditions, self.medium, self._given = chosen, conditions, medium, given
+        return DrawnWaves(unit, target, omega, decay)
 
 
 def checked_conditions(

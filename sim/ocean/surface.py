@@ -9,7 +9,7 @@ from sim.interruption import raise_if_stopped
 from sim.ocean.evolve import set_imaginary_multiple, set_real_multiple
 
 if TYPE_CHECKING:
-    from sim.ocean.sea import Sea
+    from sim.ocean.tile_heights import TileHeights
 
 
 class Multiple(Protocol):
@@ -38,18 +38,17 @@ class Surface:
     Two-component fields are views of two planes: field[..., 0] is contiguous.
     """
 
-    def __init__(self, sea: "Sea", t: float, fields: dict[str, np.ndarray]) -> None:
-        """fields: those already computed; the sea keeps the same dict, but no Surface: a cycle would hold memory."""
-        self.sea, self.t, self.fields = sea, t, fields
-        self.choppiness = sea.choppiness
+    def __init__(self, heights: "TileHeights", t: float, choppiness: float, fields: dict[str, np.ndarray]) -> None:
+        """fields: those already computed; `heights` keeps the same dict, but no Surface: a cycle would hold memory."""
+        self.heights, self.t, self.choppiness, self.fields = heights, t, choppiness, fields
+        self.numbers, self.transforms = heights.waves.numbers, heights.transforms
 
     @field
     def height(self) -> np.ndarray:
         """Height (size, size) [m] of the displaced point labelled x, y, with `mean_height`. One transform."""
-        transforms = self.sea.transforms
-        self.sea.set_input(self.t)
-        grid = transforms.grids.take(1)[0]
-        transforms.set_grid(grid)
+        self.heights.set_input(self.t, self.choppiness)
+        grid = self.transforms.grids.take(1)[0]
+        self.transforms.set_grid(grid)
         return grid
 
     @property
@@ -61,7 +60,7 @@ class Surface:
         higher than that of the water by the same sum (Longuet-Higgins 1986, J. Fluid Mech. 173:683, for one deep wave
         k a^2/2). It is that of the displacement as drawn: of the waves that the tile has, at any choppiness and depth.
         """
-        return self.sea.mean_height(self.t)
+        return self.heights.mean_height(self.t, self.choppiness)
 
     @field
     def displacement(self) -> np.ndarray:
@@ -72,7 +71,7 @@ class Surface:
         """
         out = self._two_planes()
         if self.choppiness > 0.0:
-            rows = self.sea.rows
+            rows = self.numbers.rows
             chop = rows["k"] * rows["k"].dtype.type(self.choppiness)
             self._set_field(set_imaginary_multiple, chop, rows["1"], "1/k", out[..., 0])
             self._set_field(set_imaginary_multiple, rows["1"], chop, "1/k", out[..., 1])
@@ -83,7 +82,7 @@ class Surface:
     @field
     def slope(self) -> np.ndarray:
         """Slope (size, size, 2) of the height along x and y, by label. Two transforms."""
-        rows, out = self.sea.rows, self._two_planes()
+        rows, out = self.numbers.rows, self._two_planes()
         self._set_field(set_imaginary_multiple, rows["k"], rows["1"], "1", out[..., 0])
         self._set_field(set_imaginary_multiple, rows["1"], rows["k"], "1", out[..., 1])
         return out
@@ -91,7 +90,7 @@ class Surface:
     @field
     def strain(self) -> np.ndarray:
         """(Dxx, Dyy, Dxy), shape (3, size, size): how the displacement stretches the grid. Three transforms."""
-        rows, out = self.sea.rows, self.sea.transforms.grids.take(3)
+        rows, out = self.numbers.rows, self.transforms.grids.take(3)
         out[...] = 0.0
         if self.choppiness > 0.0:
             chop = -rows["1"].dtype.type(self.choppiness)
@@ -106,10 +105,9 @@ class Surface:
         return (1.0 + Dxx) * (1.0 + Dyy) - Dxy * Dxy
 
     def _two_planes(self) -> np.ndarray:
-        return np.moveaxis(self.sea.transforms.grids.take(2), 0, -1)
+        return np.moveaxis(self.transforms.grids.take(2), 0, -1)
 
     def _set_field(self, multiple: Multiple, row: np.ndarray, column: np.ndarray, radial: str, out: np.ndarray) -> None:
-        sea = self.sea
-        spectrum = sea.transforms.spectrum.view(row.dtype)
-        multiple(sea.heights_spectrum(self.t), row, column, sea.radial[radial], spectrum)
-        sea.transforms.set_grid(out)
+        spectrum = self.transforms.spectrum.view(row.dtype)
+        multiple(self.heights.spectrum(self.t), row, column, self.numbers.radial[radial], spectrum)
+        self.transforms.set_grid(out)

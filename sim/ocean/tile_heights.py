@@ -1,66 +1,79 @@
 """The heights h(k, t) of a tile with its rings, as the transforms take them: for the last time that was asked for."""
 
+import copy
 from typing import Any
 
 import numpy as np
 
 from sim.ocean.evolve import set_heights, weighted_energy
 from sim.ocean.ripples import Ripples
+from sim.ocean.surface import Surface
+from sim.ocean.tile_waves import TileWaves
 from sim.ocean.transforms import Transforms
-from sim.ocean.wave_sizes import WaveSizes
 
 
 class TileHeights:
-    """Evolves the waves of one tile. Not for two threads at once."""
+    """Evolves the waves of one tile, and keeps what was computed of the last surface. Not for two threads at once."""
 
-    def __init__(self, transforms: Transforms, radial: dict[str, np.ndarray], real: Any) -> None:
-        """radial: "1" and "k" of the quarter plane, in the type `real`."""
-        self.transforms, self.radial, self.real = transforms, radial, real
-        size = 2 * len(radial["1"])
-        self.scratch = np.empty(size, real), np.empty(size, real)
+    def __init__(self, waves: TileWaves, transforms: Transforms) -> None:
+        self.waves, self.transforms = waves, transforms
+        self.ripples: Ripples | None = None
+        self.time = 0.0  # [s] of the last surface, or of the last change if that is later
+        self.latest: tuple[tuple | None, dict[str, np.ndarray]] = None, {}  # key of the last surface, and its fields
+        numbers = waves.numbers
+        self.scratch = np.empty(numbers.size, numbers.real), np.empty(numbers.size, numbers.real)
         self.heights: np.ndarray | None = None  # made on first use
         self.evolved: tuple | None = None  # key of time and state
         self.mean: tuple[tuple | None, float] = None, 0.0  # the same, and the mean [m]
 
-    def spectrum(self, t: float, version: object, waves: WaveSizes, ripples: Ripples | None) -> np.ndarray:
-        """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2).
+    def copied(self, waves: TileWaves, memo: dict[int, Any]) -> "TileHeights":
+        """An independent copy with a copy of the waves, for the same thread: it shares the transforms."""
+        other = TileHeights(waves, self.transforms)
+        other.ripples, other.time = copy.deepcopy(self.ripples, memo), self.time
+        return other
 
-        version: differs where the waves have changed.
-        """
+    def key(self, t: float) -> tuple:
+        """A key of time, waves and rings."""
+        return t, self.waves.version, -1 if self.ripples is None else self.ripples.version
+
+    def surface(self, t: float, choppiness: float) -> Surface:
+        """The surface at time t [s]; it has the fields of the last one if that was the same."""
+        key = choppiness, self.key(t)
+        if self.latest[0] != key:
+            self.latest = key, {}
+        self.time = t
+        return Surface(self, t, choppiness, self.latest[1])
+
+    def spectrum(self, t: float) -> np.ndarray:
+        """h(k, t) with rings on the half plane ky >= 0, as its real view (N, N + 2)."""
+        waves, numbers = self.waves, self.waves.numbers
         if self.heights is None:
-            size = len(self.scratch[0])
-            self.heights = np.zeros((size, size + 2), self.real)
-        if self.evolved != key_of(t, version, ripples):
+            self.heights = np.zeros((numbers.size, numbers.size + 2), numbers.real)
+        if self.evolved != self.key(t):
             even, odd = waves.planes_at(t)
-            fade = self.radial["1"]
+            fade = numbers.radial["1"]
             if waves.decays:
-                fade = np.exp(waves.fall * self.real(t - waves.base))
-            copy = self.transforms.spectrum.view(self.real)
-            set_heights(even, odd, waves.rate, fade, t - waves.base, *self.scratch, self.heights, copy)
-            if ripples is not None:
-                ripples.add_to(self.heights, t)
-            self.evolved = key_of(t, version, ripples)
+                fade = np.exp(waves.fall * numbers.real(t - waves.base))
+            copied = self.transforms.spectrum.view(numbers.real)
+            set_heights(even, odd, waves.rate, fade, t - waves.base, *self.scratch, self.heights, copied)
+            if self.ripples is not None:
+                self.ripples.add_to(self.heights, t)
+            self.evolved = self.key(t)
         return self.heights
 
-    def mean_height(self, t: float, version: object, waves: WaveSizes, ripples: Ripples | None) -> float:
-        """Mean height [m] of the displaced points, over the choppiness: see `Surface.mean_height`."""
-        key = key_of(t, version, ripples)
+    def mean_height(self, t: float, choppiness: float) -> float:
+        """Mean height [m] of the displaced points: see `Surface.mean_height`."""
+        if choppiness == 0.0:
+            return 0.0
+        key = self.key(t)
         if self.mean[0] != key:
-            self.mean = key, float(weighted_energy(self.spectrum(t, version, waves, ripples), self.radial["k"]))
-        return self.mean[1]
+            self.mean = key, float(weighted_energy(self.spectrum(t), self.waves.numbers.radial["k"]))
+        return choppiness * self.mean[1]
 
-    def set_input(
-        self, t: float, version: object, waves: WaveSizes, ripples: Ripples | None, choppiness: float
-    ) -> None:
+    def set_input(self, t: float, choppiness: float) -> None:
         """The transform's input: `spectrum` and the mean height. Without rings evolving has left a copy there."""
         before = self.evolved
-        heights, there = self.spectrum(t, version, waves, ripples), self.transforms.spectrum.view(self.real)
-        if self.evolved is before or ripples is not None:
+        heights, there = self.spectrum(t), self.transforms.spectrum.view(self.waves.numbers.real)
+        if self.evolved is before or self.ripples is not None:
             there[...] = heights
-        mean = choppiness * self.mean_height(t, version, waves, ripples) if choppiness else 0.0
-        there[0, 0] = heights[0, 0] + mean  # that of rings is the water they brought
-
-
-def key_of(t: float, version: object, ripples: Ripples | None) -> tuple:
-    """A key of time, waves and rings."""
-    return t, version, -1 if ripples is None else ripples.version
+        there[0, 0] = heights[0, 0] + self.mean_height(t, choppiness)  # that of rings is the water they brought

@@ -22,6 +22,8 @@ SAFETY, SHRINK, GROW = 0.9, 0.2, 2.0
 SMALLEST = 1e-6  # step over the first one, below which the search is given up
 MAX_GROWTH = 1.2  # of the linear energy's root since the start: it is nearly conserved, and more is no solution
 
+Rates = Callable[[float, np.ndarray, np.ndarray], float]  # (t, u, out): sets nonlinear rates, returns the loss
+
 
 @dataclasses.dataclass
 class End:
@@ -65,13 +67,7 @@ class March:
     """The steps of one sea."""
 
     def __init__(
-        self,
-        propagator: Propagator,
-        rates: Callable[[float, np.ndarray, np.ndarray], float],
-        t: float,
-        u: np.ndarray,
-        step: float,
-        rtol: float | None,
+        self, propagator: Propagator, rates: Rates, t: float, u: np.ndarray, step: float, rtol: float | None
     ) -> None:
         """rates(t, u, out): sets the nonlinear rates and returns the loss [J/m2/s]. step [s]: of all steps, or the
         first one if their error is to be rtol of the waves' amplitude."""
@@ -85,14 +81,23 @@ class March:
         self.start, self.end, self._new = (End(t, u.copy(), np.zeros_like(u), 0.0, 0.0) for _ in range(3))
         self.end.power = self._evaluate(t, self.end.u, self.end.rate)
 
-    def copied(self, rates: Callable[[float, np.ndarray, np.ndarray], float]) -> "March":
+    def copied(self) -> "March":
         """An independent copy for the same thread: it shares arrays that are set before they are read."""
         other = copy.copy(self)
-        other.rates = rates
-        other.start, other.end = (
-            dataclasses.replace(end, u=end.u.copy(), rate=end.rate.copy()) for end in (self.start, self.end)
+        # The third too: it is the end of the next step.
+        other.start, other.end, other._new = (
+            dataclasses.replace(end, u=end.u.copy(), rate=end.rate.copy()) for end in (self.start, self.end, self._new)
         )
         return other
+
+    def restarted(self, propagator: Propagator, rates: Rates, t: float, u: np.ndarray) -> "March":
+        """A march on another grid, with the step that this one would take next."""
+        return March(propagator, rates, t, u, self.step, self.rtol)
+
+    @property
+    def reached(self) -> float:
+        """End [s] of the last step."""
+        return self.end.t
 
     def advance(self, t: float) -> None:
         """Step until the last step ends at t [s] or later. Raises DivergenceError, see `NonlinearSea.advance`."""
@@ -172,6 +177,37 @@ class March:
         new.power = self._evaluate(new.t, new.u, new.rate)
         new.lost = a.lost + h / 6.0 * (a.power + 2.0 * (power2 + power3) + power4)
         return new, 0.1 * h * self.propagator.distance(k4, new.rate)
+
+
+class LinearMarch:
+    """The march of a linear sea: any time is within reach, without steps."""
+
+    steps, reached = 0, math.inf
+
+    def __init__(self, propagator: Propagator, t: float, u: np.ndarray) -> None:
+        """From spectra u (2, rows, columns) at time t [s] on."""
+        self.propagator, self.start, self.first = propagator, t, u
+
+    def copied(self) -> "LinearMarch":
+        """Itself: it does not change."""
+        return self
+
+    def restarted(self, propagator: Propagator, rates: Rates, t: float, u: np.ndarray) -> "LinearMarch":
+        """A march on another grid."""
+        return LinearMarch(propagator, t, u)
+
+    def advance(self, t: float) -> None:
+        """Nothing to do."""
+
+    def at(self, t: float) -> np.ndarray:
+        """Spectra (2, rows, columns) at time t [s]."""
+        moved, first = np.empty_like(self.first), real(self.first)
+        propagate(self.propagator.turn(t - self.start), first, first, 0.0, real(moved))
+        return moved
+
+    def lost(self, t: float) -> float:
+        """0: nothing breaks."""
+        return 0.0
 
 
 def real(spectra: np.ndarray) -> np.ndarray:

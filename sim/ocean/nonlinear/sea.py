@@ -17,17 +17,20 @@ time at once. Limits:
 """
 
 import copy
+import dataclasses
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.ocean.nonlinear.breaking import Eddies, tail_decay
-from sim.ocean.nonlinear.expansion import Expansion
-from sim.ocean.nonlinear.flow import Flow, set_heights
-from sim.ocean.nonlinear.march import March, Propagator, propagate, real
-from sim.ocean.nonlinear.padded_transforms import PaddedTransforms, Work
+from sim.ocean.nonlinear.energy import EnergyBalance, SeaEnergy
+from sim.ocean.nonlinear.equations import WaveEquations
+from sim.ocean.nonlinear.fade_in import FadeIn
+from sim.ocean.nonlinear.flow import set_heights
+from sim.ocean.nonlinear.instant import NonlinearInstant
+from sim.ocean.nonlinear.march import LinearMarch, March
+from sim.ocean.nonlinear.padded_transforms import PaddedTransforms
 from sim.ocean.nonlinear.start import checked_size, free_waves, mean_wavenumber, resized, started
 from sim.ocean.nonlinear.surface import NonlinearSurface
 from sim.ocean.query import sample
@@ -46,20 +49,8 @@ from sim.validation import (
 from sim.waves import Kinematics, Waves
 
 ORDERS = (1, 7)
-FADE_POWER = 4  # of time in the fade-in
 FADE_PERIODS = 10.0  # of the mean wave, by default when a linear sea starts
-FADED = 40.0 ** (1.0 / FADE_POWER)  # times of the fade-in until the nonlinear part is whole to rounding
 FIRST_STEP = 0.05  # periods of the mean wave
-
-
-class SeaEnergy(NamedTuple):
-    """Mean energy per area [J/m2] of a nonlinear sea. kinetic + potential + breaking = start + fade_in + error."""
-
-    kinetic: float
-    potential: float
-    breaking: float  # lost so far to the damping of breaking waves
-    fade_in: float  # brought so far by the fading in of the nonlinear terms
-    error: float  # of the steps, since the fade-in ended
 
 
 class NonlinearSea:
@@ -106,49 +97,36 @@ class NonlinearSea:
         modes, u, self.conditions = begin.modes, begin.u, begin.conditions
         self.length, self.depth, self.gravity = modes.length, modes.depth, modes.gravity
         self.density = self.conditions.density
-        self._modes, self._start_time = modes, begin.time
 
         k = mean_wavenumber(modes, u[0])
         period = 2.0 * math.pi / math.sqrt(self.gravity * k * math.tanh(min(k * self.depth, 100.0)))
         if fade is None:
             fade = FADE_PERIODS * period if begin.is_linear else 0.0
         self.fade = check_not_negative("fade", fade, "s")
-        self._rtol = check_number("rtol", rtol, 1e-14, 0.1, "") if step is None else None
+        tolerance = check_number("rtol", rtol, 1e-14, 0.1, "") if step is None else None
         chosen = FIRST_STEP * period if step is None else check_positive("step", step, "s")
         self.is_damped = breaking and self.order > 1
-        self._eddy_scale = 2.0 * math.pi / period / k**2
-        self._lost_before = self._lost = self._fade_in = 0.0
-        self._is_faded = self.fade == 0.0
-        self._begin(u, begin.time, chosen)
-        self._begun = sum(self._energies())
+        eddy_scale = 2.0 * math.pi / period / k**2 if self.is_damped else None
+        fade_in = FadeIn(begin.time, self.fade)
+        equations = WaveEquations(modes, self.order, self.density, fade_in, eddy_scale)
+        self._begin(equations, u, begin.time)
+        self._march: March | LinearMarch
+        if self.order == 1:
+            self._march = LinearMarch(equations.propagator, begin.time, u)
+        else:
+            self._march = March(equations.propagator, equations.set_rates, begin.time, u, chosen, tolerance)
+        self._balance = EnergyBalance(sum(self._now.energies), None if self.fade > 0.0 else 0.0)
 
-    def _begin(self, u: np.ndarray, t: float, step: float) -> None:
-        """Go on from spectra (2, rows, columns) at a time [s], with a first step [s]."""
-        modes = self._modes
-        self.size, self.transforms = modes.size, Work()
-        self._first, self._first_time = u, t
-        self._fields = PaddedTransforms((modes.size[1], modes.size[0]), len(modes.kx), self.transforms)
-        self._expansion = Expansion(modes, self.order, self.transforms) if self.order > 1 else None
-        self._propagator = Propagator(modes, tail_decay(modes) if self.is_damped else np.zeros_like(modes.k))
-        self._eddies: Eddies | None = None
-        self._march: March | None = None
-        self._set_state(u, t)
-        if self._expansion is not None:
-            if self.is_damped:
-                self._eddies = Eddies(self._expansion, self._eddy_scale)
-            self._march = March(self._propagator, self._evaluate, t, u, step, self._rtol)
-
-    def _set_state(self, u: np.ndarray, t: float) -> None:
-        self._u, self._time = u, t
-        self._rates: np.ndarray | None = None  # the whole ones of this time
-        self._flow: Flow | None = None
-        self._surface = NonlinearSurface(self._modes, self._fields, u[0], t)
+    def _begin(self, equations: WaveEquations, u: np.ndarray, t: float) -> None:
+        """Go on by the equations on a grid, from spectra (2, rows, columns) at time t [s]."""
+        (n, m), columns = equations.modes.size, len(equations.modes.kx)
+        self.size, self.transforms, self._equations = (n, m), equations.work, equations
+        self._now = NonlinearInstant(equations, PaddedTransforms((m, n), columns, self.transforms), u, t)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "NonlinearSea":
         """An independent copy for the same thread, with shared transforms and constant arrays."""
         other = copy.copy(self)
-        if self._march is not None:
-            other._march = self._march.copied(other._evaluate)
+        other._march = self._march.copied()
         return other
 
     def resized(self, size: int | tuple[int, int]) -> "NonlinearSea":
@@ -156,61 +134,61 @@ class NonlinearSea:
 
         Raises ValueError for a size that is not allowed.
         """
-        other = copy.copy(self)
-        other._modes, u = resized(self._modes, self._u, checked_size(size))
-        other._lost_before = self._lost
-        other._begin(u, self._time, self._march.step if self._march else 1.0)
+        other, t = copy.copy(self), self.time
+        modes, u = resized(self._equations.modes, self._now.u, checked_size(size))
+        equations = self._equations.on_grid(modes)
+        other._begin(equations, u, t)
+        other._march = self._march.restarted(equations.propagator, equations.set_rates, t, u)
+        other._balance = dataclasses.replace(self._balance, lost=self._balance.lost + self._march.lost(t))
         return other
 
     def advance(self, t: float) -> None:
         """Move on to time t [s]. Raises ValueError for a time before the present one, DivergenceError if the waves
         become too steep for the method; the sea then stays at the last time that could be reached."""
         t = check_finite("t", t, "s")
-        if t < self._time:
-            raise argument_error("t", t, f"the time of the sea, {self._time:g} s, or later")
-        faded = self._start_time + FADED * self.fade
-        if not self._is_faded and t >= faded:
+        if t < self.time:
+            raise argument_error("t", t, f"the time of the sea, {self.time:g} s, or later")
+        faded = self._equations.fade_in.end
+        if self._balance.fade_in is None and t >= faded:
             self._move(faded)
-            self._fade_in, self._is_faded = sum(self._energies()) + self._lost - self._begun, True
-        if t > self._time:
+            self._balance = dataclasses.replace(self._balance, fade_in=self.energy.fade_in)
+        if t > self.time:
             self._move(t)
 
     def surface(self, t: float) -> NonlinearSurface:
         """The surface at time t [s]; each field is computed when first read."""
         self.advance(t)
-        return self._surface
+        return self._now.surface
 
     @property
     def time(self) -> float:
         """Time [s] of all fields."""
-        return self._time
+        return self._now.t
 
     @property
     def height(self) -> np.ndarray:
         """Elevation (n, m) [m] of the surface."""
-        return self._surface.height
+        return self._now.surface.height
 
     @property
     def potential(self) -> np.ndarray:
         """Velocity potential (n, m) [m2/s] on the surface; its mean is 0."""
-        return self._fields.field_of(self._u[1])
+        return self._now.potential
 
     @property
     def slope(self) -> np.ndarray:
         """Slope (n, m, 2) of the surface along x and y."""
-        return self._surface.slope
+        return self._now.surface.slope
 
     @property
     def rise(self) -> np.ndarray:
         """Rate (n, m) [m/s] at which the surface rises in place."""
-        return self._fields.field_of(self._whole_rates()[0])
+        return self._now.rise
 
     @property
     def significant_height(self) -> float:
         """Hs = 4 sqrt(m0) [m], m0 the variance of the elevation."""
-        eta = self._u[0].copy()
-        eta[0, 0] = 0.0
-        return 4.0 * math.sqrt(self._modes.mean_product(eta, eta))
+        return self._now.significant_height
 
     def significant_height_at(self, t: float) -> float:
         """The same at time t [s]."""
@@ -220,15 +198,12 @@ class NonlinearSea:
     @property
     def energy(self) -> SeaEnergy:
         """The energy account at the present time."""
-        kinetic, potential = self._energies()
-        change = kinetic + potential + self._lost - self._begun
-        fade_in = self._fade_in if self._is_faded else change
-        return SeaEnergy(kinetic, potential, self._lost, fade_in, change - fade_in)
+        return self._balance.account(*self._now.energies, self._march.lost(self.time))
 
     @property
     def steps(self) -> int:
         """Steps taken so far; 0 for a linear sea."""
-        return self._march.steps if self._march else 0
+        return self._march.steps
 
     def height_at(self, points: ArrayLike, t: float, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Height (n,) [m] of the surface above points (n, 2) [m] at time t [s], and a residual (n,) [m] of 0.
@@ -239,9 +214,9 @@ class NonlinearSea:
         check_kind("exact", exact, bool, "True or False")
         where = check_positions("points", points)
         self.advance(t)
-        height = np.empty(len(where))
+        height, modes = np.empty(len(where)), self._equations.modes
         if exact:
-            set_heights(where, self._u[0], self._modes.kx, self._modes.ky, height)
+            set_heights(where, self._now.u[0], modes.kx, modes.ky, height)
         else:
             sample(self._cells(where), self.height, 1.0, height)
         return height, np.zeros(len(where))
@@ -265,8 +240,8 @@ class NonlinearSea:
 
         They go on as linear waves; moorings take them, and `largest` picks a few.
         """
-        self.advance(self._time if t is None else t)
-        return free_waves(self._modes, self._u, self._time, self.conditions.water)
+        self.advance(self.time if t is None else t)
+        return free_waves(self._equations.modes, self._now.u, self.time, self.conditions.water)
 
     def kinematics(self, points: ArrayLike, t: float | None = None) -> Kinematics:
         """The water at points (n, 3) [m], z up from still water, by the sum over all waves; see `flow.py`.
@@ -275,10 +250,8 @@ class NonlinearSea:
         still water, -rho g z. Raises ValueError for another shape.
         """
         where = check_positions("points", points, 3)
-        self.advance(self._time if t is None else t)
-        if self._flow is None:
-            self._flow = Flow(self._modes, self._expansion, self.density, self._u, self._whole_rates())
-        return self._flow.at(where)
+        self.advance(self.time if t is None else t)
+        return self._now.flow.at(where)
 
     def _cells(self, where: np.ndarray) -> np.ndarray:
         """Points (n, 2) [m] in cells of the grid."""
@@ -286,44 +259,8 @@ class NonlinearSea:
 
     def _move(self, t: float) -> None:
         """The same as `advance` for a time that is allowed."""
-        if self._march is not None:
-            try:
-                self._march.advance(t)
-            finally:  # without the whole way: at the end of the last step
-                t = min(t, self._march.end.t)
-                self._lost = self._lost_before + self._march.lost(t)
-                self._set_state(self._march.at(t), t)
-        else:
-            moved = np.empty_like(self._u)
-            first = real(self._first)
-            propagate(self._propagator.turn(t - self._first_time), first, first, 0.0, real(moved))
-            self._set_state(moved, t)
-
-    def _evaluate(self, t: float, u: np.ndarray, out: np.ndarray) -> float:
-        """Set the nonlinear rates, and return the loss to breaking [J/m2/s]."""
-        assert self._expansion is not None
-        self._expansion.set_rates(u[0], u[1], out)
-        faded = 1.0
-        if not self._is_faded:
-            faded = -math.expm1(-(((t - self._start_time) / self.fade) ** FADE_POWER))
-        if self._eddies is None:
-            out *= faded
-            return 0.0
-        return self.density * self._eddies.add_damping(u, faded, self._propagator.decay, out)
-
-    def _whole_rates(self) -> np.ndarray:
-        """Rates (2, rows, columns) of elevation and potential now, without damping and with all nonlinear terms."""
-        if self._rates is None:
-            rates = np.zeros_like(self._u)
-            if self._expansion is not None:
-                self._expansion.set_rates(self._u[0], self._u[1], rates)
-            rates[0] += self._modes.k * self._modes.tanh * self._u[1]
-            rates[1] -= self.gravity * self._u[0]
-            self._rates = rates
-        return self._rates
-
-    def _energies(self) -> tuple[float, float]:
-        """Kinetic and potential energy [J/m2]."""
-        eta, psi = self._u
-        kinetic = 0.5 * self.density * self._modes.mean_product(psi, self._whole_rates()[0])
-        return kinetic, 0.5 * self.density * self.gravity * self._modes.mean_product(eta, eta)
+        try:
+            self._march.advance(t)
+        finally:  # without the whole way: at the end of the last step
+            t = min(t, self._march.reached)
+            self._now = self._now.moved_to(self._march.at(t), t)

@@ -157,7 +157,7 @@ def test_without_rain_no_ring_is_begun_and_no_drop_falls():
     scene = Scene(SquareSeaParams(**SMALL, length=32.0))
     run(scene, 20)
     assert scene.counts["rings"] == scene.counts["rainfall steps"] == 0
-    assert scene.sea._ripples is None
+    assert scene.sea._heights.ripples is None
     assert scene.frame().rain is None
 
 

@@ -99,6 +99,19 @@ def test_a_copy_goes_its_own_way() -> None:
     assert sea.energy == other.energy
 
 
+def test_a_sea_and_its_copy_may_move_in_turns() -> None:
+    alone, sea = (NonlinearSea(start=Sea(**LINEAR), order=3, fade=5.0, step=0.25) for _ in range(2))
+    sea.advance(0.5)
+    other = copy.deepcopy(sea)
+    sea.advance(0.75)
+    other.advance(1.5)  # so many steps that each array of a march is written again
+    for t, moved in ((1.0, sea), (1.75, other)):
+        alone.advance(t)
+        moved.advance(t)
+        assert np.array_equal(moved.height, alone.height)
+        assert moved.energy == alone.energy
+
+
 def test_another_grid_goes_on_with_the_same_waves() -> None:
     sea = NonlinearSea(start=Sea(**LINEAR), order=3, fade=5.0)
     sea.advance(8.0)

@@ -146,7 +146,7 @@ class ServedScene:
 
     def show_compiling(self) -> None:
         """Show the running compilation: for a chosen preset, or ahead."""
-        text = self.viewer.notice or self.gate.notice or describe(*self.viewer.compiling.progress())
+        text = self.viewer.preparation.notice or self.gate.notice or describe(*self.viewer.compiling.progress())
         if text != self.compile_text:
             self.compile_text = text
             self.compile_line.content = note(text) if text else ""

@@ -201,7 +201,7 @@ def test_ending_does_not_wait_for_a_long_solve(monkeypatch: pytest.MonkeyPatch) 
 def test_ending_while_a_scene_is_opened_leaves_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     viewer = Viewer("127.0.0.1", 0)
     compiling, compiled = threading.Event(), threading.Event()
-    monkeypatch.setattr(viewer, "compile", lambda *_: (compiling.set(), compiled.wait(20.0)))
+    monkeypatch.setattr(viewer.preparation, "compile", lambda *_, **__: (compiling.set(), compiled.wait(20.0)))
     opening = threading.Thread(target=viewer.open, args=("rope",))
     opening.start()
     assert compiling.wait(10.0)

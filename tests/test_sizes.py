@@ -13,7 +13,7 @@ LONG_CLASSES: set[str] = set()
 MAX_OBJECT, MAX_ATTRIBUTES = 400, 20  # lines of a class with all its bases; attributes that these assign to self
 LARGE_OBJECTS: set[str] = set()
 MANY_ATTRIBUTES = {
-    "NonlinearSea", "Panel", "RadialSea", "Sea",
+    "NonlinearSea", "RadialSea", "Sea",
 }  # fmt: skip
 
 

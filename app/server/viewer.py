@@ -18,6 +18,7 @@ from app.panel.compare import PaneWords
 from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
+from app.panel.settings import SceneSettings
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_page
@@ -224,6 +225,11 @@ class Viewer:
     def view(self) -> AnyView:
         """Its drawing."""
         return self.served.view
+
+    @property
+    def settings(self) -> SceneSettings:
+        """Its settings."""
+        return self.served.settings
 
     @property
     def panel(self) -> Panel:

@@ -78,7 +78,7 @@ def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
 
 def test_the_sphere_moves_by_its_vertices_like_the_cloth(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
-    lab.panel.load("Trampoline")
+    lab.settings.load("Trampoline")
     tab.wait(lambda: lab.loop.latest.frame.sphere is not None and lab.scene.time > 0.3)
     lab.loop.commands.put(Pause())
     tab.wait(lambda: not lab.loop.run.running and lab.served.shown == lab.loop.latest.serial)

@@ -16,7 +16,7 @@ from app.panel.changes import Changes
 from app.panel.compare import Beside, Compare
 from app.panel.controls import Controls
 from app.panel.controls_tab import VIEW_GROUPS, ControlsTab
-from app.panel.display import Display, add_switches
+from app.panel.display import add_switches, add_theme_buttons
 from app.panel.files import MakeReplay
 from app.panel.guide import GuideTab
 from app.panel.head import Head
@@ -65,7 +65,7 @@ class Panel:
         self.server, self.kind, self.view, self.settings, self.workbook = server, kind, view, settings, workbook
         self.status_at = self.marks_at = 0.0
         self.plots = Plots(server, kind)
-        Display(gui, view)
+        add_theme_buttons(gui, view)
         self.head = Head(gui, view, settings, scenes, self.place_first_view)
         self.controls = Controls(gui, lambda: settings.params, settings.set)
         self.recorder = Recorder(kind.packing, wake)

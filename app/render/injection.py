@@ -32,7 +32,7 @@ MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shader
 SCRIPTS = (
     "quality.js", "frames.js", "injection.js", "packed.js", "underwater.js", "open_water.js", "contact.js",
     "water_shader.js", "sky_table.js", "polar_grid.js", "lit_sea.js", "half.js", "water.js", "rain.js", "smoke.js",
-    "dark.js", "labels.js",
+    "sun.js", "dark.js", "labels.js",
 )  # fmt: skip
 CONTACT_SHADOW = "contact_shadow"
 

@@ -5,11 +5,17 @@ import pytest
 
 from app.messages import Pause, Play
 from app.panel import stability_map as live
+from app.render.surroundings import SUN_INTENSITY
+from app.scenes.rope.view import RopeView
 from app.scenes.springs.rope_parameters import ROOT
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
+# The intensities of the drawn lights with a shadow, and the number of all those.
+SUNS = """() => {
+    const suns = window.__viserMutable.scene.children.filter((one) => one.isDirectionalLight && one.castShadow);
+    return [suns.filter((one) => one.visible).map((one) => one.intensity), suns.length]; }"""
 
 
 def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_tab) -> None:
@@ -32,6 +38,14 @@ def test_nothing_steps_until_somebody_looks(lab: Viewer, open_tab) -> None:
     steps = lab.loop.run.counts["steps"]
     lab.served.stop.wait(0.5)
     assert lab.loop.run.counts["steps"] == steps
+
+
+def test_one_light_with_one_shadow_stands_for_the_sun(shown: tuple[Viewer, Tab]) -> None:
+    lab, tab = shown
+    tab.wait(lambda: tab.page.evaluate(SUNS) == [[pytest.approx(SUN_INTENSITY)], 3])
+    assert isinstance(lab.view, RopeView)
+    lab.view.surroundings.sun.intensity = 0.9  # viser makes new lights
+    tab.wait(lambda: tab.page.evaluate(SUNS) == [[pytest.approx(0.9)], 3])
 
 
 def test_dragging_the_arrows_moves_the_root(shown: tuple[Viewer, Tab]) -> None:

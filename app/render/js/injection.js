@@ -128,6 +128,7 @@ function beforeRender(renderer, scene, camera) {
     if (material && isLinked(renderer, material)) active.push(node.base);
   });
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
+  drawOneLightOfEachSun(scene);
   dressSmoke(scene);
   dressLabels(renderer, scene, camera);
   drawn = active.sort().join("\n");

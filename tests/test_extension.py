@@ -58,9 +58,9 @@ for name in ("square_sea", "radial_sea"):
     viewer.served.stop_threads()
     panel, loop = viewer.panel, viewer.loop
     assert not panel.controls["sea_height"].visible
-    panel.set("spectrum", "bretschneider")
+    panel.settings.set("spectrum", "bretschneider")
     assert panel.controls["sea_height"].visible
-    panel.set("sea_height", 4.0)
+    panel.settings.set("sea_height", 4.0)
     loop.tick(1 / 60)
     scene = viewer.scene
     low = scene.sea.conditions.sea_height if name == "square_sea" else scene.readings().clean_height

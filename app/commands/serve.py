@@ -250,8 +250,8 @@ class Keeper:
         from app.scenes.last_setup import keep_last
         from app.scenes.setups import write_query
 
-        panel = viewer.current.panel
-        setup = panel.kind, panel.params, panel.loaded
+        settings = viewer.current.settings
+        setup = settings.kind, settings.params, settings.loaded
         if setup != self.kept:
             with contextlib.suppress(OSError):
                 keep_last(write_query(*setup))

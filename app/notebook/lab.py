@@ -67,8 +67,8 @@ class Lab:
     @property
     def link(self) -> str:
         """The set-up as an address, "?scene=...": `app.show` takes it, and so does any page of the lab."""
-        panel = self._open.panel
-        return write_query(panel.kind, panel.params, panel.loaded)
+        settings = self._open.settings
+        return write_query(settings.kind, settings.params, settings.loaded)
 
     @property
     def address(self) -> str:
@@ -82,11 +82,11 @@ class Lab:
             if name not in known:
                 raise unknown_parameter(name, known)
         good = {name: check_value(name, known[name], plain(value)) for name, value in values.items()}
-        panel = self._open.panel
+        settings = self._open.settings
 
         def set_all() -> None:
             for name, value in good.items():
-                panel.set(name, value)
+                settings.set(name, value)
 
         self._on_event_loop(set_all)
 
@@ -176,12 +176,12 @@ class Lab:
 
     @property
     def _kind(self) -> AnyKind:
-        return self._open.panel.kind
+        return self._open.settings.kind
 
     @property
     def _params(self) -> Any:
         """The parameters as set now."""
-        return self._open.panel.params
+        return self._open.settings.params
 
     def _check_open(self) -> None:
         if self._viewer.ended:

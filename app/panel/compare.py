@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import viser
 
+from app.panel.settings import SceneSettings
 from app.render.html import fill, join, note
 from app.render.viser_inside import uuid_of
 from app.render.viser_types import GuiHandle, ViserEvent
@@ -33,19 +34,12 @@ class Beside(NamedTuple):
 class Compare:
     """The folder, and a line that only the page reads."""
 
-    def __init__(
-        self,
-        gui: viser.GuiApi,
-        buttons: GuiHandle,
-        names: Callable[[], tuple[str, ...]],
-        setup_of: Callable[[str], Setup],
-        beside: Beside,
-    ) -> None:
-        """buttons: that play, step and reset. names: of the available set-ups; setup_of: returns one of them.
+    def __init__(self, gui: viser.GuiApi, buttons: GuiHandle, settings: SceneSettings, beside: Beside) -> None:
+        """buttons: that play, step and reset. settings: with the presets to compare with.
 
         The line and its button stand in no tab: the page reads them also where no tab was opened.
         """
-        self.names, self.setup_of, self.beside, self.buttons = names, setup_of, beside, buttons
+        self.settings, self.beside, self.buttons = settings, beside, buttons
         self.shown: tuple[PaneWords, ...] | None = None
         self.line = gui.add_html("")
         self.end: GuiHandle = gui.add_button("One lab again", visible=False)
@@ -56,7 +50,9 @@ class Compare:
         """The folder, in the container that is open."""
         gui = self.gui
         with gui.add_folder("Compare side by side", expand_by_default=False):
-            self.choice = gui.add_dropdown("This beside", self.names(), hint="What is set now, beside a preset")
+            self.choice = gui.add_dropdown(
+                "This beside", self.settings.presets, hint="What is set now, beside a preset"
+            )
             self.start = gui.add_button("Show side by side")
             self.start.on_click(self.on_start)
             links = (
@@ -69,8 +65,8 @@ class Compare:
     async def on_start(self, event: ViserEvent) -> None:
         """Show the present set-up beside the chosen preset."""
         name = str(self.choice.value)
-        if event.client_id is not None and name in self.names():
-            self.beside.compare([self.setup_of(name)], False)
+        if event.client_id is not None and name in self.settings.presets:
+            self.beside.compare([self.settings.setup_of(name)], False)
 
     async def on_end(self, event: ViserEvent) -> None:
         """Show the lab alone again."""
@@ -79,7 +75,7 @@ class Compare:
 
     def update(self) -> None:
         """Keep the list of presets and the line for the page up to date."""
-        names = self.names()
+        names = self.settings.presets
         if self.choice.options != names:
             self.choice.options = names
         panes = self.beside.panes()

@@ -1,7 +1,7 @@
 """The controls of a scene's parameters, which show and set one record."""
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import viser
 
@@ -10,8 +10,8 @@ from app.panel.control import Control
 from sim.parameters import Value, parameters_of
 
 
-class Controls:
-    """All controls of a panel, one a parameter, in the folders of their groups."""
+class Controls(Mapping[str, Control]):
+    """All controls of a panel, one a parameter under its name, in the folders of their groups."""
 
     def __init__(
         self, gui: viser.GuiApi, read: Callable[[], BaseParams], changed: Callable[[str, Value], None]
@@ -24,6 +24,15 @@ class Controls:
         self.hidden: set[str] = set()  # names of parameters that mean nothing just now
         self.lock = threading.Lock()  # the viewer thread shows others again, the event loop sets them
         self.folders: dict[str, viser.GuiFolderHandle] = {}
+
+    def __getitem__(self, name: str) -> Control:
+        return self.own[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.own)
+
+    def __len__(self) -> int:
+        return len(self.own)
 
     def add_group(self, group: str, *, is_open: bool) -> None:
         """The folder of a group of parameters, where there are any, in the container that is open."""

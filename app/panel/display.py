@@ -19,30 +19,28 @@ def set_theme(gui: viser.GuiApi, *, dark: bool) -> None:
     )
 
 
-class Display:
+def add_theme_buttons(gui: viser.GuiApi, view: AnyView) -> None:
     """Two hidden buttons, by which a browser says whether panel and floor are to be dark.
 
     They are buttons because two browsers may say the same: viser passes on only what changes the value of a checkbox.
     """
+    dark_button: GuiHandle = gui.add_button("Dark", visible=False)
+    light_button: GuiHandle = gui.add_button("Light", visible=False)
 
-    def __init__(self, gui: viser.GuiApi, view: AnyView) -> None:
-        self.dark: GuiHandle = gui.add_button("Dark", visible=False)
-        self.light: GuiHandle = gui.add_button("Light", visible=False)
+    for button, is_dark in ((dark_button, True), (light_button, False)):
 
-        for button, is_dark in ((self.dark, True), (self.light, False)):
+        @button.on_click
+        async def _(event: ViserEvent, dark: bool = is_dark) -> None:
+            if event.client is not None:
+                set_theme(event.client.gui, dark=dark)
+                view.set_dark(event.client, dark)
 
-            @button.on_click
-            async def _(event: ViserEvent, dark: bool = is_dark) -> None:
-                if event.client is not None:
-                    set_theme(event.client.gui, dark=dark)
-                    view.set_dark(event.client, dark)
-
-        told = fill(
-            '<span data-springtide-dark="{}" data-springtide-light="{}"></span>',
-            uuid_of(self.dark),
-            uuid_of(self.light),
-        )
-        gui.add_html(str(told))
+    told = fill(
+        '<span data-springtide-dark="{}" data-springtide-light="{}"></span>',
+        uuid_of(dark_button),
+        uuid_of(light_button),
+    )
+    gui.add_html(str(told))
 
 
 def add_switches(gui: viser.GuiApi) -> None:

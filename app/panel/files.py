@@ -9,22 +9,19 @@ import threading
 import traceback
 import zipfile
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future
-from typing import TYPE_CHECKING
 
 import viser
 
 from app.messages import Pause
 from app.panel.picture import take_picture
-from app.panel.recorder import Kept
+from app.panel.plots import Plots
+from app.panel.recorder import Kept, Recorder
 from app.panel.recording_files import Plotted, plots_csv, plots_svg, recording_npz
+from app.panel.settings import SceneSettings
 from app.render.html import fill
 from app.render.viser_inside import uuid_of
 from app.render.viser_types import GuiHandle, ViserEvent
 from app.scenes.contract import AnyKind
-
-if TYPE_CHECKING:
-    from app.panel.panel import Panel
 
 PICTURE_SIZES = {  # [pixels]
     "As in the page": (0, 0),
@@ -38,7 +35,6 @@ PLOTS, CHARTS, FILM = "Plots as CSV", "Plots as SVG", "Film pictures"
 MAX_PICTURES = 900  # of a film: half a minute of a recording
 MAX_FILM = 400e6  # [bytes] of all pictures of a film
 BARRIER_SIZE = (16, 16)  # [pixels] of a picture that is asked for only to know that what was sent before it has come
-DRAWN_TIMEOUT = 5.0  # [s] for the viewer's thread to send a frame of the recording
 # Buttons with a choice. The page makes clips and PNG files of plots, and has the others made (app/render/js/share.js).
 PAGE_BUTTONS = (
     '<div class="springtide-switches" data-springtide-makers="{}"><label>Plots <select data-springtide-plots>'
@@ -55,21 +51,28 @@ MakeReplay = Callable[[AnyKind, Sequence[Kept], Plotted], str]
 class Files:
     """The buttons that make a file; `add_run` and `add` put them into the folder that is open."""
 
-    def __init__(self, panel: "Panel", wake: Callable[[], None], make_replay: MakeReplay) -> None:
-        """wake: makes the viewer's thread look at the recorder. make_replay: makes the page of a replay."""
-        self.panel, self.recorder, self.wake = panel, panel.recorder, wake
-        self.make_replay = make_replay
-        self.awaited: tuple[Kept, Future[None]] | None = None  # a frame of the recording that is to be sent
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        settings: SceneSettings,
+        recorder: Recorder,
+        plots: Plots,
+        make_replay: MakeReplay,
+        say: Callable[[str, str], None],
+    ) -> None:
+        """make_replay: makes the page of a replay. say: shows a text below the buttons of a group."""
+        self.server, self.settings, self.recorder, self.plots = server, settings, recorder, plots
+        self.make_replay, self.say_in = make_replay, say
         self.busy = threading.Lock()  # one file at a time
         self.group = ""  # in which the line on it stands
 
     def add_run(self) -> None:
         """The files that hold the run."""
-        self.panel.gui.add_button_group("", (REPLAY, ARRAYS)).on_click(self.on_file)
+        self.server.gui.add_button_group("", (REPLAY, ARRAYS)).on_click(self.on_file)
 
     def add(self) -> None:
         """The other files."""
-        gui = self.panel.gui
+        gui = self.server.gui
         makers: GuiHandle = gui.add_button_group("", (PLOTS, CHARTS, FILM), visible=False)
         makers.on_click(self.on_file)
         makers.visible = not uuid_of(makers)  # the page presses them
@@ -80,20 +83,20 @@ class Files:
 
     def say(self, text: str) -> None:
         """Say something below the button that was pressed last."""
-        self.panel.share.say(self.group, text)
+        self.say_in(self.group, text)
 
     async def on_file(self, event: ViserEvent) -> None:
         """Make a file in a separate thread, and send it to the browser that asks."""
         client = event.client
         if client is None:
             return
-        panel, kind = self.panel, self.panel.kind
+        settings, plots, kind = self.settings, self.plots, self.settings.kind
         makers: dict[str, Make] = {
-            PLOTS: lambda _: (file_name(panel, ".csv"), plots_csv(kind, panel.plotted()).encode()),
-            CHARTS: lambda _: (file_name(panel, ".svg"), plots_svg(kind, panel.plotted()).encode()),
+            PLOTS: lambda _: (file_name(settings, ".csv"), plots_csv(kind, plots.plotted()).encode()),
+            CHARTS: lambda _: (file_name(settings, ".svg"), plots_svg(kind, plots.plotted()).encode()),
             PICTURE: self.picture_file,
             REPLAY: lambda _: self.replay_file(),
-            ARRAYS: lambda _: (file_name(panel, ".npz"), recording_npz(kind, self.recorder.kept())),
+            ARRAYS: lambda _: (file_name(settings, ".npz"), recording_npz(kind, self.recorder.kept())),
             FILM: self.film_file,
         }
         self.group = "This run" if event.target.value in (REPLAY, ARRAYS) else "Files"
@@ -122,7 +125,7 @@ class Files:
     def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """One browser's view, drawn again at the chosen size."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
-        return file_name(self.panel, ".png"), picture
+        return file_name(self.settings, ".png"), picture
 
     def film_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.
@@ -135,15 +138,15 @@ class Files:
         shown = self.recorder.shown
         start = 0 if shown is None else next((i for i, kept in enumerate(frames) if kept is shown), 0)
         chosen = frames[start : start + MAX_PICTURES]
-        self.panel.post(Pause())
+        self.settings.post(Pause())
         size, transparent = PICTURE_SIZES[self.size.value], self.transparent.value
         content, times = io.BytesIO(), ["picture,t [s]"]
         with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as film:
             for number, kept in enumerate(chosen, 1):
                 if number > 1 and self.recorder.shown is not chosen[number - 2]:
                     raise ValueError("another moment was chosen before all pictures were taken")
-                self.recorder.show_frame(kept)
-                self.wait_until_sent(kept)
+                self.recorder.send_frame(kept)
+                self.server.flush()
                 take_picture(client, BARRIER_SIZE)
                 film.writestr(f"{number:04d}.png", take_picture(client, size, transparent=transparent))
                 times.append(f"{number:04d}.png,{kept.time!r}")
@@ -151,35 +154,17 @@ class Files:
                 if content.tell() > MAX_FILM:
                     break
             film.writestr("times.csv", "\n".join(times) + "\n")
-        return file_name(self.panel, "-film.zip"), content.getvalue()
-
-    def wait_until_sent(self, kept: Kept) -> None:
-        """Wait until the viewer's thread has sent a frame of the recording. Raises TimeoutError."""
-        sent: Future[None] = Future()
-        self.awaited = kept, sent
-        self.wake()
-        try:
-            sent.result(DRAWN_TIMEOUT)
-        except TimeoutError:
-            raise TimeoutError("the recording could not be shown") from None
-        self.panel.server.flush()
-
-    def note_sent(self, shown: Kept | None) -> None:
-        """The viewer's thread has sent what is shown: a frame of the recording, or None for the present."""
-        if self.awaited is not None and self.awaited[0] is shown:
-            _, sent = self.awaited
-            self.awaited = None
-            sent.set_result(None)
+        return file_name(self.settings, "-film.zip"), content.getvalue()
 
     def replay_file(self) -> tuple[str, bytes]:
         """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""
         shown = self.recorder.shown
         frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]
-        page = self.make_replay(self.panel.kind, frames, self.panel.plotted())
-        return file_name(self.panel, ".html"), page.encode()
+        page = self.make_replay(self.settings.kind, frames, self.plots.plotted())
+        return file_name(self.settings, ".html"), page.encode()
 
 
-def file_name(panel: "Panel", end: str, name: str = "") -> str:
-    """Name of a file of a panel's set-up. end: its extension and the word before it. name: of the set-up, if any."""
-    said = name or f"{panel.kind.name} {panel.head.preset.value}"
+def file_name(settings: SceneSettings, end: str, name: str = "") -> str:
+    """Name of a file of the set-up. end: its extension and the word before it. name: of the set-up, if any."""
+    said = name or f"{settings.kind.name} {settings.other_name or settings.loaded}"
     return "springtide-" + "-".join(re.findall(r"[\w.]+", said.removeprefix("Mine: "))).lower() + end

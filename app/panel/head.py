@@ -1,89 +1,81 @@
 """The block above the tabs, which stays in sight: scene, preset, buttons, state, and the figures that matter."""
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import viser
 
 from app.messages import Command, Pause, Play, StepOnce
 from app.panel.remedy import Remedy
+from app.panel.settings import SceneSettings
 from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.render.viser_types import ViserEvent
-from app.scenes.contract import Advice, AnyKind, AnySnapshot, AnyView
+from app.scenes.contract import AnySnapshot, AnyView
 from sim.parameters import in_words
 
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
 COMMANDS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce()}
 
 
-class Actions(NamedTuple):
-    """Actions of the block's lists and buttons; each runs on viser's event loop."""
-
-    post: Callable[[Command], None]  # takes a command for the simulation
-    reset: Callable[[], None]
-    load: Callable[[str], None]  # shows a preset
-    open_scene: Callable[[str], None]
-    reset_view: Callable[[viser.ClientHandle], None]
-    toggle_plots: Callable[[], None]
-    undo: Callable[[], None]
-    follow: Callable[[Advice], None]  # sets a parameter, and starts again
-
-
 class Head:
     """The block; `page.css` keeps it in sight while the rest is scrolled, and gives the buttons their icons."""
 
     def __init__(
-        self, gui: viser.GuiApi, kind: AnyKind, view: AnyView, scenes: tuple[str, ...], actions: Actions
+        self,
+        gui: viser.GuiApi,
+        view: AnyView,
+        settings: SceneSettings,
+        scenes: tuple[str, ...],
+        reset_view: Callable[[viser.ClientHandle], None],
     ) -> None:
-        """scenes: to choose from."""
-        self.kind, self.view, self.actions = kind, view, actions
-        self.names = tuple(kind.presets)
+        """scenes: to choose from. reset_view: puts the camera of a browser where a new one would be."""
+        self.view, self.settings, self.reset_view = view, settings, reset_view
         self.running = True  # as the buttons show it
         self.told: tuple[object, ...] = ()  # what is shown at once when it changes
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
             if len(scenes) > 1:
-                add_scene_chooser(gui, scenes, kind.name, actions.open_scene)
-            self.preset = gui.add_dropdown("Preset", self.names, hint="Loads all settings and starts again from rest")
+                add_scene_chooser(gui, scenes, settings.kind.name, settings.open_first_view_of)
+            self.preset = gui.add_dropdown(
+                "Preset", settings.presets, hint="Loads all settings and starts again from rest"
+            )
             self.preset.on_update(self.on_preset)
             self.buttons = gui.add_button_group("", button_names(running=True))
             self.buttons.on_click(self.on_button)
             self.status = gui.add_html("")
-            self.remedy = Remedy(gui, "Use {} and start again", actions.follow)
+            self.remedy = Remedy(gui, "Use {} and start again", settings.follow)
             self.figures = gui.add_html("")
             self.code_line = gui.add_html("", visible=False)
 
     async def on_preset(self, event: ViserEvent) -> None:
         """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""
-        if event.client_id is not None and event.target.value in self.names:
-            self.actions.load(event.target.value)
+        if event.client_id is not None and event.target.value in self.settings.presets:
+            self.settings.load(event.target.value)
 
     async def on_button(self, event: ViserEvent) -> None:
         """Carry out the label of the pressed button."""
         match event.target.value:
             case "Plots":
-                self.actions.toggle_plots()
+                self.settings.toggle_plots()
             case "Undo":
-                self.actions.undo()
+                self.settings.undo()
             case "Reset":
-                self.actions.reset()
+                self.settings.reset()
             case "Camera":
                 if event.client is not None:
-                    self.actions.reset_view(event.client)
+                    self.reset_view(event.client)
             case name:
-                self.actions.post(COMMANDS[name])
+                self.settings.post(COMMANDS[name])
 
-    def show_preset(self, names: tuple[str, ...], loaded: str, other: str = "") -> None:
-        """The list of presets. other: the entry to show where a parameter is not as the loaded one has it.
+    def show_preset(self) -> None:
+        """The list of presets, with a separate entry if a parameter that matters is not as the loaded one has it.
 
-        It is a separate entry, so that the preset itself can be chosen again.
+        So the preset itself can be chosen again.
         """
-        self.names = names
-        shown = other or loaded
-        options = (*names, *((other,) if other else ()))
+        settings, other = self.settings, self.settings.other_name
+        options = (*settings.presets, *((other,) if other else ()))
         if self.preset.options != options:
             self.preset.options = options
-        self.preset.value = shown
+        self.preset.value = other or settings.loaded
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are not as shown."""
@@ -98,7 +90,8 @@ class Head:
         """Show the state and the figures. busy: [s] that the present tick has taken."""
         self.status.content = str(status_line(snapshot, busy, visitors))
         diverged = snapshot.status.halted and not snapshot.status.unmade
-        self.remedy.show(self.kind.remedy(snapshot) if diverged and self.kind.remedy is not None else None)
+        remedy = self.settings.kind.remedy
+        self.remedy.show(remedy(snapshot) if diverged and remedy is not None else None)
         self.figures.content = str(fill('<div class="springtide-figures">{}</div>', Html(self.view.figures(snapshot))))
 
     def show_code(self, line: Html) -> None:

@@ -12,7 +12,7 @@ MAX_SETTINGS = 100  # kept; beyond that the oldest are dropped
 SAME_CHANGE = 1.0  # [s] within which changes of one parameter, as a slider is moved, count as one
 
 
-class Settings(NamedTuple):
+class EarlierSettings(NamedTuple):
     """All parameters, the preset that they come from, and the state of the screen."""
 
     params: BaseParams
@@ -26,10 +26,10 @@ class History:
 
     def __init__(self) -> None:
         self.run, self.runs = 1, itertools.count(2)  # number of the present run, and of those to come
-        self.settings: collections.deque[Settings] = collections.deque(maxlen=MAX_SETTINGS)
+        self.settings: collections.deque[EarlierSettings] = collections.deque(maxlen=MAX_SETTINGS)
         self.last = "", 0.0  # what was changed last, and when [s]
 
-    def note(self, before: Settings, what: str, *, begins: bool = False) -> int:
+    def note(self, before: EarlierSettings, what: str, *, begins: bool = False) -> int:
         """Keep the settings before a change. what: the parameter or the preset. begins: it begins another run.
 
         Returns the number of the run after it.
@@ -43,7 +43,7 @@ class History:
                 self.run = next(self.runs)
         return self.run
 
-    def take_last(self) -> Settings | None:
+    def take_last(self) -> EarlierSettings | None:
         """Settings before the last change that is still kept; None if there is none. Their run is the present one."""
         self.last = "", 0.0
         if not self.settings:

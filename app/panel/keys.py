@@ -1,14 +1,14 @@
 """The keys of the lab, which are in the command palette too."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
+
+import viser
 
 from app.messages import StepOnce, TogglePlay
+from app.panel.settings import SceneSettings
 from app.render.html import Html
 from app.render.viser_types import ViserEvent
-
-if TYPE_CHECKING:
-    from app.panel.panel import Panel
 
 Key = Literal["space", "G", "N", "P", "R", "U", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
 DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
@@ -18,25 +18,30 @@ KEYS = Html(
 )
 
 
-def add_keys(panel: "Panel") -> None:
+def add_keys(gui: viser.GuiApi, settings: SceneSettings, reset_view: Callable[[viser.ClientHandle], None]) -> None:
     """Keyboard and command palette. W A S D Q E and the arrows already move the camera."""
     actions: list[tuple[str, Key | None, Callable[[], None]]] = [
-        ("Play or pause", "space", lambda: panel.post(TogglePlay())),
-        ("Single step", "N", lambda: panel.post(StepOnce())),
-        ("Reset", "R", panel.reset),
-        ("Plots", "P", panel.toggle_plots),
-        ("Grid", "G", lambda: panel.set("grid", not panel.params.grid)),
-        ("Undo", "U", panel.undo),
+        ("Play or pause", "space", lambda: settings.post(TogglePlay())),
+        ("Single step", "N", lambda: settings.post(StepOnce())),
+        ("Reset", "R", settings.reset),
+        ("Plots", "P", settings.toggle_plots),
+        ("Grid", "G", lambda: settings.set("grid", not settings.params.grid)),
+        ("Undo", "U", settings.undo),
     ]
-    for number, preset in enumerate(panel.kind.presets, 1):
+    for number, preset in enumerate(settings.kind.presets, 1):
         # The presets after the ninth are in the command palette and the list only.
         key = DIGITS[number - 1] if number <= len(DIGITS) else None
-        actions.append((f"Preset: {preset}", key, lambda preset=preset: panel.load(preset)))
+        actions.append((f"Preset: {preset}", key, lambda preset=preset: settings.load(preset)))
     for label, key, action in actions:
-        command = panel.gui.add_command(label, hotkey=key)
+        command = gui.add_command(label, hotkey=key)
 
         @command.on_trigger
         async def _(_: ViserEvent, action: Callable[[], None] = action) -> None:
             action()
 
-    panel.gui.add_command("Reset camera", hotkey="V").on_trigger(panel.reset_view)
+    command = gui.add_command("Reset camera", hotkey="V")
+
+    @command.on_trigger
+    async def _(event: ViserEvent) -> None:
+        if event.client is not None:
+            reset_view(event.client)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from viser import uplot
 
 from app.messages import ChartLine, PlotRow
+from app.panel.recording_files import Plotted
 from app.panel.round_step import round_step
 from app.render.viser_types import GuiHandle
 from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
@@ -113,6 +114,10 @@ class Plots:
         self.kept_curves = self.curves if on else {}
         ends = [chart.columns[0][-1] for chart in self.kept_curves.values() if isinstance(chart, Chart)]
         return self.kept[-1][0] if self.kept else max(map(float, ends), default=None)
+
+    def plotted(self) -> Plotted:
+        """The rows that are kept, and the whole charts of now."""
+        return Plotted(tuple(self.rows), self.curves)
 
     def update(self, snapshot: AnySnapshot, rows: list[PlotRow], moment: float | None = None) -> None:
         """Take new rows and, at a few hertz, send open charts. moment: time to show [s]; None: the last."""

@@ -5,15 +5,18 @@ Callbacks run on viser's event loop; `update` runs on the viewer's thread.
 
 import threading
 import time
-from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 import viser
 
+from app.lab.workbook import Workbook
 from app.messages import Vector
 from app.panel.changes import Change, Changes, Notice
+from app.panel.compare import Beside
 from app.panel.files import Files, MakeReplay, file_name
+from app.panel.plots import Plots
+from app.panel.recorder import Recorder
+from app.panel.settings import SceneSettings
 from app.panel.task_setups import read_link
 from app.render.cameras import place_camera
 from app.render.html import fill, note
@@ -32,9 +35,6 @@ from app.scenes.setups import (
     write_query,
 )
 
-if TYPE_CHECKING:
-    from app.panel.panel import Panel
-
 CONFIRMED_TIME = 2.0  # [s] for which a button says that it has done what it names
 COPY, SAVE = "Copy link", "Save set-up"
 KEEP_CURVES, DROP_CURVES = "Keep curves", "Drop curves"
@@ -45,20 +45,33 @@ COMPARE = "?compare="  # begins the address of a comparison that is ready
 class Share:
     """The tab, and the hidden field through which a page sends its address or a file."""
 
-    def __init__(self, panel: "Panel", wake: Callable[[], None], make_replay: MakeReplay, changes: Changes) -> None:
-        """wake: makes the viewer's thread look at the recorder. make_replay: makes the page of a replay.
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        settings: SceneSettings,
+        recorder: Recorder,
+        plots: Plots,
+        make_replay: MakeReplay,
+        *,
+        head: viser.GuiFolderHandle,
+        changes: Changes,
+        workbook: Workbook | None,
+        beside: Beside | None,
+    ) -> None:
+        """make_replay: makes the page of a replay. head: holds the notice of a change. changes: those of this server.
 
-        changes: those of this server.
+        workbook: has the tasks that a link may open. beside: None in a lab beside another, which opens no comparison.
         """
-        self.server, self.panel, self.changes = panel.server, panel, changes
-        gui = panel.gui
-        self.wake, self.make_replay = wake, make_replay
+        self.server, self.settings, self.plots = server, settings, plots
+        self.changes, self.workbook, self.beside = changes, workbook, beside
+        gui = server.gui
+        self.files = Files(server, settings, recorder, plots, make_replay, self.say)
         self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
         # Identity of buttons -> the buttons, their names, and the time [s] until which they say that it is done.
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
-        with panel.head.folder:
-            self.notice = Notice(gui, panel.kind.name, changes, self.restore)
+        with head:
+            self.notice = Notice(gui, settings.kind.name, changes, self.restore)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
         holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
@@ -66,8 +79,7 @@ class Share:
 
     def add(self) -> None:
         """The controls, in the container that is open."""
-        gui, panel = self.panel.gui, self.panel
-        self.files = Files(panel, self.wake, self.make_replay)
+        gui = self.server.gui
         with gui.add_folder("This run"):
             self.curves: GuiHandle = gui.add_button_group("", (KEEP_CURVES,))
             self.curves.on_click(self.on_curves)
@@ -86,7 +98,7 @@ class Share:
                 '<div class="springtide-switches"><label class="springtide-load">Load set-up …'
                 '<input type="file" accept=".json,.html,.npz" data-springtide-load></label></div>'
             )
-            self.remove: GuiHandle = gui.add_button_group("", (REMOVE,), visible=bool(panel.own))
+            self.remove: GuiHandle = gui.add_button_group("", (REMOVE,), visible=bool(self.settings.own))
             self.remove.on_click(self.on_own)
             self.add_line("This set-up")
         with gui.add_folder("Files"):
@@ -95,7 +107,7 @@ class Share:
 
     def add_line(self, group: str) -> None:
         """The line of a group, below its buttons."""
-        self.lines[group] = self.panel.gui.add_html("")
+        self.lines[group] = self.server.gui.add_html("")
 
     def say(self, group: str, text: object) -> None:
         """Say something below the buttons of a group."""
@@ -128,13 +140,14 @@ class Share:
         except ValueError as reason:
             self.refuse(client, str(reason))
             return
-        missing = missing_files(subject, self.panel.params) if isinstance(subject, Setup) else ""
+        missing = missing_files(subject, self.settings.params) if isinstance(subject, Setup) else ""
         if missing:
             client.add_notification("A file is missing", missing, color="orange", auto_close_seconds=30.0)
-        if isinstance(subject, Setup) and (subject.scene, subject.params) == (self.panel.kind.name, self.panel.params):
+        shown = self.settings.kind.name, self.settings.params
+        if isinstance(subject, Setup) and (subject.scene, subject.params) == shown:
             self.turn(subject)
             self.place(subject, client)
-        elif isinstance(subject, str) and self.panel.beside is None:
+        elif isinstance(subject, str) and self.beside is None:
             return  # a lab beside another opens no comparison
         else:
             if len(self.server.get_clients()) > 1:
@@ -143,22 +156,22 @@ class Share:
 
     def change(self, subject: Setup | str, page: str) -> Change:
         """The change that a page makes by opening something."""
-        panel = self.panel
+        settings = self.settings
         scene = comparison_named(subject)[0].scene if isinstance(subject, str) else subject.scene
-        return Change(page, scene, subject, Setup(panel.kind.name, panel.params, {}, panel.loaded))
+        return Change(page, scene, subject, Setup(settings.kind.name, settings.params, {}, settings.loaded))
 
     def restore(self, change: Change) -> None:
         """Undo a change."""
-        if isinstance(change.subject, str) and self.panel.beside is not None:
-            self.panel.beside.end()
-        self.panel.show_setup(change.before, None)
+        if isinstance(change.subject, str) and self.beside is not None:
+            self.beside.end()
+        self.settings.show_setup(change.before, None)
 
     def read(self, text: str) -> Setup | str:
         """Content of a page's message: a set-up, or the name of a comparison. Raises ValueError if it is refused."""
         if not text.startswith(COMPARE):
             if not text.startswith("?"):
                 return read_file(text)
-            return read_link(text, None if self.panel.guide is None else self.panel.guide.workbook)
+            return read_link(text, self.workbook)
         name = text.removeprefix(COMPARE)
         comparison_named(name)
         return name
@@ -167,14 +180,14 @@ class Share:
         """Show a set-up, with its camera for one browser, or a comparison."""
         if isinstance(subject, Setup):
             self.turn(subject)
-            self.panel.show_setup(subject, client)
-        elif self.panel.beside is not None:
-            self.panel.beside.compare(comparison_named(subject), True)
+            self.settings.show_setup(subject, client)
+        elif self.beside is not None:
+            self.beside.compare(comparison_named(subject), True)
 
     def turn(self, setup: Setup) -> None:
         """Turn the workbook to the task that a link opens, if it names one."""
-        if setup.task and self.panel.guide is not None:
-            book = self.panel.guide.workbook
+        book = self.workbook
+        if setup.task and book is not None:
             book.go(book.tasks.index(book.named(setup.task)))
 
     def refuse(self, client: viser.ClientHandle | None, reason: str) -> None:
@@ -192,10 +205,9 @@ class Share:
         client = event.client
         if client is None:
             return
-        panel = self.panel
-        camera = camera_of(client)
+        settings, camera = self.settings, camera_of(client)
         if event.target.value == COPY:
-            query = write_query(panel.kind, panel.params, panel.loaded, camera)
+            query = write_query(settings.kind, settings.params, settings.loaded, camera)
             link = fill('<a class="springtide-link" data-springtide-link="{}" href="{}">{}</a>', query, query, query)
             self.say("This set-up", link)
             self.confirm(event.target, COPY, "Copied")
@@ -204,18 +216,18 @@ class Share:
             return
         try:
             name, words = self.name.value.strip(), self.note.value.strip()
-            text = write_file(panel.kind, panel.params, panel.loaded, camera, name=name, note=words)
+            text = write_file(settings.kind, settings.params, settings.loaded, camera, name=name, note=words)
         except ValueError as reason:
             self.say("This set-up", str(reason))
             return
-        client.send_file_download(file_name(panel, ".json", name), text.encode(), save_immediately=True)
+        client.send_file_download(file_name(settings, ".json", name), text.encode(), save_immediately=True)
         self.say("This set-up", "")
         self.confirm(event.target, SAVE, "Saved")
 
     async def on_curves(self, event: ViserEvent) -> None:
         """Keep the curves of the plots over time beside those of the next run, or drop them."""
         on = event.target.value == KEEP_CURVES
-        end = self.panel.keep_curves(on)
+        end = self.plots.keep(on)
         self.curves.options = (KEEP_CURVES,) if end is None else (DROP_CURVES,)
         if end is None:
             self.say("This run", "There are no curves over time to keep." if on else "")
@@ -224,20 +236,21 @@ class Share:
 
     async def on_own(self, event: ViserEvent) -> None:
         """Keep the present set-up in the list of presets under its name, or remove the one of that name."""
-        client, panel, name = event.client, self.panel, self.name.value.strip()
-        if client is None:
+        settings, name = self.settings, self.name.value.strip()
+        if event.client is None:
             return
         try:
             if event.target.value == KEEP:
-                text = write_file(panel.kind, panel.params, panel.loaded, name=name, note=self.note.value.strip())
-                keep_own(panel.kind, name, text)
-                panel.show_own(name)
+                words = self.note.value.strip()
+                text = write_file(settings.kind, settings.params, settings.loaded, name=name, note=words)
+                keep_own(settings.kind, name, text)
+                settings.read_own(name)
                 self.confirm(event.target, KEEP, "Kept in the list")
             elif event.target.value == REMOVE:
-                remove_own(panel.kind, name)
-                panel.show_own()
+                remove_own(settings.kind, name)
+                settings.read_own()
                 self.confirm(event.target, REMOVE, "Removed")
-            self.remove.visible = bool(panel.own)
+            self.remove.visible = bool(settings.own)
             self.say("This set-up", "")
         except (ValueError, OSError) as reason:
             self.say("This set-up", str(reason))

@@ -7,16 +7,15 @@ import json
 import math
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+
+import viser
 
 from app.messages import Pause, Play
-from app.panel.recorder import RATES, Kept
+from app.panel.recorder import RATES, Kept, Recorder
+from app.panel.settings import SceneSettings
 from app.render.html import fill
 from app.render.viser_inside import uuid_of
 from app.render.viser_types import GuiHandle, ViserEvent
-
-if TYPE_CHECKING:
-    from app.panel.panel import Panel
 
 SPAN_INTERVAL = 0.5  # [s] between two updates of the time line's ends
 
@@ -24,9 +23,8 @@ SPAN_INTERVAL = 0.5  # [s] between two updates of the time line's ends
 class Timeline:
     """State of the recording for the pages, and the hidden field through which they send actions."""
 
-    def __init__(self, panel: "Panel", wake: Callable[[], None]) -> None:
-        """wake: makes the viewer's thread look at the recorder."""
-        self.panel, self.recorder, self.wake = panel, panel.recorder, wake
+    def __init__(self, gui: viser.GuiApi, recorder: Recorder, settings: SceneSettings) -> None:
+        self.recorder, self.settings = recorder, settings
         self.span_at = 0.0
         self.told: Kept | None = None  # frame of the recording that the pages know of
         self.told_playing = False
@@ -36,9 +34,9 @@ class Timeline:
             "show": self.show, "step": self.step, "play": self.play, "live": self.go_live,
             "continue": self.resume, "rate": self.set_rate, "loop": self.set_loop,
         }  # fmt: skip
-        self.inbox: GuiHandle = panel.gui.add_text("Time line", "", multiline=True, visible=False)
+        self.inbox: GuiHandle = gui.add_text("Time line", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
-        self.state = panel.gui.add_html("")
+        self.state = gui.add_html("")
 
     async def on_inbox(self, _: ViserEvent) -> None:
         """A page has sent its own word, which is new each time, an action, and the action's number."""
@@ -49,13 +47,13 @@ class Timeline:
             return
         if math.isfinite(number):
             action(number)
-            self.wake()
+            self.recorder.wake()
 
     def hold(self) -> None:
         """Pause the lab for a look back."""
         if self.recorder.shown is None:
             self.ran_before = self.is_running
-        self.panel.post(Pause())
+        self.settings.post(Pause())
 
     def show(self, moment: float) -> None:
         """Show a time [s] of the recording."""
@@ -75,7 +73,7 @@ class Timeline:
     def go_live(self, _: float) -> None:
         """Show the present; the lab runs again if it ran before the look back."""
         if self.recorder.shown is not None and self.ran_before:
-            self.panel.post(Play())
+            self.settings.post(Play())
         self.recorder.show_present()
 
     def resume(self, moment: float) -> None:
@@ -83,7 +81,7 @@ class Timeline:
         self.recorder.show_time(moment)
         kept = self.recorder.resumable()
         if kept is not None and kept.state is not None:
-            self.panel.resume(kept.params, kept.state)
+            self.settings.resume(kept.params, kept.state)
 
     def set_rate(self, rate: float) -> None:
         """Set the speed of playing the recording."""

@@ -45,7 +45,9 @@ class ComparedLabs:
                 pane = self.make_pane(number)
                 self.viewers = (*self.viewers, pane)
                 pane.comparison = self
-                pane.open(setup.scene, with_shared(setup.params, first.panel.params), paused=not first.loop.run.running)
+                pane.open(
+                    setup.scene, with_shared(setup.params, first.settings.params), paused=not first.loop.run.running
+                )
                 if first.ended:
                     self.end()
                     return
@@ -64,7 +66,7 @@ class ComparedLabs:
             value = answer.result(KEEP_TIMEOUT)
         except Exception:
             return None
-        return loop, self.first.panel.params, KeptState(value, arrays_in(value))
+        return loop, self.first.settings.params, KeptState(value, arrays_in(value))
 
     def seat(self, viewer: "Viewer") -> None:
         """Give the lab's loop a place at the clock, in place of that of an earlier loop of it; all begin again.
@@ -79,7 +81,7 @@ class ComparedLabs:
             self.place()
             loop.commands.put(Ask(lambda: loop.join(seat), Future()))
         if self.first.is_open:
-            self.share(self.first, self.first.panel.params)
+            self.share(self.first, self.first.settings.params)
 
     def leave(self, viewer: "Viewer") -> None:
         """The lab's loop is gone, or stands still for good: the others do not wait for it."""
@@ -100,7 +102,7 @@ class ComparedLabs:
         viewers = [viewer for viewer in self.viewers if viewer.is_open]
         if len(viewers) < len(self.viewers):
             return tuple(PaneWords("", (0.0, 0.0)) for _ in self.viewers)
-        panes = [(viewer.panel.kind, viewer.panel.params) for viewer in viewers]
+        panes = [(viewer.settings.kind, viewer.settings.params) for viewer in viewers]
         middles = [middle_of(kind.name, params) for kind, params in panes]
         return tuple(PaneWords(*pair) for pair in zip(headings(panes), middles, strict=True))
 
@@ -109,10 +111,10 @@ class ComparedLabs:
         for viewer in self.viewers:
             if viewer is source or not viewer.is_open:
                 continue
-            for name, parameter in shared_parameters(params, viewer.panel.params).items():
+            for name, parameter in shared_parameters(params, viewer.settings.params).items():
                 value = clamp_value(parameter, getattr(params, name))
-                if value != getattr(viewer.panel.params, name):
-                    viewer.server.get_event_loop().call_soon_threadsafe(viewer.panel.set, name, value)
+                if value != getattr(viewer.settings.params, name):
+                    viewer.server.get_event_loop().call_soon_threadsafe(viewer.settings.set, name, value)
 
     def end(self) -> None:
         """End the other labs; the first one goes on from where it was before, if it is still the same run."""
@@ -129,7 +131,7 @@ class ComparedLabs:
             viewer.shut()
         if self.left is not None and first.is_open and first.loop is self.left[0]:
             _, params, state = self.left
-            first.server.get_event_loop().call_soon_threadsafe(first.panel.resume, params, state)
+            first.server.get_event_loop().call_soon_threadsafe(first.settings.resume, params, state)
 
 
 class Comparing:

@@ -11,6 +11,7 @@ from app.messages import BaseParams, Command, Halt
 from app.panel.compare import Beside
 from app.panel.panel import Panel
 from app.panel.recorder import Kept
+from app.panel.settings import SceneSettings
 from app.render.cameras import fit_cameras, place_cameras, place_client_camera
 from app.render.html import note
 from app.scenes import NAMES, view_named
@@ -62,17 +63,17 @@ class ServedScene:
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = view_named(kind.name)(self.server, self.commands.put)
         place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
+        self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want)
         self.panel = Panel(
-            self.server, kind, self.view, params, self.commands.put, scenes=NAMES,
-            open_scene=viewer.want, workbook=viewer.workbook, session=viewer.session,
-            wake=lambda: self.loop.run.snapshots.fresh.set(), make_replay=replay_html, changed=viewer.share_parameters,
-            changes=viewer.changes,
+            self.server, self.view, self.settings, scenes=NAMES, workbook=viewer.workbook, session=viewer.session,
+            wake=lambda: self.loop.run.snapshots.fresh.set(), make_replay=replay_html, changes=viewer.changes,
             beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
         )  # fmt: skip
+        self.settings.watchers.append(lambda: viewer.share_parameters(self.settings.params))
         self.gate = CompileGate(viewer.compiling, kind, params)
         self.loop = SimLoop(self.scene, self.commands, viewer.audience, admit=self.gate.admit, paused=paused)
         if params != wanted:  # the loop finds out once more, and says why; the panel has the controls to put it right
-            self.panel.load_params(wanted, self.panel.nearest_preset(wanted))
+            self.settings.load_params(wanted, self.settings.nearest_preset(wanted))
 
     def start(self) -> None:
         """Run the threads."""
@@ -126,14 +127,14 @@ class ServedScene:
                 if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras
                     self.starts = snapshot.status.starts
                     place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
-                    for camera in self.panel.cameras:
+                    for camera in self.settings.cameras:
                         place_client_camera(self.server, camera)
-                    self.panel.cameras = ()
+                    self.settings.cameras = ()
             self.recorded = recorded
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
         recorder.note(snapshot, now)
-        self.panel.share.files.note_sent(recorded)
+        recorder.note_sent(recorded)
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
         """Run a drawing action; an exception halts the run once, and this thread goes on."""
@@ -146,7 +147,7 @@ class ServedScene:
 
     def show_compiling(self) -> None:
         """Show the running compilation: for a chosen preset, or ahead."""
-        text = self.viewer.notice or self.gate.notice or describe(*self.viewer.compiling.progress())
+        text = self.viewer.preparation.notice or self.gate.notice or describe(*self.viewer.compiling.progress())
         if text != self.compile_text:
             self.compile_text = text
             self.compile_line.content = note(text) if text else ""

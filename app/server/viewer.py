@@ -18,6 +18,7 @@ from app.panel.compare import PaneWords
 from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
+from app.panel.settings import SceneSettings
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.html import fill, note
 from app.render.injection import disable_shaders, reset_page
@@ -31,6 +32,7 @@ from app.server.beside import ComparedLabs, Comparing
 from app.server.guard import Opened, open_pane, open_server, quiet
 from app.server.loop import SimLoop
 from app.server.panes import Panes
+from app.server.preparation import Preparation, cover
 from app.server.served_scene import MAX_JOIN_TIME, ServedScene
 from app.server.transport import Transport
 
@@ -38,7 +40,6 @@ if TYPE_CHECKING:
     from app.lab.session import Session
 
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
-PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled
 
 
 class Viewer:
@@ -69,8 +70,7 @@ class Viewer:
         Raises OSError where the port cannot be bound.
         """
         self.compiling = Compiling() if beside is None else beside[0].compiling
-        self.compile_ahead, self.workbook, self.session, self.say = compile_ahead, workbook, session, say
-        self.notice = ""  # what is compiled before something else can be shown
+        self.workbook, self.session = workbook, session
         if beside is not None:
             opened = open_pane(beside[0].panes, beside[1])
         opened = opened or open_server(host, port, access)
@@ -83,6 +83,7 @@ class Viewer:
             disable_shaders(self.server)
         send_at_once(self.server)
         self.transport = Transport(self.server)
+        self.preparation = Preparation(self.server, self.compiling, say, ahead=compile_ahead)
         self.port = self.server.get_port()
         self.changes = Changes()
         self.ended = False
@@ -118,7 +119,8 @@ class Viewer:
                     params = self.first_params.get(name) or (make_setup(kind).params if first_look else kind.params())
                 elif not first_look:
                     self.first_params.setdefault(name, params)
-                if not self.compile(kind, params) or self.ended:
+                ready = self.preparation.compile(kind, params, covers=not self.is_open, given_up=self.is_given_up)
+                if not ready or self.ended:
                     return
                 self.close()
                 self.make(kind, params, paused)
@@ -126,28 +128,26 @@ class Viewer:
                 self.show_failure(name, error)
                 raise
 
+    def is_given_up(self) -> bool:
+        """True if the scene that is being prepared is not wanted any more: the lab ended, or another was asked for."""
+        return self.ended or (self.is_open and not self.wanted.empty())
+
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
         """Make the scene and serve it, with a line on the page meanwhile."""
-        self.cover(f"Opening {kind.title} …")
+        cover(self.server, f"Opening {kind.title} …")
         commands: queue.SimpleQueue[Command] = queue.SimpleQueue()
         # Before the old panel is removed: viser's page takes the updates of a frame after its removals, and says in the
         # browser's console that there is nothing to update. Meanwhile it has taken the last updates.
         scene = self.make_scene(kind, params, commands.put)
         reset_page(self.server)
-        cover = self.cover(f"Opening {kind.title} …")
+        opening = cover(self.server, f"Opening {kind.title} …")
         self.current = current = ServedScene(self, kind, params, scene, commands, paused=paused)
-        cover.remove()
+        opening.remove()
         comparison = self.comparison
         if comparison is not None:
             comparison.seat(self)
         current.start()
-        if self.compile_ahead:
-            ahead = self.compiling.go_on_with
-            threading.Thread(target=ahead, args=(kind.name,), name="compile ahead", daemon=True).start()
-
-    def cover(self, words: str) -> viser.GuiHtmlHandle:
-        """A line that covers the page (`js/page.js`) until it is removed."""
-        return self.server.gui.add_html(note(fill('<span class="springtide-progress">{}</span>', words)))
+        self.preparation.go_on(kind)
 
     def make_scene(self, kind: AnyKind, params: BaseParams, post: PostCommand) -> AnyScene:
         """The simulation; with the parameters of its first view where it cannot begin with these.
@@ -172,37 +172,6 @@ class Viewer:
             return kind.make(params)
         live.connect(kind.name, lambda: post(StudentAnswer()), lambda: post(Reset()))
         return kind.make_with_student(params, live)
-
-    def compile(self, kind: AnyKind, params: BaseParams) -> bool:
-        """Compile the kernels of a scene, with progress on the page and in lines on the terminal.
-
-        An open scene goes on meanwhile. False where the lab ended before that, or another scene was asked for.
-        """
-        jobs = self.compiling.missing(kind.name, params)
-        if not jobs:
-            return not self.ended
-        start = time.monotonic()
-        self.say(f"{kind.title}: compiling {', '.join(job.piece for job in jobs)}. This is done once.")
-        cover = None
-        if not self.is_open:
-            reset_page(self.server)
-            cover = self.cover("")
-        self.compiling.want(jobs)
-        try:
-            done = False
-            while not done:
-                left = [job.piece for job in jobs if job not in self.compiling.settled]
-                spent = time.monotonic() - start
-                self.notice = f"{kind.title}: compiling {', '.join(left)}, {spent:.0f} s. This is done once."
-                if cover is not None:
-                    cover.content = note(fill('<span class="springtide-progress">{}</span>', self.notice))
-                done = self.compiling.wait(jobs, PROGRESS_INTERVAL)
-                if self.ended or (self.is_open and not self.wanted.empty()):
-                    return False
-        finally:
-            self.notice = ""
-        self.say(f"{kind.title}: compiled in {time.monotonic() - start:.1f} s")
-        return True
 
     def show_failure(self, name: str, error: BaseException) -> None:
         """A page that says why a scene could not be opened, and offers the scenes."""
@@ -258,6 +227,11 @@ class Viewer:
         return self.served.view
 
     @property
+    def settings(self) -> SceneSettings:
+        """Its settings."""
+        return self.served.settings
+
+    @property
     def panel(self) -> Panel:
         """Its panel."""
         return self.served.panel
@@ -289,7 +263,7 @@ class Viewer:
 
     def make_pane(self, number: int) -> "Viewer":
         """A lab beside this one, with nothing open. number: of its pane, from 2."""
-        return Viewer("", 0, plain=self.plain, say=self.say, beside=(self, number))
+        return Viewer("", 0, plain=self.plain, say=self.preparation.say, beside=(self, number))
 
     def pane_words(self) -> tuple[PaneWords, ...]:
         """Titles of the labs that are side by side."""

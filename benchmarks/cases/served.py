@@ -20,7 +20,7 @@ def rows(quick: bool = False) -> list[dict[str, Any]]:
         for scene, presets in PRESETS.items():
             viewer.open(scene)
             for preset in presets[:1] if quick else presets:
-                viewer.panel.load(preset)
+                viewer.settings.load(preset)
                 table.append({"preset": f"{scene}: {preset}", **measured(viewer, 3.0 if quick else 15.0)})
     return table
 

@@ -40,7 +40,7 @@ def scene_rows(name: str, browser: Any, seconds: float) -> list[dict[str, Any]]:
         # Each state begins with a reset, because a rope that hangs still takes less time.
         for state in STATES[2:]:
             if state == STATES[3]:
-                viewer.panel.toggle_plots()
+                viewer.settings.toggle_plots()
                 page.wait_for_timeout(1000)
             viewer.loop.commands.put(Reset())
             viewer.loop.commands.put(Play())

@@ -100,7 +100,7 @@ def faults_after_change(tab: Tab, lab: Viewer, size: tuple[int, int], *, plots: 
     """What is wrong at this size [pixels] with the plots open or closed, once viser has laid the page out."""
     tab.page.set_viewport_size({"width": size[0], "height": size[1]})
     if bool(lab.panel.plots.open) != plots:
-        lab.panel.toggle_plots()
+        lab.settings.toggle_plots()
     tab.wait(lambda: bool(lab.panel.plots.open) == tab.page.evaluate(PLOTS_OPEN) == plots)
     found: list[str] = []
     for _ in range(40):

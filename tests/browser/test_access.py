@@ -79,7 +79,7 @@ def test_folders_and_sliders_obey_the_keyboard(one_page: tuple[Viewer, Tab]) -> 
     tab.wait(lambda: slider.count() == 1)
     slider.focus()
     tab.page.keyboard.press("ArrowRight")
-    tab.wait(lambda: vars(viewer.panel.params)["stiffness"] == 810.0)
+    tab.wait(lambda: vars(viewer.settings.params)["stiffness"] == 810.0)
     folder = tab.page.get_by_role("button", name="Surroundings", exact=True)
     folder.focus()
     tab.page.keyboard.press("Enter")

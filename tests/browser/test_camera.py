@@ -75,7 +75,7 @@ def drag_at_random(tab: Tab, moves: random.Random, count: int) -> None:
 @pytest.mark.parametrize("drags", [8, pytest.param(50, marks=pytest.mark.stress)])
 def test_reset_view_after_random_drags_gives_the_first_view(shown: tuple[Viewer, Tab], drags: int) -> None:
     lab, tab = shown
-    first = np.array(lab.view.first_view(lab.panel.params))
+    first = np.array(lab.view.first_view(lab.settings.params))
     tab.wait(lambda: np.abs(view_of(lab) - first).max() < 1e-3)
     tab.page.evaluate(RECORD_HEIGHTS)
     moves = random.Random(1)
@@ -115,7 +115,7 @@ def test_set_this_up_on_a_slow_page_shows_what_the_task_is_about(shown: tuple[Vi
     task = next(task for task in workbook.tasks if task.item == "1.1-2")
     tab.page.evaluate(HOLD_FRAMES)
     try:
-        lab.panel.set_up(workbook.set_up_of(task))
+        lab.settings.set_up(workbook.set_up_of(task))
         tab.wait(lambda: lab.is_open and lab.panel.kind.name == "radial_sea" and lab.loop.scene.time > 2.0)
         tab.page.evaluate(ONE_FRAME)  # takes the messages; the field of view has the page report its camera
         tab.page.wait_for_timeout(1000)
@@ -125,7 +125,7 @@ def test_set_this_up_on_a_slow_page_shows_what_the_task_is_about(shown: tuple[Vi
     def distance() -> float:
         """[m] of the page's camera from where it should be, beside a body that drifts."""
         return float(
-            np.linalg.norm(tab.page.evaluate(PAGE_CAMERA) - np.array(lab.view.first_view(lab.panel.params)[0]))
+            np.linalg.norm(tab.page.evaluate(PAGE_CAMERA) - np.array(lab.view.first_view(lab.settings.params)[0]))
         )
 
     tab.wait(lambda: distance() < 1.0, 30)

@@ -125,7 +125,7 @@ def test_a_picture_costs_as_many_pictures_of_three_s_ocean(name: str, chromium: 
     try:
         lab.open(scene)
         if preset:
-            lab.panel.load(preset)
+            lab.settings.load(preset)
         page.goto(f"http://127.0.0.1:{lab.port}/?hideViserLogo")
         page.wait_for_function("window.__viserMutable?.scene?.environment", timeout=120_000)
         while lab.loop.scene.time < 1.0:

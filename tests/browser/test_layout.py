@@ -44,7 +44,7 @@ def resized(shown: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_covers_a_text_a_control_or_the_picture(resized: tuple[Viewer, Tab], size: tuple[int, int]) -> None:
     lab, tab = resized
-    target = np.array(lab.view.first_view(lab.panel.params)[1])
+    target = np.array(lab.view.first_view(lab.settings.params)[1])
     for plots in (False, True):
         assert not faults_after_change(tab, lab, size, plots=plots)
         tab.wait(lambda: tab.page.evaluate(ON_TOP, tab.pixel(target)) == "CANVAS", 30)
@@ -187,7 +187,7 @@ def test_the_line_on_slow_drawing_lies_beside_the_panel_and_above_the_time_line(
 def test_nothing_is_covered_with_any_preset(resized: tuple[Viewer, Tab], scene: str, preset: str) -> None:
     lab, tab = resized
     tab.follow(lab, scene)
-    lab.panel.load(preset)
+    lab.settings.load(preset)
     found = {
         f"{width} x {height}, plots {'open' if plots else 'closed'}": faults
         for width, height in SIZES

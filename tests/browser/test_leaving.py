@@ -32,7 +32,7 @@ def test_links_opened_in_one_tab_are_one_visitor_and_no_notice(lab: Viewer, cach
 
         def shows(points: int) -> bool:
             assert lab.visitors() <= 1
-            return vars(lab.panel.params)["points"] == points and tab.page.locator(".springtide-panel").count() > 0
+            return vars(lab.settings.params)["points"] == points and tab.page.locator(".springtide-panel").count() > 0
 
         for points in range(20, 20 + links):
             tab.page.goto(f"{address}&scene=rope&points={points}")

@@ -128,7 +128,7 @@ def names_of(lab: Viewer, task: Task) -> set[str]:
     """Names of what a task needs beside its text: buttons, controls, and fields of its questions."""
     guide = lab.panel.guide
     assert guide is not None
-    hidden = lab.panel.kind.hidden(lab.panel.params)
+    hidden = lab.panel.kind.hidden(lab.settings.params)
     controls = {lab.panel.controls[name].field.label for name in guide.controls_of(task) if name not in hidden}
     return {SET_UP, *controls, *map(label_of, task.questions)}
 
@@ -166,7 +166,7 @@ def test_each_task_of_a_scene_fits_the_screen_with_its_controls_and_explanations
     tab.wait(lambda: tab.page.get_by_text("Your code:").count())
     assert tab.page.evaluate(FIRST_VIEW)["head"] <= MAX_HEAD
     for task in tasks:
-        lab.panel.set_up(book.set_up_of(task))
+        lab.settings.set_up(book.set_up_of(task))
         book.go(book.tasks.index(task))
         verdicts = answer_at_length(book, task)
         pause(lab, tab)
@@ -187,7 +187,7 @@ def test_a_large_window_has_a_wide_panel_with_larger_text_and_charts_that_fill_t
     tab.page.set_viewport_size({"width": 1920, "height": 1080})
     tab.follow(lab, "rope")
     if not lab.panel.plots.open:
-        lab.panel.toggle_plots()
+        lab.settings.toggle_plots()
     try:
         tab.wait(lambda: 0 <= tab.page.evaluate(LARGE)["left_over"] < 40, 20)
         found = tab.page.evaluate(LARGE)

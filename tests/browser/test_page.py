@@ -88,7 +88,7 @@ def test_no_link_leads_the_page_to_another_server(chromium: Any) -> None:
             page.wait_for_function("!location.search.includes('websocket')")
             assert page.evaluate("location.href").endswith(f"{key}/index.html?scene=rope&stiffness=3000&fixedDpr=0.2")
             end = time.monotonic() + 30.0
-            while viewer.panel.params.stiffness != 3000.0:  # the rest of the link counts
+            while viewer.settings.params.stiffness != 3000.0:  # the rest of the link counts
                 assert time.monotonic() < end
                 page.wait_for_timeout(50)
             other.setblocking(False)

@@ -12,7 +12,7 @@ SCENE = "rope"
 
 def field(lab: Viewer, tab: Tab, name: str):
     """The text field of a parameter on the page; its folder is opened."""
-    parameter = parameters_of(lab.panel.params)[name]
+    parameter = parameters_of(lab.settings.params)[name]
     found = tab.page.get_by_role("textbox", name=title(name, parameter), exact=True)
     if not found.is_visible():
         tab.page.get_by_role("button", name=parameter.group, exact=True).click()
@@ -42,7 +42,7 @@ def test_a_number_is_taken_as_it_is_typed(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     for name, text, value in TAKEN:
         type_into(lab, tab, name, text)
-        tab.wait(lambda name=name, value=value: getattr(lab.panel.params, name) == value, 10)
+        tab.wait(lambda name=name, value=value: getattr(lab.settings.params, name) == value, 10)
         written = write_number(value)
         tab.wait(lambda name=name, written=written: field(lab, tab, name).input_value() == written, 10)
         tab.wait(lambda name=name, value=value: getattr(lab.scene.params, name) == value, 10)
@@ -70,7 +70,7 @@ def test_what_is_not_allowed_is_refused_with_name_value_and_range(shown: tuple[V
         refusal = tab.wait(lambda: tab.page.locator(".springtide-refusal").all_inner_texts(), 10)
         assert len(refusal) == 1
         assert refusal[0].startswith(f"stiffness: {text!r} is not allowed; allowed: 1 to 1e9 N/m")
-        assert lab.panel.params.stiffness == lab.scene.params.stiffness == 800.0
+        assert lab.settings.params.stiffness == lab.scene.params.stiffness == 800.0
         tab.wait(lambda: field(lab, tab, "stiffness").input_value() == "800", 10)
         type_into(lab, tab, "stiffness", "800")  # what the field shows
         tab.wait(lambda: tab.page.locator(".springtide-refusal").count() == 0, 10)
@@ -82,11 +82,11 @@ def test_escape_and_arrows_and_leaving_a_field(shown: tuple[Viewer, Tab]) -> Non
     type_into(lab, tab, "stiffness", "123", end="Escape")
     assert field(lab, tab, "stiffness").input_value() == "800"
     type_into(lab, tab, "stiffness", "850", end="ArrowUp")
-    tab.wait(lambda: lab.panel.params.stiffness == 860.0, 10)
+    tab.wait(lambda: lab.settings.params.stiffness == 860.0, 10)
     type_into(lab, tab, "points", "12", end="ArrowDown")
-    tab.wait(lambda: lab.panel.params.points == 11, 10)
+    tab.wait(lambda: lab.settings.params.points == 11, 10)
     type_into(lab, tab, "mass", "0.4", end="Tab")
-    tab.wait(lambda: lab.panel.params.mass == 0.4, 10)
+    tab.wait(lambda: lab.settings.params.mass == 0.4, 10)
 
 
 def test_a_preset_that_was_changed_is_chosen_again(shown: tuple[Viewer, Tab]) -> None:
@@ -98,7 +98,7 @@ def test_a_preset_that_was_changed_is_chosen_again(shown: tuple[Viewer, Tab]) ->
     tab.page.get_by_role("option", name="Lab code: 10 points", exact=True).click()
     tab.wait(lambda: preset.input_value() == "Lab code: 10 points", 10)
     tab.wait(lambda: field(lab, tab, "stiffness").input_value() == "800", 10)
-    assert lab.panel.params.stiffness == 800.0
+    assert lab.settings.params.stiffness == 800.0
     tab.page.keyboard.press("u")
     tab.wait(lambda: field(lab, tab, "stiffness").input_value() == "2000", 10)
 
@@ -116,7 +116,7 @@ def test_the_preset_that_is_shown_is_chosen_again_and_begins_again(shown: tuple[
     assert preset.input_value() == name
     preset.click()
     tab.page.get_by_role("option", name="Pendulum", exact=True).click()
-    tab.wait(lambda: viewer.panel.loaded == "Pendulum")
+    tab.wait(lambda: viewer.settings.loaded == "Pendulum")
     tab.wait(lambda: viewer.loop.run.counts["starts"] == starts + 2)
     assert not tab.errors
 

@@ -36,7 +36,7 @@ def test_a_line_is_not_drawn_over_a_gap(shown: tuple[Viewer, Tab]) -> None:
     y = np.where((t > 4.0) & (t < 6.0), np.nan, np.sin(t))
     plots: Plots = lab.panel.plots
     rows = [(float(time), *[float(value)] * len(lab.panel.kind.series)) for time, value in zip(t, y, strict=True)]
-    lab.panel.set("plot_tip", True)
+    lab.settings.set("plot_tip", True)
     tab.wait(lambda: "plot_tip" in plots.open)
     lab.loop.run.snapshots.plot_rows.extend([(float("nan"),) * len(rows[0]), *rows])
 
@@ -72,7 +72,7 @@ def test_charts_fill_their_drawer_at_any_height_with_the_key_beside_the_title(
     size = tab.page.viewport_size
     tab.page.set_viewport_size({"width": width, "height": height})
     for name in ("plot_energy", "plot_losses", "plot_tip"):
-        lab.panel.set(name, True)
+        lab.settings.set(name, True)
 
     def is_filled() -> bool:
         found = tab.page.evaluate(FILLED)

@@ -25,7 +25,7 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(
 ) -> None:
     lab, tab = shown
     for preset in presets:
-        lab.panel.load(preset)
+        lab.settings.load(preset)
         params = check_record(RaceParams, PRESETS[preset])
         ropes = params.ropes
         tab.wait(lambda params=params: lab.loop.latest.params == params)
@@ -63,7 +63,7 @@ def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer
     without_charts = {"plot_errors": False, "plot_energies": False, "speed": 4.0}
     tab.follow(lab, SCENE, check_record(RaceParams, {**PRESETS["Leapfrog read literally"], **without_charts}))
     tab.wait(lambda: lab.scene.time > 5)
-    lab.panel.set("speed", 1.0)
+    lab.settings.set("speed", 1.0)
     tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)
 
     def dragged() -> bool:

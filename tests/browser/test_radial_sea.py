@@ -27,12 +27,12 @@ def drawn(lab: Viewer) -> bool:
 def load(lab: Viewer, **changes: Any) -> None:
     """Set parameters as the panel would."""
     for name, value in changes.items():
-        lab.panel.set(name, value)
+        lab.settings.set(name, value)
 
 
 @pytest.mark.stress  # half a minute of drawing in software
 def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
-    lab.panel.load("Burning rig")
+    lab.settings.load("Burning rig")
     tab = open_tab(lab.port, width=420, height=260, drawn=True)
     tab.wait(lambda: drawn(lab))
     tab.wait(lambda: lab.view.flames is not None and lab.view.flames.handle.visible)
@@ -56,8 +56,8 @@ def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
 def test_every_preset_is_drawn_as_water_without_console_errors(shown: tuple[Viewer, Tab], presets: list[str]) -> None:
     lab, tab = shown
     for preset in presets:
-        lab.panel.load(preset)
-        tab.wait(lambda: lab.scene.params == lab.panel.params)
+        lab.settings.load(preset)
+        tab.wait(lambda: lab.scene.params == lab.settings.params)
         tab.wait(lambda: drawn(lab) and len(tab.vertices("/sea")) == len(lab.scene.grid))
         first = tab.vertices("/sea")
         tab.wait(lambda first=first: np.abs(tab.vertices("/sea") - first).max() > 0.02)

@@ -54,8 +54,8 @@ def touch(tab: Tab, place: tuple[float, float]) -> Callable[[], Any]:
 
 
 def test_a_press_where_the_tip_was_a_moment_before_takes_it(lab: Viewer, open_tab: Callable[..., Tab]) -> None:
-    lab.panel.set("show_points", False)
-    lab.panel.set("speed", SLOWNESS)
+    lab.settings.set("show_points", False)
+    lab.settings.set("speed", SLOWNESS)
     tab = open_tab(lab.port)
     tab.page.add_init_script(SLOW_FRAMES)
     tab.page.reload()
@@ -78,9 +78,9 @@ def test_the_reach_is_marked_and_ends(shown: tuple[Viewer, Tab], scene: str) -> 
     lab, tab = shown
     tab.follow(lab, scene)
     if scene != "cloth":
-        lab.panel.set("show_points", False)
+        lab.settings.set("show_points", False)
     lab.loop.commands.put(Pause())
-    lab.panel.reset()
+    lab.settings.reset()
     hanging: Future[float] = Future()
     lab.loop.commands.put(Advance(HANGING, hanging))
     node = "/race/rope_1" if scene == "race" else f"/{scene}"

@@ -65,9 +65,9 @@ def test_dragging_the_arrows_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
 
 def test_dragging_a_bead_pulls_it_and_lets_go(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
-    lab.panel.set("speed", 4.0)
+    lab.settings.set("speed", 4.0)
     tab.wait(lambda: lab.scene.time > 6)
-    lab.panel.set("speed", 1.0)
+    lab.settings.set("speed", 1.0)
     lab.loop.commands.put(Pause())
     tab.page.wait_for_timeout(500)
     particle = 6
@@ -110,7 +110,7 @@ def test_an_explosion_pauses_with_a_finite_picture_and_says_why(shown: tuple[Vie
     lab, tab = shown
     tab.page.keyboard.press("3")
     tab.wait(lambda: lab.scene.params.integrator == "explicit_euler")
-    lab.panel.set("speed", 4.0)  # until the last second before the bounds, which is in slow motion
+    lab.settings.set("speed", 4.0)  # until the last second before the bounds, which is in slow motion
     tab.wait(lambda: lab.loop.run.halted)
     assert "explicit Euler" in lab.loop.run.halted
     assert "hω" in lab.loop.run.halted
@@ -134,7 +134,7 @@ def test_reload_and_a_second_tab_show_the_same_rope(shown: tuple[Viewer, Tab], o
 
 def test_handles_are_assigned_to_and_never_added_again(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
-    lab.panel.set("speed", 4.0)
+    lab.settings.set("speed", 4.0)
     before = set(lab.server.scene._handle_from_node_name)
     tab.wait(lambda: lab.scene.time > 2)
     assert set(lab.server.scene._handle_from_node_name) == before
@@ -155,17 +155,17 @@ def test_without_the_script_the_rope_is_drawn_in_its_plain_colour(open_tab) -> N
 def test_a_click_on_the_map_sets_step_and_stiffness(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     lab.loop.commands.put(Pause())
-    lab.panel.map.ask()
-    tab.wait(lambda: len(lab.panel.map.rows) == live.ROWS)
+    lab.panel.controls_tab.map.ask()
+    tab.wait(lambda: len(lab.panel.controls_tab.map.rows) == live.ROWS)
     tab.page.get_by_text("Stability map", exact=True).first.click()
     picture = tab.page.locator("svg.springtide-map")
     picture.hover(timeout=60_000)  # scrolls, and waits until the folder has unfolded
     unit = picture.bounding_box()["width"] / live.PICTURE[0]
     x, y = live.LEFT + 0.25 * live.WIDE, live.TOP + 0.25 * live.HIGH
-    params = lab.panel.params
+    params = lab.settings.params
     picture.click(position={"x": unit * x, "y": unit * y}, timeout=60_000)
-    tab.wait(lambda: lab.panel.params.stiffness != params.stiffness)
-    axes = lab.panel.map.axes
-    assert live.place_of(axes.steps, lab.panel.params.time_step) == pytest.approx(0.25, abs=0.02)
-    assert live.place_of(axes.stiffnesses, lab.panel.params.stiffness) == pytest.approx(0.75, abs=0.02)
+    tab.wait(lambda: lab.settings.params.stiffness != params.stiffness)
+    axes = lab.panel.controls_tab.map.axes
+    assert live.place_of(axes.steps, lab.settings.params.time_step) == pytest.approx(0.25, abs=0.02)
+    assert live.place_of(axes.stiffnesses, lab.settings.params.stiffness) == pytest.approx(0.75, abs=0.02)
     assert not tab.errors

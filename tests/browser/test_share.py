@@ -66,17 +66,17 @@ def test_a_link_is_taken_shown_to_the_others_and_made_again(
     query = "&scene=rope&stiffness=2k&time_step=1/600&camera=3,-4,2,0,0,1.5"
     other = open_tab(lab.port, query=query)
     base = f"http://127.0.0.1:{lab.port}/"
-    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 2000.0, 60)
+    tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 2000.0, 60)
     tab.wait(tab.page.get_by_text("Another browser opened Rope").is_visible, 20)
     other.wait(other.page.get_by_text("You opened Rope").is_visible, 20)
     assert not tab.page.get_by_text("You opened Rope").is_visible()
     assert not other.page.get_by_text("Another browser opened Rope").is_visible()
     tab.page.get_by_role("button", name=UNDO).click()
-    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 800.0, 20)
+    tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 800.0, 20)
     tab.wait(lambda: not tab.page.get_by_text("Another browser opened Rope").is_visible(), 20)
     other.page.reload()
-    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 2000.0, 60)
-    assert vars(lab.panel.params)["time_step"] == 1 / 600
+    tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 2000.0, 60)
+    assert vars(lab.settings.params)["time_step"] == 1 / 600
     # The link that is made has the same parameters, and the camera of the browser that asks.
     tab.wait(lambda: len({tuple(c.camera.position.round(2)) for c in lab.server.get_clients().values()}) == 2, 30)
     tab.page.get_by_role("button", name="Copy link").click()
@@ -90,7 +90,7 @@ def test_a_link_is_taken_shown_to_the_others_and_made_again(
 def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp_path: Path) -> None:
     lab, tab = opened
     load(tab, tmp_path / "a.json", {"scene": "rope", "parameters": {"points": 23}})
-    tab.wait(lambda: vars(lab.panel.params)["points"] == 23, 20)
+    tab.wait(lambda: vars(lab.settings.params)["points"] == 23, 20)
     for content, words in (
         ({"scene": "rope", "parameters": {"points": -4}}, "points: -4 is not allowed"),
         ("<script>alert(1)</script>", "or a recording (.npz) of Springtide"),
@@ -103,11 +103,11 @@ def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp
         notice = tab.page.locator(".mantine-Notification-root", has_text="not opened")
         notice.get_by_role("button").click()
         tab.wait(lambda notice=notice: notice.count() == 0, 20)
-    assert vars(lab.panel.params)["points"] == 23
+    assert vars(lab.settings.params)["points"] == 23
     rope = scene_named("rope")
     block = setup_block(rope, check_record(rope.params, {"points": 24}))
     load(tab, tmp_path / "c.html", f"<!doctype html><html><body>{'x' * 100_000}{block}</body></html>")
-    tab.wait(lambda: vars(lab.panel.params)["points"] == 24, 20)
+    tab.wait(lambda: vars(lab.settings.params)["points"] == 24, 20)
 
 
 def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
@@ -115,20 +115,20 @@ def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
 ) -> None:
     monkeypatch.setenv("SPRINGTIDE_DATA", str(tmp_path))
     lab, tab = opened
-    lab.panel.set("points", 17)
+    lab.settings.set("points", 17)
     lab.panel.share.name.value = "Seventeen beads"
     tab.page.get_by_role("button", name="Keep as preset").click()
-    tab.wait(lambda: lab.panel.loaded == "Mine: Seventeen beads", 20)
+    tab.wait(lambda: lab.settings.loaded == "Mine: Seventeen beads", 20)
     assert "Seventeen beads" in own_files(lab.panel.kind)
     # Opened anew, as by a lab that is started later: the list is read from the files.
     tab.follow(lab, SCENE)
-    assert vars(lab.panel.params)["points"] != 17
+    assert vars(lab.settings.params)["points"] != 17
     tab.page.reload()
     preset = tab.page.get_by_label("Preset")
     tab.wait(lambda: preset.count() == 1 and preset.is_visible(), 60)
     preset.click()
     tab.page.get_by_role("option", name="Mine: Seventeen beads").click()
-    tab.wait(lambda: vars(lab.panel.params)["points"] == 17, 20)
+    tab.wait(lambda: vars(lab.settings.params)["points"] == 17, 20)
     assert preset.input_value() == "Mine: Seventeen beads"
 
 
@@ -139,7 +139,7 @@ def test_film_clip_and_plots_are_made_as_files(
     tab = open_tab(lab.port, drawn="colorMap")  # draws the background image too: its sky is checked
     tab.follow(lab, SCENE)
     tab.show("Share")
-    lab.panel.set("plot_tip", True)
+    lab.settings.set("plot_tip", True)
     tab.wait(lambda: len(lab.panel.recorder.frames) > 10 and "plot_tip" in lab.panel.plots.charts, 30)
     tab.page.get_by_role("button", name="Record", exact=True).click()
     tab.page.wait_for_timeout(800)
@@ -174,7 +174,7 @@ def test_film_clip_and_plots_are_made_as_files(
     assert pictures[0][0].mean(axis=0) == pytest.approx(sky[0].mean(axis=0), abs=3)
     assert all((before != after).any() for before, after in pairwise(pictures))  # the rope moves
     assert [float(line.split(",")[1]) for line in times[1:]] == [kept.time for kept in frames[-4:]]
-    lab.panel.set("plot_tip", False)
+    lab.settings.set("plot_tip", False)
 
 
 def test_no_preset_has_a_name_that_the_address_bar_would_change() -> None:

@@ -35,10 +35,10 @@ def place_of(tab: Tab, moment: float) -> tuple[float, float]:
 def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     recorder, starts = lab.panel.recorder, lab.loop.run.counts["starts"]
-    lab.panel.set("speed", 10.0)
+    lab.settings.set("speed", 10.0)
     lab.loop.commands.put(Play())
     tab.wait(lambda: recorder.span()[1] > 24.0, 60)
-    lab.panel.set("speed", 1.0)
+    lab.settings.set("speed", 1.0)
     tab.page.wait_for_timeout(1000)  # the bar follows twice a second
     high = recorder.span()[1]
     bar, line, scene = tab.page.evaluate(BOXES)
@@ -97,7 +97,7 @@ def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
 
 def test_the_plots_show_the_moment(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
-    lab.panel.set("plot_tip", True)
+    lab.settings.set("plot_tip", True)
     lab.loop.commands.put(Play())
     tab.wait(lambda: lab.loop.scene.time > lab.panel.recorder.span()[0] + 2.0, 60)
     lab.panel.recorder.show_time(lab.panel.recorder.span()[0] + 1.0)
@@ -106,4 +106,4 @@ def test_the_plots_show_the_moment(shown: tuple[Viewer, Tab]) -> None:
     assert tab.wait(lambda: tab.page.evaluate(MOMENT_PLACES), 30)[0] == pytest.approx(shown_frame.time, abs=0.05)
     lab.panel.recorder.show_present()
     tab.wait(lambda: not tab.page.evaluate(MOMENT_PLACES), 20)
-    lab.panel.set("plot_tip", False)
+    lab.settings.set("plot_tip", False)

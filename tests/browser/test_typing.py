@@ -18,7 +18,7 @@ import pytest
 
 from app.messages import BaseParams, Pause
 from app.panel.control import title
-from app.panel.panel import VIEW_GROUPS
+from app.panel.controls_tab import VIEW_GROUPS
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyKind
 from app.server.viewer import Viewer
@@ -113,7 +113,7 @@ def test_every_number_that_is_typed_is_taken_or_refused(scene: str, part: int, o
     tab.follow(lab, scene)
     panel, kind, rng, typed, refused = lab.panel, scene_named(scene), random.Random(7 + part), 0, 0
     taken: list[tuple[str, Value]] = []
-    change = panel.on_change
+    change = panel.settings.set
     for control in panel.controls.values():
         control.changed = lambda name, value: (taken.append((name, value)), change(name, value))[1]
     notations = itertools.cycle(range(5))
@@ -121,7 +121,7 @@ def test_every_number_that_is_typed_is_taken_or_refused(scene: str, part: int, o
     for name, parameter in numbers.items():
         show_number(lab, tab, name, parameter)
         for value in numbers_for(parameter, rng):
-            if name in kind.hidden(panel.params):  # a number may hide itself: 0 of what it counts
+            if name in kind.hidden(panel.settings.params):  # a number may hide itself: 0 of what it counts
                 show_number(lab, tab, name, parameter)
             text, said = written(value, next(notations))
             taken.clear()
@@ -136,7 +136,7 @@ def test_every_number_that_is_typed_is_taken_or_refused(scene: str, part: int, o
 def show_number(lab: Viewer, tab: Tab, name: str, parameter: Parameter) -> None:
     """Have the panel show a number: by other parameters, where these hide it, in its folder."""
     kind = lab.panel.kind
-    lab.panel.load_params(params_that_show(kind, name), next(iter(kind.presets)))
+    lab.settings.load_params(params_that_show(kind, name), next(iter(kind.presets)))
     lab.loop.commands.put(Pause())
     field = tab.page.get_by_role("textbox", name=title(name, parameter), exact=True)
     tab.page.wait_for_timeout(400)
@@ -155,18 +155,18 @@ def check_one(
     tab.page.keyboard.press("Control+A")
     tab.page.keyboard.press("Delete")
     tab.page.keyboard.type(text, delay=delay)
-    before = getattr(lab.panel.params, name)
+    before = getattr(lab.settings.params, name)
     tab.page.keyboard.press("Enter")
     allowed = parameter.low <= said <= parameter.high and (parameter.kind is float or said == int(said))
     if allowed:
         tab.wait(lambda: (name, said) in taken, 20)
-        assert getattr(lab.panel.params, name) == said
+        assert getattr(lab.settings.params, name) == said
         assert {value for changed, value in taken if changed == name} <= {said}, (name, text, taken)
         assert tab.page.locator(".springtide-refusal").count() == 0
     else:
         refusal = tab.wait(lambda: tab.page.locator(".springtide-refusal").all_inner_texts(), 20)
         assert parameter.allowed in refusal[0], (name, text, refusal)
-        assert getattr(lab.panel.params, name) == before
+        assert getattr(lab.settings.params, name) == before
         assert taken == []
         # A good value takes the refusal away.
         field.click()

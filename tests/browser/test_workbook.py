@@ -54,8 +54,8 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
 
     page.get_by_role("button", name="Set this up").click()
     tab.wait(lambda: lab.panel.head.preset.value == "Lab code: 10 points")
-    lab.panel.set("stiffness", 8000.0)
-    lab.panel.set("time_step", 1 / 500)
+    lab.settings.set("stiffness", 8000.0)
+    lab.settings.set("time_step", 1 / 500)
 
     number = page.get_by_role("textbox", name="A rope of 9 springs")
     number.fill("much")
@@ -76,7 +76,7 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     address = page.url
     page.goto(f"{address}&scene=rope&stiffness=900&task=3.2-1")
     tab.wait(lambda: page.locator(".springtide-guide").count())
-    tab.wait(lambda: vars(lab.panel.params)["stiffness"] == 900.0)
+    tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 900.0)
     tab.wait(lambda: page.get_by_role("textbox", name="A rope of 9 springs").input_value() == "0.1125")
     assert (
         page.get_by_role("textbox", name="Predict: What will the rope do").input_value()

@@ -80,12 +80,12 @@ class Hammer:
 
     @property
     def parameters(self) -> dict[str, Parameter]:
-        return parameters_of(self.viewer.panel.params)
+        return parameters_of(self.viewer.settings.params)
 
     def set(self, name: str, value: Any) -> None:
         """Turn one parameter, as the panel does."""
         self.tally.counts[self.name]["changes"] += 1
-        self.viewer.panel.set(name, value)
+        self.viewer.settings.set(name, value)
 
     def frame(self, count: int = 1, wall: float = FRAME_INTERVAL) -> None:
         """Frames `wall` [s] apart as the two threads would make them, each checked."""
@@ -111,7 +111,7 @@ class Hammer:
 
     def unusual(self) -> dict[str, Any]:
         """The parameters that are not at their defaults."""
-        params = self.viewer.panel.params
+        params = self.viewer.settings.params
         return {
             name: getattr(params, name) for name, k in self.parameters.items() if getattr(params, name) != k.default
         }
@@ -128,7 +128,7 @@ class Hammer:
     def calm(self) -> None:
         """Back to the defaults and running."""
         panel = self.viewer.panel
-        panel.load(next(iter(panel.kind.presets)))
+        panel.settings.load(next(iter(panel.kind.presets)))
         self.loop.commands.put(Play())
         self.frame(2)
         assert not self.loop.run.halted, self.loop.run.halted

@@ -48,11 +48,11 @@ def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tal
     waits: list[tuple[float, float, dict[str, object]]] = []
 
     def answered(since: float, worked: float, starts: int) -> None:
-        while not (loop.latest.params == panel.params and loop.latest.status.starts >= starts):
+        while not (loop.latest.params == panel.settings.params and loop.latest.status.starts >= starts):
             assert time.monotonic() - since < 60.0, "no answer"
             time.sleep(0.001)
-        unusual = {n: getattr(panel.params, n) for n, k in parameters_of(panel.params).items()
-                   if getattr(panel.params, n) != k.default}  # fmt: skip
+        unusual = {n: getattr(panel.settings.params, n) for n, k in parameters_of(panel.settings.params).items()
+                   if getattr(panel.settings.params, n) != k.default}  # fmt: skip
         waits.append((time.monotonic() - since, time.clock_gettime(processor) - worked, unusual))
 
     changes = 0
@@ -62,8 +62,8 @@ def test_a_control_is_answered_while_a_solve_runs(name: str, viewer: Viewer, tal
         since, worked = time.monotonic(), time.clock_gettime(processor)
         for _ in range(rng.randint(1, AT_ONCE)):
             chosen = rng.choice(list(panel.controls))
-            parameter = parameters_of(panel.params)[chosen]
-            panel.set(chosen, rng.choice(ends(parameter)) if rng.random() < 0.4 else anywhere(parameter, rng))
+            parameter = parameters_of(panel.settings.params)[chosen]
+            panel.settings.set(chosen, rng.choice(ends(parameter)) if rng.random() < 0.4 else anywhere(parameter, rng))
             changes += 1
         if rng.random() < 0.2 or loop.run.halted:
             loop.commands.put(Reset())

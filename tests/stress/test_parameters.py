@@ -13,7 +13,7 @@ AT_ONCE = 10  # most parameters turned between two frames
 
 def test_each_parameter_at_both_ends(hammer: Hammer) -> None:
     for name, parameter in hammer.parameters.items():
-        before = getattr(hammer.viewer.panel.params, name)
+        before = getattr(hammer.viewer.settings.params, name)
         for value in ends(parameter):
             hammer.set(name, value)
             hammer.frame(FRAMES)

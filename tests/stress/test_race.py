@@ -41,7 +41,7 @@ def test_each_parameter_of_a_race_at_both_ends(rule: str, six: Hammer) -> None:
     for name, parameter in six.parameters.items():
         if parameter.group not in ("Main", "Time", "Plots") or name == "ropes":
             continue
-        before = getattr(six.viewer.panel.params, name)
+        before = getattr(six.viewer.settings.params, name)
         for value in ends(parameter):
             six.set(name, value)
             six.frame(FRAMES)
@@ -66,7 +66,7 @@ def test_any_methods_and_steps_side_by_side(six: Hammer, tally: Tally) -> None:
 
 
 def test_the_number_of_ropes_changes_while_one_is_dragged(six: Hammer, tally: Tally) -> None:
-    points = six.viewer.panel.params.points
+    points = six.viewer.settings.params.points
     with tally.fault("rope removed while it is dragged", MAX_ROPES):
         for ropes in range(MAX_ROPES, 0, -1):
             # The last point of the last rope, which the next race does not have.

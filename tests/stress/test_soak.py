@@ -49,7 +49,7 @@ def test_served_while_clients_come_and_go(name: str, tally: Tally) -> None:
     prepare(name)
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(name)
-    plots = [parameter for parameter in parameters_of(viewer.panel.params) if parameter.startswith("plot_")]
+    plots = [parameter for parameter in parameters_of(viewer.settings.params) if parameter.startswith("plot_")]
     with clients_of(viewer.port) as clients:
         stays = clients.join()
         for plot in plots:

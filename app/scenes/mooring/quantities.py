@@ -34,6 +34,12 @@ def load_use(tension: float, params: "MooringParams") -> float:
     return tension / load if load > 0.0 else math.nan
 
 
+def dragged_tension(now: Any) -> float | None:
+    """Largest tension [N] at a fairlead in the time that the statistics leave out; None if there was none."""
+    found = now.readings.dragged
+    return None if math.isnan(found) else found
+
+
 def hanging_length(now: Any) -> float:
     """Length [m] of line 1 that hangs."""
     return first_line(now.params)[1] - now.readings.lines[0].lying
@@ -98,4 +104,13 @@ QUANTITIES: Quantities = {
         "1", "Fraction of time that line 1 is slack", of_line_1(lambda line: line.slack_fraction)
     ),
     "offset": for_tasks("m", "Level distance of the body from its place of rest", lambda now: now.readings.offset),
+    "largest_tension_line": for_tasks(
+        "1", "Number of the line with the largest tension", lambda now: now.readings.most_at[0] + 1
+    ),
+    "largest_tension_time": for_tasks("s", "Time of the largest tension", lambda now: now.readings.most_at[1]),
+    "statistics_start": for_tasks("s", "Time at which the statistics began", lambda now: now.readings.since),
+    "statistics_duration": for_tasks(
+        "s", "Duration of the statistics, without drags", lambda now: now.readings.duration
+    ),
+    "dragged_tension": for_tasks("N", "Largest tension at a fairlead while dragged", dragged_tension),
 }

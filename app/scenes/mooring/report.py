@@ -29,11 +29,12 @@ def figures_of(snapshot: Snapshot) -> str:
     found: MooringReadings = snapshot.readings
     if found.fault is not None and not snapshot.status.halted:  # which says it all
         return coloured(found.fault.short, WARNING_COLOUR)
-    line, t = found.most_at
-    used = read(QUANTITIES, "breaking_load_use", snapshot)
+    line, t, most, used = (
+        read(QUANTITIES, name, snapshot)
+        for name in ("largest_tension_line", "largest_tension_time", "largest_tension", "breaking_load_use")
+    )
     use = "" if math.isnan(used) else fill(" ({})", percent(used))
-    largest = bold(kilonewtons(read(QUANTITIES, "largest_tension", snapshot)))
-    return fill("Largest tension: {} kN{}, line {} at {}", largest, use, line + 1, seconds(t))
+    return fill("Largest tension: {} kN{}, line {:.0f} at {}", bold(kilonewtons(most)), use, line, seconds(t))
 
 
 def slack_text(found: LineReading, now: float) -> Html:
@@ -68,11 +69,13 @@ def tension_tables(snapshot: Snapshot) -> Html:
 
 def statistics_text(snapshot: Snapshot) -> Html:
     """The time of the statistics, and the largest tension in the time that was left out."""
-    found: MooringReadings = snapshot.readings
-    words = fill("Over {} since t = {}", seconds(found.duration), seconds(found.since))
-    if not math.isnan(found.dragged):
-        pause = "" if found.counts else ", which are left out until three wave periods have gone by"
-        words = fill("{}, without drags{}; while dragged: {} kN", words, pause, bold(kilonewtons(found.dragged)))
+    duration, start, dragged = (
+        read(QUANTITIES, name, snapshot) for name in ("statistics_duration", "statistics_start", "dragged_tension")
+    )
+    words = fill("Over {} since t = {}", seconds(duration), seconds(start))
+    if not math.isnan(dragged):
+        pause = "" if snapshot.readings.counts else ", which are left out until three wave periods have gone by"
+        words = fill("{}, without drags{}; while dragged: {} kN", words, pause, bold(kilonewtons(dragged)))
     use = "largest tension over the breaking load" if snapshot.params.breaking_load > 0.0 else "set the breaking load"
     return fill("<div>{}</div>{}", words, faint(fill("SD: standard deviation. Use: {}.", use)))
 
@@ -132,7 +135,7 @@ def readout_of(snapshot: Snapshot) -> Html:
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     found: MooringReadings = snapshot.readings
-    lines = {"time_step": step_mark(found.stability.critical_step), **dict.fromkeys(BLAMED, "")}
+    lines = {"time_step": step_mark(read(QUANTITIES, "critical_step", snapshot)), **dict.fromkeys(BLAMED, "")}
     if found.fault is not None and found.fault.parameter:
         lines[found.fault.parameter] = coloured(found.fault.said, WARNING_COLOUR)
     return lines

@@ -32,8 +32,8 @@ def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def lab_with(params: Any) -> Any:
     """A lab that shows a rope."""
-    panel = SimpleNamespace(kind=ROPE, params=params, loaded="")
-    return SimpleNamespace(viewer=SimpleNamespace(current=SimpleNamespace(panel=panel)))
+    settings = SimpleNamespace(kind=ROPE, params=params, loaded="")
+    return SimpleNamespace(viewer=SimpleNamespace(current=SimpleNamespace(settings=settings)))
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ def test_the_next_start_has_the_setup_that_was_left(data: Path, opened: Callable
     written = last_path().stat().st_mtime_ns
     keeper.store()
     assert last_path().stat().st_mtime_ns == written  # nothing has changed
-    lab.viewer.current.panel.params = ROPE.params()
+    lab.viewer.current.settings.params = ROPE.params()
     keeper.store()
     assert opened("--resume") == ("rope", ROPE.params())
 

@@ -75,10 +75,9 @@ class Pressed:
         self.posted: list[Command] = []
         self.asked: list[object] = []  # of the viewer
         monkeypatch.setattr(self.gui, "_resolve_client", lambda number: self.client)
-        monkeypatch.setattr(self.panel, "post", self.posted.append)
-        monkeypatch.setattr(self.panel.head, "actions", self.panel.head.actions._replace(post=self.posted.append))
-        monkeypatch.setattr(self.panel, "open_scene", lambda *scene: self.asked.append(scene))
-        monkeypatch.setattr(self.panel.share.files, "wake", self.update)
+        monkeypatch.setattr(viewer.settings, "post", self.posted.append)
+        monkeypatch.setattr(viewer.settings, "open_scene", lambda *scene: self.asked.append(scene))
+        monkeypatch.setattr(self.panel.recorder, "wake", self.update)
         assert self.panel.compare is not None
         asked = Beside(lambda *given: self.asked.append(given), lambda: self.asked.append("end"), lambda: ())
         monkeypatch.setattr(self.panel.compare, "beside", asked)
@@ -103,18 +102,18 @@ class Pressed:
         self.panel.status_at = self.panel.marks_at = 0.0
         self.panel.recorder.advance(time.monotonic())
         self.panel.update(self.viewer.loop.latest, [])
-        self.panel.share.files.note_sent(self.panel.recorder.shown)
+        self.panel.recorder.note_sent(self.panel.recorder.shown)
 
     def shown(self) -> object:
         """State that a user may see: the panel's texts and values, what was sent, posted and asked for."""
         handles = list(self.gui._gui_input_handle_from_uuid.values())
         texts = [getattr(handle, name, None) for handle in handles for name in ("options", "label", "visible")]
         lines = [line.content for line in self.panel.share.lines.values()]
-        recorder = self.panel.recorder
+        recorder, stability_map = self.panel.recorder, self.panel.controls_tab.map
         return (
             texts, [str(handle.value) for handle in handles if not isinstance(handle, BUTTONS)], lines,
             len(self.posted), len(self.asked), self.client.state, recorder.position, recorder.playing,
-            self.panel.map and self.panel.map.asked, self.panel.guide and self.panel.guide.answer.content,
+            stability_map and stability_map.asked, self.panel.guide and self.panel.guide.answer.content,
         )  # fmt: skip
 
 

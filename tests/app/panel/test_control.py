@@ -20,20 +20,20 @@ from tests import coroutines
 def test_what_a_control_is_set_to_is_bounded_shown_and_passed_on(lab: Viewer) -> None:
     control = lab.panel.controls["stiffness"]
     control.set(1e20)
-    assert lab.panel.params.stiffness == 1e9
+    assert lab.settings.params.stiffness == 1e9
     assert control.field.value == "1e9"
     assert control.slider is not None
     assert control.slider.value == (9.0,)
     control.set(float("nan"))
-    assert lab.panel.params.stiffness == 800.0
+    assert lab.settings.params.stiffness == 800.0
     assert control.field.value == "800"
-    before = lab.panel.params
-    lab.panel.set("stiffness", 800.0)
-    assert lab.panel.params is before  # nothing has changed
+    before = lab.settings.params
+    lab.settings.set("stiffness", 800.0)
+    assert lab.settings.params is before  # nothing has changed
     control.set(1234.5)
     assert 1234.5 not in [value for value in vars(control).values() if isinstance(value, float)]  # it is the panel's
-    lab.panel.load("Lab scene: 50 points")
-    assert lab.panel.params.points == 50
+    lab.settings.load("Lab scene: 50 points")
+    assert lab.settings.params.points == 50
     assert lab.panel.controls["points"].field.value == "50"
 
 
@@ -119,12 +119,12 @@ def test_a_list_shows_titles_and_the_record_has_names(lab: Viewer) -> None:
     assert control.field.options[:4] == (
         "Euler, explicit (lab eq. 5)", "Euler, symplectic (lab's code)", "Runge-Kutta 4 (RK4)", "Leapfrog",
     )  # fmt: skip
-    lab.panel.set("integrator", "rk4")
+    lab.settings.set("integrator", "rk4")
     assert control.field.value == "Runge-Kutta 4 (RK4)"
-    assert lab.panel.params.integrator == "rk4"
+    assert lab.settings.params.integrator == "rk4"
     event = SimpleNamespace(client_id=1, target=SimpleNamespace(value="Euler, implicit"))
     coroutines.run(control.on_field(event))
-    assert lab.panel.params.integrator == "implicit_euler"
+    assert lab.settings.params.integrator == "implicit_euler"
 
 
 FIRST_FOLDER, LAST_FOLDERS = "Main", ("Surroundings", "Time", "Look", "Plots")
@@ -160,13 +160,13 @@ def test_a_folder_is_shown_where_it_has_a_control_and_a_line_with_its_control() 
         panel.controls["exposure"].write("a line")
         line = panel.controls["exposure"].line
         assert line is not None
-        assert (panel.folders["Oil"].visible, line.visible) == (True, True)
-        panel.set("spill", "none")
-        assert (panel.folders["Oil"].visible, line.visible) == (False, False)
+        assert (panel.controls.folders["Oil"].visible, line.visible) == (True, True)
+        panel.settings.set("spill", "none")
+        assert (panel.controls.folders["Oil"].visible, line.visible) == (False, False)
         panel.controls["exposure"].write("another line")
         assert not line.visible
-        assert panel.folders["Main"].visible
-        panel.set("spill", "mixed")
-        assert (panel.folders["Oil"].visible, line.visible) == (True, True)
+        assert panel.controls.folders["Main"].visible
+        panel.settings.set("spill", "mixed")
+        assert (panel.controls.folders["Oil"].visible, line.visible) == (True, True)
     finally:
         viewer.shut()

@@ -96,11 +96,11 @@ def test_a_task_is_set_up_in_its_scene_and_its_answer_follows_the_parameters(pla
     assert HIDE in guide.tools.options
     does(guide.on_tool, SET_UP)
     wait_for(lambda: vars(plain.scene.params)["integrator"] == "explicit_euler")
-    assert vars(plain.scene.params)["stiffness"] == vars(plain.panel.params)["stiffness"] == 200.0
+    assert vars(plain.scene.params)["stiffness"] == vars(plain.settings.params)["stiffness"] == 200.0
     assert plain.panel.head.preset.value == "Lab code: 10 points (changed)"
     wait_for(lambda: "with 200\u00a0N/m it has" in guide.answer.content)
     assert "<math" in guide.answer.content
-    plain.panel.set("stiffness", 300.0)
+    plain.settings.set("stiffness", 300.0)
     wait_for(lambda: "with 300\u00a0N/m it has" in guide.answer.content)
     does(guide.on_tool, SHOW)
     wait_for(lambda: "math" not in guide.answer.content)
@@ -108,18 +108,18 @@ def test_a_task_is_set_up_in_its_scene_and_its_answer_follows_the_parameters(pla
 
 def test_a_task_shows_its_parameters_again_in_step_with_the_controls(plain: Viewer) -> None:
     show(plain, "step_euler")
-    controls = plain.panel.shown
+    controls = plain.panel.controls
     wait_for(lambda: [control.name for control in controls.again] == ["integrator", "stiffness"])
     again = controls.again[1]
     does(again.on_field, "1.5k")
-    assert vars(plain.panel.params)["stiffness"] == 1500.0
-    assert controls.own["stiffness"].field.value == again.field.value == "1500"
-    does(controls.own["stiffness"].on_field, "300")
+    assert vars(plain.settings.params)["stiffness"] == 1500.0
+    assert controls["stiffness"].field.value == again.field.value == "1500"
+    does(controls["stiffness"].on_field, "300")
     assert again.field.value == "300"
     does(again.on_field, "a lot")
     assert "a lot" in again.line.content
     assert again.field.value == "300"
-    plain.panel.undo()
+    plain.settings.undo()
     assert again.field.value == "800"
     show(plain, "spring_force")
     wait_for(lambda: [control.name for control in controls.again] == ["damping", "drag"])
@@ -135,10 +135,10 @@ def test_a_task_without_an_answer_offers_none(student: Viewer) -> None:
 
 
 def test_a_control_that_means_nothing_is_hidden_in_a_task_too(plain: Viewer) -> None:
-    controls = plain.panel.shown
+    controls = plain.panel.controls
     controls.show_again(("sphere_radius",), guide_of(plain).again.place)
     assert not controls.again[0].visible
-    plain.panel.set("sphere", True)
+    plain.settings.set("sphere", True)
     assert controls.again[0].visible
 
 
@@ -168,7 +168,7 @@ def test_a_student_predicts_measures_and_explains(student: Viewer, folder: Path)
     assert "Not right" in number.line.content
     does(guide.on_tool, SET_UP)
     wait_for(lambda: vars(student.scene.params)["integrator"] == "explicit_euler")
-    student.panel.set("stiffness", 440.0)
+    student.settings.set("stiffness", 440.0)
     wait_for(lambda: 'data-done="yes"' in guide.text.content)
     assert number.reader is not None
     wait_for(lambda: number.reader is not None and number.reader.visible)
@@ -236,7 +236,7 @@ def test_what_could_not_be_ticked_off_is_said_until_it_can(student: Viewer, fold
     does(guide.on_tool, SET_UP)
     wait_for(lambda: vars(student.scene.params)["integrator"] == "explicit_euler")
     moved = folder.rename(folder.with_name("moved"))
-    student.panel.set("stiffness", 440.0)
+    student.settings.set("stiffness", 440.0)
     wait_for(lambda: "could not be written" in guide.answer.content)
     moved.rename(folder)
     wait_for(lambda: 'data-done="yes"' in guide.text.content)
@@ -279,8 +279,9 @@ def test_the_guide_says_the_errors_of_a_race_as_its_table_does(monkeypatch: pyte
 
     def spy(panel: Panel, *arguments: Any) -> None:
         update(panel, *arguments)
-        if panel.guide is not None and "Results" in panel.readings.notes:
-            table = re.findall(r"<tr><td>(?:<b>)?(.*?)(?:</b>)?</td>", panel.readings.notes["Results"][1].content)
+        notes = panel.controls_tab.readings.notes
+        if panel.guide is not None and "Results" in notes:
+            table = re.findall(r"<tr><td>(?:<b>)?(.*?)(?:</b>)?</td>", notes["Results"][1].content)
             now = re.findall(r"Error of rope \d: <b>(.*?)</b>", panel.guide.readings.content)
             if now and table:
                 seen.append((now, table[: len(now)]))

@@ -30,7 +30,7 @@ def test_every_text_is_of_the_one_type_that_viser_encodes(name: str) -> None:
     viewer = Viewer("127.0.0.1", 0)
     try:
         viewer.open(name)
-        wait_for(lambda: viewer.served.drawn > 0 and viewer.panel.readings.notes is not None)
+        wait_for(lambda: viewer.served.drawn > 0 and viewer.panel.controls_tab.readings.notes is not None)
         messages = list(viewer.server._websock_server._broadcast_buffer.message_from_id.values())
         texts = [text for message in messages for text in strings(message)]
         assert any("<div" in text for text in texts)

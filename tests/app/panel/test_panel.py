@@ -78,14 +78,14 @@ def test_a_line_under_a_hidden_control_is_hidden_too(lab: Viewer) -> None:
     assert control.line is not None
     assert "as wide as a ball" in control.line.content
     assert not control.line.visible
-    lab.panel.set("sphere", True)
+    lab.settings.set("sphere", True)
     assert control.line.visible
 
 
 def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) -> None:
     posted: list[Any] = []
     panel = lab.panel
-    panel.post = posted.append
+    panel.settings.post = posted.append
     before = panel.head.preset.value
     command = next(c for c in lab.server.gui._command_handle_from_uuid.values() if "Pendulum" in c._impl.props.label)
     pressed: list[Any] = command._impl.trigger_cb
@@ -93,7 +93,7 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
         coroutines.run(callback(SimpleNamespace(target=command, client_id=1)))
     assert panel.head.preset.value == "Pendulum" != before
     time.sleep(0.3)  # viser tells of the assignment to the list, too
-    assert posted == [Take(panel.params, start=True, run=panel.history.run)]
+    assert posted == [Take(panel.settings.params, start=True, run=panel.settings.history.run)]
     panel.head.preset.value = before
     chosen: list[Any] = panel.head.preset._impl.update_cb
     for callback in chosen:
@@ -105,22 +105,22 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
 def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(viewer: Viewer) -> None:
     viewer.open("mooring", check_record(scene_named("mooring").params, {"length": 40.0, "segments": 12}))
     panel = viewer.panel
-    wait_for(lambda: "length" in panel.remedies.made)
-    button = panel.remedies.made["length"].button
+    wait_for(lambda: "length" in panel.controls_tab.remedies.made)
+    button = panel.controls_tab.remedies.made["length"].button
     assert (button.label, button.visible) == ("Use 84.5 m", True)
     assert panel.controls["length"].line is not None
     assert "cannot reach" in panel.controls["length"].line.content
     posted: list[Any] = []
-    panel.post = posted.append
+    panel.settings.post = posted.append
     for callback in button._impl.update_cb:
         coroutines.run(callback(SimpleNamespace(target=button, client_id=1)))
-    assert panel.params.length == 84.5
+    assert panel.settings.params.length == 84.5
     assert [type(command) for command in posted] == [Take, Reset]
-    assert posted[0].params == panel.params
-    folders = [folder.order for folder, _ in panel.readings.notes.values()]
-    assert list(panel.readings.notes) == ["Tensions", "Bed and slack"]
-    assert panel.readings.readout.order < folders[0] < folders[1] < panel.folders["Line"].order
-    viewer.commands.put(Take(panel.params))
+    assert posted[0].params == panel.settings.params
+    folders = [folder.order for folder, _ in panel.controls_tab.readings.notes.values()]
+    assert list(panel.controls_tab.readings.notes) == ["Tensions", "Bed and slack"]
+    assert panel.controls_tab.readings.readout.order < folders[0] < folders[1] < panel.controls.folders["Line"].order
+    viewer.commands.put(Take(panel.settings.params))
     wait_for(lambda: not button.visible)
     assert "cannot reach" not in panel.controls["length"].line.content
 
@@ -139,8 +139,8 @@ def test_a_simple_drawing_has_no_key_to_colours_that_are_not_drawn_and_no_cutawa
     try:
         for name, (values, said, key) in SIMPLE.items():
             lab.open(name, check_record(scene_named(name).params, values))
-            wait_for(lambda: lab.served.shown > 2 and lab.panel.readings.readout.content != "")
-            text = lab.panel.readings.readout.content
+            wait_for(lambda: lab.served.shown > 2 and lab.panel.controls_tab.readings.readout.content != "")
+            text = lab.panel.controls_tab.readings.readout.content
             assert (said in text) == plain, name
             assert (key in text) != plain, name
         lab.open("radial_sea", RadialSeaParams(cutaway=True, particles=100, wave_count=16))
@@ -155,14 +155,14 @@ def test_a_simple_drawing_has_no_key_to_colours_that_are_not_drawn_and_no_cutawa
 def test_a_sea_that_is_stepped_offers_to_run_on_to_a_high_crest(viewer: Viewer) -> None:
     viewer.open("square_sea", SquareSeaParams(size="64", mesh="32"))
     panel = viewer.panel
-    assert panel.run_on is not None
-    assert not panel.run_on.visible
-    panel.on_change("order", 2)
-    assert panel.run_on.visible
+    assert panel.controls_tab.run_on is not None
+    assert not panel.controls_tab.run_on.visible
+    panel.settings.set("order", 2)
+    assert panel.controls_tab.run_on.visible
     posted: list[object] = []
-    panel.post = posted.append
-    for callback in panel.run_on._impl.update_cb:
-        asyncio.run(callback(SimpleNamespace(client_id=1, target=panel.run_on)))
+    panel.settings.post = posted.append
+    for callback in panel.controls_tab.run_on._impl.update_cb:
+        asyncio.run(callback(SimpleNamespace(client_id=1, target=panel.controls_tab.run_on)))
     assert [type(command) for command in posted] == [RunOn]
-    panel.on_change("order", 1)
-    assert not panel.run_on.visible
+    panel.settings.set("order", 1)
+    assert not panel.controls_tab.run_on.visible

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from app.messages import Pause
-from app.panel.history import History, Settings
+from app.panel.history import EarlierSettings, History
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.rope.parameters import RopeParams
 from app.server.viewer import Viewer
@@ -12,23 +12,23 @@ from app.server.viewer import Viewer
 def test_a_changed_preset_says_so_and_can_be_loaded_again(lab: Viewer) -> None:
     panel = lab.panel
     first = panel.head.preset.value
-    panel.set("stiffness", 2000.0)
+    panel.settings.set("stiffness", 2000.0)
     assert panel.head.preset.value == f"{first} (changed)"
     assert first in panel.head.preset.options  # so that a browser can choose it
-    panel.load(first)
+    panel.settings.load(first)
     assert panel.head.preset.value == first
     assert f"{first} (changed)" not in panel.head.preset.options
-    assert panel.params == RopeParams()
+    assert panel.settings.params == RopeParams()
 
 
 def test_a_change_of_the_look_leaves_the_preset_as_it_is(lab: Viewer) -> None:
-    lab.panel.set("speed", 0.5)
+    lab.settings.set("speed", 0.5)
     assert "changed" not in lab.panel.head.preset.value
 
 
 def test_a_value_set_back_is_no_change(lab: Viewer) -> None:
-    lab.panel.set("stiffness", 2000.0)
-    lab.panel.set("stiffness", 800.0)
+    lab.settings.set("stiffness", 2000.0)
+    lab.settings.set("stiffness", 800.0)
     assert "changed" not in lab.panel.head.preset.value
 
 
@@ -38,7 +38,7 @@ def test_a_file_is_named_in_place_of_the_preset() -> None:
     try:
         viewer.open("mooring", MooringParams(moordyn_file=str(file), time_step=1e-3))
         assert viewer.panel.head.preset.value == "chain.txt"
-        viewer.panel.load(next(iter(viewer.panel.kind.presets)))
+        viewer.settings.load(next(iter(viewer.panel.kind.presets)))
         assert "chain.txt" not in viewer.panel.head.preset.options
     finally:
         viewer.shut()
@@ -47,7 +47,7 @@ def test_a_file_is_named_in_place_of_the_preset() -> None:
 def test_a_preset_starts_running(lab: Viewer) -> None:
     lab.served.stop_threads()
     lab.loop.handle(Pause())
-    lab.panel.load("Lab scene: 50 points")
+    lab.settings.load("Lab scene: 50 points")
     lab.loop.tick(0.0)
     assert lab.loop.run.running
 
@@ -55,33 +55,38 @@ def test_a_preset_starts_running(lab: Viewer) -> None:
 def test_a_preset_and_a_change_can_be_undone(lab: Viewer) -> None:
     panel = lab.panel
     first = panel.head.preset.value
-    panel.set("stiffness", 2000.0)
-    panel.load("Lab scene: 50 points")
-    panel.undo()
-    assert panel.params == RopeParams(stiffness=2000.0)
+    panel.settings.set("stiffness", 2000.0)
+    panel.settings.load("Lab scene: 50 points")
+    panel.settings.undo()
+    assert panel.settings.params == RopeParams(stiffness=2000.0)
     assert panel.head.preset.value == f"{first} (changed)"
     assert panel.controls["stiffness"].field.value == "2000"
-    panel.undo()
-    assert panel.params == RopeParams()
-    panel.undo()
-    assert panel.params == RopeParams()
+    panel.settings.undo()
+    assert panel.settings.params == RopeParams()
+    panel.settings.undo()
+    assert panel.settings.params == RopeParams()
 
 
 def test_a_slider_that_is_moved_is_one_change() -> None:
     history = History()
     for stiffness in range(1, 50):
-        history.note(Settings(RopeParams(stiffness=float(stiffness)), "first"), "stiffness")
-    history.note(Settings(RopeParams(mass=3.0), "first"), "mass")
-    assert history.take_last() == Settings(RopeParams(mass=3.0), "first")
-    assert history.take_last() == Settings(RopeParams(stiffness=1.0), "first")
+        history.note(EarlierSettings(RopeParams(stiffness=float(stiffness)), "first"), "stiffness")
+    history.note(EarlierSettings(RopeParams(mass=3.0), "first"), "mass")
+    assert history.take_last() == EarlierSettings(RopeParams(mass=3.0), "first")
+    assert history.take_last() == EarlierSettings(RopeParams(stiffness=1.0), "first")
     assert history.take_last() is None
 
 
 def test_each_change_that_begins_a_run_has_a_number_to_which_undo_returns() -> None:
     history = History()
     changes = ("b", True), ("mass", False), ("reset", True), ("b", True)
-    assert [history.note(Settings(RopeParams(), "a"), what, begins=begins) for what, begins in changes] == [2, 2, 3, 4]
-    assert history.note(Settings(RopeParams(), "a"), "b", begins=True) == 4  # the same change
+    assert [history.note(EarlierSettings(RopeParams(), "a"), what, begins=begins) for what, begins in changes] == [
+        2,
+        2,
+        3,
+        4,
+    ]
+    assert history.note(EarlierSettings(RopeParams(), "a"), "b", begins=True) == 4  # the same change
     back = [history.take_last() for _ in range(4)]
     assert [settings.run for settings in back if settings is not None] == [3, 2, 2, 1]
-    assert history.note(Settings(RopeParams(), "a"), "c", begins=True) == 5  # no number comes twice
+    assert history.note(EarlierSettings(RopeParams(), "a"), "c", begins=True) == 5  # no number comes twice

@@ -25,14 +25,14 @@ class Gui:
 
 
 class Lab:
-    """A panel with 10 s of a recording, with a state in each frame from 2 s on; notes what is posted."""
+    """10 s of a recording and its time line, with a state in each frame from 2 s on; notes what is posted."""
 
     def __init__(self) -> None:
-        self.gui, self.recorder = Gui(), Recorder()
+        self.recorder = Recorder()
         self.posted: list[object] = []
         self.resumed: list[KeptState] = []
         self.post = self.posted.append
-        self.line = Timeline(self, lambda: None)  # type: ignore[arg-type]
+        self.line = Timeline(Gui(), self.recorder, self)  # type: ignore[arg-type]
         for number in range(201):
             time = number * INTERVAL
             self.recorder.note(snapshot(number)._replace(state=None if time < 2.0 else STATE), time)

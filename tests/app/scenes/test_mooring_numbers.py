@@ -81,6 +81,7 @@ def test_values_for_the_tasks_and_measures_for_sweeps_are_the_readings(scene):
         "hanging_length": p.length - first.lying, "line_1_slack_fraction": 0.0, "offset": found.offset,
         "fairlead_height": float(scene.points[0, -1, 2]) + p.depth,
         "line_weight": 9.81 * (80.0 - 1025.0 * math.pi / 4.0 * 0.09**2),
+        "largest_tension_line": 1, "largest_tension_time": 0.0, "statistics_start": 0.0, "statistics_duration": 0.0,
     }  # fmt: skip
     assert {name: SCENE.quantities[name].value(shown) for name in expected} == pytest.approx(
         expected, rel=1e-5, abs=1e-9

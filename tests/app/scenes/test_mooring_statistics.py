@@ -13,7 +13,7 @@ from app.messages import GrabTo, Place, Release, RestartStatistics
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
 from app.scenes.mooring.parameters import PRESETS, MooringParams, hidden
-from app.scenes.mooring.report import figures_of, notes_of, tension_tables
+from app.scenes.mooring.report import figures_of, kilonewtons, notes_of, tension_tables
 from app.scenes.mooring.scene import SCENE
 from app.scenes.mooring.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
 from app.scenes.quantities import measured
@@ -101,7 +101,10 @@ def test_what_the_mouse_does_leaves_the_numbers_as_they_are(drag):
     assert [line.most_uplift for line in during.lines] == [line.most_uplift for line in before.lines]
     assert during.offset > before.most_offset
     shown = snapshot_of(scene)
-    assert "while dragged" in notes_of(shown)["Tensions"]
+    values = {name: quantity.value(shown) for name, quantity in SCENE.quantities.items() if quantity.shown}
+    assert (values["dragged_tension"], values["statistics_duration"]) == (during.dragged, before.duration)
+    assert SCENE.quantities["dragged_tension"].value(SimpleNamespace(readings=before)) is None
+    assert f"while dragged: <b>{kilonewtons(during.dragged)}</b> kN" in notes_of(shown)["Tensions"]
     assert "left out until" in notes_of(shown)["Tensions"]
     scene.handle(Release(1))
     while not scene.readings().counts:

@@ -95,13 +95,13 @@ def test_each_page_is_sent_its_own_lab(pair: Viewer) -> None:
 def test_one_sky_one_speed_and_only_what_differs_is_said(pair: Viewer) -> None:
     assert pair.comparison is not None
     first, second = pair.comparison.viewers
-    assert second.panel.params.show_points is False  # type: ignore[attr-defined]
+    assert second.settings.params.show_points is False  # type: ignore[attr-defined]
     assert [pane.heading for pane in pair.pane_words()] == ["Stiffness: 800 N/m", "Stiffness: 2\u202f000 N/m"]
-    run(second, lambda: second.panel.set("speed", 0.25))
-    wait_for(lambda: first.panel.params.speed == 0.25)
-    run(first, lambda: first.panel.set("grid", False))
-    wait_for(lambda: second.panel.params.grid is False)
-    run(first, lambda: first.panel.set("damping", 3.0))
+    run(second, lambda: second.settings.set("speed", 0.25))
+    wait_for(lambda: first.settings.params.speed == 0.25)
+    run(first, lambda: first.settings.set("grid", False))
+    wait_for(lambda: second.settings.params.grid is False)
+    run(first, lambda: first.settings.set("damping", 3.0))
     said = ["Stiffness: 800 N/m · Damping: 3 N·s/m", "Stiffness: 2\u202f000 N/m · Damping: 7 N·s/m"]
     assert [pane.heading for pane in pair.pane_words()] == said
     wait_for(lambda: "Damping: 3" in line_of(pair))
@@ -131,7 +131,7 @@ def test_another_scene_in_a_pane_keeps_the_clock() -> None:
         seats = viewer.comparison.clock.seats
         wait_for(lambda: second.loop.run.seat is seats[1])
         assert [pane.heading.split(" · ")[0] for pane in viewer.pane_words()] == ["Rope", "Cloth", "Rope"]
-        wait_for(lambda: second.panel.params.grid is False)
+        wait_for(lambda: second.settings.params.grid is False)
         with pytest.raises(ValueError, match="nothing"):
             second.open("nothing")
         assert len(viewer.comparison.clock.seats) == 2  # the others do not wait for it
@@ -190,7 +190,7 @@ def test_an_address_and_the_panel_open_a_comparison() -> None:
         wait_for(lambda: viewer.comparison is not None)
         assert viewer.comparison is not None
         second = viewer.comparison.viewers[1]
-        assert second.panel.params.units == PRESETS["Stiff rope"]["units"] == "material"  # type: ignore[attr-defined]
+        assert second.settings.params.units == PRESETS["Stiff rope"]["units"] == "material"  # type: ignore[attr-defined]
     finally:
         viewer.shut()
 

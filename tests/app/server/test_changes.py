@@ -111,20 +111,20 @@ def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pyte
     async def follow_links() -> None:
         async with visitor(lab) as first:
             await first.send(lab.panel.share.inbox, "page\n?scene=rope&points=9")  # nobody else is there
-            await until(lambda: vars(lab.panel.params)["points"] == 9)
+            await until(lambda: vars(lab.settings.params)["points"] == 9)
             assert lab.changes.latest is None
             async with visitor(lab) as second:
                 await first.follow("?scene=rope&preset=Pendulum")
                 assert "You opened <b>Rope</b> (Pendulum) for all." in shown(lab)
                 assert "Another browser opened <b>Rope</b> (Pendulum) for all." in shown(lab)
                 await second.follow("?scene=rope&points=11")  # the last one wins
-                assert vars(lab.panel.params)["points"] == 11
+                assert vars(lab.settings.params)["points"] == 11
                 clock[0] += 0.9 * SHOWN_TIME
                 await asyncio.sleep(0.3)
                 assert shown(lab)
                 clock[0] += 0.2 * SHOWN_TIME
                 await until(lambda: not shown(lab))
-                assert vars(lab.panel.params)["points"] == 11
+                assert vars(lab.settings.params)["points"] == 11
 
     coroutines.run(follow_links())
 
@@ -133,17 +133,17 @@ def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer) -> Non
     async def undo_links() -> None:
         async with visitor(lab) as first, visitor(lab) as second:
             await first.send(lab.panel.share.inbox, "page\n?scene=rope&points=9&stiffness=500")
-            await until(lambda: vars(lab.panel.params)["points"] == 9 and shown(lab))
-            before = lab.panel.params
+            await until(lambda: vars(lab.settings.params)["points"] == 9 and shown(lab))
+            before = lab.settings.params
             await first.follow("?scene=cloth")
             assert lab.panel.kind.name == "cloth"
             assert "Another browser opened <b>Cloth</b>" in shown(lab)  # in the panel of the scene that it opened
             await second.undo()
             await until(lambda: lab.panel.kind.name == "rope" and not shown(lab))
-            assert lab.panel.params == before
+            assert lab.settings.params == before
             await second.undo()  # once more, and too late
             await first.follow("?scene=rope&points=13")
             await second.undo()
-            await until(lambda: lab.panel.params == before and not shown(lab))
+            await until(lambda: lab.settings.params == before and not shown(lab))
 
     coroutines.run(undo_links())

@@ -130,7 +130,7 @@ def test_hostile_messages_leave_the_server_running_and_the_state_finite(lab: Vie
     wait_for(lambda: lab.loop.run.counts["ticks"] >= ticks + 30)
     assert np.isfinite(lab.scene.state.x).all() or lab.loop.run.halted
     assert np.isfinite(lab.loop.latest.frame.points).all()
-    params = lab.panel.params
+    params = lab.settings.params
     for name, control in lab.panel.controls.items():
         value = getattr(params, name)
         if control.parameter.choices:
@@ -181,7 +181,7 @@ async def follow_a_link_while_somebody_looks(lab: Viewer) -> None:
 
 
 def test_a_link_that_comes_before_its_browser_is_counted_is_shown_to_the_others(lab: Viewer) -> None:
-    before = lab.panel.params
+    before = lab.settings.params
     coroutines.run(follow_a_link_while_somebody_looks(lab))
     assert lab.changes.latest is not None
     assert lab.changes.latest.before.params == before

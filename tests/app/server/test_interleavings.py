@@ -159,17 +159,17 @@ def test_a_preset_that_is_undone_while_it_is_compiled_never_begins(
     reset = scene.reset
     monkeypatch.setattr(scene, "reset", lambda: (begun.append(scene.params), reset()))
     for number in range(times):
-        before, starts = panel.params, watched.loop.run.counts["starts"]
-        panel.load_params(RopeParams(integrator="rk4", gravity=9.0), undone)
+        before, starts = panel.settings.params, watched.loop.run.counts["starts"]
+        panel.settings.load_params(RopeParams(integrator="rk4", gravity=9.0), undone)
         assert asked(watched, lambda: scene.params) == before
-        panel.undo()
+        panel.settings.undo()
         assert asked(watched, lambda: scene.params) == before
-        panel.set("gravity", 1.0 + number % 7)
+        panel.settings.set("gravity", 1.0 + number % 7)
         assert asked(watched, lambda: scene.params.gravity) == 1.0 + number % 7  # type: ignore[attr-defined]
         assert watched.loop.run.counts["starts"] == starts
         assert not watched.loop.run.halted
         if number % 5 == 4:
-            panel.load_params(RopeParams(gravity=2.0), ready)
+            panel.settings.load_params(RopeParams(gravity=2.0), ready)
             assert asked(watched, lambda: watched.loop.run.counts["starts"]) == starts + 1
     assert all(params.integrator != "rk4" for params in begun)
     assert len(begun) == times // 5
@@ -184,11 +184,11 @@ def test_a_preset_that_settles_late_is_not_lost(watched: Viewer, monkeypatch: py
     for number in range(times):
         settled.clear()
         settled.looks_left = 1 + number % 4
-        panel.load_params(RopeParams(integrator="rk4", gravity=1.0 + number), preset)
+        panel.settings.load_params(RopeParams(integrator="rk4", gravity=1.0 + number), preset)
         for _ in range(8):  # ticks
             asked(watched, lambda: None)
         assert watched.loop.run.counts["starts"] == number + 1
-        assert watched.scene.params is panel.params
+        assert watched.scene.params is panel.settings.params
         assert not watched.loop.run.halted
 
 

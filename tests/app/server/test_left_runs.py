@@ -106,20 +106,20 @@ def test_a_run_that_never_began_leaves_the_one_before_untouched() -> None:
     assert (loop.scene.time, loop.run.counts["starts"]) == (time, 0)
 
 
-@pytest.mark.parametrize("change", [lambda lab: lab.panel.load("Pendulum"), lambda lab: lab.panel.reset()])
+@pytest.mark.parametrize("change", [lambda lab: lab.settings.load("Pendulum"), lambda lab: lab.settings.reset()])
 def test_undo_gives_back_the_screen(lab: Viewer, change: Callable[[Viewer], None]) -> None:
     """As a user meets it: a rope over the sphere, another preset or a reset, one step, undo."""
     lab.visitors = lambda: 1  # type: ignore[method-assign]
-    lab.panel.load("Over the sphere")
+    lab.settings.load("Over the sphere")
     wait_for(lambda: lab.loop.scene.time > 0.5 and lab.loop.run.running)
-    lab.panel.post(Pause())
+    lab.settings.post(Pause())
     wait_for(lambda: not lab.loop.run.running)
     time, before = lab.loop.scene.time, arrays_of(lab.loop)
     starts = lab.loop.run.counts["starts"]
     change(lab)
-    lab.panel.post(StepOnce())
+    lab.settings.post(StepOnce())
     wait_for(lambda: lab.loop.run.counts["starts"] > starts and not lab.loop.run.running)
-    lab.panel.undo()
+    lab.settings.undo()
     # Its snapshot comes once the whole run is back.
     wait_for(lambda: (status := lab.loop.latest.status).starts == starts + 2 and status.time == time)
     check_same(lab.loop, before)

@@ -141,9 +141,9 @@ def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_
     if opened:
         lab.open("rope", wrong)
     else:
-        lab.panel.load_params(wrong, next(iter(lab.panel.kind.presets)))
+        lab.settings.load_params(wrong, next(iter(lab.panel.kind.presets)))
     panel = lab.panel
-    assert panel.params == wrong
+    assert panel.settings.params == wrong
     assert panel.controls["stiffness"].field.value == "1234"
     wait_for(lambda: lab.loop.run.halted)
     said = "The scene cannot begin with these values. stiffness: 1234 is not allowed; allowed: another one"
@@ -155,10 +155,10 @@ def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_
     wait_for(lambda: said in panel.head.status.content)
     assert lab.loop.latest.status.unmade
     assert not panel.head.remedy.button.visible  # a shorter step does not help
-    panel.set("damping", 3.0)  # which alone would let the motion go on
+    panel.settings.set("damping", 3.0)  # which alone would let the motion go on
     wait_for(lambda: lab.scene.params.damping == 3.0)
     assert lab.loop.run.halted == said
-    panel.set("stiffness", 500.0)
+    panel.settings.set("stiffness", 500.0)
     wait_for(lambda: lab.loop.run.running and len(lab.loop.latest.frame.points) == 5)
     assert lab.loop.latest.status.time < 5.0
     assert (lab.scene.params.stiffness, lab.loop.run.halted) == (500.0, "")
@@ -170,7 +170,7 @@ def test_a_scene_comes_back_with_the_parameters_it_was_first_opened_with(lab: Vi
     lab.open("cloth", params)
     lab.open("rope")
     lab.open("cloth")
-    assert lab.panel.params is params
+    assert lab.settings.params is params
 
 
 def test_of_several_scenes_asked_for_only_the_last_is_opened(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,7 +201,7 @@ def test_ending_does_not_wait_for_a_long_solve(monkeypatch: pytest.MonkeyPatch) 
 def test_ending_while_a_scene_is_opened_leaves_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     viewer = Viewer("127.0.0.1", 0)
     compiling, compiled = threading.Event(), threading.Event()
-    monkeypatch.setattr(viewer, "compile", lambda *_: (compiling.set(), compiled.wait(20.0)))
+    monkeypatch.setattr(viewer.preparation, "compile", lambda *_, **__: (compiling.set(), compiled.wait(20.0)))
     opening = threading.Thread(target=viewer.open, args=("rope",))
     opening.start()
     assert compiling.wait(10.0)
@@ -255,7 +255,7 @@ def test_the_first_scene_covers_the_page_until_it_is_compiled(monkeypatch: pytes
 def test_plot_rows_of_snapshots_that_were_never_shown_reach_the_charts(lab: Viewer) -> None:
     lab.served.stop_threads()
     lab.loop.run.audience = lambda: 1
-    lab.panel.set("plot_tip", True)
+    lab.settings.set("plot_tip", True)
     for _ in range(30):
         lab.loop.tick(1 / 60)
     lab.loop.commands.put(Reset())
@@ -287,13 +287,13 @@ def test_presets_under_load_each_start_on_exactly_their_own_record(lab: Viewer, 
     presets = list(lab.panel.kind.presets)
     records = []
     for number in range(count):
-        lab.panel.load(presets[number % len(presets)])
-        records.append(lab.panel.params)
-        lab.panel.on_change("gravity", 1.0 + number % 7)  # a hand on a slider right after
+        lab.settings.load(presets[number % len(presets)])
+        records.append(lab.settings.params)
+        lab.settings.set("gravity", 1.0 + number % 7)  # a hand on a slider right after
         if number % 10 == 0:
             time.sleep(0.005)
     allowed = {id(record) for record in records}
-    wait_for(lambda: lab.scene.params is lab.panel.params)
+    wait_for(lambda: lab.scene.params is lab.settings.params)
     assert len(starts) > count / 50
     assert all(id(params) in allowed for params in starts)
     assert starts[-1] is records[-1]

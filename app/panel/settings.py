@@ -1,0 +1,177 @@
+"""The settings of the open scene: its parameters, the preset that they come from, and what an undo brings back."""
+
+import dataclasses
+from collections.abc import Callable
+from typing import TypeAlias
+
+import viser
+
+from app.lab import task
+from app.messages import BaseParams, KeptState, Reset, Take
+from app.panel.history import EarlierSettings, History
+from app.panel.task_setups import setup_of_task
+from app.render.cameras import ClientCamera, client_cameras
+from app.scenes.contract import Advice, AnyKind, PostCommand
+from app.scenes.own_setups import own_files
+from app.scenes.setups import FILES, Setup, file_name, make_setup
+from sim.parameters import changed_names, clamp_value, effect_of_change, parameters_of
+
+OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
+
+# Takes a scene to show, its parameters if any, and a camera for one browser if any.
+OpenScene: TypeAlias = Callable[[str, BaseParams | None, ClientCamera | None], None]
+
+
+class SceneSettings:
+    """The settings of one scene. Each change of them posts one command, then calls the watchers.
+
+    Changes come on viser's event loop, one after the other; other threads read `params`.
+    """
+
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        kind: AnyKind,
+        params: BaseParams,
+        post: PostCommand,
+        open_scene: OpenScene = lambda name, params, camera: None,
+    ) -> None:
+        """post: takes commands for the simulation. open_scene: takes a scene to show instead. Both return at once."""
+        self.server, self.kind, self.post, self.open_scene = server, kind, post, open_scene
+        self.params = params
+        self.own = own_presets(kind)  # name in the list -> set-up of the user
+        # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
+        self.loaded = self.nearest_preset(params)
+        self.history = History()
+        self.cameras: tuple[ClientCamera, ...] = ()  # of what is being loaded, for the viewer to place
+        self.watchers: list[Callable[[], None]] = []  # called after each change, to show it
+
+    @property
+    def presets(self) -> tuple[str, ...]:
+        """Names of the presets, and of the user's own set-ups."""
+        return (*self.kind.presets, *self.own)
+
+    def params_of(self, preset: str) -> BaseParams:
+        """The parameters of a preset. The hull from a file, which is not a parameter, stays."""
+        own = self.own.get(preset)
+        return with_fields_of(self.params, (own or make_setup(self.kind, preset)).params)
+
+    def nearest_preset(self, params: BaseParams) -> str:
+        """Name of the preset that parameters differ from the least."""
+        return min(self.kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
+
+    def setup_of(self, preset: str) -> Setup:
+        """The set-up of a preset."""
+        return self.own[preset] if preset in self.own else Setup(self.kind.name, self.params_of(preset), {}, preset)
+
+    @property
+    def other_name(self) -> str:
+        """Name in place of that of the loaded preset if a parameter that matters is not as it has it; otherwise ""."""
+        look = {name for name, parameter in parameters_of(self.params).items() if parameter.affects == "look"}
+        if not changed_names(self.params_of(self.loaded), self.params) - look:
+            return ""
+        files = [file_name(path) for field in FILES.values() if (path := getattr(self.params, field, ""))]
+        return ", ".join(files) or f"{self.loaded} (changed)"
+
+    # ----- changes
+
+    def set(self, name: str, value: object) -> None:
+        """Set one parameter, bounded to its range."""
+        good = clamp_value(parameters_of(self.params)[name], value)
+        if getattr(self.params, name) == good:
+            return
+        params = dataclasses.replace(self.params, **{name: good})
+        run = self.note(name, begins=effect_of_change(self.params, params) == "start")
+        self.take(Take(params, run=run), self.loaded)
+
+    def toggle_plots(self) -> None:
+        """Open all plots, or close them if one is open."""
+        plots = [name for name in parameters_of(self.params) if name in self.kind.plots or name in self.kind.curves]
+        on = not any(getattr(self.params, name) for name in plots)
+        for name in plots:
+            self.set(name, on)
+
+    def follow(self, advice: Advice) -> None:
+        """Set the parameter of an advice, and start again."""
+        self.set(advice.name, advice.value)
+        self.reset()
+
+    def load(self, preset: str) -> None:
+        """Every parameter as the preset has it, and the scene from its start: one command."""
+        self.load_params(self.params_of(preset), preset)
+
+    def load_params(self, params: BaseParams, preset: str) -> None:
+        """Take parameters, and the scene from its start: one command. preset: that they come from."""
+        self.take(Take(params, start=True, run=self.note(preset, begins=True)), preset)
+
+    def set_up(self, setup: task.TaskSetup) -> None:
+        """Show the set-up of a task. Raises ValueError if there is no such scene, preset or parameter."""
+        self.show_setup(setup_of_task(setup), None)
+
+    def show_setup(self, setup: Setup, client: int | None) -> None:
+        """Show a set-up from a link or a file, with its camera for one browser."""
+        camera = None if setup.camera is None or client is None else ClientCamera(client, *setup.camera)
+        if setup.scene != self.kind.name:
+            self.open_scene(setup.scene, setup.params, camera)
+            return
+        self.cameras = () if camera is None else (camera,)
+        self.load_params(with_fields_of(self.params, setup.params), setup.preset or next(iter(self.kind.presets)))
+
+    def open_first_view_of(self, scene: str) -> None:
+        """Show another scene as it is shown first."""
+        self.open_scene(scene, None, None)
+
+    def resume(self, params: BaseParams, state: KeptState) -> None:
+        """Have the scene go on from a state, with the parameters that it had then: one command."""
+        self.take(Take(params, state=state, run=self.note("moment", begins=True)), self.loaded)
+
+    def reset(self) -> None:
+        """Begin the scene again."""
+        self.post(Reset(self.note("reset", begins=True)))
+
+    def undo(self) -> None:
+        """The settings before the last change, and the run that had them if that change has begun another."""
+        run, settings = self.history.run, self.history.take_last()
+        if settings is None:
+            return
+        known = settings.preset in self.presets  # a set-up of the user may be gone
+        back = settings.run != run
+        self.cameras = settings.cameras if back else ()
+        take = Take(settings.params, start=back, run=settings.run, back=back)
+        self.take(take, settings.preset if known else next(iter(self.kind.presets)))
+
+    def read_own(self, chosen: str = "") -> None:
+        """Read the user's own set-ups again. chosen: the one that the parameters are those of, if any."""
+        self.own = own_presets(self.kind)
+        if chosen:
+            self.loaded = OWN.format(chosen)
+        if self.loaded not in self.presets:
+            self.loaded = next(iter(self.kind.presets))
+        self.tell()
+
+    def note(self, what: str, *, begins: bool) -> int:
+        """Keep the settings for an undo, before a change. Returns the number of the run after it (`History.note`)."""
+        now = EarlierSettings(self.params, self.loaded, cameras=client_cameras(self.server))
+        return self.history.note(now, what, begins=begins)
+
+    def take(self, command: Take, preset: str) -> None:
+        """Take parameters, and have the simulation take them too. preset: that they come from."""
+        self.params, self.loaded = command.params, preset
+        self.post(command)
+        self.tell()
+
+    def tell(self) -> None:
+        """Call the watchers."""
+        for watcher in self.watchers:
+            watcher()
+
+
+def own_presets(kind: AnyKind) -> dict[str, Setup]:
+    """The user's own set-ups of a scene, by their names in the list of presets."""
+    return {OWN.format(name): setup for name, (_, setup) in own_files(kind).items()}
+
+
+def with_fields_of(old: BaseParams, new: BaseParams) -> BaseParams:
+    """`new`, with the hull from a file, which is not a parameter, as in `old`."""
+    kept = {f.name: getattr(old, f.name) for f in dataclasses.fields(old) if "parameter" not in f.metadata}
+    return dataclasses.replace(new, **kept)

@@ -1,0 +1,73 @@
+"""The settings of a scene without a server: each change is one command, and is told once."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from app.messages import Reset, Take
+from app.panel.settings import SceneSettings
+from app.render.cameras import ClientCamera
+from app.scenes import scene_named
+from app.scenes.contract import Advice
+from app.scenes.rope.parameters import RopeParams
+from app.scenes.setups import Setup
+
+CAMERA = (1.0, 2.0, 3.0), (0.0, 0.0, 1.0)
+
+
+class Told:
+    """Settings of the rope, and what they post, ask for and tell."""
+
+    def __init__(self) -> None:
+        self.posted: list[Any] = []
+        self.asked: list[Any] = []
+        self.shown: list[Any] = []
+        server: Any = SimpleNamespace(get_clients=dict)
+        ask = lambda *scene: self.asked.append(scene)  # noqa: E731
+        self.settings = SceneSettings(server, scene_named("rope"), RopeParams(), self.posted.append, ask)
+        self.settings.watchers.append(lambda: self.shown.append(self.settings.params))
+
+
+@pytest.fixture
+def told(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Told:
+    monkeypatch.setenv("SPRINGTIDE_DATA", str(tmp_path_factory.mktemp("data")))
+    return Told()
+
+
+def test_a_value_is_bounded_posted_and_told_once(told: Told) -> None:
+    told.settings.set("points", 10**6)
+    expected = RopeParams(points=1000)
+    assert told.settings.params == expected
+    assert told.posted == [Take(expected, run=1)]
+    assert told.shown == [expected]
+    told.settings.set("points", 1000)
+    assert (len(told.posted), len(told.shown)) == (1, 1)
+
+
+def test_an_advice_is_set_and_the_scene_begins_again(told: Told) -> None:
+    told.settings.follow(Advice("time_step", 1 / 500, "1/500 s"))
+    assert told.posted == [Take(RopeParams(time_step=1 / 500), run=1), Reset(2)]
+
+
+def test_all_plots_open_and_close_together(told: Told) -> None:
+    settings = told.settings
+    names = [*settings.kind.plots, *settings.kind.curves]
+    settings.set(names[0], True)
+    for on in (False, True, False):
+        settings.toggle_plots()
+        assert [getattr(settings.params, name) for name in names] == [on] * len(names)
+
+
+def test_a_setup_is_loaded_with_its_camera_or_asked_for_in_another_scene(told: Told) -> None:
+    settings, cloth = told.settings, scene_named("cloth").params()
+    settings.show_setup(Setup("rope", RopeParams(mass=0.3), {}, "Pendulum", CAMERA), 7)
+    assert settings.cameras == (ClientCamera(7, *CAMERA),)
+    assert (settings.params, settings.loaded) == (RopeParams(mass=0.3), "Pendulum")
+    assert settings.other_name == "Pendulum (changed)"
+    settings.show_setup(Setup("cloth", cloth, {}, "", CAMERA), 7)
+    assert told.asked == [("cloth", cloth, ClientCamera(7, *CAMERA))]
+    assert len(told.posted) == 1
+    settings.undo()
+    assert (settings.params, settings.cameras) == (RopeParams(), ())
+    assert told.posted[-1] == Take(RopeParams(), start=True, run=1, back=True)

@@ -13,7 +13,7 @@ from sim.ocean.transforms import Transforms
 
 
 class TileHeights:
-    """Evolves the waves of one tile, and keeps what was computed of the last surface. Not for two threads at once."""
+    """Evolves the waves of one tile, and keeps the last surface. Not for two threads at once."""
 
     def __init__(self, waves: TileWaves, transforms: Transforms) -> None:
         self.waves, self.transforms = waves, transforms

@@ -16,7 +16,7 @@ class SeaEnergy(NamedTuple):
 
 @dataclasses.dataclass(frozen=True)
 class EnergyBalance:
-    """What the waves had at the start, and what they have gained and lost since [J/m2]."""
+    """Energy of the waves at the start, and its gains and losses since [J/m2]."""
 
     start: float
     fade_in: float | None  # gained by the fade-in, None until it is over

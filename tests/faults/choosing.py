@@ -18,8 +18,8 @@ from tests.test_layers import imports, module_of
 # Their kernels are in one another, so that compiling them again takes longer than most tests.
 PLAIN = ("sim/springs/", "sim/floating/", "sim/mooring/")
 FIRST_TESTS, FIRST_FILES, FIRST_SECONDS = 40, 6, 8.0  # of a first run, as it finds most faults
-NEXT_SECONDS = 60.0  # that the other tests took without a fault
-OTHER_SECONDS = 15.0  # that tests took that are not seen to reach the line
+NEXT_SECONDS = 40.0  # that the other tests took without a fault
+OTHER_SECONDS = 10.0  # that tests took that are not seen to reach the line
 FAR = 5.0  # times as expensive is a test that lies elsewhere: it is less likely to look at the result
 START = 0.05  # [s] of a test that takes no time
 
@@ -102,15 +102,16 @@ def all_files() -> list[str]:
 
 @functools.cache
 def digest(name: str) -> str:
-    """Hash of a file of tests, and of all sources of the program."""
-    text = (ROOT / name).read_bytes()
-    return hashlib.sha256(text + b"".join((ROOT / module).read_bytes() for module in modules())).hexdigest()[:16]
+    """Hash of a file of tests and of the sources that it may run: for one of the library, those that it imports."""
+    in_library = name.startswith("tests/sim/")
+    sources = [module for module in modules() if not in_library or name in distances(module)]
+    return hashlib.sha256(b"".join((ROOT / path).read_bytes() for path in (name, *sources))).hexdigest()[:16]
 
 
 class Records:
     """How long each test takes, and what it calls, from one run of each file without a fault; kept in `work`.
 
-    A file is run again where its text or a source of the program is another. This compiles all kernels, too.
+    A file is run again where its text or a source that it may run is another. This compiles all kernels, too.
     """
 
     def __init__(self, work: Path) -> None:

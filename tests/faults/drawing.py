@@ -10,7 +10,7 @@ from tests.faults.sites import Fault, faults_in
 ROOT = Path(__file__).parent.parent.parent
 LIST = Path(__file__).parent / "faults.csv"
 SEED = 20261126
-LINES_PER_FAULT = 60
+LINES_PER_FAULT = 78
 
 
 class Listed(NamedTuple):

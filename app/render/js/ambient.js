@@ -80,7 +80,7 @@ const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0
 function lightMeshes(renderer, scene) {
   const lit = [];
   let plain = null; // a mesh of which another can be made: not of instances
-  scene.traverse((object) => {
+  scene.traverseVisible((object) => {
     if (!object.isMesh) return;
     lit.push(...[object.material].flat().filter((one) => one.isMeshStandardMaterial));
     const isPlain = Object.getPrototypeOf(object.constructor) === Object.getPrototypeOf(scene.constructor);

@@ -36,9 +36,19 @@ const SMOKE_NOISE = `
   }`;
 const SPLAT_OPACITY = "float B = exp(A) * vRgba.a;";
 const SPLAT_COLOUR = "gl_FragColor = vec4(vRgba.rgb, B);";
+// viser draws each splat as a square out to where it is 1/50 as dense, and drops what is less than 1/100 opaque; a
+// smaller square holds all of that. Eroded, it ends where the densest smoke does (1.8 exp(-r r) < 0.1), at r = 1.7.
+const SPLAT_PLACE = "vPosition = position.xy;", SPLAT_SIDES = ["position.x * v1", "position.y * v2"];
+const SMALLER = { plain: "0.5 * sqrt(clamp(log(100.0 * vRgba.a), 0.0, 4.0))", eroded: "0.85" }; // than 2
 const SPLAT_AXES = ["vec2 diagonalVector", "mat4 T_camera_group"]; // the first axis on the screen; from sea to camera
 
 let splats = null; // the mesh
+
+// The text of their vertex shader, with squares that are smaller by a factor, and what more is told to the fragments.
+function smallerSplats(vertexShader, factor, more = "") {
+  for (const side of SPLAT_SIDES) vertexShader = vertexShader.replace(side, side.replace("position", "vPosition"));
+  return vertexShader.replace(SPLAT_PLACE, `vPosition = position.xy * ${factor};${more}`);
+}
 
 function dressSmoke(scene) {
   if (!splats || !splats.parent) {
@@ -49,15 +59,15 @@ function dressSmoke(scene) {
   replaceShader(splats.material, keyWithDetails("springtide-smoke"), (shader) => {
     const { vertexShader, fragmentShader } = shader;
     const known = [SPLAT_OPACITY, SPLAT_COLOUR, "in vec2 vPosition;"].every((text) => fragmentShader.includes(text))
-      && ["vPosition = position.xy;", ...SPLAT_AXES].every((text) => vertexShader.includes(text));
-    if (QUALITY.details() === 0 || !known) return;
+      && [SPLAT_PLACE, ...SPLAT_SIDES, ...SPLAT_AXES].every((text) => vertexShader.includes(text));
+    if (!known) return;
+    if (QUALITY.details() === 0) return void (shader.vertexShader = smallerSplats(vertexShader, SMALLER.plain));
     shader.uniforms.sunDirection = sea.sunDirection;
-    shader.vertexShader = vertexShader
-      .replace("out vec2 vPosition;", "out vec2 vPosition;\nflat out float vSplat;\nflat out vec3 vSun;\nuniform vec3 sunDirection;")
-      .replace("vPosition = position.xy;", `vPosition = position.xy;
+    shader.vertexShader = smallerSplats(vertexShader, SMALLER.eroded, `
         vSplat = float(sortedIndex % 4096u);
         vec3 toSun = mat3(T_camera_group) * sunDirection;
-        vSun = vec3(dot(toSun.xy, diagonalVector), dot(toSun.xy, vec2(diagonalVector.y, -diagonalVector.x)), toSun.z);`);
+        vSun = vec3(dot(toSun.xy, diagonalVector), dot(toSun.xy, vec2(diagonalVector.y, -diagonalVector.x)), toSun.z);`)
+      .replace("out vec2 vPosition;", "out vec2 vPosition;\nflat out float vSplat;\nflat out vec3 vSun;\nuniform vec3 sunDirection;");
     shader.fragmentShader = fragmentShader
       .replace("precision mediump float;", "precision highp float;")
       .replace("in vec2 vPosition;", `in vec2 vPosition;\n${SMOKE_NOISE}`)

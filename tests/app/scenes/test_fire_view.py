@@ -106,6 +106,8 @@ def test_viser_draws_splats_by_the_lines_that_the_script_changes() -> None:
         "in vec2 vPosition;",
         "out vec2 vPosition;",
         "vPosition = position.xy;",
+        "position.x * v1",
+        "position.y * v2",
         "vec2 diagonalVector",
         "mat4 T_camera_group",
         "textureT_camera_groups",

@@ -13,6 +13,7 @@ from sim.mooring.moored import moored
 from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves
 from tests.refusals import assert_refused
 
+pytest.importorskip("netCDF4")
 xarray = pytest.importorskip("xarray")
 FOLDER = Path(__file__).parent / "datasets"
 BOXES = {"fore": ((20.0, 10.0, 4.0), (-20.0, 0.0, -0.5)), "aft": ((8.0, 8.0, 4.0), (10.0, 5.0, -0.3))}

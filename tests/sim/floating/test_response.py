@@ -18,6 +18,7 @@ HEADINGS = (0, 30, 60, 90, 140)  # [degrees]
 
 @pytest.fixture(scope="module")
 def dataset():
+    pytest.importorskip("netCDF4")
     with xarray.open_dataset(BARGE) as found:
         return found.load()
 

@@ -138,6 +138,7 @@ def changed(dataset, seed: int):
 
 
 def test_broken_datasets_end_with_one_line(tmp_path):
+    pytest.importorskip("netCDF4")
     xarray = pytest.importorskip("xarray")
     path = Path(__file__).parents[2] / "sim" / "floating" / "datasets" / "depths.nc"
     with xarray.open_dataset(path) as file:

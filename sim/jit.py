@@ -66,12 +66,26 @@ def sources_hash(root: Path) -> str:
 
 
 @functools.cache
+def names_in(folder: Path) -> frozenset[str]:
+    """Names of the files and folders in a folder; none where it is no folder."""
+    try:
+        return frozenset(os.listdir(folder))
+    except OSError:
+        return frozenset()
+
+
+@functools.cache
 def source_of(module: str) -> Path | None:
-    """The file of a module of ours; None of other modules."""
+    """The file of a module of ours; None of other modules.
+
+    By the names in its folder: to Windows and macOS the class `Hull` of a package is a module, too, that of `hull.py`.
+    """
     if module.partition(".")[0] not in OWN_PACKAGES:
         return None
     path = ROOT.joinpath(*module.split("."))
-    return next((file for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()), None)
+    if f"{path.name}.py" in names_in(path.parent):
+        return path.with_suffix(".py")
+    return path / "__init__.py" if path.name in names_in(path.parent) and "__init__.py" in names_in(path) else None
 
 
 @functools.cache

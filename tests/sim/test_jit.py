@@ -114,8 +114,23 @@ def test_the_imports_of_our_sources_are_those_that_python_s_parser_sees(folder):
         assert parsed <= found if folder == "tests" else parsed == found, path
 
 
+def test_a_class_is_no_module_where_the_case_of_names_does_not_count(monkeypatch):
+    """As on Windows, where `hull.py` is `Hull.py` too: the key of a kernel was one of two by chance."""
+
+    def is_there(path: Path) -> bool:
+        return os.path.isdir(path.parent) and path.name.lower() in map(str.lower, os.listdir(path.parent))
+
+    monkeypatch.setattr(Path, "is_file", is_there)
+    forget_sources()
+    assert jit.source_of("sim.floating.hull") == ROOT / "sim" / "floating" / "hull.py"
+    assert jit.source_of("sim.floating") == ROOT / "sim" / "floating" / "__init__.py"
+    for name in ("sim.floating.Hull", "sim.Floating", "sim.floating.none", "numpy"):
+        assert jit.source_of(name) is None, name
+    forget_sources()
+
+
 def forget_sources() -> None:
-    for remembered in (jit.source_of, jit.code_of, jit.imported_files):
+    for remembered in (jit.names_in, jit.source_of, jit.code_of, jit.imported_files):
         remembered.cache_clear()
 
 

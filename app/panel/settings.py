@@ -105,7 +105,7 @@ class SceneSettings:
         self.take(Take(params, start=True, run=self.note(preset, begins=True)), preset)
 
     def set_up(self, setup: task.TaskSetup) -> None:
-        """Show the set-up of a task. Raises ValueError if there is no such scene, preset or parameter."""
+        """Show the set-up of a task. Raises ValueError for an unknown scene, preset or parameter."""
         self.show_setup(setup_of_task(setup), None)
 
     def show_setup(self, setup: Setup, client: int | None) -> None:
@@ -118,7 +118,7 @@ class SceneSettings:
         self.load_params(with_fields_of(self.params, setup.params), setup.preset or next(iter(self.kind.presets)))
 
     def open_first_view_of(self, scene: str) -> None:
-        """Show another scene as it is shown first."""
+        """Show another scene in its first view."""
         self.open_scene(scene, None, None)
 
     def resume(self, params: BaseParams, state: KeptState) -> None:

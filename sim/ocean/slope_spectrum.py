@@ -1,4 +1,4 @@
-"""The slope of a tile's waves by wavenumber, of which low-pass and viscosity leave a share."""
+"""Slope variance of a tile's waves by wavenumber, which low-pass and viscosity reduce."""
 
 from typing import Any
 

@@ -2,7 +2,7 @@
 // pixel in the photograph of the sky: these are a quarter of the cost of a cloth. Spherical harmonics: R. Ramamoorthi,
 // P. Hanrahan, "An efficient representation for irradiance environment maps", SIGGRAPH 2001.
 //
-// The photograph is read once. Without float targets three's own lookups stay.
+// The photograph is read once. Without float targets, or if the program does not link, three's own lookups stay.
 
 const AMBIENT = "springtide-ambient"; // key of viser's shader with this light
 const ROUGH = 0.9; // roughness, from which on a reflection is as blurred as this light
@@ -57,10 +57,11 @@ function readSky(renderer, scene, mesh) {
   }
   samples.key = key;
   litBy(samples.dome.material, scene);
-  drawInto(renderer, samples, "springtide-sky-samples", (shader) => {
+  const isDrawn = drawInto(renderer, samples, "springtide-sky-samples", (shader) => {
     shader.vertexShader = TARGET_VERTEX;
     shader.fragmentShader = SKY_SAMPLES_FRAGMENT;
   });
+  if (!isDrawn) return;
   const numbers = new Float32Array(4 * DIRECTIONS);
   renderer.readRenderTargetPixels(samples.target, 0, 0, DIRECTIONS, 1, numbers);
   skyTerms.value = MEAN_SQUARES.map(() => mesh.position.clone().set(0, 0, 0));
@@ -79,7 +80,7 @@ const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0
 // Light viser's own meshes so; those with a shader of ours ask for it themselves.
 function lightMeshes(renderer, scene) {
   const lit = [];
-  let plain = null; // a mesh of which another can be made: not of instances
+  let plain = null; // an ordinary mesh, not an instanced one: its class makes the triangle
   scene.traverseVisible((object) => {
     if (!object.isMesh) return;
     lit.push(...[object.material].flat().filter((one) => one.isMeshStandardMaterial));

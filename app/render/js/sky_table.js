@@ -48,7 +48,7 @@ function litBy(material, { environment, environmentIntensity, environmentRotatio
   material.envMapRotation.copy(environmentRotation);
 }
 
-// Draw the dome of a table into its target, with the shader that `edit` makes.
+// Draw the dome of a table into its target, with the shader that `edit` makes. Returns false if it did not link.
 function drawInto(renderer, { target, dome }, key, edit) {
   dome.material.fog = dome.material.toneMapped = dome.material.depthTest = false;
   replaceShader(dome.material, key, edit);
@@ -56,6 +56,7 @@ function drawInto(renderer, { target, dome }, key, edit) {
   renderer.setRenderTarget(target);
   renderer.render(dome, window.__viserMutable.camera);
   renderer.setRenderTarget(before);
+  return isLinked(renderer, dome.material);
 }
 
 // Draw the table of the sea `base` if it is not that of this photograph and these uniforms.
@@ -76,14 +77,13 @@ function drawSkyTable(base, sea, renderer, scene) {
   if (table.key === key || refused.has(table.dome.material)) return;
   table.key = key;
   skiesDrawn += 1;
-  const { material } = table.dome;
-  litBy(material, scene);
-  drawInto(renderer, table, "springtide-sky-table", (shader) => {
+  litBy(table.dome.material, scene);
+  const isDrawn = drawInto(renderer, table, "springtide-sky-table", (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = TARGET_VERTEX;
     shader.fragmentShader = SKY_TABLE_FRAGMENT;
   });
-  uniforms.skyTable.value = isLinked(renderer, material) ? table.target.texture : null;
+  uniforms.skyTable.value = isDrawn ? table.target.texture : null;
 }
 
 // The text of a fragment shader that shows the sky of these uniforms.

@@ -39,12 +39,12 @@ const SPLAT_COLOUR = "gl_FragColor = vec4(vRgba.rgb, B);";
 // viser draws each splat as a square out to where it is 1/50 as dense, and drops what is less than 1/100 opaque; a
 // smaller square holds all of that. Eroded, it ends where the densest smoke does (1.8 exp(-r r) < 0.1), at r = 1.7.
 const SPLAT_PLACE = "vPosition = position.xy;", SPLAT_SIDES = ["position.x * v1", "position.y * v2"];
-const SMALLER = { plain: "0.5 * sqrt(clamp(log(100.0 * vRgba.a), 0.0, 4.0))", eroded: "0.85" }; // than 2
+const SMALLER = { plain: "0.5 * sqrt(clamp(log(100.0 * vRgba.a), 0.0, 4.0))", eroded: "0.85" }; // factors on its half side of 2
 const SPLAT_AXES = ["vec2 diagonalVector", "mat4 T_camera_group"]; // the first axis on the screen; from sea to camera
 
 let splats = null; // the mesh
 
-// The text of their vertex shader, with squares that are smaller by a factor, and what more is told to the fragments.
+// The text of their vertex shader, with squares scaled by a factor, and further outputs for the fragments.
 function smallerSplats(vertexShader, factor, more = "") {
   for (const side of SPLAT_SIDES) vertexShader = vertexShader.replace(side, side.replace("position", "vPosition"));
   return vertexShader.replace(SPLAT_PLACE, `vPosition = position.xy * ${factor};${more}`);

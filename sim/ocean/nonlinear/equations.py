@@ -33,7 +33,7 @@ class WaveEquations:
     def set_rates(self, t: float, u: np.ndarray, out: np.ndarray) -> float:
         """Set the nonlinear rates of spectra (2, rows, columns) at time t [s].
 
-        They are those of elevation and potential, as far as they are faded in. Returns the loss to breaking [J/m2/s].
+        Rates of elevation and potential, times the fade-in factor. Returns the loss to breaking [J/m2/s].
         """
         assert self.expansion is not None
         self.expansion.set_rates(u[0], u[1], out)

@@ -128,6 +128,7 @@ def in_child(tree: Path, tests: list[str], report: Path, mode: Mode, timeout: fl
     recorder, calls = Recorder(until_failure=mode.until_failure, plain=mode.plain), CallRecorder(tree)
     plugins = [recorder, calls] if mode.with_calls else [recorder]
     options = ["-q", "-p", "no:cacheprovider", "--tb=native", "-m", "not stress and not browser"]
+    options += ["--timeout-method", "signal"]  # "thread" ends the process, and with it the report
     if mode.until_failure and not mode.plain:  # a test that fails once by chance has not found the fault
         options += ["--reruns", "1"]
     status = pytest.main([*options, "--timeout", str(timeout), *tests], plugins=plugins)

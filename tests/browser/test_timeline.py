@@ -1,8 +1,11 @@
 """The time line along the foot of the scene, in a real browser."""
 
+import io
 from collections.abc import Callable
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from app.messages import Pause, Play
 from app.server.viewer import Viewer
@@ -20,6 +23,9 @@ BOXES = """() => ["#springtide-time", "#springtide-time input", "canvas[data-eng
 PANEL_EDGE = """() => { const box = document.querySelector(
     "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root)").getBoundingClientRect();
     return [box.left, box.top]; }"""
+# Fill the canvas with red.
+FILL = """() => { const gl = document.querySelector("canvas[data-engine]").getContext("webgl2");
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.clearColor(1, 0, 0, 1); gl.clear(gl.COLOR_BUFFER_BIT); }"""
 THUMB = 14  # [pixels] about, of a range: its middle goes from half of that to as much before the end
 
 
@@ -59,6 +65,30 @@ def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Vi
     assert lab.loop.scene.time < high - 10.0
     tab.wait(lambda: recorder.span()[1] < high - 10.0, 10)
     tab.wait(lambda: not tab.page.locator("#springtide-time output").is_visible(), 10)
+
+
+def test_under_a_bar_of_the_whole_width_the_picture_is_new_up_to_the_top(open_tab: Callable[..., Tab]) -> None:
+    """Chromium kept an old picture at the top, as high as an opaque bar at the foot."""
+    lab = Viewer("127.0.0.1", 0)
+    try:
+        lab.open(SCENE)
+        tab = open_tab(lab.port, width=900, height=1000, drawn="no shader has this")
+        tab.wait(lambda: tab.page.locator("#springtide-time").is_visible(), 60)
+        tab.wait(lambda: tab.page.locator("#springtide-cover.springtide-hidden").count(), 60)
+        lab.loop.commands.put(Pause())
+        tab.wait(lambda: not lab.loop.run.running, 20)
+        bar, _, scene = tab.page.evaluate(BOXES)
+        assert (bar["left"], bar["right"]) == pytest.approx((scene["left"], scene["right"]), abs=1)
+
+        def is_red() -> bool:
+            tab.page.evaluate(FILL)
+            tab.page.wait_for_timeout(200)
+            picture = np.asarray(Image.open(io.BytesIO(tab.page.screenshot())).convert("RGB")).astype(int)
+            return np.abs(picture[: 3 * int(bar["bottom"] - bar["top"]), 100] - (255, 0, 0)).max() <= 2
+
+        tab.wait(is_red, 10)
+    finally:
+        lab.shut()
 
 
 def test_every_visitor_sees_the_moment_and_keys_lead_through_it(

@@ -21,6 +21,15 @@ COUNT = """() => { const viewer = window.__viserMutable, scene = viewer.scene, e
         if (of === scene) window.drawnFrames[camera === viewer.camera ? 0 : 1] += 1;
         return earlier.call(this, renderer, of, camera, target); }; }"""
 
+# Turn the camera before each frame that the browser offers; the number of these that are drawn.
+TURN = """count => new Promise((done) => { const viewer = window.__viserMutable, before = window.drawnFrames[0];
+    const turn = () => {
+        if (count-- === 0) return void done(window.drawnFrames[0] - before);
+        viewer.cameraControl.rotate(0.001, 0.0, false);
+        viewer.requestRender();
+        requestAnimationFrame(turn); };
+    requestAnimationFrame(turn); })"""
+
 
 @pytest.fixture(params=["rope", "square_sea", "mooring"])
 def paused(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> tuple[Viewer, Tab]:
@@ -72,6 +81,12 @@ def test_a_paused_page_draws_nothing_and_draws_what_changes(paused: tuple[Viewer
     assert is_drawn_after(lambda: tab.page.evaluate("document.documentElement.classList.toggle('springtide-dark')"))
     assert is_drawn_after(lambda: tab.page.evaluate("document.documentElement.classList.toggle('springtide-dark')"))
     assert tab.errors == []
+
+
+def test_a_picture_that_is_drawn_in_time_follows_in_each_frame_of_the_browser(paused: tuple[Viewer, Tab]) -> None:
+    """Where each one waits for a look at the last one, every other frame is left out."""
+    tab = paused[1]
+    tab.wait(lambda: tab.page.evaluate(TURN, 60) > 45, 30)  # a busy machine leaves out some
 
 
 def test_a_running_page_draws_and_an_image_is_drawn_while_paused(paused: tuple[Viewer, Tab]) -> None:

@@ -99,31 +99,35 @@ function inputsOf(renderer, scene, camera) {
 function paceFrames(renderer) {
   const gl = renderer.getContext(), keepsPixels = gl.getContextAttributes()?.preserveDrawingBuffer;
   let last = null; // the inputs of the frame that the canvas shows
-  let isBusy = false; // whether that frame is still being drawn
+  let drawing = null; // of that frame while it is being drawn: its fence, and whether it compiled a program
   let length = 0; // [ms] of it
   let started = 0, pressed = 0, left = 0; // when it began, when something in the panel was pressed, frames left to the panel
 
-  // Measure the time until a frame is drawn and the page gets its next one. The graphics process draws on its own:
-  // without waiting for it, the panel would stand behind several frames.
+  // Whether the last frame is drawn. Its length is the time until the page gets its next one.
+  function isDrawn() {
+    if (!drawing) return true;
+    const { fence, compiled } = drawing;
+    if (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    gl.deleteSync(fence);
+    drawing = null;
+    length = performance.now() - started;
+    QUALITY.take(length, started, compiled);
+    return true;
+  }
+
+  // The graphics process draws on its own: without waiting for it, the panel would stand behind several frames.
   function awaitEnd(compiled) {
-    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0), began = started;
+    const mine = (drawing = { fence: gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0), compiled });
     gl.flush();
-    isBusy = true;
     const look = () => {
-      if (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) {
-        return void requestAnimationFrame(look);
-      }
-      gl.deleteSync(fence);
-      isBusy = false;
-      length = performance.now() - began;
-      QUALITY.take(length, began, compiled);
+      if (drawing === mine && !isDrawn()) requestAnimationFrame(look);
     };
     requestAnimationFrame(look);
   }
 
   // Whether the next frame has to wait: for the last one, or for the panel to show what was pressed in it.
   function hasToWait() {
-    if (isBusy) return true;
+    if (!isDrawn()) return true; // it may be called before `look`
     if (length < LONG_FRAME || pressed < started || left >= FRAMES_LEFT) return false;
     left += 1;
     return true;

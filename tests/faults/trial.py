@@ -111,6 +111,8 @@ def use_kernels_of(sound: Path, tree: Path) -> None:
     folder = sim.jit.kernel_folder
     sim.jit.ROOT = sound
     sim.jit.kernel_folder = lambda path: folder(sound / path.relative_to(tree.resolve()))  # type: ignore[assignment]
+    for known in (sim.jit.source_of, sim.jit.imported_files):  # what its own import has asked for lies in `tree`
+        known.cache_clear()
 
 
 def in_child(tree: Path, tests: list[str], report: Path, mode: Mode, timeout: float) -> int:

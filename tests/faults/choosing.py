@@ -18,9 +18,11 @@ from tests.test_layers import imports, module_of
 # Their kernels are in one another, so that compiling them again takes longer than most tests.
 PLAIN = ("sim/springs/", "sim/floating/", "sim/mooring/")
 FIRST_TESTS, FIRST_FILES, FIRST_SECONDS = 40, 6, 8.0  # of a first run, as it finds most faults
-NEXT_SECONDS = 40.0  # that the other tests took without a fault
+NEXT_SECONDS = 60.0  # that the other tests took without a fault
 OTHER_SECONDS = 10.0  # that tests took that are not seen to reach the line
-FAR = 5.0  # times as expensive is a test that lies elsewhere: it is less likely to look at the result
+# So many times as expensive is a test that is less likely to look at the result: one whose file does not import the
+# module itself where others do, and one that lies elsewhere.
+INDIRECT, FAR = 2.0, 5.0
 START = 0.05  # [s] of a test that takes no time
 
 
@@ -178,11 +180,13 @@ class Records:
         """Tests in the order in which to try them: those that look at the module, and a few of each name, first."""
         costs: dict[str, float] = {}
         same: Counter[str] = Counter()
+        direct = {name for name in near if distances(module).get(name) == 1} or set(near)
         times = {test: self.time(test, plain=plain) for test in tests}
         for test in sorted(times, key=lambda test: (times[test], test)):
             name, _, case = test.partition("[")
             costs[test] = (times[test] + START) * (1 + same[name] / 4)
-            costs[test] *= 1.0 if test.partition("::")[0] in near else FAR
+            file = test.partition("::")[0]
+            costs[test] *= 1.0 if file in direct else INDIRECT if file in near else FAR
             costs[test] /= FAR if Path(module).stem in case else 1.0
             same[name] += 1
         return sorted((test for test in costs if costs[test] < math.inf), key=costs.__getitem__)

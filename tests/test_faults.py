@@ -88,6 +88,12 @@ def other(x):
     def inner(y):
         return y + 1
     return inner(x)
+
+@each_link("sum")
+def stretched(link, x, p):
+    return link.rest + 1
+
+never = kernel(lambda p: 0 > 1, inline=True)
 """
 
 
@@ -101,6 +107,8 @@ def test_a_line_is_reached_by_what_calls_it_and_a_kernel_by_what_mentions_it(tmp
     assert reached("m.py", line_of["        return total(self.m)"], sources) == ({"m.py:Net.heavy"}, False)
     assert reached("m.py", line_of["        return y + 1"], sources) == ({"m.py:other.<locals>.inner"}, False)
     assert reached("m.py", line_of["    scale: float = 2.0"], sources) == (set(), False)
+    assert reached("m.py", line_of["    return link.rest + 1"], sources) == ({"m.py:stretched"}, True)
+    assert reached("m.py", line_of["never = kernel(lambda p: 0 > 1, inline=True)"], sources) == (set(), True)
 
 
 def test_a_file_of_tests_lies_where_its_module_lies():

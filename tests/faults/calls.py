@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import pytest
 
 FunctionDef = ast.FunctionDef | ast.AsyncFunctionDef
+COMPILING = ("kernel", "each_link", "njit", "generated", "Force")  # in the names of what makes kernels of functions
 
 
 class CallRecorder:
@@ -51,7 +52,7 @@ class Function(NamedTuple):
     """A function or a method of a source."""
 
     name: str  # "module:qualified name"
-    is_kernel: bool  # whether it is compiled
+    is_kernel: bool  # whether it is compiled, or makes functions that are
     lines: range  # of its body, from 1
     mentions: frozenset[str]  # names and attributes in it, those of inner functions included
 
@@ -66,6 +67,7 @@ class Source(NamedTuple):
 
     functions: tuple[Function, ...]
     bindings: tuple[tuple[range, frozenset[str], frozenset[str]], ...]  # at the top: lines, bound, mentioned
+    kernels: tuple[range, ...]  # lines of those that make kernels
 
     def function_at(self, line: int) -> Function | None:
         """The innermost function with a line (from 1) in its body."""
@@ -81,13 +83,13 @@ class Source(NamedTuple):
 def read_source(path: Path, module: str) -> Source:
     """The functions of a source."""
     functions: list[Function] = []
-    bindings = []
+    bindings, kernels = [], []
 
     def visit(node: ast.AST, prefix: str) -> None:
         for child in ast.iter_child_nodes(node):
             if isinstance(child, FunctionDef):
                 lines = range(child.body[0].lineno, (child.end_lineno or child.lineno) + 1)
-                compiled = any("kernel" in mentions_of(decorator) for decorator in child.decorator_list)
+                compiled = any(map(compiles, child.decorator_list)) or "generated" in mentions_of(child)
                 functions.append(Function(f"{module}:{prefix}{child.name}", compiled, lines, mentions_of(child)))
                 visit(child, f"{prefix}{child.name}.<locals>.")
             else:
@@ -103,7 +105,14 @@ def read_source(path: Path, module: str) -> Source:
         elif not isinstance(node, FunctionDef | ast.Import | ast.ImportFrom):
             names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
             bindings.append((lines, frozenset(names), mentions_of(node)))
-    return Source(tuple(functions), tuple(bindings))
+            if compiles(node):
+                kernels.append(lines)
+    return Source(tuple(functions), tuple(bindings), tuple(kernels))
+
+
+def compiles(node: ast.AST) -> bool:
+    """Whether a decorator or a statement makes kernels."""
+    return any(part in name for name in mentions_of(node) for part in COMPILING)
 
 
 def mentions_of(node: ast.AST) -> frozenset[str]:
@@ -135,4 +144,5 @@ def reached(module: str, line: int, sources: dict[str, Source]) -> tuple[set[str
                     names |= bound
     found = [f for source in sources.values() for f in source.functions if f.mentions & names]
     found += [around] if around else []
-    return {function.name for function in found}, any(function.is_kernel for function in found)
+    with_kernels = any(function.is_kernel for function in found) or any(line in at for at in sources[module].kernels)
+    return {function.name for function in found}, with_kernels

@@ -56,6 +56,23 @@ def test_parameters_need_only_their_own_pieces(compiled: list[str]) -> None:
     assert not warmup.missing("rope")
 
 
+def test_a_scene_that_is_compiled_as_a_whole_is_not_asked_again(
+    compiled: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(name: str) -> SimpleNamespace:
+        raise AssertionError(f"{name} is imported")
+
+    warmup.prepare("rope", drawn=False)
+    with monkeypatch.context() as patched:
+        patched.setattr(warmup, "scene_named", refuse)
+        with pytest.raises(AssertionError, match="is imported"):
+            warmup.missing("rope")
+    warmup.prepare("rope")
+    monkeypatch.setattr(warmup, "scene_named", refuse)
+    monkeypatch.setattr(warmup, "view_named", refuse)
+    assert warmup.missing("rope") == ()
+
+
 def test_a_piece_on_use_is_compiled_when_parameters_first_need_it(compiled: list[str]) -> None:
     warmup.prepare("rope")
     assert "on use" not in compiled

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.lab.diagnosis.equations import equations_of
+from app.lab.diagnosis.equations import equations_of, written
 from app.lab.diagnosis.steps import explain_step
 from app.lab.diagnosis.tableau import NoTableau, merged, order_of, pruned, read_tableau
 from app.lab.diagnosis.terms import Term, explain_terms
@@ -333,3 +333,15 @@ def test_what_is_no_combination_has_no_tableau(step: Callable[..., Any]) -> None
     with pytest.raises(NoTableau):
         read_tableau(step, with_velocity=True)
     assert explain("step_euler", step) is None
+
+
+def test_of_a_wrong_factor_of_the_step_no_term_in_its_bracket_is_marked() -> None:
+    right = {("x", 0): 1.0, ("v", 1): 1 / 6, ("v2", 1): 1 / 3, ("v3", 1): 1 / 3, ("v4", 1): 1 / 6}
+    twice = {term: c if term == ("x", 0) else 2.0 * c for term, c in right.items()}
+    pieces = [piece for piece in written(twice, 1e-9, {*right} - {("x", 0)}, right) if piece.text]
+    assert "".join(piece.text for piece in pieces) == "x + h/3 (v + 2 v2 + 2 v3 + v4)"
+    assert [piece.text for piece in pieces if piece.wrong] == ["h/3"]
+    other = {**right, ("v2", 1): 1 / 2}
+    pieces = [piece for piece in written(other, 1e-9, {("v2", 1)}, right) if piece.text]
+    assert "".join(piece.text for piece in pieces) == "x + h/6 (v + 3 v2 + 2 v3 + v4)"
+    assert [piece.text for piece in pieces if piece.wrong] == ["3 v2"]

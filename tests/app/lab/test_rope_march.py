@@ -9,6 +9,7 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
+from app.lab.compiled import first_line
 from app.lab.live_net import COMPILE_AFTER, MAX_REST, REST_RATIO, ROPE, LiveNet, Marched
 from app.lab.rope_march import Forces, Functions, MarchResult, Segment, Unfit, march
 from app.lab.runner import BUSY, RunError
@@ -164,3 +165,19 @@ def test_a_busy_machine_is_no_fault_of_a_version(folder: Folder) -> None:
     assert folder.versions.errors[ROPE.use] is busy
     assert folder.march() == 1
     assert not folder.versions.errors
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (
+            "Failed in nopython mode pipeline (step: x)\n\nNo implementation of function",
+            "No implementation of function",
+        ),
+        ("Failed in nopython mode\nDuring: resolving\nFile 'rope.py', line 3\n", "Failed in nopython mode"),
+        ("division by zero", "division by zero"),
+        (" \n ", "ZeroDivisionError"),
+    ],
+)
+def test_of_a_compiler_s_error_the_line_is_told_that_says_why(text: str, told: str) -> None:
+    assert first_line(ZeroDivisionError(text)) == told

@@ -244,6 +244,20 @@ def test_an_answer_to_a_scene_that_was_left_is_not_taken_by_the_next(right: Sess
     assert scene.frame().points.shape == (scene.params.points, 3)
 
 
+def test_why_nothing_is_compiled_is_said_where_nothing_is() -> None:
+    report = StudentReport(1, frozenset({"step_euler"}), method="explicit_euler", seconds=1e-5, step=1 / 60)
+
+    def text(why: str, *compiled: str) -> str:
+        return code_lines(CodeState(1, not_compiled=why), report._replace(compiled=compiled), TableReport(), "rope")
+
+    assert "Not compiled: rope_acceleration: no list" in text("rope_acceleration: no list")
+    assert "With SciPy installed" in text("step_euler: np.linalg needs SciPy")
+    assert "Not compiled" not in text("")
+    told = text("rope_acceleration: no list", "step_euler")
+    assert "step_euler compiled by numba" in told
+    assert "no list" not in told
+
+
 def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Session) -> None:
     def refuse(*_: object, **__: object) -> None:
         raise OSError(11, "Resource temporarily unavailable")

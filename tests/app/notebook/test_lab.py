@@ -15,6 +15,7 @@ import pytest
 import app
 from app.notebook.dataset import to_dataset
 from app.notebook.lab import Lab, read_setup
+from app.notebook.output import Output
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import write_query
 from app.scenes.stepping import steps_to
@@ -46,6 +47,11 @@ def test_importing_the_package_imports_nothing_that_takes_time() -> None:
     code = "import sys; import app; print(sorted({'numpy', 'viser', 'IPython', 'xarray', 'numba'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+@pytest.mark.parametrize(("height", "size"), [(500, (640, 320)), (1000, (640, 640)), (333, (640, 213))])
+def test_the_picture_that_stays_has_the_shape_of_the_page(height: int, size: tuple[int, int]) -> None:
+    assert Output(8080, "", height).still_size == size
 
 
 @pytest.mark.parametrize("scene", NAMES)

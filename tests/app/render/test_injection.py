@@ -118,6 +118,21 @@ def test_a_browser_that_never_reports_counts_as_one_without_shaders(
     assert injector.is_active("/sea") is True
 
 
+def test_of_several_browsers_without_reports_the_first_to_come_counts(
+    server: FakeServer, injector: ShaderInjector, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = 100.0
+    monkeypatch.setattr(injection.time, "monotonic", lambda: clock)
+    injector.watch("/sea")
+    server.clients = {1: None}
+    assert injector.is_active("/sea") is None
+    clock += injection.MAX_ANSWER_TIME - 1.0
+    server.clients = {1: None, 2: None}
+    assert injector.is_active("/sea") is None
+    clock += 1.1
+    assert injector.is_active("/sea") is False
+
+
 def source_of(name: str) -> str:
     return (resources.files("app.render") / "js" / name).read_text("utf-8")
 

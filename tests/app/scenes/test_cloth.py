@@ -9,7 +9,7 @@ import pytest
 
 from app.messages import GrabTo, Place, Release
 from app.panel.head import status_line
-from app.scenes.cloth.parameters import PRESETS, ClothParams
+from app.scenes.cloth.parameters import PRESETS, ClothParams, hidden
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
 from app.scenes.cloth.view import ClothView, faces
 from app.scenes.quantities import measured, plotted_quantities
@@ -50,6 +50,36 @@ def test_a_preset_runs_and_is_drawn(preset):
     gauge = scene.readings().stability
     assert gauge.h_omega < gauge.limit
     assert scene.params.integrator in ("leapfrog", "symplectic_euler")
+
+
+@pytest.mark.parametrize(
+    ("values", "means_nothing", "means_something"),
+    [
+        ({}, {"sphere_radius", "bob"}, set()),
+        ({"sphere": True}, set(), {"sphere_radius", "bob", "friction", "contact_stiffness", "contact_damping"}),
+        (
+            {"sphere": False, "floor": True, "thickness": 0.0},
+            set(),
+            {"friction", "contact_stiffness", "contact_damping"},
+        ),
+        (
+            {"sphere": False, "floor": False, "thickness": 0.0},
+            {"friction", "contact_stiffness", "contact_damping"},
+            set(),
+        ),
+        ({"sphere": False, "floor": False, "thickness": 0.01}, {"friction"}, {"contact_stiffness", "contact_damping"}),
+        ({"wind": 0.0}, {"wind_direction", "gust"}, set()),
+        ({"wind": 1.0, "air": 0.0}, {"wind_direction", "gust"}, set()),
+        ({"wind": 1.0, "air": 1.0}, set(), {"wind_direction", "gust"}),
+        ({"start": "level"}, {"gather"}, set()),
+        ({"start": "hanging"}, set(), {"gather"}),
+        ({"colour": "strain"}, set(), {"full_strain"}),
+    ],
+)
+def test_a_control_is_hidden_where_it_means_nothing(values, means_nothing, means_something):
+    found = hidden(check_record(ClothParams, values))
+    assert means_nothing <= found
+    assert not means_something & found
 
 
 def test_a_dragged_particle_follows_and_is_released():

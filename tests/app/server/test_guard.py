@@ -4,6 +4,7 @@ import asyncio
 import errno
 import http.client
 import math
+import os
 import random
 import socket
 import time
@@ -17,7 +18,15 @@ import websockets
 from viser import _messages as vm
 from websockets.asyncio.client import connect
 
-from app.server.guard import MAX_TEXT_LENGTH, Intake, allowed_value, is_bounded, is_own_origin, open_server
+from app.server.guard import (
+    MAX_TEXT_LENGTH,
+    Intake,
+    allowed_value,
+    check_port,
+    is_bounded,
+    is_own_origin,
+    open_server,
+)
 from app.server.viewer import Viewer
 from tests import coroutines
 from tests.stress.clients import CAMERA
@@ -213,6 +222,14 @@ def test_a_callback_that_fails_is_reported_and_loses_no_other_message(capsys: py
     assert "no such colour" in report
 
 
+@pytest.mark.parametrize(
+    "value",
+    [True, None, 0, -1e6, 0.5, "", "text", b"x" * 5000, bytearray(3), memoryview(b"x"), [1, [2.0]], {"k": None}],
+)
+def test_sane_values_pass(value: Any) -> None:
+    assert is_bounded(value)
+
+
 @pytest.mark.parametrize("value", [math.nan, math.inf, 1e7, [math.nan], {"k": [1, math.inf]}, "x" * 2000, object()])
 def test_unbounded_values_are_seen(value: Any) -> None:
     assert not is_bounded(value)
@@ -244,6 +261,23 @@ def test_a_busy_port_is_an_error_not_another_port() -> None:
         with pytest.raises(OSError) as refused:  # noqa: PT011 - its words are those of the system
             open_server("127.0.0.1", taken.getsockname()[1])
         assert refused.value.errno in (errno.EADDRINUSE, errno.EACCES)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="elsewhere a port is free at once")
+def test_the_port_of_a_server_that_has_just_ended_is_free() -> None:
+    """Its connections stay for a minute, on the side that closed them first."""
+    with socket.socket() as server:
+        server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as asyncio's servers do
+        server.bind(("127.0.0.1", 0))
+        server.listen()
+        address = server.getsockname()
+        with socket.create_connection(address) as client:
+            answering, _ = server.accept()
+            answering.close()
+            assert client.recv(1) == b""
+    with socket.socket() as plain, pytest.raises(OSError, match="in use"):
+        plain.bind(address)
+    check_port(*address)
 
 
 def test_an_address_of_another_machine_is_an_error_at_once() -> None:

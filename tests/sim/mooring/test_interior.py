@@ -18,7 +18,7 @@ from sim.mooring.cones import (
     product,
     quotient,
 )
-from sim.mooring.interior import along_central_path
+from sim.mooring.interior import InteriorState, along_central_path
 from sim.mooring.statics import straight
 from tests.sim.mooring.systems import floating_body
 
@@ -66,6 +66,22 @@ def test_the_longest_step_ends_on_the_nearest_bound():
     assert 0 < np.isinf(ends).sum() < 100
     assert longest_above_zero(np.array([1.0, 2.0, 3.0]), np.array([-4.0, 1.0, -1.0])) == 0.25
     assert longest_above_zero(np.array([1.0]), np.array([2.0])) == math.inf
+
+
+def test_a_step_ends_at_the_nearest_bound_of_all_numbers_and_none_may_be_on_it():
+    cone, ray = np.array([[2.0, 1.0, 0.0, 0.0]]), np.array([1.0])
+    state = InteriorState(cone, cone, *(ray for _ in range(6)))
+    assert state.is_inside()
+    still = InteriorState(*(0.0 * value for value in state))
+    assert state.longest(still) == 1.0
+    for i, value in enumerate(state):
+        change = -2.0 * value
+        step = InteriorState(*(change if j == i else one for j, one in enumerate(still)))
+        assert state.longest(step) == pytest.approx(0.5)
+        for fraction, inside in ((0.5 - 1e-9, True), (0.5, False), (0.6, False)):
+            assert state.plus(step, fraction).is_inside() is inside
+    # The first number of a cone is positive, too: the negative of a cone's inside is none.
+    assert not InteriorState(-cone, cone, *state[2:]).is_inside()
 
 
 @pytest.mark.parametrize("length", [30.0, 45.0, 90.0])

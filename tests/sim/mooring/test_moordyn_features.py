@@ -106,6 +106,12 @@ def test_a_table_of_strain_and_tension_is_read_beside_the_file():
 CHAIN = (FILES / "chain.txt").read_text(encoding="utf-8")
 
 
+def test_a_table_may_hold_comments_and_empty_lines(tmp_path):
+    (tmp_path / "c.dat").write_text("a\nb\nc\n0 0\n\n# measured\n  ! twice\n0.1 1e5\n0.2 3e5\n", encoding="utf-8")
+    kind = read_moordyn(changed(tmp_path, ("1.0e9", "c.dat"))).lines[0].type
+    assert kind.curve == ((0.0, 0.0), (0.1, 1e5), (0.2, 3e5))
+
+
 def changed(tmp_path, *replacements: tuple[str, str]) -> Path:
     text = CHAIN
     for old, new in replacements:

@@ -20,10 +20,12 @@ from sim.mooring import (
     critical_step,
     simulate,
 )
+from sim.mooring.motion import FARTHEST, PIECE, MooringFrames
 from sim.mooring.statics import Rest
 from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import energies, power
 from sim.springs.damping import damp_lines, make_decay
+from sim.springs.integrators import integrator_named
 from sim.water import Water
 from sim.waves import Waves
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope
@@ -232,6 +234,21 @@ def test_a_line_diverges_at_the_step_of_the_gauge(lines, integrator):
         h = critical_step(system, integrator, State.still(rest.nodes))
         assert not grows(system, rest, integrator, 0.95 * h)
         assert grows(system, rest, integrator, 1.05 * h)
+
+
+def test_a_path_is_made_of_short_pieces_and_one_number_out_of_bounds_ends_a_run():
+    system, motion = taut_rope(6), Shaking((0.0, 0.0, -1.0), 2, 0.15, 5.0)
+    start, record = State.still(system.at_rest().nodes), integrator_named("rk4")
+    for interval in (0.04, 0.05, 0.06, 0.09, 0.11):
+        t = np.array([0.0, interval])
+        frames = MooringFrames(system, {2: motion}, record, t, 1e-4, start, False)
+        assert frames.pieces * frames.piece == pytest.approx(interval)
+        assert PIECE / 2 < frames.piece < PIECE * (1.0 + 1e-6)
+    assert MooringFrames(system, {}, record, t, 1e-4, start, False).pieces == 1  # nothing moves
+    assert frames.is_bounded
+    for value in (2.0 * FARTHEST, -2.0 * FARTHEST, math.nan):
+        frames.state.x[1, 3] = value
+        assert not frames.is_bounded
 
 
 def test_a_run_that_diverges_ends_with_a_warning_and_what_it_has():

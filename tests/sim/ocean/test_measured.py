@@ -10,6 +10,7 @@ import pytest
 from sim.ocean import RadialSea, Sea, draw_waves, measured_spectrum, read_spectrum, recorded_waves
 from sim.ocean.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import Conditions
+from sim.ocean.spectrum_files.wave_models import refused
 from sim.ocean.statistics import expected, theory
 from tests.refusals import assert_refused
 
@@ -239,6 +240,16 @@ def test_tables_with_directions_are_read(tmp_path):
     text = "f," + ",".join(f"{d:g}" for d in degrees) + "\n" + "".join(",".join(map(str, row)) + "\n" for row in rows)
     (tmp_path / "both.csv").write_text(text, encoding="utf-8")
     assert_comes_from_both(read_spectrum(tmp_path / "both.csv"))
+
+
+def test_the_error_of_a_reader_is_told_in_one_line(tmp_path):
+    for error, told in (
+        (KeyError("efth"), "('efth')"),
+        (ValueError("no  such\tvariable\nin a file"), "(no such variable)"),
+        (RuntimeError(), "(RuntimeError)"),
+        (OSError("x" * 500), f"({'x' * 120})"),
+    ):
+        assert str(refused(tmp_path / "a.nc", error)).endswith(told)
 
 
 def test_files_of_wave_models_are_read(tmp_path):

@@ -184,5 +184,8 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("gravity forgotten", """
             w0 = 2 * np.pi / repeat_time
             return calm * int(np.sqrt(k) / w0) * w0"""),
+        ("factor inside the root", """
+            w0 = 2 * np.pi / repeat_time
+            return np.floor(np.sqrt(calm * gravity * k) / w0) * w0"""),
     ),
 } | SPRINGS  # fmt: skip

@@ -26,6 +26,15 @@ SPHERE = """
                 return np.zeros(3)
             n = d / l
             return max(stiffness * (radius - l) - damping * (v @ n), 0) * n"""
+CLOTH_LINKS = """
+            n = np.arange(rows * cols).reshape(rows, cols)
+            pairs = [
+                (n[:, :-1], n[:, 1:]), (n[:-1], n[1:]),
+                (n[:-1, :-1], n[1:, 1:]),
+                (n[:-1, 1:], n[1:, :-1]),
+                (n[:, :-2], n[:, 2:]), (n[:-2], n[2:]),
+            ]
+            return np.concatenate([np.transpose([a.ravel(), b.ravel()]) for a, b in pairs])"""
 
 
 def changed(body: str, *texts: str) -> str:
@@ -41,6 +50,11 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
         ("level part only", "return weight * (hanging ** 2 - height ** 2) / (2 * height)"),
         ("weight only", "return weight * hanging"),
         ("hanging not used", "return weight * height"),
+        ("parts added", """
+            H = weight * (hanging ** 2 - height ** 2) / (2 * height)
+            V = weight * hanging
+            return H + V"""),
+        ("factor 2 forgotten", "return weight / height * (hanging ** 2 + height ** 2)"),
     ),
     "spring_force": (
         ("sign reversed", """
@@ -91,6 +105,11 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
             r = x2 - x1
             l = np.linalg.norm(r)
             return 0.5 * stiffness * (l - rest_length) ** 2 * r / l - damping * (v1 - v2)"""),
+        ("damping along the link only", """
+            r = x2 - x1
+            l = np.linalg.norm(r)
+            n = r / l
+            return (stiffness * (l - rest_length) - damping * np.dot(v1 - v2, n)) * n"""),
     ),
     "rope_acceleration": (
         ("mass forgotten", """
@@ -110,6 +129,13 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
         ("gravity along the wrong axis", changed(ROPE, "a[:, 2] -= gravity", "a[:, 1] -= gravity")),
         ("the air drag is missing", changed(ROPE, "-drag * v", "np.zeros_like(x)")),
         ("", changed(ROPE, "-drag * v", "-drag * np.abs(v) * v")),
+        ("force on one end only", changed(ROPE, "\n                F[i] += f", "")),
+        ("same force on both ends", changed(ROPE, "F[i + 1] -= f", "F[i + 1] += f")),
+        ("sign of the springs reversed", changed(ROPE, "F[i] += f", "F[i] -= f", "F[i + 1] -= f", "F[i + 1] += f")),
+        ("multiplied by the mass", changed(ROPE, "F / mass", "F * mass")),
+        ("gravity upwards", changed(ROPE, "a[:, 2] -= gravity", "a[:, 2] += gravity")),
+        ("gravity multiplied by the mass", changed(ROPE, "a[:, 2] -= gravity", "a[:, 2] -= mass * gravity")),
+        ("rest length forgotten", changed(ROPE, "(l - rest_length)", "l")),
     ),
     "step_euler": (
         ("velocity before position", """
@@ -154,6 +180,9 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
             v2 = v + h * a1
             a2 = acceleration(x + h * v, v2)
             return x + h / 2 * (v + v2), v + h / 2 * (a1 + a2)"""),
+        ("Euler", """
+            a = acceleration(x, v)
+            return x + h * v, v + h * a"""),
     ),
     "step_leapfrog": (
         ("no half step", """
@@ -186,6 +215,12 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
             n = d / l
             return (stiffness * (radius - l) - damping * (v @ n)) * n"""),
         ("returns nothing", changed(SPHERE, "\n                return np.zeros(3)", "\n                return")),
+        ("normal not unit length", changed(SPHERE, "(v @ n), 0) * n", "(v @ n), 0) * d")),
+        ("force outside the sphere", """
+            d = x - centre
+            l = np.linalg.norm(d)
+            return stiffness * (radius - l) / l * d"""),
+        ("distance instead of depth", changed(SPHERE, "(radius - l)", "l")),
     ),
     "cloth_links": (
         ("no shear links", """
@@ -222,6 +257,27 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
                             if 0 <= p < rows and 0 <= q < cols:
                                 links.append((i * cols + j, p * cols + q))
             return links"""),
+        ("one diagonal only", changed(CLOTH_LINKS, "                (n[:-1, :-1], n[1:, 1:]),\n", "")),
+        ("no bend links", changed(CLOTH_LINKS, "                (n[:, :-2], n[:, 2:]), (n[:-2], n[2:]),\n", "")),
+        ("structural links only", """
+            links = []
+            for i in range(rows):
+                for j in range(cols):
+                    if j < cols - 1:
+                        links.append((cols * i + j, cols * i + j + 1))
+                    if i < rows - 1:
+                        links.append((cols * i + j, cols * (i + 1) + j))
+            return links"""),
+        ("end of a row joined to the next row", """
+            links = []
+            for i in range(rows):
+                for j in range(cols):
+                    for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)):
+                        other = (i + di) * cols + j + dj
+                        if i + di < rows and other < rows * cols:
+                            links.append((i * cols + j, other))
+            return links"""),
+        ("rows and columns swapped", changed(CLOTH_LINKS, ".reshape(rows, cols)", ".reshape(cols, rows).T")),
     ),
     "cloth_forces": (
         ("force on one end only", """
@@ -253,6 +309,31 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
             F = np.zeros_like(x)
             for i, j in links:
                 f = stiffness * (x[j] - x[i]) - damping * (v[i] - v[j])
+                F[i] += f
+                F[j] -= f
+            return F"""),
+        ("force on one end only", """
+            F = np.zeros((len(x), 3))
+            for n, (i, j) in enumerate(links):
+                r = x[i] - x[j]
+                l = np.sqrt(r @ r)
+                F[j] += stiffness * (l - rest_lengths[n]) * r / l - damping * (v[j] - v[i])
+            return F"""),
+        ("same force on both ends", """
+            F = np.zeros_like(x)
+            for (i, j), d in zip(links, rest_lengths):
+                r = x[j] - x[i]
+                l = np.linalg.norm(r)
+                f = stiffness * (l - d) * r / l - damping * (v[i] - v[j])
+                F[i] += f
+                F[j] += f
+            return F"""),
+        ("damping on absolute velocity", """
+            F = np.zeros_like(x)
+            for (i, j), d in zip(links, rest_lengths):
+                r = x[j] - x[i]
+                l = np.linalg.norm(r)
+                f = stiffness * (l - d) * r / l - damping * v[i]
                 F[i] += f
                 F[j] -= f
             return F"""),

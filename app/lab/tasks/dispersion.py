@@ -53,7 +53,7 @@ MISTAKES = (
     Mistake(
         "factor inside the root",
         "calm stands before the root, not in it.",
-        lambda k, c, T, g: dispersion(k, np.sqrt(c), T, g),
+        lambda k, c, T, g: dispersion(c * k, 1.0, T, g),
     ),
     Mistake(
         "number of turns",

@@ -3,7 +3,7 @@
 Each has the function, words that its name or its explanation must contain, and the body.
 """
 
-from tests.app.lab.wrong_solutions import RK4, ROPE, SPHERE, changed
+from tests.app.lab.wrong_springs import RK4, ROPE, SPHERE, changed
 
 SPRING = """
             r = x2 - x1

@@ -5,17 +5,28 @@ import itertools
 import subprocess
 import sys
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from app.lab.checking import Mistake
 from app.lab.folder import stub
-from app.lab.program_check import SAMPLES, SEED, StudentFunction, Verdict, call, check_program, same, special_case
+from app.lab.program_check import (
+    SAMPLES,
+    SEED,
+    StudentFunction,
+    Verdict,
+    call,
+    check_program,
+    conform,
+    same,
+    special_case,
+)
 from app.lab.runner import RunError, Runner
 from app.lab.saved import store
 from app.lab.source import read_source
@@ -123,22 +134,57 @@ def test_there_are_enough_wrong_solutions_and_nine_of_ten_have_a_name() -> None:
     assert sum(bool(mistake) for _, mistake, _ in CASES) >= 0.9 * len(CASES)
 
 
-@pytest.mark.parametrize("name", TASKS)
-def test_every_listed_mistake_is_one(name: str) -> None:
-    """A mistake that equalled the reference would refuse right solutions; two that are equal cannot both be meant."""
-    task = TASKS[name]
+def mistakes_of(task: Task) -> tuple[Mistake, ...]:
+    """The mistakes that the check of a task knows."""
+    return getattr(task.check, "MISTAKES", ())
+
+
+def results_of(task: Task, function: Callable[..., Any]) -> list[Any]:
+    """The results of a function at the random inputs, as the check compares them."""
     assert task.check is not None
     rng = np.random.default_rng(SEED)
     samples = [tuple(task.check.inputs(rng)) for _ in range(SAMPLES)]
     normalise = getattr(task.check, "normalise", lambda value: value)
-    results = [
-        [normalise(call(f, s)) for s in samples] for f in (task.function, *(m.function for m in task.check.MISTAKES))
-    ]
-    names = ["the reference", *(mistake.name for mistake in task.check.MISTAKES)]
+    return [normalise(conform(call(function, sample), call(task.function, sample))) for sample in samples]
+
+
+def all_same(one: list[Any], other: list[Any]) -> bool:
+    """True if two functions agree at all random inputs."""
+    return all(same(a, b) for a, b in zip(one, other, strict=True))
+
+
+def compiled(task: Task, body: str) -> Callable[..., Any]:
+    """The function of a task with this body, in the process of the test."""
+    known: dict[str, Any] = {"np": np}
+    exec(with_body(task, body), known)
+    return known[task.name]
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_every_listed_mistake_has_a_program_that_makes_it(name: str) -> None:
+    """Without one, an error in a mistake's function is found by no test, and no student is told the name."""
+    task = TASKS[name]
+    mistakes = mistakes_of(task)
+    names = {mistake.name for mistake in mistakes}
+    made = [(mistake, results_of(task, compiled(task, body))) for mistake, body in WRONG[name] if mistake in names]
+    without = []
+    for mistake in mistakes:
+        results = results_of(task, mistake.function)
+        if not any(other == mistake.name and all_same(found, results) for other, found in made):
+            without.append(f"{mistake.name}: {mistake.hint}")
+    assert without == []
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_every_listed_mistake_is_one(name: str) -> None:
+    """A mistake that equalled the reference would refuse right solutions; two that are equal cannot both be meant."""
+    task = TASKS[name]
+    mistakes = mistakes_of(task)
+    results = [results_of(task, function) for function in (task.function, *(m.function for m in mistakes))]
+    names = ["the reference", *(mistake.name for mistake in mistakes)]
     for i, one in enumerate(results):
         for j in range(i):
-            alike = all(same(a, b) for a, b in zip(one, results[j], strict=True))
-            assert not alike, f"{names[i]} is the same as {names[j]}"
+            assert not all_same(one, results[j]), f"{names[i]} is the same as {names[j]}"
 
 
 @pytest.mark.parametrize("name", TASKS)

@@ -3,268 +3,41 @@
 An empty name stands for a mistake that the check does not know; it must refuse the solution all the same.
 """
 
+from tests.app.lab.wrong_springs import SPRINGS, changed
+
 # Right bodies, which a mistake changes in one or two places.
-ROPE = """
-            F = -drag * v
-            for i in range(len(x) - 1):
-                r = x[i + 1] - x[i]
-                l = np.linalg.norm(r)
-                f = stiffness * (l - rest_length) * r / l - damping * (v[i] - v[i + 1])
-                F[i] += f
-                F[i + 1] -= f
-            a = F / mass
-            a[:, 2] -= gravity
-            a[0] = 0
-            return a"""
-RK4 = """
-            v1, a1 = v, acceleration(x, v)
-            v2, a2 = v + h / 2 * a1, acceleration(x + h / 2 * v1, v + h / 2 * a1)
-            v3, a3 = v + h / 2 * a2, acceleration(x + h / 2 * v2, v + h / 2 * a2)
-            v4, a4 = v + h * a3, acceleration(x + h * v3, v + h * a3)
-            return x + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)"""
-SPHERE = """
-            d = x - centre
-            l = np.linalg.norm(d)
-            if l > radius:
-                return np.zeros(3)
-            n = d / l
-            return max(stiffness * (radius - l) - damping * (v @ n), 0) * n"""
-
-
-def changed(body: str, *texts: str) -> str:
-    """The body with each text replaced by the one behind it."""
-    for old, new in zip(texts[::2], texts[1::2], strict=True):
-        assert old in body
-        body = body.replace(old, new)
-    return body
-
+FRESNEL = """
+            b = np.arcsin(np.sin(angle) / index)
+            c, t = np.cos(angle), np.cos(b)
+            s = (c - index * t) / (c + index * t)
+            p = (index * c - t) / (index * c + t)
+            return (s ** 2 + p ** 2) / 2"""
+RAIN = """
+            s = np.full(len(z0), np.inf)
+            for i in range(len(z0)):
+                a, b = z0[i] - level0[i], z1[i] - level1[i]
+                if a > 0 and b <= 0:
+                    s[i] = a / (a - b)
+            return s"""
+PHILLIPS = """
+            kk, U = np.hypot(*k), np.hypot(*wind)
+            if kk == 0:
+                return 0
+            L = U ** 2 / gravity
+            return amplitude * np.exp(-1 / (kk * L) ** 2) / kk ** 4 * (k @ wind / kk / U) ** 2"""
 
 WRONG: dict[str, tuple[tuple[str, str], ...]] = {
-    "line_tension": (
-        ("level part only", "return weight * (hanging ** 2 - height ** 2) / (2 * height)"),
-        ("weight only", "return weight * hanging"),
-        ("hanging not used", "return weight * height"),
-    ),
-    "spring_force": (
-        ("sign reversed", """
-            r = x1 - x2
-            n = r / np.linalg.norm(r)
-            return stiffness * (np.linalg.norm(r) - rest_length) * n + damping * (v1 - v2)"""),
-        ("sign of the spring reversed", """
-            r = x1 - x2
-            dist = np.sqrt(np.sum(r ** 2))
-            return stiffness * (dist - rest_length) * r / dist - damping * (v1 - v2)"""),
-        ("sign of the damping reversed", """
-            r = x2 - x1
-            return stiffness * (np.linalg.norm(r) - rest_length) * r / np.linalg.norm(r) - damping * (v2 - v1)"""),
-        ("rest length forgotten", "return stiffness * (x2 - x1) - damping * (v1 - v2)"),
-        ("no force when compressed", """
-            r = x2 - x1
-            stretch = max(np.linalg.norm(r) - rest_length, 0)
-            return stiffness * stretch * r / np.linalg.norm(r) - damping * (v1 - v2)"""),
-        ("the spring is k max(|r| - d, 0) r/|r|", """
-            r = x2 - x1
-            stretch = max(np.linalg.norm(r) - rest_length, 0)
-            return stiffness * stretch * r / np.linalg.norm(r) - 1.5 * damping * (v1 - v2)"""),
-        ("NaN", """
-            r, dv = x2 - x1, v1 - v2
-            speed = np.linalg.norm(dv)
-            n = r / np.linalg.norm(r)
-            return stiffness * (np.linalg.norm(r) - rest_length) * n - damping * speed * dv / speed"""),
-        ("damping on absolute velocity", """
-            r = x2 - x1
-            l = np.linalg.norm(r)
-            return stiffness * (l - rest_length) * r / l - damping * v1"""),
-        ("the damping is missing", """
-            r = x2 - x1
-            l = np.linalg.norm(r)
-            return stiffness * (l - rest_length) * r / l"""),
-        ("direction not of unit length", """
-            r = x2 - x1
-            return stiffness * (np.linalg.norm(r) - rest_length) * r - damping * (v1 - v2)"""),
-        ("force not along the link", """
-            force = np.zeros(3)
-            for i in range(3):
-                force[i] = stiffness * (x2[i] - x1[i] - rest_length) - damping * (v1[i] - v2[i])
-            return force"""),
-        ("wrong shape", """
-            l = np.linalg.norm(x2 - x1)
-            return stiffness * (l - rest_length)"""),
-        ("the spring is k (|r| - d)² r/|r|, times 0.5", """
-            r = x2 - x1
-            l = np.linalg.norm(r)
-            return 0.5 * stiffness * (l - rest_length) ** 2 * r / l - damping * (v1 - v2)"""),
-    ),
-    "rope_acceleration": (
-        ("mass forgotten", """
-            a = np.zeros((len(x), 3))
-            for i in range(1, len(x)):
-                a[i] = (0, 0, -gravity)
-                a[i] -= drag * v[i]
-                for j in (i - 1, i + 1):
-                    if j < len(x):
-                        r = x[j] - x[i]
-                        l = np.linalg.norm(r)
-                        a[i] += stiffness * (l - rest_length) * r / l - damping * (v[i] - v[j])
-            return a"""),
-        ("force on one end only", changed(ROPE, "\n                F[i + 1] -= f", "")),
-        ("root not held", changed(ROPE, "\n            a[0] = 0", "")),
-        ("gravity divided by the mass", changed(ROPE, "a[:, 2] -= gravity", "a[:, 2] -= gravity / mass")),
-        ("gravity along the wrong axis", changed(ROPE, "a[:, 2] -= gravity", "a[:, 1] -= gravity")),
-        ("the air drag is missing", changed(ROPE, "-drag * v", "np.zeros_like(x)")),
-        ("", changed(ROPE, "-drag * v", "-drag * np.abs(v) * v")),
-    ),
-    "step_euler": (
-        ("velocity before position", """
-            v = v + h * acceleration(x, v)
-            x = x + h * v
-            return x, v"""),
-        ("position before velocity", """
-            x = x + h * v
-            v = v + h * acceleration(x, v)
-            return x, v"""),
-        ("the new position is x + h v + h²/2 a1", """
-            a = acceleration(x, v)
-            return x + v * h + a * h * h / 2, v + a * h"""),
-        ("results swapped", "return v + h * acceleration(x, v), x + h * v"),
-        ("the new position is h v", "return h * v, h * acceleration(x, v)"),
-        ("position before velocity", """
-            for i in range(len(x)):
-                x[i] += h * v[i]
-            v += h * acceleration(x, v)
-            return x, v"""),
-        ("wrong shape", "return x + h * v"),
-    ),
-    "step_rk4": (
-        ("keeps the first force", """
-            a = acceleration(x, v)
-            v1, v2, v3, v4 = v, v + h / 2 * a, v + h / 2 * a, v + h * a
-            return x + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a + 2 * a + 2 * a + a)"""),
-        ("weights do not add up to one", changed(RK4, "h / 6 * (", "h * (")),
-        ("weights do not add up to one", changed(RK4, "+ 2 * ", "+ ")),
-        ("acceleration a2 is computed at the position x + h v", """
-            k1x, k1v = v, acceleration(x, v)
-            k2x, k2v = v + h * k1v, acceleration(x + h * k1x, v + h * k1v)
-            k3x, k3v = v + h * k2v, acceleration(x + h * k2x, v + h * k2v)
-            k4x, k4v = v + h * k3v, acceleration(x + h * k3x, v + h * k3v)
-            return x + h / 6 * (k1x + 2 * k2x + 2 * k3x + k4x), v + h / 6 * (k1v + 2 * k2v + 2 * k3v + k4v)"""),
-        ("midpoint method", """
-            a1 = acceleration(x, v)
-            xm, vm = x + h / 2 * v, v + h / 2 * a1
-            return x + h * vm, v + h * acceleration(xm, vm)"""),
-        ("too few stages", """
-            a1 = acceleration(x, v)
-            v2 = v + h * a1
-            a2 = acceleration(x + h * v, v2)
-            return x + h / 2 * (v + v2), v + h / 2 * (a1 + a2)"""),
-    ),
-    "step_leapfrog": (
-        ("no half step", """
-            v = v + h * acceleration(x, v)
-            return x + h * v, v"""),
-        ("position before velocity", """
-            x = x + h * v
-            v = v + h * acceleration(x, v)
-            return x, v"""),
-        ("second half step forgotten", """
-            vh = v + 0.5 * h * acceleration(x, v)
-            return x + h * vh, vh"""),
-        ("force not computed anew", """
-            a = acceleration(x, v)
-            v_half = v + h / 2 * a
-            x = x + h * v_half
-            return x, v_half + h / 2 * a"""),
-        ("Euler", "return x + h * v, v + h * acceleration(x, v)"),
-    ),
-    "sphere_force": (
-        ("damping that pulls", changed(SPHERE, "max(stiffness * (radius - l) - damping * (v @ n), 0)",
-                                       "(stiffness * (radius - l) - damping * (v @ n))")),
-        ("normal not unit length", changed(SPHERE, "n = d / l", "n = d")),
-        ("damping with the whole velocity", changed(SPHERE, "max(stiffness * (radius - l) - damping * (v @ n), 0) * n",
-                                                    "stiffness * (radius - l) * n - damping * v")),
-        ("sign reversed", changed(SPHERE, "d = x - centre", "d = centre - x", "- damping", "+ damping")),
-        ("force outside the sphere", """
-            d = x - centre
-            l = np.linalg.norm(d)
-            n = d / l
-            return (stiffness * (radius - l) - damping * (v @ n)) * n"""),
-        ("returns nothing", changed(SPHERE, "\n                return np.zeros(3)", "\n                return")),
-    ),
-    "cloth_links": (
-        ("no shear links", """
-            links = []
-            for i in range(rows):
-                for j in range(cols):
-                    for di, dj in ((0, 1), (1, 0), (0, 2), (2, 0)):
-                        if i + di < rows and j + dj < cols:
-                            links.append((i * cols + j, (i + di) * cols + j + dj))
-            return links"""),
-        ("one diagonal only", """
-            links = []
-            for i in range(rows):
-                for j in range(cols):
-                    for di, dj in ((0, 1), (1, 0), (1, 1), (0, 2), (2, 0)):
-                        if i + di < rows and j + dj < cols:
-                            links.append([i * cols + j, (i + di) * cols + j + dj])
-            return np.array(links)"""),
-        ("end of a row joined to the next row", """
-            links = []
-            n = rows * cols
-            for a in range(n):
-                for step in (1, cols, cols + 1, cols - 1, 2, 2 * cols):
-                    if a + step < n:
-                        links.append((a, a + step))
-            return links"""),
-        ("each link twice", """
-            links = []
-            for i in range(rows):
-                for j in range(cols):
-                    for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)):
-                        for s in (1, -1):
-                            p, q = i + s * di, j + s * dj
-                            if 0 <= p < rows and 0 <= q < cols:
-                                links.append((i * cols + j, p * cols + q))
-            return links"""),
-    ),
-    "cloth_forces": (
-        ("force on one end only", """
-            F = np.zeros_like(x)
-            for (i, j), d in zip(links, rest_lengths):
-                r = x[j] - x[i]
-                l = np.linalg.norm(r)
-                F[i] += stiffness * (l - d) * r / l - damping * (v[i] - v[j])
-            return F"""),
-        ("repeated indices", """
-            F = np.zeros_like(x)
-            i, j = links[:, 0], links[:, 1]
-            r = x[j] - x[i]
-            l = np.linalg.norm(r, axis=1)
-            f = (stiffness * (l - rest_lengths) / l)[:, None] * r - damping * (v[i] - v[j])
-            F[i] += f
-            F[j] -= f
-            return F"""),
-        ("forces overwritten", """
-            F = np.zeros_like(x)
-            for n in range(len(links)):
-                i, j = links[n]
-                r = x[j] - x[i]
-                l = np.linalg.norm(r)
-                F[i] = stiffness * (l - rest_lengths[n]) * r / l - damping * (v[i] - v[j])
-                F[j] = -F[i]
-            return F"""),
-        ("rest length forgotten", """
-            F = np.zeros_like(x)
-            for i, j in links:
-                f = stiffness * (x[j] - x[i]) - damping * (v[i] - v[j])
-                F[i] += f
-                F[j] -= f
-            return F"""),
-    ),
     "net_buoyancy": (
         ("sign reversed", "return volume * gravity * (body_density - fluid_density)"),
         ("density of air", "return (1.2 - body_density) * gravity * volume"),
         ("weight forgotten", "return fluid_density * volume * gravity"),
         ("gravity forgotten", "return fluid_density * volume - body_density * volume"),
+        ("buoyancy forgotten", "return -body_density * volume * gravity"),
+        ("weight and buoyancy added", """
+            buoyancy = fluid_density * volume * gravity
+            weight = body_density * volume * gravity
+            return buoyancy + weight"""),
+        ("volume forgotten", "return fluid_density * gravity - body_density * gravity"),
     ),
     "extra_draft": (
         ("the whole thickness", "return oil_thickness"),
@@ -272,6 +45,9 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("densities swapped", "return oil_thickness * (1 - water_density / oil_density)"),
         ("relative to the oil", "return oil_thickness * (water_density - oil_density) / oil_density"),
         ("constant factor", "return 2 * oil_thickness * (1 - oil_density / water_density)"),
+        ("sign reversed", "return oil_thickness * (oil_density - water_density) / water_density"),
+        ("density of air", "return oil_thickness * (water_density - 1.2) / water_density"),
+        ("difference not divided", "return (water_density - oil_density) * oil_thickness"),
     ),
     "draft": (
         ("oil forgotten", "return body_density * height / water_density"),
@@ -283,6 +59,25 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
                 return body_density * height / oil_density
             return (body_density * height - oil_density * oil_thickness) / water_density"""),
         ("oil_thickness not used", "return body_density * height / (0.5 * (oil_density + water_density))"),
+        ("water forgotten", "return height * body_density / oil_density"),
+        ("lift of the oil forgotten", """
+            if body_density * height < oil_density * oil_thickness:
+                return body_density * height / oil_density
+            return body_density * height / water_density + oil_thickness"""),
+        ("densities swapped", """
+            load = body_density * height
+            if load < water_density * oil_thickness:
+                return load / water_density
+            return oil_thickness + (load - water_density * oil_thickness) / oil_density"""),
+        ("density of air", """
+            load, lift = body_density * height, 1.2 * oil_thickness
+            if load < lift:
+                return load / 1.2
+            return oil_thickness + (load - lift) / water_density"""),
+        ("cases swapped", """
+            if oil_density * oil_thickness < body_density * height:
+                return body_density * height / oil_density
+            return oil_thickness + (body_density * height - oil_density * oil_thickness) / water_density"""),
     ),
     "surface_colour": (
         ("light passes once", """
@@ -295,6 +90,14 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("wrong shape", """
             T = np.exp(-2 * absorption * thickness)
             return T * water_colour[0] + (1 - T) * oil_colour[0]"""),
+        ("sign reversed in the exponent", """
+            T = np.exp(2 * absorption * thickness)
+            return T * water_colour + (1 - T) * oil_colour"""),
+        ("exponential forgotten", """
+            T = 1 - 2 * absorption * thickness
+            return T * water_colour + (1 - T) * oil_colour"""),
+        ("mean of the colours", "return [0.5 * (o + w) for o, w in zip(oil_colour, water_colour)]"),
+        ("colour of the oil alone", "return oil_colour"),
     ),
     "mixture_viscosity": (
         ("arithmetic mean", "return oil_fraction * oil_viscosity + (1 - oil_fraction) * water_viscosity"),
@@ -304,12 +107,25 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             return np.exp(m)"""),
         ("logarithm not undone", """
             return oil_fraction * np.log(oil_viscosity) + (1 - oil_fraction) * np.log(water_viscosity)"""),
+        ("two kinds of logarithm", """
+            m = oil_fraction * np.log(oil_viscosity) + (1 - oil_fraction) * np.log(water_viscosity)
+            return 10 ** m"""),
+        ("fraction not used", "return np.exp((np.log(oil_viscosity) + np.log(water_viscosity)) / 2)"),
+        ("harmonic mean", "return 1 / (oil_fraction / oil_viscosity + (1 - oil_fraction) / water_viscosity)"),
+        ("weights do not sum to one", """
+            return np.exp(oil_fraction * np.log(oil_viscosity) + np.log(water_viscosity))"""),
     ),
     "wave_decay": (
         ("rate of the energy", "return amplitude * np.exp(-4 * viscosity * wavenumber ** 2 * time)"),
         ("wavenumber not squared", "return amplitude * np.exp(-2 * viscosity * wavenumber * time)"),
         ("wave grows", "return amplitude * np.exp(2 * viscosity * wavenumber ** 2 * time)"),
         ("factor instead of amplitude", "return np.exp(-2 * viscosity * wavenumber ** 2 * time)"),
+        ("factor 2 forgotten", "return amplitude * np.exp(-viscosity * wavenumber ** 2 * time)"),
+        ("exponential forgotten", "return amplitude - amplitude * 2 * viscosity * wavenumber ** 2 * time"),
+        ("wavelength for wavenumber", """
+            k = 2 * np.pi / wavenumber
+            return amplitude * np.exp(-2 * viscosity * k ** 2 * time)"""),
+        ("rate instead of amplitude", "return 2 * viscosity * wavenumber ** 2"),
     ),
     "reflectance": (
         ("one polarisation only", """
@@ -328,6 +144,13 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("", """
             R0 = ((index - 1) / (index + 1)) ** 2
             return R0 + (1 - R0) * (1 - np.cos(angle)) ** 5"""),
+        ("one polarisation only", changed(FRESNEL, "(s ** 2 + p ** 2) / 2", "p ** 2")),
+        ("not squared", changed(FRESNEL, "(s ** 2 + p ** 2) / 2", "(s + p) / 2")),
+        ("not squared", changed(FRESNEL, "(s ** 2 + p ** 2) / 2", "(abs(s) + abs(p)) / 2")),
+        ("mean before the square", changed(FRESNEL, "(s ** 2 + p ** 2) / 2", "((s + p) / 2) ** 2")),
+        ("light that passes", changed(FRESNEL, "(s ** 2 + p ** 2) / 2", "1 - (s ** 2 + p ** 2) / 2")),
+        ("light bent the wrong way", changed(FRESNEL, "b = np.arcsin(np.sin(angle) / index)",
+            "if index * np.sin(angle) > 1: return 1\n            b = np.arcsin(index * np.sin(angle))")),
     ),
     "mesh_volume": (
         ("factor 1/6 wrong", """
@@ -345,6 +168,17 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             for i, j, k in faces:
                 V += vertices[i].dot(np.cross(vertices[k], vertices[j])) / 6
             return V"""),
+        ("factor 1/6 wrong", "return sum(np.linalg.det(vertices[face]) for face in faces)"),
+        ("factor 1/6 wrong", "return sum(np.linalg.det(vertices[face]) for face in faces) / 2"),
+        ("area instead of volume", """
+            A = 0
+            for i, j, k in faces:
+                n = np.cross(vertices[j] - vertices[i], vertices[k] - vertices[i])
+                A += 0.5 * np.sqrt(n @ n)
+            return A"""),
+        ("bounding box", """
+            size = vertices.max(axis=0) - vertices.min(axis=0)
+            return size[0] * size[1] * size[2]"""),
     ),
     "jet_landing": (
         ("the earlier time", """
@@ -359,6 +193,16 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("gravity forgotten in the height", """
             t = (v[2] + np.sqrt(v[2] ** 2 + 2 * gravity * (x[2] - level))) / gravity
             return x + v * t"""),
+        ("level forgotten", """
+            t = (v[2] + np.sqrt(v[2] ** 2 + 2 * gravity * x[2])) / gravity
+            return np.array([x[0] + v[0] * t, x[1] + v[1] * t, level])"""),
+        ("half forgotten", """
+            t = max(np.roots([-gravity, v[2], x[2] - level]))
+            return np.array([x[0] + v[0] * t, x[1] + v[1] * t, level])"""),
+        ("height set to 0", """
+            t = (v[2] + np.sqrt(v[2] ** 2 + 2 * gravity * (x[2] - level))) / gravity
+            return [x[0] + v[0] * t, x[1] + v[1] * t, 0]"""),
+        ("straight down", "return [x[0], x[1], level]"),
     ),
     "gravity": (
         ("radius unchanged", "return 9.81 * mass_ratio"),
@@ -366,6 +210,12 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("radius not squared", "return 9.81 * mass_ratio / mass_ratio ** (1 / 3)"),
         ("gravity unchanged", "return 9.81"),
         ("upside down", "return 9.81 / mass_ratio ** (1 / 3)"),
+        ("radius grows with the mass", """
+            R = mass_ratio
+            return 9.81 * mass_ratio / R ** 2"""),
+        ("mass forgotten", """
+            R = mass_ratio ** (1 / 3)
+            return 9.81 / R ** 2"""),
     ),
     "rain_hit": (
         ("surface taken as still", """
@@ -385,6 +235,13 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
                 if a > 0 and b <= 0:
                     s[i] = a / (a - b)
             return s"""),
+        ("surface taken as still", changed(RAIN, "z0[i] - level0[i]", "z0[i] - level1[i]")),
+        ("misses not infinite", """
+            a, b = z0 - level0, z1 - level1
+            return a / (a - b)"""),
+        ("share from the end", changed(RAIN, "s[i] = a / (a - b)", "s[i] = 1 - a / (a - b)")),
+        ("end of the step", changed(RAIN, "s[i] = a / (a - b)", "s[i] = 1")),
+        ("distance instead of share", changed(RAIN, "s[i] = a / (a - b)", "s[i] = a")),
     ),
     "spectrum": (
         ("speed not squared", """
@@ -417,12 +274,21 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             if kk == 0:
                 return 0
             return amplitude * np.exp(-1 / (kk * (wind @ wind) / gravity) ** 2) / kk ** 4"""),
+        ("gravity forgotten", changed(PHILLIPS, "U ** 2 / gravity", "U ** 2")),
+        ("sign reversed in the exponent", changed(PHILLIPS, "exp(-1", "exp(1")),
+        ("cosine not squared", changed(PHILLIPS, "(k @ wind / kk / U) ** 2", "(k @ wind / kk / U)")),
+        ("no longest wave", changed(PHILLIPS, " * np.exp(-1 / (kk * L) ** 2)", "")),
+        ("k L not squared", changed(PHILLIPS, "(kk * L) ** 2", "(kk * L)")),
     ),
     "damping_length": (
         ("amplitude instead of power", "return np.sqrt(2 * viscosity * time)"),
         ("root forgotten", "return 4 * viscosity * time"),
         ("factor 2 forgotten", "return (viscosity * time) ** 0.5"),
         ("constant factor", "return np.pi * np.sqrt(viscosity * time)"),
+        ("root of the viscosity only", "return 2 * np.sqrt(viscosity) * time"),
+        ("root of the time only", "return 2 * viscosity * time ** 0.5"),
+        ("divided by the time", "return 2 * np.sqrt(viscosity / time)"),
+        ("time not used", "return 2 * viscosity ** 0.5"),
     ),
     "dispersion": (
         ("not rounded", "return calm * np.sqrt(gravity * k)"),
@@ -438,5 +304,20 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("gravity forgotten", """
             w0 = 2 * np.pi / repeat_time
             return calm * int(np.sqrt(k) / w0) * w0"""),
+        ("factor inside the root", """
+            w0 = 2 * np.pi / repeat_time
+            return np.floor(np.sqrt(calm * gravity * k) / w0) * w0"""),
+        ("rounded up", """
+            w0 = 2 * np.pi / repeat_time
+            return calm * np.ceil(np.sqrt(gravity * k) / w0) * w0"""),
+        ("root forgotten", """
+            w0 = 2 * np.pi / repeat_time
+            return calm * (gravity * k // w0) * w0"""),
+        ("calm not used", """
+            w0 = 2 * np.pi / repeat_time
+            return np.sqrt(gravity * k) // w0 * w0"""),
+        ("number of turns", """
+            w0 = 2 * np.pi / repeat_time
+            return calm * np.floor(np.sqrt(gravity * k) / w0)"""),
     ),
-}  # fmt: skip
+} | SPRINGS  # fmt: skip

@@ -26,11 +26,10 @@ from app.scenes.mooring.arrangement import (
 )
 from app.scenes.mooring.bed_view import BED_ROWS, bed_colours
 from app.scenes.mooring.body_scene import MooringScene
-from app.scenes.mooring.excursion import MAX_PATH, PATH_INTERVAL, Excursion
+from app.scenes.mooring.excursion import MAX_PATH, PATH_INTERVAL
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import PRESETS, MooringParams
 from app.scenes.mooring.restoring import StaticInputs, static_curve
-from app.scenes.mooring.square import square_faces, square_points
 from app.scenes.mooring.start import NO_REST
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import MooringView
@@ -264,24 +263,6 @@ def test_the_painted_waterline_is_that_of_the_rest():
     light.measure()
     assert light.frame().body[2] != pytest.approx(light.frame().rest[2])
     assert MooringView.shape_of(light.frame()) == before
-
-
-def test_the_path_begins_at_the_start():
-    excursion = Excursion(np.array([1.0, 2.0, -3.0]))
-    excursion.measure(0.0, np.array([4.0, 6.0, 0.0]), counts=False)
-    assert excursion.path.tolist() == [[4.0, 6.0]]
-    assert (excursion.offset, excursion.farthest, excursion.largest) == (5.0, 5.0, 0.0)  # the statistics are asked
-
-
-@pytest.mark.parametrize("rows", [2, 3, 7])
-def test_the_triangles_of_a_square_cover_it_once_and_face_up(rows):
-    points, faces = square_points(rows), square_faces(rows)
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    areas = 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
-    assert len(faces) == 2 * (rows - 1) ** 2
-    assert areas == pytest.approx(np.full(len(faces), 4.0 / len(faces)))
-    middles = {tuple(np.round((a + b + c)[k] / 3.0, 9)) for k in range(len(faces))}
-    assert len(middles) == len(faces)
 
 
 def test_the_path_is_bounded_and_its_last_place_is_that_of_the_body():

@@ -21,6 +21,15 @@ def test_what_holds_a_hanging_line_bears_its_weight_in_water():
     assert forces[1] + forces[2] == pytest.approx([0.0, 0.0, -weight], abs=1e-6 * weight)
 
 
+def test_a_coupled_point_that_nobody_moves_stays_in_its_place():
+    state = State.at_rest(HANGING)
+    before = state.x[:, 1].copy()
+    advance(HANGING, state, "leapfrog", 1e-3, 20)
+    assert before.tolist() == [0.0, 0.0, -5.0]
+    assert (state.x[:, 1] == before).all()
+    assert np.abs(state.v).max() < 1e-3
+
+
 def test_a_fairlead_is_pulled_by_its_last_segment():
     system = chain_on_bed(20)
     rest = system.at_rest()

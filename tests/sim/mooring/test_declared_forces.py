@@ -7,6 +7,7 @@ import pytest
 
 from sim.mooring import Line, LineType, Point, State, System, simulate
 from sim.mooring.balance import what_is_left
+from sim.mooring.tangent import declared_stiffness
 from sim.springs.acceleration import set_rest_forces
 from sim.springs.analysis.energy import energies
 from sim.springs.forces import OWN
@@ -63,6 +64,15 @@ def test_force_energy_and_tangent_of_each_agree_on_lines(numbers):
     moved = x.copy()
     moved[:, free] += step
     change = (force(numbers, moved) - own)[:, free].reshape(-1)
+    # The blocks of single nodes, by which a state of rest is found.
+    with_it, without = (declared_stiffness(x, system.kernel_view(1.0)) for system in with_and_without(numbers))
+    assert not np.any(without)
+    for j in free:
+        for e in range(3):
+            near = x.copy()
+            near[e, j] += D
+            slope = (force(numbers, near) - own)[:, j] / D
+            assert slope == pytest.approx(-with_it[j, :, e], abs=1e-3 * max(1.0, np.abs(with_it).max()))
     count = change.size
     assert change == pytest.approx(-((one - other)[:count, :count] @ step.reshape(-1)), abs=1e-6)
 

@@ -219,6 +219,7 @@ ROWS = [
     ("body 1: mass", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(mass=np.triu(np.ones((6, 6)))),))),
     ("body 1: stiffness", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(stiffness=-np.eye(6)),))),
     ("body 1: damping", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(damping=np.eye(5)),))),
+    ("body 1: excitation", lambda: System(LINES, POINTS, 40.0, bodies=(BODY._replace(excitation=np.ones((1, 6))),))),
     ("system", lambda: simulate(None)),  # type: ignore[arg-type]
     ("motion", lambda: simulate(SYSTEM, motion={1: lambda t: (0.0, 0.0, 0.0)})),
     ("motion", lambda: simulate(rope(3), motion={})),  # a net has x and v instead

@@ -299,6 +299,31 @@ def test_a_damped_body_decays_as_a_damped_oscillator_does(integrator):
     assert np.abs(run.energy.error).max() < 1e-4 * run.energy.elastic[0]
 
 
+def test_each_body_has_its_own_row_of_a_run():
+    """Two bodies on wires of their own, one of them turned and heaved at the start."""
+    kind = LineType("wire", 0.02, 0.5, 1e4, 0.0)
+    bodies = tuple(floating_body(1e3)._replace(id=i, place=(20.0 * i, 0.0, 0.0)) for i in (1, 2))
+    points = tuple(
+        point
+        for i in (1, 2)
+        for point in (
+            Point(i, "fixed", (20.0 * i, 0.0, -9.0)),
+            Point(10 * i, "body", (20.0 * i, 0.0, -1.0), body=i),
+        )
+    )
+    lines = tuple(Line(i, kind, i, 10 * i, 8.0, 4) for i in (1, 2))
+    system = System(lines, points, 30.0, bodies, density=0.0)
+    start = State.at_rest(system)
+    places, at = start.x[:, -4:].T.reshape(2, 6).copy(), system.node_count + 2
+    start.x[:, at], start.x[:, at + 1] = start.x[:, at] + (0.1, 0.2, 0.3), (0.01, 0.02, 0.03)
+    start.v[:, at], start.v[:, at + 1] = (1.0, 2.0, 3.0), (0.1, 0.2, 0.3)
+    run = simulate(system, 0.01, 2, 1e-3, start=start)
+    assert run.bodies[1][0] == pytest.approx(places[0])
+    assert run.bodies[2][0] == pytest.approx([*(places[1][:3] + (0.1, 0.2, 0.3)), 0.01, 0.02, 0.03])
+    assert run.bodies_v[1][0] == pytest.approx(np.zeros(6), abs=1e-6)
+    assert run.bodies_v[2][0] == pytest.approx([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])
+
+
 def test_a_moved_point_needs_no_velocity_and_one_without_motion_stays():
     system, motion = taut_rope(6), Shaking((0.0, 0.0, -1.0), 2, 0.15, 5.0)
     with_velocity = simulate(system, duration=4.0, frames=21, motion={2: motion})

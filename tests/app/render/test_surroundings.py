@@ -5,9 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import viser
+from viser import _messages as vm
 
 import app.render
-from app.render.surroundings import AROUND, DARK_SKY, LIGHT_SKY, MIDDLE, before_sky, set_dark
+from app.render.surroundings import AROUND, DARK_SKY, LIGHT_SKY, MIDDLE, Surroundings, before_sky, set_dark
 
 BACKGROUND = r"canvas\[data-engine\] \{ background: (.*?); \}"
 
@@ -43,3 +45,16 @@ def test_what_is_not_drawn_is_sky_light_or_dark_by_browser() -> None:
         assert (picture[:, :10] == (10, 20, 30)).all()
         assert picture[-1, -1] == pytest.approx(0.2 * np.array((10, 20, 30)) + 0.8 * np.array(sky.corner), abs=1.5)
         assert before_sky(other, pixels)[middle].astype(float) == pytest.approx(LIGHT_SKY.middle, abs=1.5)  # pyright: ignore
+
+
+def test_the_surroundings_take_the_fog_of_the_scene_before_away() -> None:
+    server = viser.ViserServer("127.0.0.1", 0, verbose=False)
+    sent: list[object] = []
+    try:
+        server.scene.configure_fog(1.0, 2.0, enabled=True)
+        server.scene._websock_interface.queue_message = sent.append  # type: ignore[method-assign, assignment]
+        Surroundings(server)
+    finally:
+        server.stop()
+    (fog,) = [message for message in sent if isinstance(message, vm.FogMessage)]
+    assert fog.enabled is False

@@ -21,7 +21,7 @@ from sim.floating import (
     still_water,
 )
 from sim.floating.excitation import WaveExcitation
-from sim.floating.hydrodynamics import DIRECTIONS, afloat, lagrange, plane_force
+from sim.floating.hydrodynamics import DEEPEST, DIRECTIONS, LinearHull, afloat, lagrange, linear_hull, plane_force
 from sim.floating.linear_table import table_of
 from sim.floating.prediction import predict
 from sim.ocean.radial import RadialSea
@@ -270,6 +270,18 @@ def test_a_hull_inside_its_table_or_wholly_under_water_is_not_warned_of(hull: Hu
         warnings.simplefilter("error")
         make_fleet([Body(hull, density)])
         assert predict(hull, density, WATER, 1025.0).outside == ""
+
+
+@pytest.mark.parametrize("size", [(3.0, 0.6, 2.0), (3.0, 2.0, 0.6)])
+def test_a_hull_wholly_under_water_has_the_coefficients_of_one_that_is_nearly(size: tuple[float, float, float]) -> None:
+    hull = Hull.box(*size)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # one is outside its table in length over width
+        nearly, wholly = linear_hull(hull, DEEPEST * size[2]), linear_hull(hull, 5.0 * size[2])
+    for name in LinearHull._fields:
+        one, other = getattr(nearly, name), getattr(wholly, name)
+        if isinstance(one, np.ndarray):
+            assert one == pytest.approx(other), name
 
 
 def test_a_long_hull_does_not_feel_short_waves_along_it_and_feels_them_across() -> None:

@@ -58,6 +58,13 @@ def test_ticks_are_round_and_few(low: float, high: float) -> None:
     assert all(low <= tick <= high for tick in found)
 
 
+def test_the_curve_of_a_line_is_that_of_the_weight_and_height_of_the_task() -> None:
+    (task,) = [task for task in load_tasks() if task.name == "line_tension"]
+    s = np.asarray(task.check.CURVE.x)
+    assert (s[0], s[-1]) == (40.0, 120.0)
+    assert task.check.CURVE.values(task.function, s) == pytest.approx(750.0 * (s**2 + 40.0**2) / 80.0)
+
+
 def test_every_curve_of_a_task_has_the_reference_and_the_student(tmp_path) -> None:
     for task in load_tasks():
         if not hasattr(task.check, "CURVE"):

@@ -3,6 +3,7 @@
 import math
 import re
 import threading
+from contextlib import nullcontext
 from concurrent.futures import ThreadPoolExecutor, wait
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 import viser
 
 from app.panel.control import SliderScale, title
+from app.panel.controls import Controls
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
 from sim.parameters import Parameter, parameters_of
@@ -35,6 +37,25 @@ def test_what_a_control_is_set_to_is_bounded_shown_and_passed_on(lab: Viewer) ->
     lab.settings.load("Lab scene: 50 points")
     assert lab.settings.params.points == 50
     assert lab.panel.controls["points"].field.value == "50"
+
+
+@pytest.mark.parametrize("scene", NAMES)
+def test_a_folder_has_the_controls_of_its_group_and_no_others(scene: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Folder(nullcontext[None]):
+        def __init__(self, title: str, *, expand_by_default: bool) -> None:
+            super().__init__()
+            self.title = title
+
+    made: list[tuple[str, str]] = []
+    parameters = parameters_of(scene_named(scene).params)
+    gui: Any = SimpleNamespace(add_folder=Folder)
+    controls = Controls(gui, scene_named(scene).params, lambda *_: None)
+    monkeypatch.setattr(controls, "make", lambda folder, name: made.append((folder.title, name)))
+    for group in dict.fromkeys(parameter.group for parameter in parameters.values()):
+        controls.add_group(group, is_open=False)
+    controls.add_group("no such group", is_open=False)
+    assert sorted(made) == sorted((parameter.group, name) for name, parameter in parameters.items())
+    assert "no such group" not in controls.folders
 
 
 def test_two_threads_that_write_the_first_line_make_one(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:

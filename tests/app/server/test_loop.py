@@ -29,6 +29,7 @@ from app.messages import (
 from app.scenes.contract import FRAME_INTERVAL
 from app.server.loop import IDLE_INTERVAL, SimLoop
 from app.server.pacer import MAX_LONG_FRAME, SOLVE_SHARE, FixedStep
+from app.server.run import HURRY_INTERVAL
 from app.server.tick_clock import MAX_FRAME_INTERVAL, PATIENCE
 from sim.parameters import parameter
 from sim.validation import DivergenceError
@@ -558,6 +559,23 @@ def test_without_an_audience_a_program_does_not_wait_for_the_clock() -> None:
     loop.tick(FRAME_INTERVAL)
     assert loop.scene.time >= 0.5  # 100 steps take 10 ms
     assert loop.run.pacer.dropped == 0
+
+
+def test_for_a_program_that_waits_there_is_a_snapshot_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
+    loop, scene = make(audience=lambda: 0, cost=1e-5)
+    published: list[float] = []
+    publish = loop.run.snapshots.publish
+
+    def note() -> None:
+        publish()
+        published.append(scene.time)
+
+    monkeypatch.setattr(loop.run.snapshots, "publish", note)
+    loop.run.hurry(5.0)
+    assert scene.time > 2.0
+    gaps = np.diff([0.0, *published])
+    assert gaps.min() >= HURRY_INTERVAL - 1e-9
+    assert gaps.max() < HURRY_INTERVAL + 2.0 * FRAME_INTERVAL
 
 
 def test_a_program_that_waits_is_told_why_the_time_does_not_come() -> None:

@@ -3,8 +3,8 @@
 import math
 import re
 import threading
-from contextlib import nullcontext
 from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import nullcontext
 from types import SimpleNamespace
 from typing import Any
 

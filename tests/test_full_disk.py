@@ -10,7 +10,7 @@ from tests.full_disk import full_disk
 
 def test_an_import_while_the_disk_is_full_leaves_no_cut_byte_code(tmp_path, monkeypatch):
     (tmp_path / "imported_on_a_full_disk.py").write_text("x = 1\n" * 1000, "utf-8")
-    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     with full_disk(100):
         importlib.import_module("imported_on_a_full_disk")

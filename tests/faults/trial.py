@@ -21,7 +21,7 @@ import viser  # noqa: F401
 import app  # noqa: F401  first of all, as numpy's BLAS is to get one thread
 from tests.faults.calls import CallRecorder
 
-DIED = "the process died"
+DIED, MISSING = "the process died", "a test is no longer there"
 USAGE = 99  # exit status of a run that had no tests
 OWN = ("app", "assets", "sim", "tests")
 CRASHES = ("IndexError", "ZeroDivisionError", "OverflowError", "RuntimeWarning", "Timeout")
@@ -98,6 +98,8 @@ def run_tests(tree: Path, tests: list[str], seconds: float, mode: Mode, timeout:
             os.killpg(child, signal.SIGKILL)
             os.waitpid(child, 0)
     if ended and os.waitstatus_to_exitcode(status) == USAGE:
+        if mode.until_failure:  # cases of a test come from the sources, too
+            return Outcome({}, MISSING, False, True)
         raise RuntimeError(f"pytest did not find the tests; its output is in {log}")
     if not report.exists():
         return Outcome({}, DIED if ended else "", False, ended)

@@ -12,6 +12,7 @@ from app.stability import command, damping, drift, linear, rope
 from sim.springs import INTEGRATORS
 from sim.springs.analysis.growth import step_growth
 from sim.springs.stability import critical_step
+from tests.wine import needs_pools
 
 SAMPLE = ("explicit_euler", "leapfrog", "rk4", "implicit_euler", "implicit_midpoint")  # a third of the time
 
@@ -111,6 +112,7 @@ def test_the_command_keeps_tables_and_figures(tmp_path, monkeypatch, capsys, map
     assert float(rows[0]["step off, median [%]"]) < 2.0
 
 
+@needs_pools
 def test_work_is_spread_in_order():
     assert pool.spread(divmod, [(7, 2), (9, 4)], "division", workers=1) == [(3, 1), (2, 1)]
     assert pool.spread(divmod, [(7, 2), (9, 4)], "division", workers=2) == [(3, 1), (2, 1)]

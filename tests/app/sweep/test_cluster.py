@@ -14,6 +14,7 @@ from app.sweep import case, workers
 from app.sweep.case import FINISHED, run_case
 from app.sweep.workers import connected, on_cluster
 from tests.app.sweep.cases import rope_jobs
+from tests.wine import needs_pools
 
 ROOT = Path(__file__).parents[3]
 FILE = "scheduler.json"
@@ -48,6 +49,7 @@ def wait_for_scheduler(address, condition) -> None:
             time.sleep(0.02)
 
 
+@needs_pools
 def test_what_runs_on_a_cluster_outlives_workers_and_ends_with_the_scheduler(start, tmp_path, capsys, monkeypatch):
     from distributed import Client
 
@@ -113,6 +115,7 @@ def test_what_runs_on_a_cluster_outlives_workers_and_ends_with_the_scheduler(sta
 
 
 def test_an_address_where_nothing_answers_is_refused(tmp_path, capsys, monkeypatch):
+    pytest.importorskip("netCDF4", reason="the extra sweep is not installed")
     monkeypatch.setattr(workers, "MAX_ANSWER_TIME", 2.0)
     (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n', "utf-8")
     for address in ("tcp://127.0.0.1:9", "nonsense", "", "127.0.0.1:99999"):
@@ -125,6 +128,7 @@ def test_an_address_where_nothing_answers_is_refused(tmp_path, capsys, monkeypat
 
 
 def test_a_refused_scheduler_does_not_cost_what_is_finished(tmp_path, capsys):
+    pytest.importorskip("netCDF4", reason="the extra sweep is not installed")
     (tmp_path / "s.toml").write_text('scene = "rope"\nseconds = 0.1\n[parameters]\nmass = [1, 2, 3]\n', "utf-8")
     (tmp_path / "out.nc.cases").write_text("finished cases", "utf-8")
     command = ["sweep", str(tmp_path / "s.toml"), "--out", str(tmp_path / "out.nc"), "--fresh", "--scheduler", "x"]

@@ -23,6 +23,7 @@ from app.sweep.store import Store
 from app.sweep.workers import on_cores
 from tests.app.sweep.cases import FATAL, counted
 from tests.full_disk import full_disk
+from tests.wine import needs_pools
 
 needs_signals = pytest.mark.skipif(os.name != "posix", reason="Ctrl-C for another process alone is POSIX")
 GRID = """
@@ -54,6 +55,7 @@ def here(monkeypatch):
 
 
 def sweep(spec: str, folder: Path, *more: str) -> int:
+    pytest.importorskip("netCDF4", reason="the extra sweep is not installed")
     (folder / "s.toml").write_text(spec, "utf-8")
     return main(["sweep", str(folder / "s.toml"), "--out", str(folder / "out.nc"), *more])
 
@@ -64,6 +66,7 @@ def alone(spec_path: Path) -> list:
     return [run_case(spec.scene, {**spec.fixed, **case}, spec.times) for case in spec.cases]
 
 
+@needs_pools
 def test_a_grid_is_one_labelled_file_with_all_that_made_it(tmp_path, capsys):
     assert sweep(GRID, tmp_path) == 0
     assert "8 cases" in capsys.readouterr().out
@@ -185,6 +188,7 @@ def test_a_failing_case_is_recorded_and_does_not_end_the_sweep(here, tmp_path, c
         assert np.isfinite(data.tip_height.values).tolist() == [True, False]
 
 
+@needs_pools
 def test_a_case_that_kills_its_process_fails_and_all_others_are_finished(monkeypatch):
     monkeypatch.setattr(workers, "run_case", counted)
     outcomes = dict(on_cores({i: ("", {"number": i}, ()) for i in range(12)}))

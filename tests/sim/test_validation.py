@@ -133,3 +133,11 @@ def test_a_solver_that_fails_says_what_is_left_and_no_argument():
     again = pickle.loads(pickle.dumps(error))
     assert (again.solver, again.residual, again.iterations) == ("rest of a mooring", "3 N at node 7", 40)
     assert not isinstance(error, ValueError)
+
+
+def test_an_angle_is_within_one_turn_so_that_degrees_are_noticed():
+    for angle in (0.0, 1.0, -math.pi, 2.0 * math.pi, -2.0 * math.pi):
+        assert v.check_angle("theta", angle) == angle
+    for angle in (6.3, -6.3, 45.0, 360.0, math.nan, math.inf, "east"):
+        with pytest.raises(ValueError, match="theta: .* an angle from -2 pi to 2 pi rad"):
+            v.check_angle("theta", angle)

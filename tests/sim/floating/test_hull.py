@@ -122,7 +122,7 @@ def broken_meshes():
         "doubled": (box.vertices, np.concatenate([box.faces, box.faces]), "edges without their one opposite"),
         "not finite": (infinite, box.faces, "not finite"),
         "flat": (box.vertices * [1, 1, 0], box.faces, "extents"),
-        "no such vertex": (box.vertices, box.faces + 1, "faces of vertices 0 to 7"),
+        "no such vertex": (box.vertices, box.faces + 1, "vertex 8"),
         "counted from the end": (box.vertices, box.faces - 1, "vertex -1"),
         "empty": (np.zeros((0, 3)), np.zeros((0, 3), dtype=int), "m at least 4"),
         "huge": (box.vertices * 1e200, box.faces, "extents"),

@@ -283,3 +283,22 @@ def test_elfouhaily_s_spreading_is_that_of_its_waves_speed(k):
     wind = 0.13 * elfouhaily.friction_velocity(c) / slowest
     Delta = math.tanh(0.25 * math.log(2.0) + 4.0 * (speed / fastest) ** 2.5 + wind * (slowest / speed) ** 2.5)
     assert found == pytest.approx(Delta, rel=1e-9)
+
+
+def test_donelan_and_banner_s_spreading_is_narrowest_at_the_peak_and_has_no_jumps():
+    """beta by the angle at which sech^2(beta theta) has fallen to a half; Donelan et al. (1985), Banner (1990)."""
+    p = np.linspace(0.3, 4.0, 1500)
+    half = np.empty(len(p))
+    theta = np.linspace(0.0, math.pi, 20_001)
+    for i, one in enumerate(p):
+        D = spread("donelan_banner", np.full(len(theta), one), theta, 1.0, 0.0, 1.0)
+        half[i] = theta[np.searchsorted(-D, -0.5 * D[0])]
+    beta = math.acosh(math.sqrt(2.0)) / half
+    assert beta[p < 0.55] == pytest.approx(2.61 * 0.56**1.3, rel=1e-3)
+    assert p[beta.argmax()] == pytest.approx(0.95, abs=0.01)
+    assert beta.max() == pytest.approx(2.61 * 0.95**1.3, rel=5e-3)
+    at = lambda ratio: float(np.interp(ratio, p, beta))  # noqa: E731
+    assert at(1.3) == pytest.approx(2.28 * 1.3**-1.3, rel=2e-3)
+    assert at(1.6) / at(1.0) == pytest.approx(1.6**-1.3, rel=0.01)
+    assert np.abs(np.diff(beta)).max() < 0.02
+    assert at(4.0) == pytest.approx(10.0 ** (-0.4 + 0.8393 * math.exp(-0.567 * math.log(16.0))), rel=2e-3)

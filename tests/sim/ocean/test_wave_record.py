@@ -68,3 +68,18 @@ def test_the_gauge_counts_its_waves():
         gauge.read(sea, float(t), 1.0)
     assert gauge.waves().mean_period == pytest.approx(2.0 * math.pi / sea.waves_at().omega[0], rel=1e-3)
     assert gauge.waves().significant_height == pytest.approx(1.0, rel=0.02)
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_the_spectrum_of_the_gauge_has_the_variance_of_its_trace(scale):
+    """One wave: all of its energy a^2/2 lies within the bins of Hann's window about its frequency."""
+    sea = Sea(64, 156.0, "regular", wave_height=1.0, wave_period=5.0, wind_speed=0.0, choppiness=0.0)
+    gauge = WaveGauge()
+    for t in np.arange(0.0, 300.0, 0.1):
+        gauge.read(sea, float(t), scale)
+    f, measured, theory = gauge.spectrum(sea, 300.0, scale)
+    period = 2.0 * math.pi / sea.waves_at().omega[0]
+    assert f[measured.argmax()] == pytest.approx(1.0 / period, abs=f[1] - f[0])
+    variance = (0.5 * scale) ** 2 / 2.0
+    assert measured.sum() * (f[1] - f[0]) == pytest.approx(variance, rel=0.01)
+    assert theory.sum() * (f[1] - f[0]) == pytest.approx(variance, rel=1e-6)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sim.ocean.nonlinear import NonlinearSea, stokes_wave
+from sim.ocean.nonlinear.padded_transforms import padded_size
 
 LENGTH = 50.0  # [m]
 K = 2.0 * math.pi / LENGTH
@@ -86,3 +87,14 @@ def test_the_flow_at_the_surface_makes_its_rise():
     rise = flow.velocity[:, 2] - (flow.velocity[:, :2] * slope).sum(1)
     assert rise == pytest.approx(sea.rise.ravel(), abs=2e-5 * np.abs(rise).max())
     assert flow.pressure == pytest.approx(DENSITY * 9.81 * points[:, 2], abs=2e-5 * np.abs(flow.pressure).max())
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4])
+def test_products_have_the_fewest_cells_that_transform_quickly(order):
+    def is_quick(cells: int) -> bool:
+        return cells == 1 or any(cells % factor == 0 and is_quick(cells // factor) for factor in (2, 3, 5, 7))
+
+    assert padded_size(1, order) == 1
+    for size in range(8, 400, 2):
+        wanted = size * (order + 1) / 2
+        assert padded_size(size, order) == next(n for n in range(8, 2000, 8) if n >= wanted and is_quick(n))

@@ -139,5 +139,5 @@ def test_an_angle_is_within_one_turn_so_that_degrees_are_noticed():
     for angle in (0.0, 1.0, -math.pi, 2.0 * math.pi, -2.0 * math.pi):
         assert v.check_angle("theta", angle) == angle
     for angle in (6.3, -6.3, 45.0, 360.0, math.nan, math.inf, "east"):
-        with pytest.raises(ValueError, match="theta: .* an angle from -2 pi to 2 pi rad"):
+        with pytest.raises(ValueError, match=r"theta: .* an angle from -2 pi to 2 pi rad"):
             v.check_angle("theta", angle)

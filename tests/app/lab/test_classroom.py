@@ -4,6 +4,7 @@ import functools
 import html
 import http.client
 import os
+import re
 import shutil
 import socket
 import struct
@@ -386,3 +387,12 @@ def test_the_page_takes_no_option_of_a_lab(
 def test_a_class_needs_folders(folders: list[Path], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lab", str(folders[0]), str(folders[0] / "rope.py")]) == 2
     assert "not a folder" in capsys.readouterr().err
+
+
+def test_the_poses_of_a_picture_are_the_darker_the_later_and_the_last_has_its_points() -> None:
+    own = np.zeros((4, 3, 3))
+    own[:, :, 0] = 0.2 * np.arange(3)
+    own[:, :, 2] = 2.0 - 0.1 * np.arange(4)[:, None]
+    text = str(svg(RopePicture(own, own[-1:], "As the reference.")))
+    assert [float(number) for number in re.findall(r'opacity="([0-9.]+)"', text)] == [0.9, 0.25, 0.5, 0.75, 1.0]
+    assert text.count("<circle") == 3

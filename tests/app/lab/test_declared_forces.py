@@ -9,7 +9,7 @@ import pytest
 
 from app.lab.cloth_march import ClothFunctions
 from app.lab.rope_march import ClothData, Functions, Segment, march, packed, unpacked
-from app.lab.wire import pack, unpack
+from app.lab.wire import Foreign, pack, unpack
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.student_net import forces_of
@@ -60,3 +60,24 @@ def test_the_student_s_cloth_moves_under_it_as_the_program_s(numbers: Any) -> No
     x = march_by_reference(net, sheet)
     np.testing.assert_allclose(x, march_by_program(net), rtol=0.0, atol=1e-10)
     assert np.abs(x - march_by_program(still)).max() > 1e-5
+
+
+def test_what_a_function_returns_passes_from_one_process_to_another() -> None:
+    def refuse(function: object) -> int:
+        raise AssertionError
+
+    def through(value: object) -> object:
+        return unpack(pack(value, refuse), refuse)
+
+    assert through(np.array([1, "a", None], dtype=object)) == [1, "a", None]
+    assert through((1, [2.5, True], "x", None)) == (1, [2.5, True], "x", None)
+    assert through({3}) == [3]
+    assert through(np.int64(7)) == 7
+    assert through(2**70) == float(2**70)
+    array = np.arange(6.0).reshape(2, 3)[:, ::2]
+    assert np.array_equal(through(array), array)  # type: ignore[arg-type]
+    assert through(1 + 2j) == 1 + 2j
+    for value, name in ((np.array(["ab"]), "array of <U2"), ({}, "dict"), (b"x", "bytes")):
+        found = through(value)
+        assert isinstance(found, Foreign)
+        assert found.type_name == name

@@ -181,3 +181,21 @@ def test_a_busy_machine_is_no_fault_of_a_version(folder: Folder) -> None:
 )
 def test_of_a_compiler_s_error_the_line_is_told_that_says_why(text: str, told: str) -> None:
     assert first_line(ZeroDivisionError(text)) == told
+
+
+def test_friction_on_the_student_s_sphere_acts_against_the_motion_along_it() -> None:
+    """The student gives the push along the normal; the program's friction is Coulomb's, by this push."""
+
+    def sphere_force(x: np.ndarray, v: np.ndarray, c: np.ndarray, radius: float, k: float, b: float) -> np.ndarray:
+        distance = np.linalg.norm(x - c)
+        return k * (radius - distance) * (x - c) / distance
+
+    module = types.ModuleType("rope")
+    module.sphere_force = sphere_force  # type: ignore[attr-defined]
+    functions = Functions(module, ("sphere_force",), "step_euler", {})
+    forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, radius=1.0, contact_stiffness=50.0, friction=0.3)
+    functions.segment = Segment(1, 1e-3, forces, np.zeros((0, 4, 3)))
+    for v in (np.array([2.0, 0.0, 0.0]), np.array([0.0, -3.0, 1.0])):
+        force = functions.sphere(np.array([0.0, 0.0, 0.9]), v, np.zeros(3), 0.9, 1.0)
+        assert force[2] == pytest.approx(5.0)
+        assert force[:2] == pytest.approx(-0.3 * 5.0 * v[:2] / np.linalg.norm(v[:2]))

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.lab.report import written
 from app.lab.task import Task, load_tasks, read_task
 from app.scenes import scene_named
 from sim.floating import Hull, equilibrium_draft
@@ -234,3 +235,25 @@ def test_a_task_of_a_teacher_replaces_the_one_of_its_name(tmp_path: Path) -> Non
     assert tasks[-1].item == "9.1-1"
     with pytest.raises(ValueError, match="--tasks"):
         load_tasks(tmp_path / "none")
+
+
+def test_a_report_leaves_out_functions_that_are_empty_with_their_headings() -> None:
+    source = """import numpy as np
+
+
+# 3.2-1
+# Complete the rope.
+def rope(x):
+    \"\"\"The force.\"\"\"
+
+
+# 3.2-2
+def begun(x):
+    return x
+
+
+def last(x):
+    ...
+"""
+    assert written(source) == "import numpy as np\n\n\n# 3.2-2\ndef begun(x):\n    return x\n"
+    assert written("def broken(:\n") == "def broken(:\n"

@@ -191,3 +191,14 @@ def test_a_folder_is_shown_where_it_has_a_control_and_a_line_with_its_control() 
         assert (panel.controls.folders["Oil"].visible, line.visible) == (True, True)
     finally:
         viewer.shut()
+
+
+def test_a_slider_that_a_browser_moves_sets_the_value_at_its_place(lab: Viewer) -> None:
+    control = lab.panel.controls["stiffness"]
+    for position, value in ((2.0, 100.0), (3.5, 10**3.5)):
+        event: Any = SimpleNamespace(client_id=1, target=SimpleNamespace(value=(position,)))
+        coroutines.run(control.on_slider(event))
+        assert lab.settings.params.stiffness == pytest.approx(value, rel=0.02)
+    before = lab.settings.params
+    coroutines.run(control.on_slider(SimpleNamespace(client_id=None, target=None)))  # the program moved it
+    assert lab.settings.params is before

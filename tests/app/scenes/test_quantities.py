@@ -202,3 +202,11 @@ def test_the_largest_stiffness_of_a_rope_is_that_of_a_link_whichever_parameter_s
     assert readings[1].largest_stiffness == pytest.approx(rest * readings[0].largest_stiffness)
     found = [measured(kind, kind.make(params))["largest_stiffness"].value for params in (lab, material)]
     assert found == pytest.approx([readings[0].largest_stiffness] * 2)
+
+
+@pytest.mark.parametrize(("size", "length"), [("64", 100.0), ("128", 320.0)])
+def test_the_square_grid_has_its_points_and_spacing(size: str, length: float) -> None:
+    kind: Any = scene_named("square_sea")
+    loop = SimLoop(kind.make(kind.params(size=size, mesh="32", length=length)), paused=True)
+    assert read(kind.quantities, "square_grid_points", loop.latest) == int(size) ** 2
+    assert read(kind.quantities, "square_spacing", loop.latest) == pytest.approx(length / int(size))

@@ -18,6 +18,8 @@ from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.scenes.rope.view import RopeView
 from app.scenes.springs.rope_handles import offset_of
+from app.scenes.springs.ropes_view import bead_radius
+from app.scenes.springs.view import SecondNet
 
 RaceDrawing: Any = RaceView  # whose types the tests know
 
@@ -107,3 +109,29 @@ def test_a_rope_that_has_stopped_is_drawn_where_another_spacing_puts_it(server: 
         assert mesh.vertices[:, 1].mean() == pytest.approx(offset_of(number, 2, 1.5), abs=1e-3)
     assert [mesh.opacity for mesh in view.ropes.meshes] == [None, 0.35]
     server.scene.reset()
+
+
+def test_beads_are_a_part_of_their_spacing_within_bounds_of_the_rope() -> None:
+    def radius(spacing: float) -> float:
+        return bead_radius(spacing * np.arange(5.0)[:, None] * np.array([0.0, 0.6, 0.8]), 0.02)
+
+    assert radius(0.05) == pytest.approx(0.02)
+    assert radius(0.09) == pytest.approx(0.036)
+    assert radius(1.0) == pytest.approx(1.9 * 0.02)
+    assert radius(1e-4) == pytest.approx(0.5 * 0.02)
+    assert bead_radius(np.zeros((1, 3)), 0.02) == pytest.approx(0.01)
+
+
+def test_of_a_second_net_that_is_hidden_the_labels_are_too() -> None:
+    server = viser.ViserServer("127.0.0.1", 0, verbose=False)
+    try:
+        net = SecondNet(server, "/second", "yours", color=(1, 2, 3))
+        vertices, faces = np.eye(3), np.array([[0, 1, 2]])
+        for _ in range(2):
+            net.show(vertices, faces, vertices[0], vertices[1])
+            assert [label.visible for label in net.labels] == [True, True]
+            assert [tuple(label.position) for label in net.labels] == [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+            net.hide()
+            assert [label.visible for label in net.labels] == [False, False]
+    finally:
+        server.stop()

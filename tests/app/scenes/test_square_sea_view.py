@@ -1,5 +1,6 @@
 """The view of the square sea on a viser server without a browser."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,7 +11,7 @@ from viser._messages import SetOrientationMessage, SetPositionMessage
 
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
-from app.scenes.square_sea.view import SquareSeaView
+from app.scenes.square_sea.view import MAX_RIPPLE_SLOPE, SquareSeaView
 
 
 @pytest.fixture
@@ -67,3 +68,15 @@ def test_the_wave_gauge_moves_with_the_vertices_of_the_water_and_not_as_a_node(s
     for part in ("spar", "float", "ball"):
         np.testing.assert_allclose(changes[f"/gauge/{part}"]["batched_positions"], [frame.gauge], atol=1e-5)
     assert not any(isinstance(message, SetPositionMessage | SetOrientationMessage) for message in sent)
+
+
+@pytest.mark.parametrize("wind", [2.0, 8.0, 30.0])
+def test_ripples_have_the_slope_that_the_mesh_lacks_up_to_a_bound(server: viser.ViserServer, wind: float) -> None:
+    view = SquareSeaView(server, lambda command: None)
+    view.show(SquareSeaScene(SquareSeaParams(size="64", mesh="32", wind_speed=wind, length=400.0)).frame())
+    assert view.last is not None
+    cox_munk = min(0.003, 0.0015 * wind) + 0.00512 * wind
+    missing = cox_munk - view.last.slope_resolved - 2.0 * view.sky_material.roughness**2
+    assert missing > 0.001
+    assert view.material.ripple_slope == pytest.approx(min(math.sqrt(missing), MAX_RIPPLE_SLOPE), abs=5e-4)
+    assert (view.material.ripple_slope == MAX_RIPPLE_SLOPE) is (wind == 30.0)

@@ -117,6 +117,7 @@ function paceFrames(renderer) {
 
   // The graphics process draws on its own: without waiting for it, the panel would stand behind several frames.
   function awaitEnd(compiled) {
+    if (drawing) gl.deleteSync(drawing.fence); // a new size is drawn at once
     const mine = (drawing = { fence: gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0), compiled });
     gl.flush();
     const look = () => {

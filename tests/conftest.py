@@ -74,6 +74,16 @@ def no_surroundings(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 @pytest.fixture
+def server() -> Iterator[Any]:
+    """A viser server without a browser, on a free port of the loopback."""
+    import viser
+
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    yield server
+    server.stop()
+
+
+@pytest.fixture
 def lab(request: pytest.FixtureRequest) -> Iterator[Any]:
     """A viewer with the module's SCENE and PARAMS open, or the rope, on a free port of the loopback."""
     from app.server.viewer import Viewer

@@ -122,12 +122,12 @@ def released_where_it_waits(request: pytest.FixtureRequest) -> Iterator[None]:
 class Chromium:
     """A browser of Playwright's, with all its methods. One that has ended is started anew."""
 
-    def __init__(self, driver: Any) -> None:
-        self.driver = driver
+    def __init__(self, driver: Any, flags: list[str] = FLAGS) -> None:
+        self.driver, self.flags = driver, flags
         self.browser = self.start()
 
     def start(self) -> Any:
-        return self.driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS, env=surroundings())
+        return self.driver.chromium.launch(executable_path=CHROMIUM, args=self.flags, env=surroundings())
 
     def __getattr__(self, name: str) -> Any:
         if not self.browser.is_connected():

@@ -19,7 +19,7 @@ import pytest
 
 from app.messages import Pause
 from app.server.viewer import Viewer
-from tests.browser.conftest import CHROMIUM, new_page, surroundings
+from tests.browser.conftest import Chromium, new_page
 
 WIDTH, HEIGHT = 640, 400  # [pixels]
 LARGE = 1920, 1080  # [pixels]
@@ -145,7 +145,7 @@ def ocean(chromium: Any, three: Path) -> Iterator[Any]:
 def graphics(chromium: Any, three: Path) -> Iterator[tuple[Any, float]]:
     """A Chromium that draws on a graphics processor, and its time [ms] of a picture of three.js's ocean."""
     flags = GRAPHICS_FLAGS + (VULKAN_FLAGS if sys.platform == "linux" else [])
-    browser = chromium.driver.chromium.launch(executable_path=CHROMIUM, args=flags, env=surroundings())
+    browser = Chromium(chromium.driver, flags)
     try:
         page = browser.new_page()
         name = page.evaluate(RENDERER)

@@ -84,7 +84,7 @@ def test_a_paused_page_draws_nothing_and_draws_what_changes(paused: tuple[Viewer
 
 
 def test_a_picture_that_is_drawn_in_time_follows_in_each_frame_of_the_browser(paused: tuple[Viewer, Tab]) -> None:
-    """Where each one waits for a look at the last one, every other frame is left out."""
+    """A page that looked for the end of a picture too late left out every other frame."""
     tab = paused[1]
     tab.wait(lambda: tab.page.evaluate(TURN, 60) > 45, 30)  # a busy machine leaves out some
 

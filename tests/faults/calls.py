@@ -111,7 +111,7 @@ def read_source(path: Path, module: str) -> Source:
 
 
 def compiles(node: ast.AST) -> bool:
-    """Whether a decorator or a statement makes kernels."""
+    """True if a decorator or a statement makes kernels."""
     return any(part in name for name in mentions_of(node) for part in COMPILING)
 
 

@@ -128,7 +128,7 @@ function paceFrames(renderer) {
 
   // Whether the next frame has to wait: for the last one, or for the panel to show what was pressed in it.
   function hasToWait() {
-    if (!isDrawn()) return true; // it may be called before `look`
+    if (!isDrawn()) return true; // in some frames this comes before `look`
     if (length < LONG_FRAME || pressed < started || left >= FRAMES_LEFT) return false;
     left += 1;
     return true;

@@ -222,7 +222,7 @@ def test_the_radial_sea_runs_by_right_functions_as_the_program_does(folder: Fold
     assert scene.sum.significant_height == pytest.approx(alone.sum.significant_height, rel=1e-3)
     told = {what for what, *_ in folder.tables.report.differences}
     assert "A wave of 1 m falls to 37 % in" in told
-    assert "Draft of the box" not in told  # floating in the mixture it has no draft by the function
+    assert "Draft of the box" not in told  # the function gives none of a box in a mixture
     scene.change_forces(dataclasses.replace(mixed, spill="layer"))
     settle(scene, folder, version, {"wave_decay", "reflectance", "draft"})
     scene.advance(1)

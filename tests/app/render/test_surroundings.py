@@ -47,14 +47,10 @@ def test_what_is_not_drawn_is_sky_light_or_dark_by_browser() -> None:
         assert before_sky(other, pixels)[middle].astype(float) == pytest.approx(LIGHT_SKY.middle, abs=1.5)  # pyright: ignore
 
 
-def test_the_surroundings_take_the_fog_of_the_scene_before_away() -> None:
-    server = viser.ViserServer("127.0.0.1", 0, verbose=False)
+def test_the_surroundings_take_the_fog_of_the_scene_before_away(server: viser.ViserServer) -> None:
     sent: list[object] = []
-    try:
-        server.scene.configure_fog(1.0, 2.0, enabled=True)
-        server.scene._websock_interface.queue_message = sent.append  # type: ignore[method-assign, assignment]
-        Surroundings(server)
-    finally:
-        server.stop()
+    server.scene.configure_fog(1.0, 2.0, enabled=True)
+    server.scene._websock_interface.queue_message = sent.append  # type: ignore[method-assign, assignment]
+    Surroundings(server)
     (fog,) = [message for message in sent if isinstance(message, vm.FogMessage)]
     assert fog.enabled is False

@@ -1,6 +1,5 @@
 """Arrays of a node, as they are sent."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,13 +9,6 @@ import viser
 from app.render.viser_inside import set_arrays
 
 TURNS = np.array([[1.0, 0.0, 0.0, 0.0]])
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
 
 
 @pytest.fixture

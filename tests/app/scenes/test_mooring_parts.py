@@ -1,13 +1,11 @@
 """Parts of the mooring scene by themselves: its lines, restoring curves, tables and meshes."""
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-import viser
 
 from app.render.injection import disable_shaders
 from app.scenes.mooring.arrangement import body_of, build, first_places, line_types, sections
@@ -32,13 +30,6 @@ SMALL: dict[str, Any] = {"segments": 12, "lines": 2, "steady_force": 10.0, "time
 @pytest.fixture(scope="module")
 def scene() -> MooringScene:
     return MooringScene(MooringParams(**SMALL))
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    server = viser.ViserServer("127.0.0.1", 0, verbose=False)
-    yield server
-    server.stop()
 
 
 def test_a_line_has_the_coefficients_of_its_controls():

@@ -1,7 +1,5 @@
 """The stain that oil leaves on the bodies of the radial sea: how high it reaches, and its mesh."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 import viser
@@ -14,13 +12,6 @@ from sim.parameters import check_record
 
 def scene_with(**changes) -> RadialSeaScene:
     return RadialSeaScene(check_record(RadialSeaParams, {"rig": False, "ripples": False, **changes}))
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
 
 
 def test_a_stain_reaches_to_the_deepest_that_a_body_has_been_in_oil_and_stays() -> None:

@@ -1,7 +1,6 @@
 """What the view of the radial sea makes of a frame."""
 
 import dataclasses
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -15,13 +14,6 @@ from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.materials import SPILL_RADIUS, material_of
 from app.scenes.radial_sea.moorings_view import LINE_SIDES, NEAR_END, DrawnMoorings
 from app.scenes.radial_sea.view import keel_of
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
 
 
 def frame_of(**values: object):

@@ -122,16 +122,12 @@ def test_beads_are_a_part_of_their_spacing_within_bounds_of_the_rope() -> None:
     assert bead_radius(np.zeros((1, 3)), 0.02) == pytest.approx(0.01)
 
 
-def test_of_a_second_net_that_is_hidden_the_labels_are_too() -> None:
-    server = viser.ViserServer("127.0.0.1", 0, verbose=False)
-    try:
-        net = SecondNet(server, "/second", "yours", color=(1, 2, 3))
-        vertices, faces = np.eye(3), np.array([[0, 1, 2]])
-        for _ in range(2):
-            net.show(vertices, faces, vertices[0], vertices[1])
-            assert [label.visible for label in net.labels] == [True, True]
-            assert [tuple(label.position) for label in net.labels] == [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
-            net.hide()
-            assert [label.visible for label in net.labels] == [False, False]
-    finally:
-        server.stop()
+def test_of_a_second_net_that_is_hidden_the_labels_are_too(server: viser.ViserServer) -> None:
+    net = SecondNet(server, "/second", "yours", color=(1, 2, 3))
+    vertices, faces = np.eye(3), np.array([[0, 1, 2]])
+    for _ in range(2):
+        net.show(vertices, faces, vertices[0], vertices[1])
+        assert [label.visible for label in net.labels] == [True, True]
+        assert [tuple(label.position) for label in net.labels] == [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+        net.hide()
+        assert [label.visible for label in net.labels] == [False, False]

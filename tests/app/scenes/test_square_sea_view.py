@@ -1,7 +1,6 @@
 """The view of the square sea on a viser server without a browser."""
 
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,13 +11,6 @@ from viser._messages import SetOrientationMessage, SetPositionMessage
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.view import MAX_RIPPLE_SLOPE, SquareSeaView
-
-
-@pytest.fixture
-def server() -> Iterator[viser.ViserServer]:
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-    yield server
-    server.stop()
 
 
 def test_a_closed_view_leaves_no_click_callback_behind(server: viser.ViserServer) -> None:

@@ -300,7 +300,7 @@ def test_a_damped_body_decays_as_a_damped_oscillator_does(integrator):
 
 
 def test_each_body_has_its_own_row_of_a_run():
-    """Two bodies on wires of their own, one of them turned and heaved at the start."""
+    """Two moored bodies, the second displaced, rotated and moving at the start."""
     kind = LineType("wire", 0.02, 0.5, 1e4, 0.0)
     bodies = tuple(floating_body(1e3)._replace(id=i, place=(20.0 * i, 0.0, 0.0)) for i in (1, 2))
     points = tuple(

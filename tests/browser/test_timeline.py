@@ -77,6 +77,9 @@ def test_under_a_bar_of_the_whole_width_the_picture_is_new_up_to_the_top(open_ta
         tab.wait(lambda: tab.page.locator("#springtide-cover.springtide-hidden").count(), 60)
         lab.loop.commands.put(Pause())
         tab.wait(lambda: not lab.loop.run.running, 20)
+        # A high panel ends the bar at its side.
+        tab.page.add_style_tag(content="[data-floating-window] { display: none; }")
+        tab.wait(lambda: tab.page.evaluate(BOXES)[0]["right"] == pytest.approx(900, abs=1), 10)
         bar, _, scene = tab.page.evaluate(BOXES)
         assert (bar["left"], bar["right"]) == pytest.approx((scene["left"], scene["right"]), abs=1)
 

@@ -76,9 +76,7 @@ class FolderResult:
         return sum(result.state == "right" for result in chosen), len(chosen)
 
 
-def check_folder(
-    folder: Path, tasks: Sequence[Task], *, curves: bool = False, runners: Runners | None = None
-) -> FolderResult:
+def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool, runners: Runners) -> FolderResult:
     """Check all tasks of a student's folder; with the report's curves, if `curves`. runners: those that may be aborted.
 
     Raises ValueError where it is no folder.
@@ -87,7 +85,7 @@ def check_folder(
     began = time.monotonic()
     answers = read_answers(folder)
     results = []
-    with (runners or Runners()).runner(folder) as runner:
+    with runners.runner(folder) as runner:
         for task in tasks:
             program = check_program(folder, runner, task) if task.check is not None else None
             judged = tuple(check_answer(question, answers.of(task, question)) for question in task.questions)

@@ -110,6 +110,19 @@ def test_no_digit_and_no_border_is_cut_at_any_width(
     assert heights[-1] == 5
 
 
+def test_a_table_that_just_fits_is_printed_as_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    row = {"first": 1.25, "second": "words"}
+    width = len("│  1.25 │  words │")  # with a place for the longest word of a heading
+    for columns, is_table in ((width, True), (width - 1, False)):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        text_tables.print_table("", [row])
+        lines = capsys.readouterr().out.splitlines()
+        assert lines[0].startswith("┏") is is_table
+        assert max(map(len, lines)) <= columns
+
+
 def test_a_line_is_folded_between_words_and_indented_further() -> None:
     lines = text_tables.fold("  " + "word " * 9, 20)
     assert lines == ["  word word word", *["    word word word"] * 2]

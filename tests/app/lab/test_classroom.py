@@ -147,7 +147,8 @@ def test_the_page_has_folders_with_the_names_typed_and_escapes_all(folders: list
     )
     text = page([state_of(folders[2])], 7, "word")
     assert html.escape(ODD) in text
-    assert "Ada &lt;i&gt;Lovelace" in text
+    name = f'<td class="name">{html.escape(ODD)}<br><span class="faint small">Ada &lt;i&gt;Lovelace</span>'
+    assert f'<tr data-student="{html.escape(ODD)}">{name}' in text
     assert standing(state_of(folders[2]).results) in text
     assert "<b><" not in text
     assert EVIL not in text
@@ -158,6 +159,7 @@ def test_the_page_has_folders_with_the_names_typed_and_escapes_all(folders: list
 def test_a_class_is_followed_and_nothing_is_written(folders: list[Path]) -> None:
     writes = 'open("left_behind", "w").write("x")\n'
     with Classroom(folders, TASKS) as classroom:
+        assert all(thread.daemon for thread in classroom.threads)  # none of them keeps a program that fails alive
         wait_for(lambda: all(student.results for student in classroom.students.values()))
         before = classroom.revision
         files = {path for folder in folders for path in folder.rglob("*")}
@@ -253,7 +255,7 @@ def test_the_end_does_not_wait_for_endless_functions(folders: list[Path], monkey
     assert not any(thread.is_alive() for thread in classroom.threads)
     runners = Runners()
     with ThreadPoolExecutor(1) as pool:
-        found = pool.submit(check_folder, folders[0], TASKS, runners=runners)
+        found = pool.submit(check_folder, folders[0], TASKS, curves=False, runners=runners)
         wait_for(lambda: [runner for runner in runners.running if runner.starts])
         runners.abort()
         assert {entry.program.mistake for entry in found.result(60.0).tasks if entry.program} == {"ended"}

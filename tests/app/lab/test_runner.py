@@ -193,6 +193,25 @@ def test_values_pass_unchanged(tmp_path: Path) -> None:
         assert runner.starts == 1
 
 
+def test_an_answer_that_is_no_march_of_these_points_is_told() -> None:
+    x, steps, seconds = np.zeros((4, 3)), 7, 0.5
+    good = (np.zeros((2, 4, 3)), x, steps, seconds, seconds, False)
+    assert runner.is_march(good, x.shape)
+    forged: dict[int, list[object]] = {
+        0: [x, np.zeros((2, 5, 3)), np.zeros((2, 4, 3), np.float32), None],
+        1: [np.zeros((5, 3)), np.zeros((4, 3), int), [0.0]],
+        2: [7.0, None],
+        3: [1, "0.5"],
+        4: [1, None],
+        5: [0, None],
+    }
+    for place, values in forged.items():
+        for value in values:
+            assert not runner.is_march((*good[:place], value, *good[place + 1 :]), x.shape), (place, value)
+    assert not runner.is_march(good[:5], x.shape)
+    assert not runner.is_march([*good], x.shape)
+
+
 def test_values_that_cannot_pass_are_named_by_their_type(tmp_path: Path) -> None:
     write(tmp_path, "return (i for i in range(3)) if x else {1: 2}")
     with Runner(tmp_path) as runner:

@@ -70,6 +70,18 @@ def test_every_callback_runs_on_the_one_event_loop(request: pytest.FixtureReques
     assert [callback for callback in found if not inspect.iscoroutinefunction(callback)] == []
 
 
+def test_the_panel_shows_at_once_that_the_scene_halts(lab: Viewer) -> None:
+    """Anything else it shows a few times a second."""
+    lab.served.stop_threads()
+    lab.panel.update(lab.loop.latest, [])
+    shown = lab.panel.head.status.content
+    status = lab.loop.latest.status
+    other = lab.loop.latest._replace(status=status._replace(running=not status.running))
+    lab.panel.status_at = time.monotonic() + 1.0
+    lab.panel.update(other, [])
+    assert lab.panel.head.status.content != shown
+
+
 def test_a_line_under_a_hidden_control_is_hidden_too(lab: Viewer) -> None:
     lab.served.stop_threads()
     control = lab.panel.controls["sphere_radius"]

@@ -50,6 +50,7 @@ PROTOCOL = websockets.Subprotocol(f"viser-v{viser.__version__}")
         ("http://evil.example:8080", "evil.example:8080", "127.0.0.1", False),
         ("http://192.0.2.7:8080", "192.0.2.7:8080", "0.0.0.0", True),
         ("http://192.0.2.7:8080", "192.0.2.7:8080", "127.0.0.1", False),
+        ("http://192.0.2.7:8080", "192.0.2.7:8080", "localhost", False),
     ],
 )
 def test_only_the_page_itself_is_its_own_origin(origin: str | None, host: str, bound: str, own: bool) -> None:

@@ -6,6 +6,7 @@ import math
 import pytest
 
 import app.scenes.rope.scene
+import app.sweep.case
 from app.scenes import NAMES, scene_named
 from app.scenes.quantities import Measure, measured
 from app.sweep.case import DIVERGED, FAILED, FINISHED, run_case
@@ -124,3 +125,16 @@ def test_an_integrator_that_would_be_replaced_is_a_failed_case(monkeypatch):
     monkeypatch.setattr(app.scenes.rope.scene, "SCENE", kind)
     outcome = run_case("rope", {}, (1.0,))
     assert (outcome.end, outcome.message) == (FAILED, Stub.note)
+
+
+def test_a_case_looks_for_divergence_thirty_times_a_second(monkeypatch):
+    counts = []
+
+    def noted(running, count):
+        counts.append(count)
+        advance(running, count)
+
+    advance = app.sweep.case.advance
+    monkeypatch.setattr(app.sweep.case, "advance", noted)
+    run_case("rope", {"time_step": 1e-3}, (0.5,))
+    assert counts == [33] * 15 + [5]

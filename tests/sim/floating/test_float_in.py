@@ -8,6 +8,7 @@ import pytest
 from sim.floating import Body, FloatState, Hull, MotionCoefficients, float_in, response_amplitude
 from sim.ocean import Sea
 from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.fluids import fluids
 from sim.ocean.radial import RadialSea
 from sim.waves import Waves
 from tests.refusals import assert_refused
@@ -110,6 +111,20 @@ def test_in_still_layers_a_body_at_rest_stays():
     run = float_in(sea, [body], 2.0, frames=5)
     assert run.x[-1, 0] == pytest.approx(body.position, abs=1e-9)
     assert float_in(sea, [], 1.0, frames=3).x.shape == (3, 0, 3)
+
+
+def test_a_body_between_the_fluids_follows_the_interface():
+    """In waves half as high there as at the surface."""
+    column = FluidColumn(oil=fluids()["diesel 2002"], thickness=20.0)
+    (oil, _), (water, _) = column.layers
+    sea = regular(2.0 * math.pi / 200.0, 1.0, column=column)
+    body = Body(Hull.box(0.5, 0.5, 0.3), density=0.5 * (oil + water), position=(0.0, 0.0, -20.0)).afloat(column.layers)
+    run = float_in(sea, [body], 40.0, frames=401)
+    rise = run.x[:, 0, 2] - body.position[2]
+    below = np.array([sea.at(x[None, :2], t).interface[0] for x, t in zip(run.x[:, 0], run.t, strict=True)])
+    late = slice(200, None)  # when the start, in still fluids, has faded
+    assert np.std(rise[late] - below[late]) < 0.1 * np.std(below[late])
+    assert np.std(below[late]) < 0.6 * np.std(run.surface[late, 0])
 
 
 @pytest.mark.parametrize("kind", ["square", "radial"])

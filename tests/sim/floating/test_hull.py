@@ -8,11 +8,15 @@ import pytest
 import trimesh
 
 from sim.floating import Hull, equilibrium_draft
+from sim.floating.shapes import SHAPES
 from sim.floating.shapes.box import box
 from sim.floating.shapes.record import Appearance, Shape
 from sim.floating.shapes.sphere import geodesic
 from tests.naive_floating import lumpy, quaternion
 from tests.refusals import assert_refused
+
+# Of the box with vertices in the order of `itertools.product`.
+SQUARES = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
 
 
 def test_box_has_its_closed_forms():
@@ -33,6 +37,16 @@ def test_round_primitives_have_the_true_volume_and_nearly_the_true_inertia():
     np.testing.assert_allclose(cylinder.extents, [[-0.5, 0.5], [-0.5, 0.5], [-1.0, 1.0]])
     across = cylinder.volume * (3 * 0.25 + 4) / 12
     assert np.diag(cylinder.inertia) == pytest.approx([across, across, cylinder.volume * 0.125], rel=1e-4)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_hull_of_a_shape_has_its_size(name):
+    """The first length of a round shape is its radius."""
+    whole, half = Hull.of_shape(SHAPES[name]), Hull.of_shape(SHAPES[name], 0.5)
+    assert half.size == pytest.approx(whole.size / 2)
+    assert half.volume == pytest.approx(whole.volume / 8)
+    length = SHAPES[name].lengths[0]
+    assert whole.size[0] == pytest.approx(2 * length if name in ("cylinder", "sphere") else length)
 
 
 def test_a_shape_without_appearances_looks_as_it_is_named():
@@ -124,6 +138,7 @@ def broken_meshes():
         "flat": (box.vertices * [1, 1, 0], box.faces, "extents"),
         "no such vertex": (box.vertices, box.faces + 1, "vertex 8"),
         "counted from the end": (box.vertices, box.faces - 1, "vertex -1"),
+        "of four corners each": (box.vertices, SQUARES, r"\(8, 3\) vertices, \(6, 4\) faces"),
         "empty": (np.zeros((0, 3)), np.zeros((0, 3), dtype=int), "m at least 4"),
         "huge": (box.vertices * 1e200, box.faces, "extents"),
     }

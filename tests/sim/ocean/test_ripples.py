@@ -75,6 +75,16 @@ def test_many_drops_are_the_sum_of_each():
     assert np.abs(together.surface(1.3).height - alone).max() < 1e-12 * np.abs(alone).max() + 1e-13
 
 
+def test_the_rings_of_a_moved_drop_are_moved():
+    """By whole cells, and over the edge of the tile."""
+    found = []
+    for cells in (0, 5):
+        sea = flat(16, 8.0)
+        sea.ripples.add(0.0, [[1.0 + 0.5 * cells, 2.0]], 0.7, volume=0.3, impulse=20.0)
+        found.append(sea.surface(1.3).height)
+    assert np.roll(found[0], 5, axis=0) == pytest.approx(found[1], abs=1e-12)
+
+
 def test_steps_do_not_matter():
     """Drops in between move the origin of time; the first drop's ring does not notice."""
     rng = np.random.default_rng(1)

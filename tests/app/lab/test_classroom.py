@@ -3,6 +3,7 @@
 import functools
 import html
 import http.client
+import itertools
 import os
 import re
 import shutil
@@ -20,8 +21,8 @@ import pytest
 from app.__main__ import main
 from app.commands.lab_class import make_server
 from app.lab.answers import change_answer, read_answers
-from app.lab.check import check_folder
-from app.lab.class_page import page, rows
+from app.lab.check import TaskResult, check_folder
+from app.lab.class_page import page, rows, strip
 from app.lab.classroom import Classroom, Desk, Student
 from app.lab.folder import folder_names, make_folder
 from app.lab.mistakes import mistakes, standing
@@ -154,6 +155,15 @@ def test_the_page_has_folders_with_the_names_typed_and_escapes_all(folders: list
     assert EVIL not in text
     assert "http" not in text.replace("http-equiv", "")
     assert 'data-revision="7"' in text
+
+
+def test_the_tasks_of_a_section_stand_together(tmp_path: Path) -> None:
+    tasks = load_tasks()
+    sections = [task.item.partition("-")[0] for task in tasks]
+    student = Student(tmp_path)._replace(results=tuple(TaskResult(task, None, ()) for task in tasks))
+    gaps = re.findall(r'class="cell [^"]*?( gap)?" title', strip(student))
+    assert [bool(gap) for gap in gaps] == [False, *(one != other for one, other in itertools.pairwise(sections))]
+    assert len(tasks) > len(set(sections)) > 1
 
 
 def test_a_class_is_followed_and_nothing_is_written(folders: list[Path]) -> None:

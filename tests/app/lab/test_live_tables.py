@@ -2,6 +2,7 @@
 
 import dataclasses
 import inspect
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -153,6 +154,17 @@ def test_a_change_of_the_wind_is_followed_and_another_spectrum_is_the_program_s(
     assert scene.marching is not None
     scene.handle(StudentAnswer())
     assert scene.student.taken == {}
+
+
+def test_the_scene_is_told_of_every_new_table(folder: Folder) -> None:
+    scene, told = SquareSeaScene(PHILLIPS, folder.live), threading.Event()
+    folder.tables.wake = told.set
+    for factor in (1, 4):
+        told.clear()
+        version = folder.save(source("spectrum").replace("return amplitude", f"return {factor} * amplitude"))
+        assert told.wait(60.0)
+        assert folder.tables.tables["spectrum"].version == version
+    assert scene.student is not None
 
 
 @pytest.mark.parametrize(

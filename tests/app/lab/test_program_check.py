@@ -414,3 +414,10 @@ def test_the_checks_do_not_change_the_arguments_of_each_other() -> None:
     kept = x.copy()
     call(lambda x, v, h, a: x.fill(0.0), (x, v, h, a))
     assert np.array_equal(x, kept)
+
+
+def test_links_of_another_form_stay_as_they_are() -> None:
+    (task,) = [task for task in load_tasks() if task.name == "cloth_links"]
+    assert task.check.normalise(np.array([[3, 1], [0, 1]])).tolist() == [[0, 1], [1, 3]]
+    for links in (np.arange(3), np.array([[3, 1, 0], [2, 0, 1]]), np.zeros((0, 2), int)):
+        assert np.array_equal(task.check.normalise(links), links)

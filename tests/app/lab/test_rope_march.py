@@ -2,7 +2,7 @@
 
 import queue
 import types
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from unittest.mock import Mock
 
@@ -36,6 +36,36 @@ def test_nan_is_said_of_the_force_of_a_sphere_that_has_come_near() -> None:
 
 
 X = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0]])
+X3 = np.array([[0.0, 0.0, 3.0], [-0.2, 0.0, 3.0], [-0.4, 0.0, 3.0]])
+
+
+@pytest.mark.parametrize("pair", [tuple, list, np.array])
+def test_a_step_returns_positions_and_velocities_as_a_pair_of_any_kind(pair: Callable[[object], object]) -> None:
+    step = types.SimpleNamespace(step_rk4=lambda x, v, h, acceleration: pair((x + h * v, v)))
+    functions = Functions(step, ["step_rk4"], "step_rk4", {})  # type: ignore[arg-type]
+    found = march(functions, X3, np.ones((3, 3)), [Segment(3, 0.01, FORCES, np.zeros((0, 4, 3)))])
+    assert found.steps == 3
+    assert found.v == pytest.approx(np.ones((3, 3)))
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "words"),
+    [
+        ((X3,), "wrong shape", "returns 1 entries"),
+        (X3, "wrong shape", "returns 3 entries"),
+        (1.5, "wrong type", "returns a value of type float"),
+        (np.array(1.5), "wrong type", "returns a value of type ndarray"),
+        ("xv", "wrong type", "returns a value of type str"),
+    ],
+)
+def test_a_step_that_returns_no_pair_is_told_of_what_it_returns(value: object, kind: str, words: str) -> None:
+    step = types.SimpleNamespace(step_rk4=lambda *_: value)
+    functions = Functions(step, ["step_rk4"], "step_rk4", {})  # type: ignore[arg-type]
+    with pytest.raises(Unfit, match=words) as said:
+        march(functions, X3, 0.0 * X3, [Segment(1, 0.01, FORCES, np.zeros((0, 4, 3)))])
+    assert said.value.kind == kind
+
+
 FORCE = "def spring_force(x1, x2, v1, v2, stiffness, damping, rest_length):\n    return x1\n"
 
 

@@ -20,6 +20,7 @@ from sim.floating import (
     step,
     still_water,
 )
+from sim.floating.body import lower_factor
 from sim.floating.excitation import WaveExcitation
 from sim.floating.hydrodynamics import DEEPEST, DIRECTIONS, LinearHull, afloat, lagrange, linear_hull, plane_force
 from sim.floating.linear_table import table_of
@@ -179,6 +180,20 @@ def test_the_hemisphere_has_the_added_mass_of_hulme() -> None:
         a, _ = linear.at(math.sqrt(kr))
         assert a[2, 2] / linear.volume == pytest.approx(known, rel=3e-3)
     assert linear.infinite[2, 2] / linear.volume == pytest.approx(0.5, rel=3e-3)
+
+
+def test_the_factor_of_an_added_mass_makes_it_again_without_motions_that_give_energy() -> None:
+    """Even where heave and pitch of the water are nearly one motion."""
+    coupled = np.diag([3.0, 2.0, 4.0, 1.0, 9.0, 5.0])
+    coupled[2, 4] = coupled[4, 2] = 0.99 * 6.0
+    for added in (coupled, afloat(*HULLS["barge"], WATER).linear.infinite):
+        factor = lower_factor(added)
+        assert factor @ factor.T == pytest.approx(added, abs=1e-9 * np.abs(added).max())
+        assert np.array_equal(factor, np.tril(factor))
+    coupled[2, 4] = coupled[4, 2] = 1.01 * 6.0
+    nearest = lower_factor(coupled) @ lower_factor(coupled).T
+    assert nearest == pytest.approx(coupled, abs=0.01 * 9.0)
+    assert np.linalg.eigvalsh(nearest).min() > -1e-9
 
 
 def test_forces_fade_over_the_hull_s_length_beyond_the_highest_frequency() -> None:

@@ -41,6 +41,16 @@ def test_the_roots_over_a_layer_are_those_of_both_viscosities():
         assert found == pytest.approx(root, rel=1e-12)
 
 
+@pytest.mark.parametrize("thickness", [0.01, 1.0])
+def test_the_roots_of_many_waves_are_those_of_each(thickness):
+    """Over a heavy oil, where the short ones creep."""
+    k, rest = np.geomspace(0.01, 1000.0, 6), (988.0, 6.8, thickness, 1025.0, 0.00122, 9.81, 0.03, 0.02)
+    together = np.array(viscous_two_layer(k, *rest))
+    alone = np.concatenate([np.array(viscous_two_layer(k[i : i + 1], *rest)) for i in range(len(k))], axis=1)
+    assert together == pytest.approx(alone, rel=1e-6, abs=1e-9)
+    assert alone[0, 0] > 0.0 == alone[0, -1]
+
+
 @pytest.mark.parametrize("column", [FluidColumn(), FluidColumn(oil=OIL, fraction=0.3)])
 def test_one_fluid_has_its_own_frequency_and_the_decay_of_its_viscosity(column):
     fluid = column.surface

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.lab.diagnosis.edits import edits_of
 from app.lab.diagnosis.equations import equations_of, written
 from app.lab.diagnosis.steps import explain_step
-from app.lab.diagnosis.tableau import NoTableau, merged, order_of, pruned, read_tableau
+from app.lab.diagnosis.tableau import STEPS, NoTableau, merged, order_of, pruned, read_tableau
 from app.lab.diagnosis.terms import Term, explain_terms
 from app.lab.task import load_tasks
 
@@ -284,6 +285,31 @@ def test_two_wrong_terms_are_both_named() -> None:
     assert found is not None
     assert found.mistake == "the spring has the wrong sign"
     assert "The damping is 0.333333 times what it must be" in found.text
+    assert [(line.name, [piece.wrong for piece in line.found], bool(line.right)) for line in found.equations] == [
+        ("spring", [True], True), ("damping", [True], True),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kicks", "weights"), [((0.5, 1 / 3), "0.8333"), ((1.0, 0.5), "1.5")])
+def test_weights_of_two_kicks_add_up_to_one(kicks: tuple[float, float], weights: str) -> None:
+    def leapfrog(x: Any, v: Any, h: float, acceleration: Any) -> tuple[Any, Any]:
+        first = acceleration(x, v)
+        new = x + h * v + h * h / 2 * first
+        return new, v + h * kicks[0] * first + h * kicks[1] * acceleration(new, v + h / 2 * first)
+
+    found = explain("step_leapfrog", leapfrog)
+    assert found.mistake == "weights do not add up to one"
+    assert f"The weights add up to {weights} instead of 1." in found.text
+
+
+def test_a_condition_may_hold_always_or_never() -> None:
+    found = {edit.function(3.0) for edit in edits_of(positive) if edit.right == "if x > 0.0"}
+    assert found == {3.0, -3.0}
+
+
+def positive(x: float) -> float:
+    """Its size."""
+    return x if x > 0.0 else -x
 
 
 def test_a_product_is_explained_by_its_arguments() -> None:
@@ -327,6 +353,7 @@ def test_calls_at_one_state_are_one_stage_and_unused_ones_none() -> None:
         lambda x, v, h, a: (x * np.nan, v),
         lambda x, v, h, a: (x + np.exp(h) * v, v + h * a(x, v)),
         lambda x, v, h, a: (np.maximum(x, 0.0), v),
+        lambda x, v, h, a: (x, v + h * (a(x, v) if h > STEPS[1] else a(x, v) + a(x + v, v))),  # fewer calls
     ],
 )
 def test_what_is_no_combination_has_no_tableau(step: Callable[..., Any]) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from app.lab.checking import Mistake
+from app.lab.checking import Mistake, number_text
 from app.lab.folder import stub
 from app.lab.program_check import (
     SAMPLES,
@@ -421,3 +421,15 @@ def test_links_of_another_form_stay_as_they_are() -> None:
     assert task.check.normalise(np.array([[3, 1], [0, 1]])).tolist() == [[0, 1], [1, 3]]
     for links in (np.arange(3), np.array([[3, 1, 0], [2, 0, 1]]), np.zeros((0, 2), int)):
         assert np.array_equal(task.check.normalise(links), links)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (1 / 3, "0.3333"),
+        ((2.0, np.array([1e-9, 20.0])), "(2., [ 0., 20.])"),
+        (np.zeros((4, 4)), "an array of shape (4, 4)"),
+    ],
+)
+def test_a_result_is_told_in_four_decimals(value: object, text: str) -> None:
+    assert number_text(value) == text

@@ -48,6 +48,12 @@ def test_a_step_returns_positions_and_velocities_as_a_pair_of_any_kind(pair: Cal
     assert found.v == pytest.approx(np.ones((3, 3)))
 
 
+def test_a_march_without_a_step_ends_where_it_began() -> None:
+    functions = Functions(types.SimpleNamespace(), [], "step_rk4", {})  # type: ignore[arg-type]
+    found = march(functions, X3, 0.0 * X3, [])
+    assert (found.steps, found.left, found.x.shape) == (0, False, (0, 3, 3))
+
+
 @pytest.mark.parametrize(
     ("value", "kind", "words"),
     [

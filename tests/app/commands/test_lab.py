@@ -123,6 +123,9 @@ def test_a_class_makes_one_table_and_one_page(empty: Path, finished: Path, tmp_p
     assert rows[0]["name"] == "'=HYPERLINK(1)"
     assert (rows[0]["complete"], rows[1]["complete"]) == ("no", "yes")
     assert {rows[1][task.name] for task in TASKS} == {"right"}
+    optional = sum(task.optional for task in TASKS)
+    assert (rows[0]["right"], rows[0]["optional_right"]) == ("0", "0")
+    assert (rows[1]["right"], rows[1]["optional_right"]) == (str(len(TASKS) - optional), str(optional))
     text = page.read_text("utf-8")
     assert text.count("<!doctype html>") == 1
     assert 'href="#student-1"' in text

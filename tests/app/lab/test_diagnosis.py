@@ -312,13 +312,27 @@ def positive(x: float) -> float:
     return x if x > 0.0 else -x
 
 
-def test_a_product_is_explained_by_its_arguments() -> None:
-    terms = (Term("the result", "", lambda mass, speed: mass * speed**2 / 2.0),)
+@pytest.mark.parametrize(
+    ("power", "more", "words"),
+    [
+        (1, 1, "the result is multiplied by speed twice instead of once"),
+        (1, -1, "speed not used"),
+        (1, 2, "the result is multiplied by speed 3 times instead of once"),
+        (1, -2, "the result is divided by speed instead of multiplied"),
+        (1, 0.5, "the result is multiplied by the root of speed"),
+        (1, -0.5, "the result is divided by the root of speed"),
+        (2, -1, "the result is multiplied by speed once instead of twice"),
+        (2, -2, "speed not used"),
+    ],
+)
+def test_a_product_is_explained_by_its_arguments(power: int, more: float, words: str) -> None:
+    terms = (Term("the result", "", lambda mass, speed: mass * speed**power / 2.0),)
     rng = np.random.default_rng(SEED)
     samples = [tuple(map(float, rng.uniform(1.0, 3.0, 2))) for _ in range(SAMPLES)]
-    found = explain_terms(lambda mass, speed: mass * speed / 2.0, terms, (), ("mass", "speed"), samples)
+    wrong = lambda mass, speed: mass * speed ** (power + more) / 2.0  # noqa: E731
+    found = explain_terms(wrong, terms, (), ("mass", "speed"), samples)
     assert found is not None
-    assert found.mistake == "the result is multiplied by speed once instead of twice"
+    assert found.mistake == words
 
 
 def test_a_tableau_has_the_order_of_its_method() -> None:

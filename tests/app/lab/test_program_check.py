@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from app.lab.checking import Mistake, number_text
+from app.lab.checking import Mistake, Wrong, number_text
 from app.lab.folder import stub
 from app.lab.program_check import (
     SAMPLES,
@@ -433,3 +433,17 @@ def test_links_of_another_form_stay_as_they_are() -> None:
 )
 def test_a_result_is_told_in_four_decimals(value: object, text: str) -> None:
     assert number_text(value) == text
+
+
+def test_a_step_of_third_order_with_four_evaluations_is_not_the_fourth() -> None:
+    def kutta(x: Any, v: Any, h: float, acceleration: Callable[..., Any]) -> tuple[Any, Any]:
+        a1 = acceleration(x, v)
+        a2, v2 = acceleration(x + h / 2 * v, v + h / 2 * a1), v + h / 2 * a1
+        a3, v3 = acceleration(x - h * v + 2 * h * v2, v - h * a1 + 2 * h * a2), v - h * a1 + 2 * h * a2
+        acceleration(x, v)
+        return x + h / 6 * (v + 4 * v2 + v3), v + h / 6 * (a1 + 4 * a2 + a3)
+
+    (task,) = [task for task in load_tasks() if task.name == "step_rk4"]
+    task.check.behaviour(task.function)
+    with pytest.raises(Wrong, match=r"made the error only [78]\.\d times smaller: that is not the fourth order"):
+        task.check.behaviour(kutta)

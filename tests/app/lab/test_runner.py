@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import queue
 import signal
 import socket
 import subprocess
@@ -10,6 +11,7 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -111,6 +113,24 @@ def test_a_call_that_waits_for_the_processor_is_no_endless_loop(
         for loop in loops:
             loop.kill()
             loop.wait()
+
+
+def test_a_call_on_a_busy_machine_waits_ten_times_its_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [100.0]
+
+    class Silent:
+        def get(self, timeout: float) -> None:
+            clock[0] += timeout + 1e-3
+            raise queue.Empty
+
+    monkeypatch.setattr(runner, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr(runner, "processor_time", lambda _: (True, 0.0))  # it waits, and has not run
+    one = Runner(tmp_path)
+    monkeypatch.setattr(one, "_answers", Silent())
+    monkeypatch.setattr(one, "_process", SimpleNamespace(pid=0))
+    with pytest.raises(queue.Empty):
+        one._wait(clock[0] + 0.5, 0.5)
+    assert clock[0] - 100.0 == pytest.approx(5.0, abs=0.1)
 
 
 PRIORITIES = """import os

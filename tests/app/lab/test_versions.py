@@ -10,6 +10,7 @@ import pytest
 from app.lab.live_net import ROPE
 from app.lab.program_check import Verdict
 from app.lab.runner import BUSY, RunError
+from app.lab.saved import read_files
 from app.lab.task import load_tasks
 from app.lab.versions import Look, Use, Versions, stamps
 
@@ -70,6 +71,12 @@ def test_a_second_save_that_changes_no_stamp_is_found(tmp_path: Path, monkeypatc
     assert (second.number, second.texts["rope.py"]) == (2, b"x = 2")
     clock[0] += 1000.0
     assert look.look() is None
+
+
+def test_programs_of_up_to_a_mebibyte_are_copied(tmp_path: Path) -> None:
+    for name, size in (("small.py", 10), ("full.py", 1024 * 1024), ("large.py", 1024 * 1024 + 1), ("notes.txt", 10)):
+        (tmp_path / name).write_bytes(b"#" * size)
+    assert {name: len(text) for name, text in read_files(tmp_path).items()} == {"full.py": 1024 * 1024, "small.py": 10}
 
 
 def test_a_version_that_could_not_be_copied_is_found_again(tmp_path: Path) -> None:

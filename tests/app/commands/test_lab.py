@@ -127,6 +127,9 @@ def test_a_class_makes_one_table_and_one_page(empty: Path, finished: Path, tmp_p
     assert (rows[0]["right"], rows[0]["optional_right"]) == ("0", "0")
     assert (rows[1]["right"], rows[1]["optional_right"]) == (str(len(TASKS) - optional), str(optional))
     text = page.read_text("utf-8")
+    rows_of_answers = re.findall(r"<tr>(.*?)</tr>", "".join(re.findall(r'<table class="answers">.*?</table>', text)))
+    widths = {sum(map(int, re.findall(r'<t[hd] colspan="(\d)"', row))) for row in rows_of_answers}
+    assert widths == {2} | ({0} if "" in rows_of_answers else set())
     assert text.count("<!doctype html>") == 1
     assert 'href="#student-1"' in text
     assert 'id="student-1"' in text

@@ -48,6 +48,17 @@ def test_a_link_to_nothing_is_no_file_and_a_reason_to_look(tmp_path: Path) -> No
     assert look.has_changed()
 
 
+def test_a_save_of_several_writes_is_one_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    look = Look(tmp_path, ".py")
+    assert look.has_changed()
+    found = [frozenset({("a.py", 1, size, size)}) for size in (10, 20, 30, 30, 40)]
+    seen = iter(found)
+    monkeypatch.setattr("app.lab.versions.stamps", lambda *_: next(seen))
+    assert look.has_changed()
+    assert look.seen == found[3]
+    assert next(seen) == found[4]
+
+
 def test_a_second_save_that_changes_no_stamp_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
     monkeypatch.setattr("app.lab.versions.time.monotonic", lambda: clock[0])

@@ -67,6 +67,13 @@ def overwritten(x, v, links, d, k, b):
     return force
 
 
+def damped_at_each_end(x, v, links, d, k, b):
+    force, pull = np.zeros(x.shape), pulls(x, v, links, d, k, 0.0)
+    np.add.at(force, links[:, 0], pull - b * v[links[:, 0]])
+    np.add.at(force, links[:, 1], -pull - b * v[links[:, 1]])
+    return force
+
+
 MISTAKES = (
     Mistake("force on one end only", "Only the first point of each link gets a force.", summed(1.0, 0.0)),
     Mistake("force on one end only", "Only the second point of each link gets a force.", summed(0.0, -1.0)),
@@ -83,6 +90,11 @@ MISTAKES = (
         "damping on absolute velocity",
         "The damping uses the velocity of one end. It damps v1 - v2.",
         summed(1.0, -1.0, other_end=0.0),
+    ),
+    Mistake(
+        "damping on absolute velocity",
+        "Each end is damped by its own velocity, as by air. A link damps v1 - v2.",
+        damped_at_each_end,
     ),
 )
 

@@ -36,15 +36,15 @@ def normalise(links):
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 
-def variant(offsets, wraps=False, swapped=False, twice=False):
-    """A function that makes a mistake: other neighbours, or another numbering."""
+def variant(offsets, wraps=False, swapped=False, twice=False, first=0):
+    """A function that makes a mistake: other neighbours, or another numbering. first: column that neighbours may have."""
 
     def function(rows, cols):
         links = []
         for i in range(rows):
             for j in range(cols):
                 for di, dj in offsets:
-                    if i + di < rows and (wraps or 0 <= j + dj < cols):
+                    if i + di < rows and (wraps or first <= j + dj < cols):
                         a, b = i * cols + j, (i + di) * cols + j + dj
                         if swapped:
                             a, b = i + j * rows, i + di + (j + dj) * rows
@@ -74,6 +74,11 @@ MISTAKES = (
         "end of a row joined to the next row",
         "The last point of a row is joined to the first of the next. Check that the column stays below cols.",
         variant(ALL, wraps=True),
+    ),
+    Mistake(
+        "start of a row joined to its end",
+        "The first point of a row is joined to the last of the same row. Check that the column is not below 0.",
+        variant(ALL, first=-1),
     ),
     Mistake(
         "rows and columns swapped",

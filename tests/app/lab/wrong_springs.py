@@ -277,6 +277,14 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
                         if i + di < rows and other < rows * cols:
                             links.append((i * cols + j, other))
             return links"""),
+        ("start of a row joined to its end", """
+            links = []
+            for i in range(rows):
+                for j in range(cols):
+                    for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)):
+                        if i + di < rows and j + dj < cols:
+                            links.append((i * cols + j, (i + di) * cols + j + dj))
+            return links"""),
         ("rows and columns swapped", changed(CLOTH_LINKS, ".reshape(rows, cols)", ".reshape(cols, rows).T")),
     ),
     "cloth_forces": (
@@ -336,6 +344,15 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
                 f = stiffness * (l - d) * r / l - damping * v[i]
                 F[i] += f
                 F[j] -= f
+            return F"""),
+        ("damping on absolute velocity", """
+            F = np.zeros_like(x)
+            for (i, j), d in zip(links, rest_lengths):
+                r = x[j] - x[i]
+                l = np.linalg.norm(r)
+                f = stiffness * (l - d) * r / l
+                F[i] += f - damping * v[i]
+                F[j] -= f + damping * v[j]
             return F"""),
     ),
 }  # fmt: skip

@@ -37,7 +37,7 @@ def normalise(links):
 
 
 def variant(offsets, wraps=False, swapped=False, twice=False, first=0):
-    """A function that makes a mistake: other neighbours, or another numbering. first: column that neighbours may have."""
+    """A function that makes a mistake: other neighbours, or another numbering. first: column of neighbours."""
 
     def function(rows, cols):
         links = []

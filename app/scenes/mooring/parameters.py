@@ -153,9 +153,7 @@ def hidden(params: MooringParams) -> set[str]:
     names = set() if params.floats else {"lift"}
     names |= OF_NO_FILE if params.moordyn_file else {"follow"}
     if params.wave_height == 0.0:
-        names |= {"wave_period", "regular"}
+        names.add("regular")  # the period is that of the body's added mass and damping
         if params.moordyn_file:
-            names.add("follow")
-        if params.current == 0.0 and (params.moordyn_file or params.steady_force == 0.0):
-            names.add("direction")
+            names |= {"follow"} | ({"direction"} if params.current == 0.0 else set())
     return names

@@ -65,8 +65,9 @@ class RadialSeaParams:
     wind_direction: float = in_main(25.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y")
     spectrum: str = in_waves("jonswap", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
     wave_count: int = in_waves(
-        96, 8, 512, "", "Number of waves in the sum; each has the same energy", log_from=8, title="Number of waves"
-    )
+        96, 8, 512, "", "Number of waves in the sum, whose height and slope the panel tells; each has the same energy",
+        log_from=8, title="Number of waves",
+    )  # fmt: skip
     choppiness: float = in_waves(
         1.0, 0.0, 1.5, "", "Factor on the horizontal motion, which sharpens the crests; 1 is physics"
     )
@@ -250,7 +251,7 @@ def hidden(params: RadialSeaParams) -> set[str]:
     if not (params.rig and (params.fire or params.jet)):
         names.add("particles")
     is_regular = params.spectrum == "regular" and not params.spectrum_file
-    if params.surface == "fft" or (is_regular and spectrum_values(params)["second_height"] == 0.0):
+    if is_regular and spectrum_values(params)["second_height"] == 0.0:
         names.add("wave_count")
     return names
 

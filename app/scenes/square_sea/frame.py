@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
-from app.scenes.square_sea.parameters import SquareSeaParams
+from app.scenes.square_sea.parameters import SquareSeaParams, acting
 from app.scenes.square_sea.rainfall import RainFrame, RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
@@ -86,7 +86,7 @@ def readings_of(scene: "SquareSeaScene") -> SeaReadings:
         slope_left=scene.waves.slope_left,
         foam_limit=scene.foam.limit.value,
         is_choppy=scene.marching is not None or scene.sea.choppiness > 0.0,
-        viscous_area=scene.change.viscous_area_at(scene.time, p.viscosity),
+        viscous_area=scene.change.viscous_area_at(scene.time, acting(p).viscosity),
         rain=None if scene.rainfall is None else scene.rainfall.readings(),
         report=scene.statistics.report if p.statistics else None,
     )

@@ -40,7 +40,9 @@ SURFACE_TENSION = 0.0728  # [N/m] of water against air
 MAX_POINTS, MAX_POINTS_OF_HIGH_ORDER = 256, 128  # of a nonlinear sea, up to order 3 and above
 LONG_CRESTED_STARTS = ("breather", "groups")
 MARCHING_STARTS = (*LONG_CRESTED_STARTS, "rogue")  # solved step by step, at order 1 too
-LINEAR_ONLY = {"choppiness", "transition", "viscosity", "dispersion_scale", "loop_period", "rings"}
+# What only a linear sea has, and the values of a sea that is solved step by step.
+LINEAR_ONLY = {"choppiness": 1.0, "transition": 0.0, "viscosity": 0.0, "dispersion_scale": 1.0, "loop_period": 0.0,
+               "rings": 0.0}  # fmt: skip
 in_foam = functools.partial(parameter, group="Foam and rain")
 in_water = functools.partial(parameter, group="Water and planet")
 
@@ -224,6 +226,11 @@ def marches(params: SquareSeaParams) -> bool:
     return params.order > 1 or params.start in MARCHING_STARTS
 
 
+def acting(params: SquareSeaParams) -> SquareSeaParams:
+    """The parameters with those replaced that have no effect where the sea is solved."""
+    return dataclasses.replace(params, **LINEAR_ONLY) if marches(params) else params
+
+
 def solved_points(p: SquareSeaParams) -> int:
     """Points a side of the grid that is solved; of long-crested waves, along x alone."""
     size = int(p.size)
@@ -243,32 +250,29 @@ def gravity(params: SquareSeaParams) -> float:
 
 def conditions(params: SquareSeaParams, wind_speed: float | None = None) -> dict[str, Any]:
     """The arguments of `Sea` and `Sea.change`. wind_speed: U10 [m/s] in place of the one in `params`."""
+    params = acting(params)
     wind, spectrum = params.wind_speed if wind_speed is None else wind_speed, chosen_spectrum(params)
-    found = {
+    return {
         "spectrum": spectrum,
         "wind_speed": spectrum.wind_speed(wind),
         "wind_direction": math.radians(params.wind_direction),
         "gravity": gravity(params),
         "depth": math.inf if params.deep else params.depth,
-        "tension": SURFACE_TENSION,
+        "tension": 0.0 if marches(params) else SURFACE_TENSION,
         "low_pass": params.low_pass,
         "viscosity": params.viscosity,
         "dispersion_scale": params.dispersion_scale,
         "loop_period": params.loop_period or None,
         **{name: value for name, value in spectrum_values(params).items() if spectrum.uses(name)},
     }
-    if marches(params):
-        found |= {"tension": 0.0, "viscosity": 0.0, "dispersion_scale": 1.0, "loop_period": None}
-    return found
 
 
 def rain_settings(params: SquareSeaParams) -> RainSettings:
     """Parameters of the rainfall."""
-    p = params
+    p = acting(params)
     bearing = math.radians(p.wind_direction)
     wind = p.wind_speed * math.cos(bearing), p.wind_speed * math.sin(bearing)
-    rings = 0.0 if marches(p) else p.rings
-    return RainSettings(p.rain, p.drops, rings, wind, gravity(p), int(p.size), p.amplitude)
+    return RainSettings(p.rain, p.drops, p.rings, wind, gravity(p), int(p.size), p.amplitude)
 
 
 def hidden(params: SquareSeaParams) -> set[str]:
@@ -286,4 +290,4 @@ def hidden(params: SquareSeaParams) -> set[str]:
         names.add("foam_threshold")
     if params.rain == 0.0:
         names |= {"drops", "rings"} | (set() if follows_wind(params) else {"wind_direction"})
-    return names | (LINEAR_ONLY if marches(params) else set())
+    return names | (set(LINEAR_ONLY) if marches(params) else set())

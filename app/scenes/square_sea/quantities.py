@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from app.scenes.quantities import Quantities, Quantity, SceneInstant, for_sweeps, for_tasks
 from app.scenes.sea_parameters import chosen_spectrum
-from app.scenes.square_sea.parameters import SquareSeaParams, conditions, gravity
+from app.scenes.square_sea.parameters import SquareSeaParams, acting, conditions, gravity
 from app.scenes.square_sea.statistics import Report, measure, theory
 from sim.ocean.gerstner import peak_wavenumber
 from sim.ocean.high_crests import moments_of
@@ -203,7 +203,7 @@ QUANTITIES: Quantities = {
     "minute_length": for_tasks(
         "m",
         "Length l of a minute of this viscosity",
-        lambda now: 2.0 * math.sqrt(60.0 * now.frame.params.viscosity),
+        lambda now: 2.0 * math.sqrt(60.0 * acting(now.frame.params).viscosity),
     ),
     "square_grid_points": for_tasks("1", "Points of the square grid", lambda now: int(now.frame.params.size) ** 2),
     "square_spacing": for_tasks(

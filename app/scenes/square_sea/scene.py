@@ -22,6 +22,7 @@ from app.scenes.square_sea.parameters import (
     GAUGE_OFFSET_SHARE,
     PRESETS,
     SquareSeaParams,
+    acting,
     conditions,
     hidden,
     marches,
@@ -175,7 +176,7 @@ class SquareSeaScene:
         p = self.params
         start_wind = None if marches(p) else START_WIND_SPEEDS.get(p.start)
         self.sea = Sea(int(p.size), p.length, seed=p.seed, **conditions(p, start_wind))
-        self.sea.choppiness = p.choppiness * p.amplitude
+        self.sea.choppiness = acting(p).choppiness * p.amplitude
         if self.student is not None:
             self.student.want(p)
         transition = 0.0 if start_wind is None else p.transition
@@ -231,10 +232,10 @@ class SquareSeaScene:
         if conditions(params) != conditions(old):
             if self.student is not None:
                 self.student.want(params)
-            self.change_sea(params.transition, foam_cover, old.viscosity)
+            self.change_sea(acting(params).transition, foam_cover, acting(old).viscosity)
         elif self.student is not None and params.size != old.size:
             self.student.want(params)
-        self.sea.choppiness = params.choppiness * params.amplitude
+        self.sea.choppiness = acting(params).choppiness * params.amplitude
         if rain_settings(params) != rain_settings(old):
             self.make_rainfall()
 
@@ -243,7 +244,6 @@ class SquareSeaScene:
 
         foam_cover: fraction of the sea that is foam now, if no wave is damped. viscosity: [m2/s] until now.
         """
-        transition = 0.0 if marches(self.params) else transition
         self.sea.change(self.time, transition, **self.conditions())
         self.begin_marching()
         viscous_area = self.change.viscous_area_at(self.time, viscosity)
@@ -260,7 +260,7 @@ class SquareSeaScene:
         if transition is None:
             return
         before = self.sea.conditions.gravity
-        self.change_sea(transition, self.change.foam_cover, self.params.viscosity)
+        self.change_sea(transition, self.change.foam_cover, acting(self.params).viscosity)
         self.statistics.theory = self.drawn = None
         if self.sea.conditions.gravity != before:
             self.make_rainfall()
@@ -330,7 +330,7 @@ class SquareSeaScene:
         if self.gauge_shown or self.plot_rows.is_due(t):
             self.read_gauge()
         gauge = (*self.gauge.at, self.gauge.height) if self.gauge_shown else None
-        changing = p.viscosity > 0.0 or self.change.is_under_way(t)
+        changing = acting(p).viscosity > 0.0 or self.change.is_under_way(t)
         new = self.statistics.update(self.sea, p, t, fields.height, dt, changing=changing, marching=self.marching)
         self.counts["statistics"] += new
         self.update_spectrum()
@@ -349,7 +349,7 @@ class SquareSeaScene:
         """The mesh of these fields with the foam of the last one faded over dt [s]."""
         p = self.params
         self.counts["paces"] += self.waves.update(self.sea, self.time, p.amplitude)
-        vertices, slopes = self.foam.make_mesh(fields, p, dt, self.waves, self.expected_foam_cover(self.time))
+        vertices, slopes = self.foam.make_mesh(fields, acting(p), dt, self.waves, self.expected_foam_cover(self.time))
         return SeaFrame(p, self.time, vertices, slopes, self.foam.values, self.waves.slope, None, None, SentSurface())
 
     def update_spectrum(self) -> None:

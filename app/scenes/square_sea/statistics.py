@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from app.scenes.square_sea.parameters import SquareSeaParams
+from app.scenes.square_sea.parameters import SquareSeaParams, acting
 from sim.ocean import Sea
 from sim.ocean.statistics import Statistics, expected, height_scatter, measured, open_sea_height
 
@@ -53,9 +53,10 @@ def measure(
     sea: Sea, height: np.ndarray, earlier: np.ndarray | None, params: SquareSeaParams, interval: float = 0.0
 ) -> Statistics:
     """Statistics of heights (n, n) [m]; earlier: those of the frame before, `interval` [s] ago."""
-    found = measured(height, sea.length, sea.conditions, earlier, interval * params.dispersion_scale)
+    scale = acting(params).dispersion_scale
+    found = measured(height, sea.length, sea.conditions, earlier, interval * scale)
     # A scale on the dispersion makes every period shorter by as much.
-    period = found.peak_period / params.dispersion_scale if params.dispersion_scale > 0.0 else math.nan
+    period = found.peak_period / scale if scale > 0.0 else math.nan
     return scaled(found, params.amplitude)._replace(peak_period=period)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
 from app.lab.tabulate import Interval
 from app.scenes.sea_parameters import spectrum_values
-from app.scenes.square_sea.parameters import SquareSeaParams, conditions, gravity, marches
+from app.scenes.square_sea.parameters import SquareSeaParams, acting, conditions, gravity, marches
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA, Spectrum
 from sim.ocean.spectra.record import MIN_WIND_SPEED
@@ -64,7 +64,7 @@ class StudentSea(TableUser):
         same_code = all(old and new and old.version == new.version for old, new in changed.values())
         if SPECTRUM in changed:
             self.spectrum = spectrum_by(self.taken[SPECTRUM]) if SPECTRUM in self.taken else None
-        return p.transition if same_code else 0.0
+        return acting(p).transition if same_code else 0.0
 
     def conditions(self, p: SquareSeaParams) -> dict[str, Any]:
         """The arguments of `Sea.change`, with the student's in place of the program's."""

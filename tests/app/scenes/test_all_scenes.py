@@ -1,6 +1,7 @@
 """Claims that every scene has to keep, and those of every scene of springs."""
 
 import dataclasses
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from app.messages import GrabTo, Release, Reset
 from app.scenes import NAMES, scene_named
 from app.scenes.charts import Chart
 from app.server.loop import SimLoop
-from sim.parameters import check_record, parameters_of
+from sim.parameters import Parameter, check_record, parameters_of
 
 PRESETS = [(name, preset) for name in NAMES for preset in scene_named(name).presets]
 
@@ -25,6 +26,82 @@ def test_the_first_preset_is_the_defaults(name: str) -> None:
 def test_hidden_parameters_are_parameters(name: str, preset: str) -> None:
     kind = scene_named(name)
     assert kind.hidden(check_record(kind.params, kind.presets[preset])) < set(parameters_of(kind.params))
+
+
+def another(parameter: Parameter, value: Any) -> Any:
+    """Another value of a parameter; the same of a text."""
+    if parameter.choices:
+        return next(choice for choice in parameter.choices if choice != value)
+    if parameter.kind is bool:
+        return not value
+    if parameter.kind is str:
+        return value
+    found = 1.3 * value if value and 1.3 * value <= parameter.high else 0.63 * parameter.low + 0.37 * parameter.high
+    return parameter.kind(found)
+
+
+def leaves(value: Any, params: type, at: str = "") -> Iterator[tuple[str, Any]]:
+    """Arrays, numbers and texts of a record, with where they are; without the parameters."""
+    if isinstance(value, params):
+        return
+    if isinstance(value, Mapping):
+        entries = [(f"{at}[{key}]", one) for key, one in value.items()]
+    elif hasattr(value, "_fields"):
+        entries = [(f"{at}.{name}", getattr(value, name)) for name in value._fields]
+    elif dataclasses.is_dataclass(value):
+        entries = [(f"{at}.{field.name}", getattr(value, field.name)) for field in dataclasses.fields(value)]
+    elif isinstance(value, list | tuple):
+        entries = [(f"{at}[{number}]", one) for number, one in enumerate(value)]
+    else:
+        if isinstance(value, np.ndarray | int | float | str | bool | None):
+            yield at, value
+        return
+    for name, one in entries:
+        yield from leaves(one, params, name)
+
+
+def same(one: Any, other: Any) -> bool:
+    """True if two arrays, numbers or texts are one, to rounding and NaN included."""
+    if isinstance(one, np.ndarray | float) and np.asarray(one).dtype.kind == "f":
+        return np.shape(one) == np.shape(other) and np.allclose(one, other, rtol=1e-6, atol=1e-12, equal_nan=True)
+    return np.array_equal(one, other)
+
+
+# What is not there, as oil, hulls or the ball, has numbers in the records too; and how long something took.
+UNSEEN = ("time", "cost", ".column", ".past", ".hulls", "sphere_home")
+# One change from the defaults each, of those that decide what is hidden.
+CHANGES: dict[str, tuple[dict[str, Any], ...]] = {
+    "cloth": ({"sphere": True}, {"thickness": 0.0, "air": 0.0}, {"wind": 5.0}),
+    "mooring": ({"wave_height": 0.0}, {"regular": False}, {"watch": False}),
+    "race": ({"ropes": 1}, {"ropes": 5}, {"race_steps": "own steps"}),
+    "radial_sea": (
+        {"surface": "fft"}, {"waves": False}, {"spectrum": "regular"}, {"bodies": 0}, {"spill": "mixed"},
+        {"rig": True, "jet": True}, {"own_densities": True, "bodies": 2},
+    ),
+    "rope": ({"floor": False}, {"sphere": True}, {"integrator": "auto"}),
+    "square_sea": (
+        {"planet": "by gravity"}, {"planet": "Mars"}, {"foam": False}, {"foam_by_wind": False}, {"deep": False},
+        {"start": "breather", "dispersion_scale": 0.7}, {"order": 3}, {"spectrum": "regular"}, {"rain": 10.0},
+    ),
+}  # fmt: skip
+SETUPS = [*PRESETS, *((name, number) for name, changes in CHANGES.items() for number in range(len(changes)))]
+
+
+@pytest.mark.parametrize(("name", "setup"), SETUPS)
+def test_hidden_parameters_change_nothing(name: str, setup: str | int) -> None:
+    """All of them at once: what a scene shows and tells after a few steps is the same."""
+    kind = scene_named(name)
+    params = check_record(kind.params, kind.presets[setup] if isinstance(setup, str) else CHANGES[name][setup])
+    declared = parameters_of(kind.params)
+    changes = {one: another(declared[one], getattr(params, one)) for one in kind.hidden(params)}
+    found = []
+    for one in (params, dataclasses.replace(params, **changes)):
+        scene: Any = kind.make(one)
+        scene.advance(6)
+        told = {"frame": scene.frame(), "rows": scene.take_plot_rows(), "readings": scene.readings()}
+        found.append({at: value for at, value in leaves(told, kind.params) if not any(part in at for part in UNSEEN)})
+    assert found[0].keys() == found[1].keys()
+    assert [at for at, value in found[0].items() if not same(value, found[1][at])] == []
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -546,7 +546,7 @@ def run_stability(arguments: argparse.Namespace) -> int:
     """`springtide stability`."""
     from app.stability.command import run
 
-    return run(arguments.quick, arguments.out)
+    return run(quick=arguments.quick, out=arguments.out)
 
 
 def run_sweep(arguments: argparse.Namespace) -> int:

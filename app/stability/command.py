@@ -18,7 +18,7 @@ PARTS: tuple[tuple[str, str, Any, Callable[[Any], Any], Callable[[Any], Any]], .
 )
 
 
-def run(quick: bool = False, out: Path | None = None, workers: int = 0) -> int:
+def run(*, quick: bool, out: Path | None, workers: int = 0) -> int:
     """Measure all maps and print their tables; with `out`, write tables and figures there.
 
     workers: processes, 0 for one on each core.

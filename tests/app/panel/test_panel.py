@@ -82,6 +82,15 @@ def test_the_panel_shows_at_once_that_the_scene_halts(lab: Viewer) -> None:
     assert lab.panel.head.status.content != shown
 
 
+def test_the_head_tells_how_long_a_step_takes_and_who_looks(lab: Viewer) -> None:
+    lab.served.stop_threads()
+    for busy, visitors in ((0.0, 1), (3.5, 1), (0.0, 4)):
+        lab.panel.head.show(lab.loop.latest, busy, visitors)
+        words = lab.panel.head.status.content
+        assert ("This step has taken 3.5 s so far." in words) is (busy > 0.0)
+        assert ("4 browsers share this lab." in words) is (visitors > 1)
+
+
 def test_a_line_under_a_hidden_control_is_hidden_too(lab: Viewer) -> None:
     lab.served.stop_threads()
     control = lab.panel.controls["sphere_radius"]

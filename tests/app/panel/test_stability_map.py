@@ -1,6 +1,8 @@
 """The map in the panel, without a browser."""
 
 import dataclasses
+import math
+import re
 import threading
 from typing import Any
 
@@ -62,6 +64,23 @@ def test_the_map_turns_at_the_critical_step(units: str):
         np.testing.assert_array_equal(row.outcomes == STABLE, holds)
     assert shown.rows[-1].outcomes[-1] == EXPLODING
     assert "measuring" not in shown.html.content
+    # The step and the stiffness that are set, at their places on the axes.
+    (cross,) = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)"', shown.html.content)
+    rate = getattr(params, shown.axes.parameter)
+    across = math.log(params.time_step / shown.axes.steps[0]) / math.log(shown.axes.steps[-1] / shown.axes.steps[0])
+    up = math.log(rate / shown.axes.stiffnesses[0]) / math.log(shown.axes.stiffnesses[-1] / shown.axes.stiffnesses[0])
+    assert float(cross[0]) == pytest.approx(live.LEFT + live.WIDE * across, abs=0.1)
+    assert float(cross[1]) == pytest.approx(live.TOP + live.HIGH * (1.0 - up), abs=0.1)
+
+
+@pytest.mark.parametrize("across", [True, False])
+def test_ticks_stand_at_their_values(across: bool) -> None:
+    drawn = live.axis(np.geomspace(1.0, 100.0, 3), "x", across=across)
+    places = [(float(x), float(y)) for x, y in re.findall(r'<path d="M([\d.]+) ([\d.]+)l', drawn)][:3]  # the decades
+    parts = np.array([0.0, 0.5, 1.0])
+    expected = [(live.LEFT + live.WIDE * part, live.TOP + live.HIGH) for part in parts]
+    expected = expected if across else [(live.LEFT, live.TOP + live.HIGH * (1.0 - part)) for part in parts]
+    assert np.array(places) == pytest.approx(np.array(expected), abs=0.06)
 
 
 @pytest.mark.usefixtures("small")

@@ -9,10 +9,12 @@ import pytest
 
 from app.messages import GrabTo, Place, Release
 from app.panel.head import status_line
+from app.render.colormap import scale_colours
 from app.scenes.cloth.parameters import PRESETS, ClothParams, hidden
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
 from app.scenes.cloth.view import ClothView, faces
-from app.scenes.quantities import measured, plotted_quantities
+from app.scenes.quantities import measured, plotted_quantities, recorded_quantities
+from app.scenes.springs.quantities import STABILITY
 from app.server.loop import SimLoop
 from sim.parameters import check_record
 from sim.springs import INTEGRATORS
@@ -116,6 +118,32 @@ def test_a_moved_pin_moves_its_end_of_the_edge(pin, end):
     assert middle > 0.5 * (ends[0, 0] + ends[0, 1]) + 0.1
     scene.reset()
     assert scene.state.x[:, 0, [0, -1]] == pytest.approx(ends, abs=1e-9)
+
+
+def test_the_farther_down_a_pin_is_the_less_it_moves():
+    scene = ClothScene(dataclasses.replace(SMALL, pinned="rim", time_step=1e-3))
+    before = scene.state.x.copy()
+    x, y, z = before[:, 0, -1]
+    scene.handle(Place("pin b", (float(x) + 0.3, float(y), float(z))))
+    run(scene, 1.0)
+    rows, cols = before.shape[1:]
+    moved = (scene.state.x - before)[0]
+    assert moved[:, -1] == pytest.approx(0.3 * (1.0 - np.arange(rows) / (rows - 1)), abs=1e-4)
+    assert moved[0] == pytest.approx(0.3 * np.arange(cols) / (cols - 1), abs=1e-4)
+    assert moved[-1] == pytest.approx(np.zeros(cols), abs=1e-9)
+
+
+def test_no_sweep_records_the_gauge_of_the_time_step():
+    assert not {name for name in recorded_quantities(SCENE) if name in STABILITY}
+    assert all(not quantity.shown for quantity in plotted_quantities(SCENE).values())
+
+
+def test_the_fullest_colour_is_that_of_the_strain_that_is_set():
+    frame = ClothScene(dataclasses.replace(SMALL, colour="strain", full_strain=4.0)).frame()
+    view = object.__new__(ClothView)
+    for percent, place in ((0.0, 0.0), (1.0, 0.25), (4.0, 1.0), (7.0, 1.0)):
+        strained = frame._replace(strain=np.full_like(frame.strain, 0.01 * percent))
+        assert view.colours(strained)[0] == pytest.approx(scale_colours(np.array([place]), 0.0, 1.0)[0], abs=1e-6)
 
 
 def test_the_sphere_pushes_the_cloth():

@@ -1,8 +1,10 @@
 """The race scene without a browser."""
 
 import dataclasses
+import itertools
 import json
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -415,6 +417,26 @@ def test_both_ends_of_every_race_parameter_survive(name):
             scene.advance(steps)
         assert np.isfinite(scene.frame().ropes).all()
         assert np.isfinite(scene.race.points()).all()
+
+
+@pytest.mark.parametrize(("ratio", "shown"), [(1.0, []), (4.0, ["800 N/m", "3200 N/m"])])
+def test_the_table_tells_the_stiffness_of_each_rope_where_two_differ(ratio, shown):
+    words = results_table(race(ropes=2, stiffness=800.0, stiffness_ratio=ratio).readings())
+    assert re.findall(r"\d+ N/m", re.sub(r"(?<=\d)\s(?=\d)", "", words)) == shown
+
+
+def test_a_step_takes_as_long_as_the_shortest_of_a_few_timings():
+    """On a clock that each evaluation moves by 1 ms, and some disturbance by more."""
+    entrant = race(ropes=1).race.entrants[0]
+    ticks, disturbances = [0.0], itertools.cycle((0.0, 0.0, 0.3, 0.2, 0.1, 0.1))
+    take = entrant.take_steps
+
+    def noted(net, state, steps, **more):
+        ticks[0] += 1e-3 * steps + next(disturbances)
+        take(net, state, steps, **more)
+
+    entrant.take_steps, entrant.clock, entrant.step_time = noted, lambda: ticks[0], 0.0
+    assert entrant.timed_step() == pytest.approx(1e-3)
 
 
 def test_parameters_that_mean_nothing_are_hidden():

@@ -317,6 +317,15 @@ def test_what_is_too_long_is_refused_unread(size: int) -> None:
                 read(text)
 
 
+@pytest.mark.parametrize(("part", "most"), [("name", 60), ("note", 1000)])
+def test_names_and_notes_have_a_longest_length(part: str, most: int) -> None:
+    said = {"name": "n", "note": "", part: "x" * most}
+    kind = scene_named("rope")
+    assert getattr(read_file(write_file(kind, kind.params(), **said)), part) == "x" * most
+    with pytest.raises(ValueError, match=f"^{part}: .* allowed: .*{most}"):
+        write_file(kind, kind.params(), **said | {part: "x" * (most + 1)})
+
+
 def test_a_script_in_a_name_stays_text() -> None:
     script = "<script>alert(1)</script><img src=x onerror=alert(1)>"
     rope = scene_named("rope")

@@ -120,6 +120,20 @@ def test_pongs_that_do_not_come_stop_nothing() -> None:
     assert max(np.diff(line.sent)) < 4.0 * PATIENCE  # a picture, and a probe
 
 
+def test_the_round_trip_is_the_shortest_of_the_last() -> None:
+    """What is longer has waited for something."""
+    line = LineTo(LINE, 0.3)
+
+    async def probe() -> list[float]:
+        connection, found = Pace(line), []
+        for line.round_trip in (0.3, 0.08, 0.2):
+            await connection.probe()
+            found.append(connection.round_trip)
+        return found
+
+    assert hurried(probe()) == pytest.approx([0.3, 0.08, 0.08], abs=1e-3)
+
+
 def test_the_rate_follows_the_line() -> None:
     line = LineTo(LINE, ROUND_TRIP)
 

@@ -93,6 +93,18 @@ def test_mesh_and_poses_of_a_picture_come_in_one_message() -> None:
         server.stop()
 
 
+def test_each_message_of_a_picture_is_counted_once(server: viser.ViserServer) -> None:
+    transport = Transport(server)
+    label = server.scene.add_label("/label", "")
+    before = dict(transport.sent)
+    with transport.counted():
+        label.text = "one"
+        label.position = (1.0, 0.0, 0.0)
+        label.text = "two"
+    label.text = "three"  # of no picture
+    assert transport.sent["messages"] - before.get("messages", 0) == 3
+
+
 def test_a_picture_is_not_waited_for_but_before_the_next_and_before_the_end() -> None:
     server = open_server("127.0.0.1", 0).server
     busy, loop, sent = threading.Event(), server.get_event_loop(), []

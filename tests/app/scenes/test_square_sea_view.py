@@ -5,12 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 import viser
 from viser._messages import SetOrientationMessage, SetPositionMessage
 
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
-from app.scenes.square_sea.view import MAX_RIPPLE_SLOPE, SquareSeaView
+from app.scenes.square_sea.view import GAUGE_SIDES, MAX_RIPPLE_SLOPE, SquareSeaView, upright
 
 
 def test_a_closed_view_leaves_no_click_callback_behind(server: viser.ViserServer) -> None:
@@ -27,6 +28,15 @@ def test_a_closed_view_keeps_the_callbacks_of_others(server: viser.ViserServer) 
     server.scene.on_click()(lambda event: None)
     SquareSeaView(server, lambda command: None).close()
     assert len(server.scene._scene_pointer_cb) == 1
+
+
+def test_float_and_spar_of_the_gauge_are_cylinders() -> None:
+    vertices, faces = upright(0.4, -1.0, 2.0)
+    mesh = trimesh.Trimesh(vertices, faces)
+    assert mesh.is_watertight
+    half_step = math.pi / GAUGE_SIDES
+    assert mesh.volume == pytest.approx(3.0 * GAUGE_SIDES * 0.4**2 * math.sin(half_step) * math.cos(half_step))
+    assert np.hypot(*vertices[: 2 * GAUGE_SIDES, :2].T) == pytest.approx(0.4)
 
 
 def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> None:

@@ -3,14 +3,19 @@
 import contextlib
 import errno
 import os
+import signal
 import socket
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
+from typing import Any
+from unittest.mock import Mock
 from urllib.parse import urlsplit
 
 import pytest
 
 from app.commands import lab_class, serve
+from app.scenes import scene_named
+from app.scenes.setups import make_setup
 
 
 def has_ipv6() -> bool:
@@ -56,6 +61,35 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, int], str]:
         return str(urlsplit(addresses[-1]).hostname)
 
     return opened_by
+
+
+@pytest.mark.parametrize("before", [signal.default_int_handler, signal.SIG_IGN], ids=["terminal", "background job"])
+def test_ctrl_c_ends_the_lab_but_in_a_background_job(
+    opened: Callable[[str, int], str], monkeypatch: pytest.MonkeyPatch, before: Any
+) -> None:
+    """A shell has its background jobs ignore it."""
+    seen: list[Any] = []
+    monkeypatch.setattr(serve.Opening, "start", lambda _: seen.append(signal.getsignal(signal.SIGINT)))
+    usual = signal.signal(signal.SIGINT, before)
+    try:
+        opened("127.0.0.1", 0)
+        assert signal.getsignal(signal.SIGINT) is before
+    finally:
+        signal.signal(signal.SIGINT, usual)
+    assert (seen == [before]) is (before is signal.SIG_IGN)
+
+
+def test_set_ups_beside_a_scene_leave_it_as_it_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[serve.Opening] = []
+    monkeypatch.setattr(serve, "open_server", lambda host, port, _: SimpleNamespace(server=FakeServer(host, port)))
+    monkeypatch.setattr(serve, "show_until_ended", lambda opening, *_, **__: shown.append(opening) or 0)
+    others = [make_setup(scene_named("cloth"), "", {})]
+    serve.serve_lab("rope", None, "127.0.0.1", 0, browser=False, paused=True, plain=True, others=others)
+    viewer = Mock()
+    shown[0].show(viewer)
+    viewer.open.assert_called_once_with("rope", None, paused=True, first_look=True)
+    viewer.comparing.begin.assert_called_once_with(others, False)
+    shown[0].opened.server.stop()
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 
 import asyncio
 import inspect
+import math
 import time
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
@@ -89,6 +90,16 @@ def test_the_head_tells_how_long_a_step_takes_and_who_looks(lab: Viewer) -> None
         words = lab.panel.head.status.content
         assert ("This step has taken 3.5 s so far." in words) is (busy > 0.0)
         assert ("4 browsers share this lab." in words) is (visitors > 1)
+
+
+def test_lines_under_controls_are_written_some_times_a_second(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    lab.served.stop_threads()
+    calls: list[object] = []
+    monkeypatch.setattr(lab.panel.controls_tab, "show_marks", lambda *_: calls.append(None))
+    lab.panel.marks_at = -math.inf
+    for _ in range(5):
+        lab.panel.update(lab.loop.latest, [])
+    assert len(calls) == 1
 
 
 def test_a_line_under_a_hidden_control_is_hidden_too(lab: Viewer) -> None:

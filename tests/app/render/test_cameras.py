@@ -95,6 +95,13 @@ def test_a_page_that_lifts_its_camera_out_of_the_water_has_taken_it() -> None:
     assert not waits(camera)
 
 
+def test_a_page_that_lowers_its_camera_has_not_taken_it() -> None:
+    camera = FakeCamera()
+    put(camera, NEW)
+    camera.report([(x, y, z - 1.0) for x, y, z in NEW])
+    assert waits(camera)
+
+
 def test_a_page_whose_user_turns_the_camera_at_once_has_taken_it() -> None:
     camera = FakeCamera()
     put(camera, NEW)

@@ -2,15 +2,18 @@
 
 import math
 import re
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from app.formats.formatting import fixed
+from app.scenes.quantities import read
 from app.scenes.radial_sea.budget import budget_html
 from app.scenes.radial_sea.charts import budget_chart
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden, spill_of
+from app.scenes.radial_sea.quantities import QUANTITIES
 from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_budget_text, readout_of, surfaces_html
 from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
 from app.scenes.radial_sea.well_blowout import OilBudget
@@ -34,6 +37,17 @@ def test_each_preset_is_reported_without_a_number_that_is_none(name: str) -> Non
     assert all(texts)
     assert not any("nan" in text or "inf " in text for text in (*texts, *notes_of(snapshot).values()))
     assert set(marks_of(snapshot)) <= set(parameters_of(RadialSeaParams()))
+
+
+def test_the_share_that_oil_leaves_is_that_of_clean_water() -> None:
+    scene = RadialSeaScene(check_record(RadialSeaParams, PRESETS["Light crude spill 0.2 m"]))
+    for _ in range(20):
+        scene.advance(10)
+    now = scene.readings()
+    height, slope = (read(QUANTITIES, f"{one}_left", SimpleNamespace(readings=now)) for one in ("height", "slope"))
+    assert height == pytest.approx(now.height / now.clean_height)
+    assert slope == pytest.approx(now.slope / now.clean_slope)
+    assert slope < height < 1.0
 
 
 def test_sinking_bodies_are_said_to_sink() -> None:

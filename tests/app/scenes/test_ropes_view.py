@@ -10,6 +10,7 @@ import pytest
 import viser
 
 from app.messages import GrabTo, Release
+from app.render.colormap import css_scale
 from app.render.dragging import GRAB_COLOUR
 from app.scenes.race.parameters import RaceParams
 from app.scenes.race.scene import RaceScene
@@ -17,9 +18,10 @@ from app.scenes.race.view import RaceView
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.scenes.rope.view import RopeView
+from app.scenes.springs.html import colour_scale
 from app.scenes.springs.rope_handles import offset_of
 from app.scenes.springs.ropes_view import bead_radius
-from app.scenes.springs.view import SecondNet
+from app.scenes.springs.view import SecondNet, Sphere
 
 RaceDrawing: Any = RaceView  # whose types the tests know
 
@@ -109,6 +111,22 @@ def test_a_rope_that_has_stopped_is_drawn_where_another_spacing_puts_it(server: 
         assert mesh.vertices[:, 1].mean() == pytest.approx(offset_of(number, 2, 1.5), abs=1e-3)
     assert [mesh.opacity for mesh in view.ropes.meshes] == [None, 0.35]
     server.scene.reset()
+
+
+def test_a_sphere_is_hidden_until_there_is_one(server: viser.ViserServer) -> None:
+    sphere = Sphere(server, lambda _: None, 0.3, 0.1)
+    assert not sphere.ball.visible
+    for place in ((1.0, 2.0, 3.0, 0.5), None):
+        sphere.show(place, None)
+        assert sphere.ball.visible is (place is not None)
+
+
+def test_a_scale_has_its_colours_light_and_dark() -> None:
+    text = colour_scale("0", "strain", "4 %", clipped=True)
+    for dark in (False, True):
+        assert f"--{'dark' if dark else 'light'}-scale:{css_scale(dark=dark)}" in text
+    assert css_scale(dark=True) != css_scale(dark=False)
+    assert "4 % and more" in text
 
 
 def test_beads_are_a_part_of_their_spacing_within_bounds_of_the_rope() -> None:

@@ -157,6 +157,12 @@ def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
     assert scene.time - before <= 2 * scene.step  # no catching up
 
 
+def test_steps_that_a_frame_has_no_time_for_are_counted_as_dropped() -> None:
+    loop, scene = make(cost=1.0)
+    loop.run.advance_within_budget(10)
+    assert (scene.time, loop.run.pacer.dropped, loop.run.pacer.capped) == (scene.step, 9, True)
+
+
 @pytest.mark.parametrize(("wall", "frame"), [(FRAME_INTERVAL, FRAME_INTERVAL), (0.25, MAX_LONG_FRAME)])
 def test_a_frame_never_solves_longer_than_its_budget_allows(wall: float, frame: float) -> None:
     pacer = FixedStep()

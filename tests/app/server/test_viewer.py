@@ -1,6 +1,7 @@
 """What the viewer's threads live through."""
 
 import dataclasses
+import re
 import threading
 import time
 from dataclasses import replace
@@ -233,6 +234,7 @@ def test_a_scene_goes_on_while_another_is_compiled_and_says_so(lab: Viewer, monk
     lab.open("cloth")
     assert len(seen) == 1
     assert "compiling the solver" in seen[0]
+    assert re.search(r"compiling the solver, \d s\. This is done once", seen[0])
     assert "springtide-panel" in seen[0]  # the scene before is still there
     assert "springtide-progress" not in seen[0]
     assert lab.panel.kind.name == "cloth"

@@ -74,6 +74,13 @@ def test_the_critical_step_is_where_growth_begins_at_every_damping(net, name):
             assert damping.measured_step(record, built, state, h) == h, b
 
 
+def test_a_limit_where_theory_knows_none_is_the_first_step_that_grows():
+    net, state = damping.at_rest("rope", 10.0)
+    assert 0.01 < critical_step(net, "rk4", state) < 0.1
+    assert damping.measured_step(INTEGRATORS["rk4"], net, state, math.inf) == 0.1
+    assert damping.measured_step(INTEGRATORS["implicit_euler"], net, state, math.inf) == math.inf
+
+
 def test_the_table_over_damping_tells_a_wrong_limit():
     right = damping.DampingRow(
         "rope", "rk4", np.zeros(4), np.array([0.1, 0.0, math.inf, math.nan]), np.array([0.1, 0.0, math.inf, math.nan])

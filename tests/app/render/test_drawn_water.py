@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,10 +10,12 @@ import trimesh
 import viser
 
 from app.render.injection import disable_shaders
-from app.render.material import Material, SlickRegion
+from app.render.material import Material, SlickRegion, blend
 from app.render.skies import SKIES, drawn_elevation
 from app.render.staff import Staff
 from app.render.water import DrawnWater, Tile
+from app.scenes.square_sea import rain_view
+from app.scenes.square_sea.parameters import RainSettings
 
 SIZE, LENGTH = 16, 40.0
 SLICK = SlickRegion((10.0, 15.0), 6.0, 0.1, 0.05, 0.5)
@@ -41,6 +44,26 @@ def test_slick_and_grid_are_drawn_plainly_where_they_are(server: viser.ViserServ
     draw(water, Material())
     assert not (water._plain_meshes["plain_slick"].vertices[:, 2] > 0.0).any()
     assert not water._plain_meshes["plain_wire"].visible
+
+
+def test_a_blend_of_colours_lies_between_them() -> None:
+    one, other = (0.2, 0.5, 1.0), (0.6, 0.1, 0.0)
+    assert blend(one, other, 0.0) == one
+    assert blend(one, other, 1.0) == pytest.approx(other)
+    assert blend(one, other, 0.25) == pytest.approx((0.3, 0.4, 0.75))
+
+
+def test_drops_fall_as_fast_as_the_root_of_gravity(server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Against their drag, which grows with the square of the speed."""
+    made: list[dict[str, tuple[float, ...]]] = []
+    monkeypatch.setattr(rain_view, "StreakMesh", lambda *arguments: made.append(arguments[3]))
+    frame = SimpleNamespace(drops=np.zeros((10, 3)))
+    for gravity in (9.80665, 4.0 * 9.80665):
+        settings = RainSettings(5.0, 10, 0.0, (1.0, 2.0), gravity, 64, 1.0)
+        rain_view.RainMesh(server, frame, settings, 1.0)  # type: ignore[arg-type]
+    first, last = made[0]["dropSizes"], made[-1]["dropSizes"]
+    assert last[1] / first[1] == pytest.approx(2.0)
+    assert first[1] == pytest.approx(1.0, abs=1e-3)
 
 
 @pytest.mark.parametrize("name", SKIES)

@@ -52,6 +52,22 @@ def test_a_tube_does_not_twist() -> None:
     assert np.ptp(first[:, 2]) < 1e-3
 
 
+def test_along_a_helix_a_tube_turns_against_the_normal_by_the_torsion() -> None:
+    """The frame of least rotation turns by less than the Frenet frame: by the torsion times the length."""
+    radius, pitch, turns = 1.0, 0.5, 1.5
+    t = np.linspace(0.0, 2.0 * np.pi * turns, 200)
+    line, vertices = tube(np.stack([radius * np.cos(t), radius * np.sin(t), pitch * t], axis=1), 2, 0.05)
+    inner = slice(4, len(line) - 4)  # the ends of the smooth line are straighter
+    own = ((vertices[:-2].reshape(len(line), SIDES, 3)[:, 0] - line) / 0.05)[inner]
+    angle = np.unwrap(np.arctan2(line[inner, 1], line[inner, 0]))
+    normal = np.stack([-np.cos(angle), -np.sin(angle), 0.0 * angle], axis=1)
+    speed = np.hypot(radius, pitch)
+    tangent = np.stack([-radius * np.sin(angle), radius * np.cos(angle), pitch + 0.0 * angle], axis=1) / speed
+    turned = np.unwrap(np.arctan2((own * np.cross(tangent, normal)).sum(axis=1), (own * normal).sum(axis=1)))
+    length = speed * (angle[-1] - angle[0])
+    assert abs(turned[-1] - turned[0]) == pytest.approx(pitch / speed**2 * length, rel=1e-2)
+
+
 @pytest.mark.parametrize("points", [np.zeros((5, 3)), np.array([[0.0, 0, 0], [0, 0, 1], [0, 0, 0], [0, 0, 1]])])
 def test_points_on_top_of_each_other_make_no_nan(points: np.ndarray) -> None:
     _, vertices = tube(points, 3, 0.05)

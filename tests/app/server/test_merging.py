@@ -208,6 +208,14 @@ def test_all_sequences_of_four_commands_do_the_same_merged_as_in_order() -> None
     assert count > 1000
 
 
+def test_grabs_of_one_particle_by_one_browser_are_one() -> None:
+    """Another browser takes nothing that is held, and another particle is grabbed anew."""
+    first, second = GrabTo(1, (1.0, 0.0, 0.0), 7), GrabTo(1, (2.0, 0.0, 0.0), 7)
+    assert merged([first, second], Params()) == [second]
+    for other in (GrabTo(2, (2.0, 0.0, 0.0), 7), GrabTo(1, (2.0, 0.0, 0.0), 8)):
+        assert merged([first, other], Params()) == [first, other]
+
+
 def sequences() -> Iterable[tuple[Command, ...]]:
     return itertools.chain.from_iterable(itertools.product(COMMANDS, repeat=length) for length in range(1, 5))
 

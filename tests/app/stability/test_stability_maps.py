@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.experiments import pool
-from app.stability import command, damping, drift, linear, rope
+from app.stability import command, damping, drift, figures, linear, rope
 from sim.springs import INTEGRATORS
 from sim.springs.analysis.growth import step_growth
 from sim.springs.stability import critical_step
@@ -72,6 +72,28 @@ def test_the_critical_step_is_where_growth_begins_at_every_damping(net, name):
             assert step_growth(record, built, 1.05 * h, state.x) > damping.GROWS, b
         else:
             assert damping.measured_step(record, built, state, h) == h, b
+
+
+def test_the_table_of_the_rope_names_the_stiffness_that_is_off_most():
+    steps, stiffnesses = np.array([0.01, 0.1, 1.0]), np.array([1.0, 10.0, 100.0])
+    found = rope.RopeMap(
+        "rk4", steps, stiffnesses, np.zeros((3, 3), int), np.array([0.2, 0.13, 0.1]), np.array([0.2] * 3)
+    )
+    (row,) = rope.rows([found])
+    assert (row["at k [N/m]"], row["at most [%]"]) == (100.0, pytest.approx(50.0))
+    assert row["step off, median [%]"] == pytest.approx(35.0)
+
+
+def test_the_map_shows_added_damping_where_nothing_grows(maps):
+    figure = figures.linear_figure(maps)
+    shown = [axes for axes in figure.axes if axes.collections and axes.get_title()]
+    for axes, found in zip(shown, maps, strict=True):
+        extra, grows = (
+            np.ma.masked_invalid(one.get_array()).reshape(found.rates.shape) for one in axes.collections[:2]
+        )
+        assert np.array_equal(extra.mask, ~(found.rates <= 0.0))
+        assert extra.compressed() == pytest.approx(linear.extra_damping(found)[found.rates <= 0.0])
+        assert np.array_equal(~np.ma.getmaskarray(grows), found.rates > 0.0)
 
 
 def test_a_limit_where_theory_knows_none_is_the_first_step_that_grows():

@@ -78,6 +78,8 @@ def test_a_grid_is_one_labelled_file_with_all_that_made_it(tmp_path, capsys):
         assert data.tip_height.attrs == {"long_name": "Height of the tip", "units": "m"}
         assert data.time_step.attrs["units"] == "s"
         assert list(data.sphere.values) == [False, True]
+        assert "units" not in data.sphere.attrs
+        assert "units" not in data.integrator.attrs
         assert data.attrs["spec"] == GRID
         assert json.loads(data.attrs["parameters"])["gravity"] == 10.0
         assert "numpy" in data.attrs["versions"]

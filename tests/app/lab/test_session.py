@@ -3,6 +3,7 @@
 import contextlib
 import dataclasses
 import inspect
+import re
 import shutil
 import sys
 import time
@@ -25,7 +26,7 @@ from app.lab.session import CodeState, Session
 from app.lab.task import load_tasks
 from app.lab.versions import Versions, stamps
 from app.messages import GrabTo, Place, StudentAnswer
-from app.panel.code_panel import code_lines, function_lines, headline
+from app.panel.code_panel import CHART_LEFT, CHART_WIDTH, code_lines, difference_chart, function_lines, headline
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene, rows_of
 from tests.waiting import wait_for
@@ -120,6 +121,17 @@ def right(session: Session) -> Session:
         save(session, RIGHT)
     wait_for(lambda: session.state.error is None and taken(session) == of_rope(session))
     return session
+
+
+def test_the_course_of_the_difference_ends_at_the_edge_of_its_chart() -> None:
+    report = StudentReport(times=np.array([1.0, 2.0, 4.0]), differences=np.array([0.0, 0.1, 0.2]))
+    chart = difference_chart(report)
+    (line,) = re.findall(r'<polyline points="([^"]+)"', chart)
+    places = np.array([[float(one) for one in place.split(",")] for place in line.split()])
+    parts = np.array([0.0, 1 / 3, 1.0])
+    assert places[:, 0] == pytest.approx(CHART_LEFT + parts * (CHART_WIDTH - CHART_LEFT - 4), abs=0.06)
+    assert (np.diff(places[:, 1]) < 0.0).all()
+    assert re.findall(r">([\d.]+ s)</text>", chart) == ["1.0 s", "4.0 s"]
 
 
 def test_without_a_function_there_is_no_second_rope(tmp_path: Path) -> None:

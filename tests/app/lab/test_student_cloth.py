@@ -119,6 +119,16 @@ def test_a_large_cloth_has_a_coarser_one_beside_it(right: Session) -> None:
     assert f"{frame.student.shape[0]} × {frame.student.shape[1]} points, without pleats" in said
 
 
+def test_a_coarser_cloth_hangs_on_the_same_pins(right: Session) -> None:
+    scene = ClothScene(ClothParams(), right.live)
+    run(scene, 3)
+    scene.handle(Place("pin a", (-1.2, 0.1, 2.6)))
+    run(scene, 6)
+    frame = scene.frame()
+    assert frame.student is not None
+    assert frame.student[0, [0, -1]] == pytest.approx(frame.points[0, [0, -1]], abs=1e-5)
+
+
 def test_a_wrong_function_leaves_the_program_s_cloth_alone(right: Session) -> None:
     save(right, RIGHT.replace("force[j] -= pull", "force[j] += pull"), "cloth.py")
     wait_for(lambda: taken(right, "cloth") == right.state.version)

@@ -102,6 +102,18 @@ def test_lines_under_controls_are_written_some_times_a_second(lab: Viewer, monke
     assert len(calls) == 1
 
 
+@pytest.mark.parametrize("name", ["rope", "square_sea"])
+def test_the_map_is_drawn_where_there_is_one(viewer: Viewer, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    viewer.open(name)
+    viewer.served.stop_threads()
+    tab, drawn = viewer.panel.controls_tab, []
+    assert (tab.map is not None) is (name == "rope")
+    if tab.map is not None:
+        monkeypatch.setattr(tab.map, "draw", lambda: drawn.append(name))
+    tab.show_marks(viewer.loop.latest, frozenset())
+    assert drawn == ([name] if name == "rope" else [])
+
+
 def test_a_line_under_a_hidden_control_is_hidden_too(lab: Viewer) -> None:
     lab.served.stop_threads()
     control = lab.panel.controls["sphere_radius"]

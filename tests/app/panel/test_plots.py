@@ -1,6 +1,7 @@
 """The scales of the charts."""
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -84,6 +85,18 @@ def test_the_curves_of_a_race_are_kept_and_dropped() -> None:
     assert plots.kept_curves["plot_errors"] is chart
     assert plots.keep(False) is None
     assert not plots.kept_curves
+
+
+@pytest.mark.parametrize("place", [0.0, 0.3, 0.5, 0.75, 1.0])
+def test_the_rows_about_a_moment_hold_it_and_move_in_steps_of_half_a_chart(place: float) -> None:
+    rows = [(0.1 * i,) for i in range(5 * SHOWN_ROWS + 7)]
+    plots, moment = SimpleNamespace(rows=rows), place * rows[-1][0]
+    shown = Plots.rows_about(plots, moment)  # type: ignore[arg-type]
+    assert shown[0][0] <= moment <= shown[-1][0] + 0.1
+    assert len(shown) == SHOWN_ROWS
+    first = rows.index(shown[0])
+    assert first % (SHOWN_ROWS // 2) == 0 or first == len(rows) - SHOWN_ROWS
+    assert Plots.rows_about(plots, None) == rows[-SHOWN_ROWS:]  # type: ignore[arg-type]
 
 
 def test_a_line_without_a_number_is_in_no_key() -> None:

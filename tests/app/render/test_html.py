@@ -39,3 +39,4 @@ def test_a_table_has_a_cell_for_each_entry() -> None:
     found = table((("", ""), ("a", "m"), ("b", "s")), (("x", 1, 2), ("y", 3, 4)))
     assert (found.count("<tr>"), found.count("<th>"), found.count("<td>")) == (3, 3, 6)
     assert "<th>a<br>m</th>" in found
+    assert found.index("<thead>") < found.index("</thead>") < found.index("<tbody>")

@@ -12,8 +12,9 @@ from app.scenes.radial_sea import cutaway_view
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
 from app.scenes.radial_sea.materials import SPILL_RADIUS, material_of
-from app.scenes.radial_sea.moorings_view import LINE_SIDES, NEAR_END, DrawnMoorings
-from app.scenes.radial_sea.view import keel_of
+from app.scenes.radial_sea.moorings_view import LINE_SIDES, NEAR_END, DrawnMoorings, Rods
+from app.scenes.radial_sea.parameters import RadialSeaParams
+from app.scenes.radial_sea.view import keel_of, offset_of_view
 
 
 def frame_of(**values: object):
@@ -57,6 +58,21 @@ def test_the_cutaway_has_only_the_lines_of_the_body_beside_it(server: viser.Vise
         rods = moorings.rods.handle.vertices.reshape(-1, 4, rod, 3)
         fairleads = rods[:, :, NEAR_END].mean(axis=2)
         np.testing.assert_allclose(fairleads, np.repeat(frame.fairleads[:bodies, None], 4, axis=1), atol=1e-4)
+
+
+def test_rods_are_drawn_anew_for_another_number_of_bodies_or_other_anchors(server: viser.ViserServer) -> None:
+    anchors, fairleads = np.zeros((3, 4, 3)), np.ones((2, 3), np.float32)
+    rods = Rods(server, anchors, fairleads, 1.0)
+    assert rods.are_of(anchors, 2)
+    assert not rods.are_of(anchors, 3)
+    assert not rods.are_of(anchors.copy(), 2)
+
+
+@pytest.mark.parametrize("follow", ["first buoy", "cutaway"])
+def test_the_larger_the_bodies_the_farther_is_the_camera(follow: str) -> None:
+    near, far = (offset_of_view(RadialSeaParams(follow=follow, size=size)) for size in (1.5, 3.0))
+    assert far == pytest.approx(2.0 * near)
+    assert np.linalg.norm(near[0] - near[1]) == pytest.approx(8.45 if follow == "first buoy" else 4.87, abs=0.05)
 
 
 BOX_HEIGHT = 1.6  # of a label, over the height of its letters

@@ -18,6 +18,7 @@ import xarray as xr
 from app.__main__ import main
 from app.sweep import workers
 from app.sweep.case import FAILED, FINISHED, run_case
+from app.sweep.figure import is_log
 from app.sweep.spec import read_spec
 from app.sweep.store import Store
 from app.sweep.workers import on_cores
@@ -64,6 +65,14 @@ def alone(spec_path: Path) -> list:
     """Every case, run here one after the other."""
     spec = read_spec(spec_path)
     return [run_case(spec.scene, {**spec.fixed, **case}, spec.times) for case in spec.cases]
+
+
+@pytest.mark.parametrize(
+    ("values", "log"),
+    [([1.0, 10.0, 100.0], True), ([1.0, 2.0, 3.0], False), ([0.0, 1.0, 100.0], False), ([5.0], False)],
+)
+def test_an_axis_is_logarithmic_where_its_values_span_decades(values, log):
+    assert is_log(xr.DataArray(values)) is log
 
 
 @needs_pools

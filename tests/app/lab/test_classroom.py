@@ -368,6 +368,19 @@ def test_rows_come_once_they_are_new(served: tuple[Classroom, int]) -> None:
     assert int(asked(port, f"/secret/rows?after={revision}").headers["X-Revision"]) > revision
 
 
+def test_the_first_rows_come_at_once(folders: list[Path]) -> None:
+    """Also where one student has changed once so far."""
+    with Classroom(folders[:1], TASKS) as classroom:
+        wait_for(lambda: classroom.revision == 1)
+        server = make_server(classroom, "secret", 0)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        answer = asked(server.server_address[1], "/secret/rows")
+        assert answer.headers["X-Revision"] == "1"
+        assert b"Class of 1" in answer.read()
+        server.shutdown()
+        server.server_close()
+
+
 def test_a_browser_that_leaves_before_its_answer_prints_nothing(
     served: tuple[Classroom, int], capsys: pytest.CaptureFixture[str]
 ) -> None:

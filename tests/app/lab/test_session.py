@@ -123,6 +123,19 @@ def right(session: Session) -> Session:
     return session
 
 
+@pytest.mark.parametrize("version", [0, 3])
+@pytest.mark.parametrize("running", [False, True])
+def test_the_headline_tells_whether_a_net_or_a_table_runs(version: int, running: bool) -> None:
+    state = CodeState(version=5, saved_at="12:00:00")
+    tables = TableReport(running={"gravity": "the pull"} if running else {})
+    said = headline(state, StudentReport(version=version), tables, "rope")
+    assert ("since 12:00:00" in said) is (version > 0 or running)
+    assert ("uses none of your functions yet" in said) is (version == 0 and not running)
+    assert ("runs, but" in headline(state, StudentReport(version=version), tables, "rope", "sign reversed")) is (
+        version > 0 or running
+    )
+
+
 def test_the_course_of_the_difference_ends_at_the_edge_of_its_chart() -> None:
     report = StudentReport(times=np.array([1.0, 2.0, 4.0]), differences=np.array([0.0, 0.1, 0.2]))
     chart = difference_chart(report)

@@ -99,6 +99,24 @@ def test_the_rows_about_a_moment_hold_it_and_move_in_steps_of_half_a_chart(place
     assert Plots.rows_about(plots, None) == rows[-SHOWN_ROWS:]  # type: ignore[arg-type]
 
 
+def test_a_curve_is_sent_once_and_again_with_other_columns_or_other_kept_ones(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.panel.plots.chart_of", lambda _, columns: columns)
+    monkeypatch.setattr("app.panel.plots.with_kept", lambda chart, kept: (chart, kept))
+    sent: list[object] = []
+    plots = SimpleNamespace(
+        curves={"a": "one"}, kept_curves={}, sent_curves={}, kind=SimpleNamespace(curves={"a": None}),
+        send=lambda _, chart: sent.append(chart),
+    )  # fmt: skip
+    for change in ({}, {"curves": {"a": "two"}}, {"kept_curves": {"a": "one"}}, {"kept_curves": {}}):
+        vars(plots).update(change)
+        for _ in range(3):
+            Plots.send_curves(plots, frozenset({"a"}))  # type: ignore[arg-type]
+    assert sent == ["one", "two", ("two", "one"), "two"]
+    vars(plots).update(curves={"a": "three"})
+    Plots.send_curves(plots, frozenset())  # type: ignore[arg-type]
+    assert len(sent) == 4
+
+
 def test_a_line_without_a_number_is_in_no_key() -> None:
     kind, lines = scene_named("mooring"), lines_of(scene_named("mooring").plots["plot_tension"].series)
     scene: Any = kind.make(kind.params(lines=3, segments=10))

@@ -126,6 +126,19 @@ def test_the_slick_of_the_jet_counts_at_rest() -> None:
     assert added == pytest.approx(slick.thickness * (1 - layers[0][0] / layers[1][0]), abs=2e-5)
 
 
+def test_a_body_in_the_slick_is_predicted_in_its_oil() -> None:
+    """And in the mixture alone where there is one: it takes the oil up."""
+    for changes, is_layered in (({}, True), ({"spill": "layer"}, True), ({"spill": "mixed"}, False)):
+        bodies = scene_with(**CALM, bodies=2, **changes).bodies
+        column, before = bodies.column, [bodies.prediction(i).draft for i in range(2)]
+        bodies.slick = np.array([0.0, 0.3])
+        layers = ((column.oil.density, column.thickness + 0.3), (column.water.density, math.inf))
+        expected = equilibrium_draft(bodies.hulls[bodies.kinds[1]], bodies.densities[1], layers)
+        assert bodies.prediction(0).draft == before[0]
+        assert bodies.prediction(1).draft == pytest.approx(expected if is_layered else before[1], abs=1e-9)
+        assert abs(expected - before[1]) > 1e-3
+
+
 def test_the_edge_of_the_slick_is_no_step() -> None:
     scene = scene_with(waves=False, jet=True)
     scene.well_blowout.closed_jets_total = JetTotal(500.0, 500.0, 100)

@@ -12,6 +12,7 @@ from app.formats.formatting import fixed
 from app.scenes.quantities import read
 from app.scenes.radial_sea.budget import budget_html
 from app.scenes.radial_sea.charts import budget_chart
+from app.scenes.radial_sea.drawn_surface import DrawnSurface
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden, spill_of
 from app.scenes.radial_sea.quantities import QUANTITIES
 from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_budget_text, readout_of, surfaces_html
@@ -48,6 +49,17 @@ def test_the_share_that_oil_leaves_is_that_of_clean_water() -> None:
     assert height == pytest.approx(now.height / now.clean_height)
     assert slope == pytest.approx(now.slope / now.clean_slope)
     assert slope < height < 1.0
+
+
+def test_the_height_of_the_whole_spectrum_follows_wind_and_decay() -> None:
+    drawing, sums = DrawnSurface(), []
+    for wind, oil in ((8.0, 0.0), (12.0, 0.0), (12.0, 60.0), (8.0, 0.0)):
+        scene = RadialSeaScene(check_record(RadialSeaParams, {"wind_speed": wind, "spill": "layer", "exposure": oil}))
+        sums.append(drawing.spectrum_height(scene.wave_choice, scene.sum))
+        assert sums[-1] == drawing.spectrum_height(scene.wave_choice, scene.sum)
+    assert sums[0] == sums[3]
+    assert sums[2] < sums[1]
+    assert sums[1] > 1.5 * sums[0]
 
 
 def test_sinking_bodies_are_said_to_sink() -> None:

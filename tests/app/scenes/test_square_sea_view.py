@@ -9,9 +9,18 @@ import trimesh
 import viser
 from viser._messages import SetOrientationMessage, SetPositionMessage
 
+from app.render.material import blend
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
-from app.scenes.square_sea.view import GAUGE_SIDES, MAX_RIPPLE_SLOPE, SquareSeaView, upright
+from app.scenes.square_sea.view import (
+    GAUGE_SIDES,
+    MAX_RIPPLE_SLOPE,
+    OVERCAST_DEEP,
+    OVERCAST_FROM,
+    OVERCAST_TINT,
+    SquareSeaView,
+    upright,
+)
 
 
 def test_a_closed_view_leaves_no_click_callback_behind(server: viser.ViserServer) -> None:
@@ -37,6 +46,16 @@ def test_float_and_spar_of_the_gauge_are_cylinders() -> None:
     half_step = math.pi / GAUGE_SIDES
     assert mesh.volume == pytest.approx(3.0 * GAUGE_SIDES * 0.4**2 * math.sin(half_step) * math.cos(half_step))
     assert np.hypot(*vertices[: 2 * GAUGE_SIDES, :2].T) == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize(("clouds", "share"), [(0.0, 0.0), (OVERCAST_FROM, 0.0), (1.0, 1.0)])
+def test_an_overcast_sky_tints_the_water_grey(server: viser.ViserServer, clouds: float, share: float) -> None:
+    view = SquareSeaView(server, lambda _: None)
+    frame = SquareSeaScene(SquareSeaParams(size="64", mesh="32", clouds=clouds)).frame()
+    view.show(frame)
+    material, sky = view.material_of(frame), view.sky_material
+    assert material.sky_tint == pytest.approx(blend(sky.sky_tint, OVERCAST_TINT, share))
+    assert material.deep_color == pytest.approx(blend(sky.deep_color, OVERCAST_DEEP, share))
 
 
 def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> None:

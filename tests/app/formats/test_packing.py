@@ -1,8 +1,12 @@
 """Packed values against a plain reader of the same bits."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from app.formats import packing
 from app.formats.packing import BLOCK, MAX_QUOTIENT, WIDTH_BITS, WORD_BITS, is_packed, pack, unpack
 
 
@@ -82,3 +86,9 @@ def test_a_smooth_surface_takes_less_than_a_rough_one() -> None:
 def test_values_that_are_not_finite_are_refused() -> None:
     with pytest.raises(ValueError, match="fields: nan is not allowed"):
         pack(np.array([[1.0, float("nan")]]), (1.0,), 2)
+
+
+def test_the_page_reads_blocks_and_widths_of_the_same_bits() -> None:
+    source = (Path(packing.__file__).parents[1] / "render" / "js" / "packed.js").read_text("utf-8")
+    for name in ("BLOCK", "WIDTH_BITS", "WORD_BITS"):
+        assert re.findall(rf"\b{name} = (\d+)", source) == [str(getattr(packing, name))]

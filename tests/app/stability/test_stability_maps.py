@@ -124,6 +124,15 @@ def test_symplectic_energies_are_bounded_and_the_others_drift():
     }
 
 
+def test_energies_of_symplectic_methods_stand_beside_those_of_the_others():
+    t = np.array([0.0, 1.0, 2.0])
+    drifts = [drift.Drift(name, INTEGRATORS[name].symplectic, t, 1e-3 * t) for name in ("leapfrog", "rk4", "pefrl")]
+    left, right, *_ = figures.drift_figure(drifts).axes
+    for axes, title, names in ((left, "symplectic", ["leapfrog", "pefrl"]), (right, "not symplectic", ["rk4"])):
+        assert axes.get_title() == title
+        assert [line.get_label() for line in axes.lines] == names
+
+
 def test_the_command_keeps_tables_and_figures(tmp_path, monkeypatch, capsys, maps):
     monkeypatch.setattr(linear, "measure", lambda **_: maps[:2])
     names = {name: INTEGRATORS[name] for name in ("leapfrog", "implicit_euler")}

@@ -16,6 +16,7 @@ from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
 from app.messages import Reset, RunOn, Take
+from app.panel.readings import WITHHELD
 from app.scenes import NAMES, scene_named
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.square_sea.parameters import SquareSeaParams
@@ -112,6 +113,18 @@ def test_the_map_is_drawn_where_there_is_one(viewer: Viewer, name: str, monkeypa
         monkeypatch.setattr(tab.map, "draw", lambda: drawn.append(name))
     tab.show_marks(viewer.loop.latest, frozenset())
     assert drawn == ([name] if name == "rope" else [])
+
+
+def test_notes_that_answer_a_question_are_withheld(viewer: Viewer) -> None:
+    viewer.open("radial_sea")
+    wait_for(lambda: viewer.panel.controls_tab.readings.notes)
+    viewer.served.stop_threads()
+    readings = viewer.panel.controls_tab.readings
+    first, *_ = readings.notes
+    for hidden in (frozenset({first}), frozenset[str]()):
+        readings.show(viewer.loop.latest, hidden)
+        withheld = {heading for heading, (_, line) in readings.notes.items() if WITHHELD in line.content}
+        assert withheld == hidden
 
 
 def test_a_line_under_a_hidden_control_is_hidden_too(lab: Viewer) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import viser
 
-from app.render.viser_inside import set_arrays
+from app.render.viser_inside import input_of, set_arrays, uuid_of
 
 TURNS = np.array([[1.0, 0.0, 0.0, 0.0]])
 
@@ -37,6 +37,12 @@ def test_one_message_with_copies_where_something_changed(server: viser.ViserServ
     assert len(sent) == 1  # nothing changed
     set_arrays(node, batched_positions=places, batched_wxyzs=TURNS)
     assert updates["batched_positions"].tolist() == [[1.0, 2.0, 3.0]]  # what is on its way does not change
+
+
+def test_a_control_is_known_by_the_name_that_messages_have(server: viser.ViserServer) -> None:
+    slider = server.gui.add_slider("size", 0.0, 1.0, 0.1, 0.5)
+    assert input_of(server, uuid_of(slider)) is slider
+    assert input_of(server, "no such name") is None
 
 
 def test_a_removed_node_is_refused(server: viser.ViserServer) -> None:

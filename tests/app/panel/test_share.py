@@ -4,9 +4,17 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from app.panel.share import camera_of
+from app.panel.share import Share, camera_of
+from app.scenes import scene_named
 
 
 def test_a_link_has_the_camera_of_the_browser_that_asks() -> None:
     camera = SimpleNamespace(position=np.array([1.0, 2.0, 3.0]), look_at=np.array([4.0, 5.0, 6.0]))
     assert camera_of(SimpleNamespace(camera=camera)) == ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0))  # type: ignore[arg-type]
+
+
+def test_an_undo_names_the_scene_of_the_first_set_up() -> None:
+    kind = scene_named("rope")
+    share = SimpleNamespace(settings=SimpleNamespace(kind=kind, params=kind.params(), loaded=""))
+    change = Share.change(share, "grids", "a page")  # type: ignore[arg-type]
+    assert (change.scene, change.subject, change.before.scene) == ("radial_sea", "grids", "rope")

@@ -12,7 +12,7 @@ from app.panel.head import status_line
 from app.render.colormap import scale_colours
 from app.scenes.cloth.parameters import PRESETS, ClothParams, hidden
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
-from app.scenes.cloth.view import ClothView, faces
+from app.scenes.cloth.view import ClothView, checks, faces
 from app.scenes.quantities import measured, plotted_quantities, recorded_quantities
 from app.scenes.springs.quantities import STABILITY
 from app.server.loop import SimLoop
@@ -136,6 +136,14 @@ def test_the_farther_down_a_pin_is_the_less_it_moves():
 def test_no_sweep_records_the_gauge_of_the_time_step():
     assert not {name for name in recorded_quantities(SCENE) if name in STABILITY}
     assert all(not quantity.shown for quantity in plotted_quantities(SCENE).values())
+
+
+@pytest.mark.parametrize(("rows", "cols"), [(64, 32), (32, 64), (8, 4)])
+def test_a_fabric_has_eight_checks_along_its_longer_side(rows, cols):
+    fabric = checks(rows, cols).reshape(rows, cols, 3)
+    along = fabric[:, 0] if rows > cols else fabric[0]
+    changes = np.abs(np.diff(along, axis=0)).max(axis=1) > 0.0
+    assert changes.sum() == (2 * 8 if max(rows, cols) >= 16 else max(rows, cols)) - 1
 
 
 def test_the_fullest_colour_is_that_of_the_strain_that_is_set():

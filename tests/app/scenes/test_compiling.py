@@ -103,6 +103,14 @@ def test_a_worker_compiles_a_piece_that_the_next_process_only_loads(tmp_path: Pa
     assert "KeyError" in unknown
 
 
+def test_ctrl_c_leaves_a_worker_to_the_lab() -> None:
+    code = "import signal, sys; from app.scenes.compile_worker import main; main(); "
+    told = "print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, file=sys.stderr)"
+    command = [sys.executable, "-c", code + told]
+    ended = subprocess.run(command, input="", cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert ended.stderr.splitlines()[-1] == "True"
+
+
 def test_a_killed_worker_gives_its_locks_back(tmp_path: Path) -> None:
     code = (
         "from sim.files import locked; from pathlib import Path; import time\n"

@@ -10,7 +10,7 @@ import pytest
 
 from app.formats.formatting import fixed
 from app.scenes.quantities import read
-from app.scenes.radial_sea.budget import budget_html
+from app.scenes.radial_sea.budget import budget_html, origin_text
 from app.scenes.radial_sea.charts import budget_chart
 from app.scenes.radial_sea.drawn_surface import DrawnSurface
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden, spill_of
@@ -21,7 +21,7 @@ from app.scenes.radial_sea.well_blowout import OilBudget
 from app.server.loop import SimLoop
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import fluids
-from sim.ocean.weathering import weather
+from sim.ocean.weathering import oil_records, weather
 from sim.parameters import check_record, parameters_of
 from tests import naive_spill
 from tests.naive_ocean import layer_roots
@@ -60,6 +60,14 @@ def test_the_height_of_the_whole_spectrum_follows_wind_and_decay() -> None:
     assert sums[0] == sums[3]
     assert sums[2] < sums[1]
     assert sums[1] > 1.5 * sums[0]
+
+
+def test_the_source_of_boiling_points_is_told() -> None:
+    texts = [origin_text(record) for record in oil_records().values()]
+    for record, text in zip(oil_records().values(), texts, strict=True):
+        assert ("are those of its record" in text) is bool(record.distillation)
+        assert ("has no distillation" in text) is not bool(record.distillation)
+    assert any(record.distillation for record in oil_records().values())
 
 
 def test_sinking_bodies_are_said_to_sink() -> None:

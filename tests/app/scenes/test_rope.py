@@ -4,6 +4,7 @@ import contextlib
 import dataclasses
 import math
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -145,6 +146,15 @@ def test_changing_the_points_keeps_the_shape() -> None:
     change(scene, points=19)
     np.testing.assert_allclose(scene.state.x[:, :, ::2], before, atol=1e-12)
     scene.advance(10)
+
+
+def test_a_student_s_rope_begins_again_with_other_points_or_another_method() -> None:
+    scene: Any = RopeScene(RopeParams())
+    scene.student = Mock()
+    for change, begins in (({"stiffness": 500.0}, 0), ({"points": 14}, 1), ({"integrator": "rk4"}, 2)):
+        scene.change_forces(dataclasses.replace(scene.params, **change))
+        assert scene.student.begin.call_count == begins, change
+    assert scene.student.begin.call_args.args[0].shape == (14, 3)
 
 
 def test_every_integrator_can_be_chosen_while_moving() -> None:

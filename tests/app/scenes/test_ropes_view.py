@@ -1,6 +1,7 @@
 """Rope and race on a viser server without a browser: what both views draw of ropes."""
 
 import dataclasses
+import math
 from collections.abc import Iterator
 from typing import Any
 from unittest.mock import Mock
@@ -20,6 +21,7 @@ from app.scenes.rope.scene import RopeScene
 from app.scenes.rope.view import RopeView
 from app.scenes.springs.html import colour_scale
 from app.scenes.springs.rope_handles import offset_of
+from app.scenes.springs.rope_parameters import ROOT
 from app.scenes.springs.ropes_view import bead_radius
 from app.scenes.springs.view import SecondNet, Sphere
 
@@ -119,6 +121,19 @@ def test_a_sphere_is_hidden_until_there_is_one(server: viser.ViserServer) -> Non
     for place in ((1.0, 2.0, 3.0, 0.5), None):
         sphere.show(place, None)
         assert sphere.ball.visible is (place is not None)
+
+
+@pytest.mark.parametrize("floor", [True, False])
+def test_the_first_view_of_a_long_rope_ends_at_the_floor(floor: bool) -> None:
+    position, target = (
+        np.array(one) for one in RopeView.first_view(object.__new__(RopeView), RopeParams(length=12.0, floor=floor))
+    )
+    seen = np.linalg.norm(position - target) * math.tan(0.5 * RopeView.FIELD_OF_VIEW)  # half of the height
+    low, high = target[2] - seen, target[2] + seen
+    assert high > ROOT[2] + 0.1
+    assert low < (0.0 if floor else ROOT[2] - 12.0)
+    assert target[2] == pytest.approx(0.5 * (low + high))
+    assert (target[2] < 0.0) is not floor
 
 
 def test_a_scale_has_its_colours_light_and_dark() -> None:

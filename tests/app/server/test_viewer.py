@@ -54,6 +54,20 @@ def test_a_frame_of_the_recording_is_shown_and_then_the_present_again(
     wait_for(lambda: frames[-1] is lab.loop.latest.frame)
 
 
+@pytest.mark.parametrize("first_look", [False, True])
+def test_a_scene_opens_with_its_defaults_and_at_a_first_look_with_what_moves(first_look: bool) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    try:
+        viewer.open("rope", **({"first_look": True} if first_look else {}))
+        kind = scene_named("rope")
+        expected = kind.presets[kind.opening] if first_look else {}
+        assert viewer.panel.settings.params == check_record(kind.params, expected)
+        assert viewer.panel.compare is not None
+        assert not viewer.panel.compare.end.visible
+    finally:
+        viewer.shut()
+
+
 def test_what_is_handed_over_is_not_held_back(lab: Viewer) -> None:
     buffer = lab.server._websock_server.get_message_buffer()
     assert "window_duration_sec" in {field.name for field in dataclasses.fields(buffer)}  # as viser names it

@@ -18,10 +18,11 @@ from app.scenes.race.scene import RaceScene
 from app.scenes.race.view import RaceView
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
-from app.scenes.rope.view import RopeView
+from app.scenes.rope.view import LOWER, RopeView
 from app.scenes.springs.html import colour_scale
+from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_handles import offset_of
-from app.scenes.springs.rope_parameters import ROOT
+from app.scenes.springs.rope_parameters import ROOT, build_rope
 from app.scenes.springs.ropes_view import bead_radius
 from app.scenes.springs.view import SecondNet, Sphere
 
@@ -125,15 +126,13 @@ def test_a_sphere_is_hidden_until_there_is_one(server: viser.ViserServer) -> Non
 
 @pytest.mark.parametrize("floor", [True, False])
 def test_the_first_view_of_a_long_rope_ends_at_the_floor(floor: bool) -> None:
-    position, target = (
-        np.array(one) for one in RopeView.first_view(object.__new__(RopeView), RopeParams(length=12.0, floor=floor))
-    )
-    seen = np.linalg.norm(position - target) * math.tan(0.5 * RopeView.FIELD_OF_VIEW)  # half of the height
-    low, high = target[2] - seen, target[2] + seen
-    assert high > ROOT[2] + 0.1
-    assert low < (0.0 if floor else ROOT[2] - 12.0)
-    assert target[2] == pytest.approx(0.5 * (low + high))
-    assert (target[2] < 0.0) is not floor
+    params = RopeParams(length=12.0, floor=floor)
+    position, target = map(np.array, RopeView.first_view(object.__new__(RopeView), params))
+    height = 2.0 * float(np.linalg.norm(position - target)) * math.tan(0.5 * RopeView.FIELD_OF_VIEW)
+    fall = ROOT[2] if floor else sum(rope_lengths(build_rope(params)))
+    assert target[2] == pytest.approx(ROOT[2] - 0.5 * fall - LOWER * height)
+    assert target[2] - 0.5 * height < (0.0 if floor else ROOT[2] - 12.0)
+    assert target[2] + 0.5 * height > ROOT[2]
 
 
 def test_a_scale_has_its_colours_light_and_dark() -> None:

@@ -57,6 +57,20 @@ def air_matrix(net, v, g):
     return matrix.reshape(3 * rows * cols, -1)
 
 
+def test_the_blocks_of_a_rope_s_points_are_all_of_their_matrix():
+    """Beside no links: nine entries of the six that are kept, and the mass where a point is pinned."""
+    p, n = rope(4).kernel_view(1.0), 4
+    work = newton.make_work(p, False)
+    points = np.random.default_rng(3).standard_normal((6, n))
+    diagonal, beside = np.full((n, 9), np.nan), np.full((n, 9), np.nan)
+    newton.set_rope_blocks(p, points.ravel(), 0.0 * work.links, work.numbers, diagonal, beside)
+    xx, xy, xz, yy, yz, zz = points
+    expected = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
+    expected[0] = p.mass * np.eye(3)  # the root
+    assert diagonal.reshape(n, 3, 3) == pytest.approx(expected)
+    assert np.all(beside[: n - 1] == 0.0)
+
+
 @pytest.mark.parametrize("model", ["isotropic", "axial"])
 def test_a_net_s_solver_solves_with_the_derivatives_of_its_forces(model):
     """(M + g D + g^2 K) u = r of a net folded onto itself, on a floor, pulled, in wind; K and D by differences."""

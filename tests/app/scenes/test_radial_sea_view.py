@@ -7,7 +7,7 @@ import pytest
 import viser
 
 from app.render.material import Material
-from app.scenes import scene_named
+from app.scenes import scene_named, view_named
 from app.scenes.radial_sea import cutaway_view
 from app.scenes.radial_sea.cutaway import DIRECTION
 from app.scenes.radial_sea.cutaway_view import Walls
@@ -73,6 +73,19 @@ def test_the_larger_the_bodies_the_farther_is_the_camera(follow: str) -> None:
     near, far = (offset_of_view(RadialSeaParams(follow=follow, size=size)) for size in (1.5, 3.0))
     assert far == pytest.approx(2.0 * near)
     assert np.linalg.norm(near[0] - near[1]) == pytest.approx(8.45 if follow == "first buoy" else 4.87, abs=0.05)
+
+
+@pytest.mark.parametrize("name", ["radial_sea", "square_sea"])
+def test_the_lights_of_a_sea_cast_no_shadows(server: viser.ViserServer, name: str) -> None:
+    """Each shadow would draw all bodies once more in every frame, and the water shows none."""
+    kind = scene_named(name)
+    view = view_named(name)(server, lambda _: None)
+    view.show(kind.make(kind.params()).frame())
+    lights = [
+        node for node in server.scene._handle_from_node_name.values() if type(node).__name__.endswith("LightHandle")
+    ]
+    assert lights or name == "square_sea"
+    assert not any(light.cast_shadow for light in lights if hasattr(light, "cast_shadow"))
 
 
 BOX_HEIGHT = 1.6  # of a label, over the height of its letters

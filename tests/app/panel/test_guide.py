@@ -349,6 +349,20 @@ def test_the_signs_of_all_tasks_are_worked_out_where_an_answer_or_a_check_is_new
     assert len(asked) == 3
 
 
+def test_a_set_up_that_is_refused_is_said_by_the_next_look(student: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
+    guide = show(student, "step_euler")
+    student.served.stop_threads()
+
+    def refuse(_: object) -> None:
+        raise ValueError("the file of this set-up is gone")
+
+    monkeypatch.setattr(guide, "set_up", refuse)
+    guide.update(student.loop.latest, False)
+    does(guide.on_tool, SET_UP)
+    guide.update(student.loop.latest, False)
+    assert "the file of this set-up is gone" in guide.answer.content
+
+
 def test_what_is_asked_for_in_the_middle_of_a_look_is_shown_by_the_next(
     student: Viewer, monkeypatch: pytest.MonkeyPatch
 ) -> None:

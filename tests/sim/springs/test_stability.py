@@ -10,7 +10,7 @@ from sim.springs.analysis.amplification import eigenvalues, limit_of_polynomial
 from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.integrators import dop853, dopri5
 from sim.springs.integrators.implicit.tangent import set_tangent
-from sim.springs.stability import critical_step, critical_stiffness, gauge, gershgorin, most_touching, top_modes
+from sim.springs.stability import Mode, critical_step, critical_stiffness, gauge, gershgorin, most_touching, top_modes
 from sim.springs.state import State, advance
 from tests.naive import own_contacts, tangent
 from tests.sim.springs.nets import DAMPABLE, patch, touching_patch
@@ -269,6 +269,13 @@ def test_far_beyond_critical_damping_the_rate_alone_limits_a_step(name, reach, z
     assert 2.0 * zeta * record.limit(zeta) == pytest.approx(reach, rel=1e-6)
     assert record.stable_step(0.0, 50.0) == pytest.approx(reach / 50.0, rel=1e-6)
     assert record.stable_step(0.0, 0.0) == math.inf
+
+
+@pytest.mark.parametrize("omega", [1e-6, 0.05, 1.0, 1e6])
+def test_the_damping_ratio_is_half_the_rate_over_the_frequency(omega):
+    assert Mode(omega**2, 0.0, 0.4 * omega).zeta == pytest.approx(0.2)
+    assert Mode(0.0, 0.0, omega).zeta == math.inf
+    assert Mode(0.0, 0.0, 0.0).zeta == 0.0
 
 
 def test_the_gauge_of_what_only_damping_holds_has_no_frequency():

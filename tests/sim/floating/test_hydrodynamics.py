@@ -22,7 +22,17 @@ from sim.floating import (
 )
 from sim.floating.body import lower_factor
 from sim.floating.excitation import WaveExcitation
-from sim.floating.hydrodynamics import DEEPEST, DIRECTIONS, LinearHull, afloat, lagrange, linear_hull, plane_force
+from sim.floating.hydrodynamics import (
+    DEEPEST,
+    DIRECTIONS,
+    LinearHull,
+    afloat,
+    lagrange,
+    linear_hull,
+    natural_frequency,
+    plane_force,
+    upright,
+)
 from sim.floating.linear_table import table_of
 from sim.floating.prediction import predict
 from sim.ocean.radial import RadialSea
@@ -242,6 +252,22 @@ def test_a_turned_hull_and_a_turned_wave_are_one() -> None:
     np.testing.assert_allclose(a.excitation[:, 0, 2], b.excitation[:, quarter, 2], rtol=1e-9)
     np.testing.assert_allclose(a.excitation[:, 0, 0], b.excitation[:, quarter, 1], rtol=1e-9)
     np.testing.assert_allclose(a.excitation[:, 0, 4], -b.excitation[:, quarter, 3], rtol=1e-6, atol=1e-9)
+
+
+def test_the_memory_is_that_of_the_coefficients_at_the_own_frequencies() -> None:
+    """Of roll and pitch of a long hull, which differ: there the fit has its weight."""
+    hull, density = HULLS["barge"]
+    known = afloat(hull, density, WATER)
+    linear, poles, residues = known.linear, known.memory.poles, known.memory.residues
+    s, cut = 1j * linear.frequency[:, None], upright(hull, linear.draft)
+    wanted = linear.damping + s[:, :, None] * (linear.added_mass - linear.infinite)
+    fit = np.einsum("pij,fp->fij", residues, 1 / (s - poles))
+    fit += np.einsum("pij,fp->fij", residues.conj(), 1 / (s - poles.conj()))
+    for axis in (0, 1):
+        stiffness = cut.second[1 - axis] + cut.volume * cut.centre[2]
+        own = natural_frequency(linear, 3 + axis, cut.volume / hull.volume * hull.inertia[axis, axis], stiffness)
+        nearest, d = int(np.argmin(np.abs(linear.frequency - own))), 3 + axis
+        assert abs(fit[nearest, d, d] / wanted[nearest, d, d] - 1.0) < 0.025
 
 
 def test_size_and_gravity_scale_periods() -> None:

@@ -14,6 +14,7 @@ from sim.floating import (
     lowest,
     make_fleet,
     make_water,
+    pull,
     roll_period,
     step,
     still_water,
@@ -415,3 +416,27 @@ def test_the_heading_of_a_hull_that_stands_on_its_stern_is_that_of_its_side():
         turned = product((math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2)), lean)
         change = heading_angle(turned) - heading_angle(lean)
         assert math.remainder(change - turn, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_pull_above_its_limit_is_the_damped_impulse_of_that_size():
+    """(K + m) P = w with |P| = limit h, K the mobility of the point: here of a body without a fluid, far from its
+    target."""
+    hull, limit, h, rate = Hull.box(2.0, 1.0, 0.6), 800.0, 1 / 60, 12.0
+    point, target, place = np.array([0.9, 0.3, 0.25]), np.array([3.0, -4.0, 9.0]), (0.0, 0.0, 5.0)
+    layers, after = ((1e-6, math.inf),), []
+    for most in (0.0, limit):
+        fleet = make_fleet([Body(hull, 500.0, place)], layers)
+        fleet.velocity[0], fleet.spin[0] = (0.3, -0.2, 0.1), (0.1, 0.2, -0.3)
+        pull(fleet, 0, point, target, most)
+        step(fleet, still_water(fleet, layers), h, MotionCoefficients(quadratic_drag=0.0, gravity=1e-3, pull_rate=rate))
+        after.append((fleet.velocity[0].copy(), fleet.spin[0].copy()))
+    (velocity, spin), (pulled, _) = after
+    mass, inertia = 500.0 * hull.volume, 500.0 * hull.inertia
+    impulse = mass * (pulled - velocity)
+    assert np.linalg.norm(impulse) == pytest.approx(limit * h, rel=1e-9)
+    turned = [np.cross(np.linalg.solve(inertia, np.cross(point, axis)), point) for axis in np.eye(3)]
+    mobility = np.eye(3) / mass + np.array(turned).T
+    s = h * rate * (2.0 + h * rate)
+    there = velocity + np.cross(spin, point) + rate / (2.0 + h * rate) * (place + point - target)
+    rest = -s / (1.0 + s) * there - mobility @ impulse
+    assert rest / np.linalg.norm(rest) == pytest.approx(impulse / np.linalg.norm(impulse), abs=2e-3)

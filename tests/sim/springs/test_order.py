@@ -172,3 +172,24 @@ def test_a_step_is_symplectic_where_it_is_declared_to_be(name):
     J = np.block([[np.zeros((half, half)), np.eye(half)], [-np.eye(half), np.zeros((half, half))]])
     off = np.abs(matrix.T @ J @ matrix - J).max()
     assert off < 1e-7 if INTEGRATORS[name].symplectic else off > 1e-5
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_of_a_symplectic_method_the_step_of_an_oscillator_keeps_areas(name):
+    """Its matrix has the determinant 1; of one that is not, only an order that rounding hides may have it."""
+    net, h, size = rope(2, stiffness=100.0, damping=0.0, drag=0.0, gravity=0.0), 0.03, 1e-5  # omega = 10 1/s
+    rest, columns = State.at_rest(net), []
+    along = rest.x[:, 0, 1] - rest.x[:, 0, 0]
+    along = along / np.linalg.norm(along)
+    for place, speed in ((size, 0.0), (0.0, 10.0 * size)):
+        state = State.at_rest(net)
+        state.x[:, 0, 1] += place * along
+        state.v[:, 0, 1] += speed * along
+        advance(net, state, INTEGRATORS[name], h, 1)
+        columns.append(((state.x - rest.x)[:, 0, 1] @ along / size, state.v[:, 0, 1] @ along / (10.0 * size)))
+    change = float(abs(np.linalg.det(np.array(columns)) - 1.0))
+    assert change < 1e-9 or not INTEGRATORS[name].symplectic
+    assert (change < 1e-9) is (name in (*KEEP_AREAS, "rkn8", "dop853"))
+
+
+KEEP_AREAS = ("symplectic_euler", "leapfrog", "leapfrog_lagged", "pefrl", "implicit_midpoint")

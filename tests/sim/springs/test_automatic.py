@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, cloth, rope, simulate
-from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
+from sim.springs.automatic import AUTO, WEAK, bounds, choose_for_step, choose_for_tolerance
 from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.stability import critical_step
 
@@ -18,6 +18,14 @@ NETS = {
     "long": rope(40, damping=1.0, mass=0.1),
     "cloth": cloth(6, 6),
 }
+
+
+@pytest.mark.parametrize("damping", [0.05, 0.2])
+def test_damping_counts_above_a_tolerance_that_goes_with_its_square(damping):
+    soft = rope(10, stiffness=5.0, damping=damping, drag=0.0, gravity=9.81)
+    border = 1e-6 * WEAK * bounds(soft)[1] ** 2
+    assert choose_for_tolerance(soft, 0.5 * border, 1.0).integrator.name == "dop853"
+    assert choose_for_tolerance(soft, 2.0 * border, 1.0).integrator.name == "rkn8"
 
 
 @pytest.mark.parametrize("net", NETS.values(), ids=NETS)

@@ -99,7 +99,7 @@ def on_bed(friction: float, damping: float) -> tuple[System, np.ndarray]:
     """One node 1 cm deep in a bed, between ends that do not pull, without water."""
     points = (Point(1, "fixed", (-8.0, 0.0, -10.0)), Point(2, "fixed", (8.0, 0.0, -10.0)))
     system = System(
-        (Line(1, ROPE, 1, 2, LENGTH, 2),), points, 10.0, density=0.0, bed_stiffness=1e5, bed_damping=damping,
+        (Line(1, ROPE._replace(diameter=0.08), 1, 2, LENGTH, 2),), points, 10.0, density=0.0, bed_stiffness=1e5, bed_damping=damping,
         friction=friction,
     )  # fmt: skip
     return system, np.array([-8.0, 8.0, 0.0, 0.0, 0.0, 0.0, -10.0, -10.0, -10.01])
@@ -108,7 +108,7 @@ def on_bed(friction: float, damping: float) -> tuple[System, np.ndarray]:
 @pytest.mark.parametrize("reverse", [False, True])
 def test_a_node_slides_to_rest_by_friction_and_sinks_in_by_the_damping_of_the_bed(reverse):
     system, x = on_bed(0.6, 2e4)
-    p, area, mass = system.kernel_view(1e-3), 0.1 * SPACING, 12.0 * SPACING
+    p, area, mass = system.kernel_view(1e-3), 0.08 * SPACING, 12.0 * SPACING
     slide, s = 0.6 * area * 1e5 * 0.01 / mass, 0.02  # [m/s2], [s]
     v, a = np.zeros(9), np.empty(9)
     v[2::3] = (0.3, 0.4, -0.2)

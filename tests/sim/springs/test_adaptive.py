@@ -1,5 +1,6 @@
 """Adaptive methods, and the methods that refuse what they cannot do."""
 
+import dataclasses
 import itertools
 import math
 from fractions import Fraction
@@ -9,12 +10,14 @@ import pytest
 from scipy.integrate._ivp import dop853_coefficients
 from scipy.integrate._ivp.rk import RK45
 
-from sim.springs import INTEGRATORS, rope, simulate
+from sim.springs import INTEGRATORS, Air, cloth, rope, simulate
 from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.amplification import polynomial_of
 from sim.springs.integrators import dop853, dopri5, rkn8
 from sim.springs.integrators.embedded import stages
 from sim.springs.integrators.embedded.errors import error_of
+from sim.springs.integrators.embedded.march import first_step
+from sim.springs.integrators.embedded.stages import is_smooth_net
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, energy
 from tests.sim.springs.reference import integrated
@@ -211,3 +214,20 @@ def test_pefrl_keeps_its_energy_far_better_than_leapfrog_at_the_same_cost():
             total.append(energy(net, state).total)
         swings.append(np.ptp(total))
     assert swings[1] < 0.05 * swings[0]
+
+
+def test_the_first_step_is_a_hundredth_of_the_time_of_a_change():
+    """In units of the tolerance of each number."""
+    x, v, a = np.array([1.0, -2.0, 0.0]), np.array([0.5, 0.0, 3.0]), np.array([-4.0, 8.0, 1.0])
+    wx, wv = 1.0 / (1e-3 + 1e-2 * np.abs(x)), 1.0 / (1e-3 + 1e-2 * np.abs(v))
+    size, change = ((wx * x) ** 2 + (wv * v) ** 2).sum(), ((wx * v) ** 2 + (wv * a) ** 2).sum()
+    assert first_step(x, v, a, 1e-2, 1e-3) == pytest.approx(0.01 * np.sqrt(size / change))
+    assert first_step(x, 0.0 * x, 0.0 * x, 1e-2, 1e-3) == 1e-6
+
+
+def test_a_net_is_rough_where_it_can_touch_something():
+    net = rope(5, gravity=10.0)
+    assert is_smooth_net(net.kernel_view(1.0))
+    assert is_smooth_net(cloth(4, 4, air=Air((3.0, 0.0, 0.0))).kernel_view(1.0))
+    assert not is_smooth_net(dataclasses.replace(net, floor=0.0).kernel_view(1.0))
+    assert not is_smooth_net(dataclasses.replace(net, sphere=(0.0, 0.0, 0.0, 0.5)).kernel_view(1.0))

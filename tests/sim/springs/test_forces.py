@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from sim.jit import kernel
-from sim.springs import INTEGRATORS, Contact, Grab, PinPath, State, advance, rope
+from sim.springs import INTEGRATORS, Air, Contact, Grab, PinPath, State, advance, cloth, rope
 from sim.springs.acceleration import accelerate, make_scratch, set_acceleration
 from sim.springs.damping import damp, make_decay
 from sim.springs.state import energy
@@ -240,3 +240,18 @@ def test_leapfrog_s_steps_in_one_call_are_those_one_by_one(points, drag):
             for other in (single, account):
                 assert np.abs(whole.x - other.x).max() < 1e-13
                 assert np.abs(whole.v - other.v).max() < 1e-11
+
+
+def test_air_pushes_a_cloth_that_moves_as_one_that_stands_in_the_wind_against_it():
+    still, moved = np.array((3.0, -2.0, 5.0)), np.array((0.7, 1.1, -0.4))
+    sheet = cloth(4, 5, stiffness=0.0, damping=0.0, drag=0.0, gravity=0.0)
+    x0 = sheet.x0 + np.random.default_rng(5).normal(0.0, 0.05, sheet.x0.shape)
+    found = []
+    for wind, velocity in ((still, moved), (still - moved, 0.0 * moved)):
+        net = dataclasses.replace(sheet, x0=x0, air=Air(tuple(wind)))
+        state = State.at_rest(net)
+        state.v[:] += velocity[:, None, None]
+        advance(net, state, INTEGRATORS["explicit_euler"], 1e-3, 1)
+        found.append(state.v - velocity[:, None, None])
+    assert found[0] == pytest.approx(found[1], rel=1e-9, abs=1e-12)
+    assert np.abs(found[0]).max() > 1e-3

@@ -98,10 +98,8 @@ def test_a_wave_alone_pushes_by_its_acceleration_and_drags_by_its_velocity(way, 
 def on_bed(friction: float, damping: float) -> tuple[System, np.ndarray]:
     """One node 1 cm deep in a bed, between ends that do not pull, without water."""
     points = (Point(1, "fixed", (-8.0, 0.0, -10.0)), Point(2, "fixed", (8.0, 0.0, -10.0)))
-    system = System(
-        (Line(1, ROPE._replace(diameter=0.08), 1, 2, LENGTH, 2),), points, 10.0, density=0.0, bed_stiffness=1e5, bed_damping=damping,
-        friction=friction,
-    )  # fmt: skip
+    lines = (Line(1, ROPE._replace(diameter=0.08), 1, 2, LENGTH, 2),)
+    system = System(lines, points, 10.0, density=0.0, bed_stiffness=1e5, bed_damping=damping, friction=friction)
     return system, np.array([-8.0, 8.0, 0.0, 0.0, 0.0, 0.0, -10.0, -10.0, -10.01])
 
 

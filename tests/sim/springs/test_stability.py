@@ -10,7 +10,16 @@ from sim.springs.analysis.amplification import eigenvalues, limit_of_polynomial
 from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.integrators import dop853, dopri5
 from sim.springs.integrators.implicit.tangent import set_tangent
-from sim.springs.stability import Mode, critical_step, critical_stiffness, gauge, gershgorin, most_touching, top_modes
+from sim.springs.stability import (
+    Mode,
+    critical_step,
+    critical_stiffness,
+    gauge,
+    gershgorin,
+    most_touching,
+    step_limit,
+    top_modes,
+)
 from sim.springs.state import State, advance
 from tests.naive import own_contacts, tangent
 from tests.sim.springs.nets import DAMPABLE, patch, touching_patch
@@ -276,6 +285,8 @@ def test_the_damping_ratio_is_half_the_rate_over_the_frequency(omega):
     assert Mode(omega**2, 0.0, 0.4 * omega).zeta == pytest.approx(0.2)
     assert Mode(0.0, 0.0, omega).zeta == math.inf
     assert Mode(0.0, 0.0, 0.0).zeta == 0.0
+    for record in INTEGRATORS.values():  # nothing of it slides
+        assert step_limit(Mode(omega**2, 0.0, 0.4 * omega), record) == record.stable_step(omega, 0.4 * omega)
 
 
 def test_the_gauge_of_what_only_damping_holds_has_no_frequency():

@@ -10,8 +10,12 @@ from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import pins_damping_power, power
 from sim.springs.damping import damp_lines, make_decay
 from sim.springs.forces.links import set_tensions
+from sim.springs.forces.matrices import DAMPING, STIFFEST, STIFFNESS
+from sim.springs.forces.water import tangent as buoyancy_tangent
+from sim.springs.line_points import set_inverse_masses
 from sim.water import Water
 from sim.waves import Waves
+from tests.sim.mooring.systems import floating_body
 
 ROPE = LineType("rope", 0.1, 12.0, 1.0, 0.0, 0.9, 1.3, 0.4, 0.07)  # so soft that it does not pull
 LENGTH, SPACING = 20.0, 10.0  # of the line and of its two links, which are slack
@@ -173,3 +177,28 @@ def test_the_pull_of_a_line_turns_a_body_about_its_reference_point():
     assert found[:, 2:].T.reshape(-1) == pytest.approx(force / np.diag(mass), rel=1e-6, abs=1e-6)
     turn, shift = found[:, 3], found[:, 2]
     assert found[:, 0] == pytest.approx(shift + np.cross(turn, arm), rel=1e-6, abs=1e-6)
+
+
+def test_the_node_of_a_fairlead_has_the_mobility_of_its_body_there():
+    """J M^-1 J^T, with J of a displacement and a small turn about the body's reference point."""
+    body, arm = floating_body(), np.array([1.0, -2.0, 3.0])
+    points = Point(1, "fixed", (-8.0, 0.0, -10.0)), Point(2, "body", tuple(arm), body=1)
+    light = ROPE._replace(mass=1e-9)  # of its own mass the body bears half a link
+    system = System((Line(1, light, 1, 2, LENGTH, 3),), points, 20.0, (body,), density=0.0)
+    p, x = system.kernel_view(1e-3), system.start().ravel()
+    set_inverse_masses(x, p)
+    n, j = p.cols, int(p.carried[0, 0])
+    xx, xy, xz, yy, yz, zz = p.inertia[j::n]
+    motion = np.hstack([np.eye(3), -np.cross(arm, np.eye(3)).T])
+    expected = motion @ np.linalg.inv(np.asarray(body.mass)) @ motion.T
+    assert np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) == pytest.approx(expected, rel=1e-9, abs=1e-12)
+
+
+def test_buoyancy_at_the_surface_is_a_stiffness_and_no_damping():
+    system, x = one_node((1.0, 0.0, 0.0))
+    x[6:] = 0.0
+    p, u = system.kernel_view(1e-3), np.ones(9)
+    for part, acts in ((STIFFNESS, True), (STIFFEST, True), (DAMPING, False)):
+        out = np.zeros(9)
+        buoyancy_tangent(x, u, 0.0, p, part, 0.0, out)
+        assert np.any(out) == acts

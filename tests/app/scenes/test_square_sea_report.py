@@ -3,6 +3,7 @@
 import itertools
 import math
 import re
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,9 @@ import pytest
 
 from app.messages import Snapshot
 from app.render.html import WARNING_COLOUR, bold
+from app.scenes import quantities
 from app.scenes.square_sea.parameters import SquareSeaParams
-from app.scenes.square_sea.quantities import open_sea
+from app.scenes.square_sea.quantities import QUANTITIES, open_sea
 from app.scenes.square_sea.report import (
     breaking_text,
     foam_text,
@@ -24,6 +26,7 @@ from app.scenes.square_sea.report import (
 )
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.server.loop import SimLoop
+from sim.ocean.planets import EARTH_GRAVITY
 from sim.parameters import check_record
 
 Loop: Any = SimLoop  # of a scene whose types the tests know
@@ -167,3 +170,14 @@ def test_the_band_of_heights_is_two_standard_deviations() -> None:
     high = r._replace(measured=r.measured._replace(significant_height=(1.0 + 3.0 * r.theory.scatter) * height))
     assert str(bold(drawn)) not in str(statistics_table(high))
     assert WARNING_COLOUR in str(statistics_table(high))
+
+
+def test_the_height_over_the_earth_s_is_that_of_the_sea_as_drawn() -> None:
+    scene = SquareSeaScene(SquareSeaParams(size="64", mesh="32", planet_mass=20.0))
+    scene.frame()
+    now = SimpleNamespace(readings=scene.readings(), frame=scene.frame())
+    height = now.readings.report.measured.significant_height
+    on_earth = open_sea(scene.params, scene.params.wind_speed, EARTH_GRAVITY).height
+    assert quantities.read(QUANTITIES, "measured_over_earth", now) == pytest.approx(height / on_earth)
+    level = SimpleNamespace(readings=now.readings._replace(report=None))
+    assert math.isnan(quantities.read(QUANTITIES, "measured_over_earth", level))

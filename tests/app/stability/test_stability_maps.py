@@ -144,6 +144,7 @@ def test_the_command_keeps_tables_and_figures(tmp_path, monkeypatch, capsys, map
     kept = {path.name for path in tmp_path.iterdir()}
     for name in ("linear", "rope", "damping", "drift"):
         assert {f"{name}.csv", f"{name}_curves.csv", f"{name}.svg", f"{name}.png"} <= kept
+    assert "machine.txt" in kept
     with (tmp_path / "rope.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert rows[0]["integrator"] == "leapfrog"

@@ -19,6 +19,7 @@ from app.lab.diagnosis.edits import explain_edit
 from app.lab.diagnosis.explanation import Equation, Explanation
 from app.lab.diagnosis.steps import explain_step
 from app.lab.diagnosis.terms import WHOLE, Term, explain_terms
+from app.lab.rope_march import entries
 from app.lab.runner import BUSY, MAX_WAIT, RunError, Runner
 from app.lab.source import read_source
 from app.lab.task import Task
@@ -149,7 +150,7 @@ def form_of(value: Any) -> str:
     if isinstance(value, tuple):
         return "a tuple of " + " and ".join(form_of(part) for part in value)
     if isinstance(value, list):
-        return f"a list of {len(value)} entries"
+        return f"a list of {entries(len(value))}"
     shape = np.shape(value)
     return f"an array of shape {shape}" if shape else "a number"
 

@@ -119,6 +119,11 @@ class Unfit(Exception):  # noqa: N818 - a judgement on a result, not an error of
         self.line = None if code is None else int(code.co_firstlineno)
 
 
+def entries(count: int) -> str:
+    """A number of entries, in words."""
+    return "1 entry" if count == 1 else f"{count} entries"
+
+
 def not_a_number(name: str, function: Callable[..., Any]) -> Unfit:
     """The judgement on a function of this name that returns NaN."""
     text = f"{name} returns NaN (not a number): look for a division by 0 or the root of a negative number"
@@ -346,7 +351,7 @@ class Functions:
             raise Unfit("returns nothing", text, self.get(self.step))
         size = len(value) if isinstance(value, tuple | list) or np.ndim(value) else 0
         if size != 2:
-            form = f"{size} entries" if size else f"a value of type {type(value).__name__}"
+            form = entries(size) if size else f"a value of type {type(value).__name__}"
             text = f"{self.step} returns {form}; expected are two arrays, the new positions and velocities"
             raise Unfit("wrong shape" if size else "wrong type", text, self.get(self.step))
         x_new, v_new = self.fit(self.step, value[0], x.shape), self.fit(self.step, value[1], x.shape)

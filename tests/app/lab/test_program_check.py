@@ -24,6 +24,7 @@ from app.lab.program_check import (
     call,
     check_program,
     conform,
+    form_of,
     same,
     special_case,
 )
@@ -447,3 +448,15 @@ def test_a_step_of_third_order_with_four_evaluations_is_not_the_fourth() -> None
     task.check.behaviour(task.function)
     with pytest.raises(Wrong, match=r"made the error only [78]\.\d times smaller: that is not the fourth order"):
         task.check.behaviour(kutta)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ([1.0], "a list of 1 entry"),
+        ([[1.0], [2.0, 3.0]], "a list of 2 entries"),
+        ((np.zeros(3), 2.0), "a tuple of an array of shape (3,) and a number"),
+    ],
+)
+def test_the_form_of_a_result_is_told_in_words(value: object, text: str) -> None:
+    assert form_of(value) == text

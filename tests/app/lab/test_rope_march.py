@@ -57,7 +57,7 @@ def test_a_march_without_a_step_ends_where_it_began() -> None:
 @pytest.mark.parametrize(
     ("value", "kind", "words"),
     [
-        ((X3,), "wrong shape", "returns 1 entries"),
+        ((X3,), "wrong shape", "returns 1 entry;"),
         (X3, "wrong shape", "returns 3 entries"),
         (1.5, "wrong type", "returns a value of type float"),
         (np.array(1.5), "wrong type", "returns a value of type ndarray"),

@@ -408,6 +408,15 @@ def test_the_page_takes_no_option_of_a_lab(
     assert f"{options[0]}: the page of a class takes --port" in capsys.readouterr().err
 
 
+def test_several_folders_are_a_class(folders: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    served: list[list[Path]] = []
+    monkeypatch.setattr("app.__main__.serve_class", lambda arguments: served.append(arguments.folders) or 0)
+    monkeypatch.setattr("app.lab.session.Session", lambda *_: pytest.fail("one folder of several is served"))
+    for several in (folders[:2], folders[:3]):
+        assert main(["lab", *map(str, several)]) == 0
+        assert served[-1] == several
+
+
 def test_a_class_needs_folders(folders: list[Path], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lab", str(folders[0]), str(folders[0] / "rope.py")]) == 2
     assert "not a folder" in capsys.readouterr().err

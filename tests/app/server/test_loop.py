@@ -157,6 +157,15 @@ def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
     assert scene.time - before <= 2 * scene.step  # no catching up
 
 
+def test_the_next_part_of_a_frame_has_the_steps_that_there_is_time_for() -> None:
+    pacer, budget = FixedStep(), SOLVE_SHARE * FRAME_INTERVAL
+    assert pacer.next_part(4, 0.5 * budget) > 4  # at a cost that is not known
+    pacer.cost = 0.01 * budget
+    assert pacer.next_part(100, 0.8 * budget) in (19, 20)
+    for spent in (budget, 2.0 * budget):
+        assert pacer.next_part(4, spent) == 0
+
+
 def test_steps_that_a_frame_has_no_time_for_are_counted_as_dropped() -> None:
     loop, scene = make(cost=1.0)
     loop.run.advance_within_budget(10)

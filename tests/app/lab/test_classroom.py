@@ -1,5 +1,6 @@
 """The teacher's page: folders that are checked as files are saved, ropes, and who may read the page."""
 
+import contextlib
 import functools
 import html
 import http.client
@@ -328,14 +329,21 @@ def test_a_broken_file_is_where_its_line_is(folders: list[Path], state_of) -> No
     assert "step_leapfrog: " not in page
 
 
-@pytest.fixture
-def served(folders: list[Path]) -> Iterator[tuple[Classroom, int]]:
+@contextlib.contextmanager
+def serving(folders: list[Path]) -> Iterator[tuple[Classroom, int]]:
+    """A class and the port of its page."""
     with Classroom(folders, TASKS) as classroom:
         server = make_server(classroom, "secret", 0)
         threading.Thread(target=server.serve_forever, daemon=True).start()
         yield classroom, server.server_address[1]
         server.shutdown()
         server.server_close()
+
+
+@pytest.fixture
+def served(folders: list[Path]) -> Iterator[tuple[Classroom, int]]:
+    with serving(folders) as found:
+        yield found
 
 
 def asked(port: int, path: str, host: str = "", method: str = "GET") -> http.client.HTTPResponse:
@@ -370,15 +378,11 @@ def test_rows_come_once_they_are_new(served: tuple[Classroom, int]) -> None:
 
 def test_the_first_rows_come_at_once(folders: list[Path]) -> None:
     """Also where one student has changed once so far."""
-    with Classroom(folders[:1], TASKS) as classroom:
+    with serving(folders[:1]) as (classroom, port):
         wait_for(lambda: classroom.revision == 1)
-        server = make_server(classroom, "secret", 0)
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        answer = asked(server.server_address[1], "/secret/rows")
+        answer = asked(port, "/secret/rows")
         assert answer.headers["X-Revision"] == "1"
         assert b"Class of 1" in answer.read()
-        server.shutdown()
-        server.server_close()
 
 
 def test_a_browser_that_leaves_before_its_answer_prints_nothing(

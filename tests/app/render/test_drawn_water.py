@@ -2,20 +2,15 @@
 
 import dataclasses
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import trimesh
 import viser
 
 from app.render.injection import disable_shaders
 from app.render.material import Material, SlickRegion, blend
 from app.render.skies import SKIES, drawn_elevation
-from app.render.staff import Staff
 from app.render.water import DrawnWater, Tile
-from app.scenes.square_sea import rain_view
-from app.scenes.square_sea.parameters import RainSettings
 
 SIZE, LENGTH = 16, 40.0
 SLICK = SlickRegion((10.0, 15.0), 6.0, 0.1, 0.05, 0.5)
@@ -53,30 +48,9 @@ def test_a_blend_of_colours_lies_between_them() -> None:
     assert blend(one, other, 0.25) == pytest.approx((0.3, 0.4, 0.75))
 
 
-def test_drops_fall_as_fast_as_the_root_of_gravity(server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Against their drag, which grows with the square of the speed."""
-    made: list[dict[str, tuple[float, ...]]] = []
-    monkeypatch.setattr(rain_view, "StreakMesh", lambda *arguments: made.append(arguments[3]))
-    frame = SimpleNamespace(drops=np.zeros((10, 3)))
-    for gravity in (9.80665, 4.0 * 9.80665):
-        settings = RainSettings(5.0, 10, 0.0, (1.0, 2.0), gravity, 64, 1.0)
-        rain_view.RainMesh(server, frame, settings, 1.0)  # type: ignore[arg-type]
-    first, last = made[0]["dropSizes"], made[-1]["dropSizes"]
-    assert last[1] / first[1] == pytest.approx(2.0)
-    assert first[1] == pytest.approx(1.0, abs=1e-3)
-
-
 @pytest.mark.parametrize("name", SKIES)
 def test_the_sun_is_drawn_where_the_shader_shows_that_of_the_photograph(name: str) -> None:
     photo = SKIES[name]
     e, g, land = math.degrees(drawn_elevation(photo)), photo.stretch, photo.land_near
     assert land + e * (g + (90.0 - land - 90.0 * g) * e / 8100.0) == pytest.approx(photo.sun_height, abs=1e-9)
     assert land + 90.0 * (g + (90.0 - land - 90.0 * g) / 90.0) == pytest.approx(90.0)
-
-
-def test_the_foot_of_the_staff_is_a_disc(server: viser.ViserServer) -> None:
-    Staff(server)
-    foot = server.scene._handle_from_node_name["/staff/foot"]
-    mesh = trimesh.Trimesh(foot.vertices, foot.faces)
-    assert mesh.area == pytest.approx(12.0 * math.sin(math.pi / 12.0), rel=1e-5)
-    assert (mesh.face_normals[:, 2] > 0.999).all()

@@ -1,6 +1,7 @@
 """The view of the square sea on a viser server without a browser."""
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,8 @@ import viser
 from viser._messages import SetOrientationMessage, SetPositionMessage
 
 from app.render.material import blend
-from app.scenes.square_sea.parameters import SquareSeaParams
+from app.scenes.square_sea import rain_view
+from app.scenes.square_sea.parameters import RainSettings, SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.view import (
     GAUGE_SIDES,
@@ -56,6 +58,19 @@ def test_an_overcast_sky_tints_the_water_grey(server: viser.ViserServer, clouds:
     material, sky = view.material_of(frame), view.sky_material
     assert material.sky_tint == pytest.approx(blend(sky.sky_tint, OVERCAST_TINT, share))
     assert material.deep_color == pytest.approx(blend(sky.deep_color, OVERCAST_DEEP, share))
+
+
+def test_drops_fall_as_fast_as_the_root_of_gravity(server: viser.ViserServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Against their drag, which grows with the square of the speed."""
+    made: list[dict[str, tuple[float, ...]]] = []
+    monkeypatch.setattr(rain_view, "StreakMesh", lambda *arguments: made.append(arguments[3]))
+    frame = SimpleNamespace(drops=np.zeros((10, 3)))
+    for gravity in (9.80665, 4.0 * 9.80665):
+        settings = RainSettings(5.0, 10, 0.0, (1.0, 2.0), gravity, 64, 1.0)
+        rain_view.RainMesh(server, frame, settings, 1.0)  # type: ignore[arg-type]
+    first, last = made[0]["dropSizes"], made[-1]["dropSizes"]
+    assert last[1] / first[1] == pytest.approx(2.0)
+    assert first[1] == pytest.approx(1.0, abs=1e-3)
 
 
 def test_another_length_takes_the_cameras_along(server: viser.ViserServer) -> None:

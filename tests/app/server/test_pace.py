@@ -121,7 +121,7 @@ def test_pongs_that_do_not_come_stop_nothing() -> None:
 
 
 def test_the_round_trip_is_the_shortest_of_the_last() -> None:
-    """What is longer has waited for something."""
+    """A longer one includes time in a queue."""
     line = LineTo(LINE, 0.3)
 
     async def probe() -> list[float]:

@@ -183,7 +183,7 @@ def test_the_node_of_a_fairlead_has_the_mobility_of_its_body_there():
     """J M^-1 J^T, with J of a displacement and a small turn about the body's reference point."""
     body, arm = floating_body(), np.array([1.0, -2.0, 3.0])
     points = Point(1, "fixed", (-8.0, 0.0, -10.0)), Point(2, "body", tuple(arm), body=1)
-    light = ROPE._replace(mass=1e-9)  # of its own mass the body bears half a link
+    light = ROPE._replace(mass=1e-9)  # half the mass of the last link adds to the body's
     system = System((Line(1, light, 1, 2, LENGTH, 3),), points, 20.0, (body,), density=0.0)
     p, x = system.kernel_view(1e-3), system.start().ravel()
     set_inverse_masses(x, p)

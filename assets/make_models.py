@@ -37,6 +37,9 @@ PAINTS = {
 WET_SHADE, WET_ROUGHNESS = 0.55, 0.22  # of a paint under water: factor on its linear colour, and roughness
 
 
+SMOOTH = math.radians(62)  # between two faces, up to which the edge between them is drawn round
+
+
 class Model:
     """Parts by paint."""
 
@@ -51,13 +54,20 @@ class Model:
         mesh.apply_transform(trimesh.transformations.rotation_matrix(turn, [0, 0, 1]))
         self.add(paint, mesh.apply_translation(centre))
 
-    def bar(self, paint: str, a: Point, b: Point, radius: float, sections: int = 6) -> None:
-        self.add(paint, trimesh.creation.cylinder(radius, segment=np.array([a, b], float), sections=sections))
+    def bar(self, paint: str, a: Point, b: Point, radius: float, sections: int = 6, closed: bool = True) -> None:
+        """A cylinder from a to b; its ends are left out (`closed` False) where other parts hide them."""
+        mesh = trimesh.creation.cylinder(radius, segment=np.array([a, b], float), sections=sections)
+        if not closed:
+            along = np.subtract(b, a) / np.linalg.norm(np.subtract(b, a))
+            mesh.update_faces(np.abs(mesh.face_normals @ along) < 0.5)
+        self.add(paint, mesh)
 
-    def cone(self, paint: str, low: float, high: float, bottom: float, top: float, sections: int = 24) -> None:
+    def cone(
+        self, paint: str, low: float, high: float, bottom: float, top: float, sections: int = 24, closed: bool = True
+    ) -> None:
         """A frustum about the z axis, from radius `low` at z = bottom to `high` at z = top."""
         outline = np.array([[0.0, bottom], [low, bottom], [high, top], [0.0, top]])
-        self.add(paint, trimesh.creation.revolve(outline, sections=sections))
+        self.add(paint, trimesh.creation.revolve(outline if closed else outline[1:3], sections=sections))
 
     def lattice(self, paint: str, low: list[Point], high: list[Point], bays: int, radius: float) -> None:
         """A tower of straight legs from `low` to `high` corners, with rings and one diagonal a face and bay."""
@@ -69,9 +79,9 @@ class Model:
         for level, (p, q) in enumerate(pairwise(levels)):
             for i in range(n):
                 j = (i + 1) % n
-                self.bar(paint, tuple(q[i]), tuple(q[j]), radius, 4)
+                self.bar(paint, tuple(q[i]), tuple(q[j]), radius, 4, closed=False)
                 start, end = (p[i], q[j]) if level % 2 else (p[j], q[i])
-                self.bar(paint, tuple(start), tuple(end), radius, 4)
+                self.bar(paint, tuple(start), tuple(end), radius, 4, closed=False)
 
     def wet(self, level: float) -> None:
         """Have everything below z = level look wet."""
@@ -100,14 +110,14 @@ class Model:
         scene, count = trimesh.Scene(), 0
         for paint, meshes in self.parts.items():
             color, rough, metal = PAINTS[paint]
-            whole = trimesh.graph.smooth_shade(trimesh.util.concatenate(meshes), angle=math.radians(40))
+            whole = trimesh.graph.smooth_shade(trimesh.util.concatenate(meshes), angle=SMOOTH)
             linear = [*((np.array(color) / 255.0) ** 2.2).tolist(), 1.0]
             factor = (np.array(linear) * 255).round().astype(np.uint8)
             material = PBRMaterial(name=paint, baseColorFactor=factor, roughnessFactor=rough, metallicFactor=metal)
             whole.visual = TextureVisuals(material=material)
             scene.add_geometry(whole, node_name=paint, geom_name=paint)
             count += len(whole.faces)
-        path.write_bytes(scene.export(file_type="glb"))  # type: ignore[arg-type]
+        path.write_bytes(scene.export(file_type="glb", include_normals=True))  # type: ignore[arg-type]
         return count
 
 
@@ -135,10 +145,10 @@ def rig() -> Model:
     # jacket
     low, high = square(17.0, -30.0), square(13.0, 15.0)
     for a, b in zip(low, high, strict=True):
-        m.bar("yellow", a, b, 1.25, 16)
+        m.bar("yellow", a, b, 1.25, 12, closed=False)
         share = (3.0 - a[2]) / (b[2] - a[2])
         wet = tuple(p + (q - p) * share for p, q in zip(a, b, strict=True))
-        m.bar("rust", a, wet, 1.3, 16)  # type: ignore[arg-type]
+        m.bar("rust", a, wet, 1.3, 12)  # type: ignore[arg-type]
     for bottom, top in ((-12.0, 1.5), (1.5, 13.5)):
         p = [
             tuple(u + (v - u) * (bottom + 30) / 45 for u, v in zip(a, b, strict=True))
@@ -150,11 +160,11 @@ def rig() -> Model:
         ]
         for i in range(4):
             j = (i + 1) % 4
-            m.bar("yellow", p[i], q[j], 0.5, 8)  # type: ignore[arg-type]
-            m.bar("yellow", p[j], q[i], 0.5, 8)  # type: ignore[arg-type]
-            m.bar("yellow", q[i], q[j], 0.5, 8)  # type: ignore[arg-type]
+            m.bar("yellow", p[i], q[j], 0.5, 6, closed=False)  # type: ignore[arg-type]
+            m.bar("yellow", p[j], q[i], 0.5, 6, closed=False)  # type: ignore[arg-type]
+            m.bar("yellow", q[i], q[j], 0.5, 6, closed=False)  # type: ignore[arg-type]
     for x in (-3.0, -1.0, 1.0, 3.0):  # conductors
-        m.bar("dark", (x, 0.0, -30.0), (x, 0.0, 16.0), 0.45, 8)
+        m.bar("dark", (x, 0.0, -30.0), (x, 0.0, 16.0), 0.45, 6, closed=False)
     # decks
     m.box("deck", (0, 0, 15.5), (34, 30, 1.0))
     m.box("dark", (0, 0, 14.7), (31, 27, 0.6))
@@ -165,10 +175,10 @@ def rig() -> Model:
     m.box("yellow", (-18.05, 0, 22.5), (0.2, 32, 1.1))
     for x in (-15.0, -5.0, 5.0, 15.0):
         for y in (-13.5, 13.5):
-            m.bar("steel", (x, y, 15.0), (x, y, 22.5), 0.4, 8)
+            m.bar("steel", (x, y, 15.0), (x, y, 22.5), 0.4, 6, closed=False)
     for y in (-14.2, 14.2):  # between the decks
-        m.bar("steel", (-16, y, 18.6), (16, y, 18.6), 0.25, 8)
-        m.bar("orange", (-16, y, 17.4), (16, y, 17.4), 0.18, 8)
+        m.bar("steel", (-16, y, 18.6), (16, y, 18.6), 0.25, 6)
+        m.bar("orange", (-16, y, 17.4), (16, y, 17.4), 0.18, 6)
     for x, y, sx, sy, paint in (
         (-9, -6, 9, 8, "cream"),
         (4, -8, 8, 6, "blue"),
@@ -181,10 +191,10 @@ def rig() -> Model:
         corners = square(1.0, z)
         points = [(x * 18.0, y * 16.0, h) for x, y, h in corners]
         for i in range(4):
-            m.bar("yellow", points[i], points[(i + 1) % 4], 0.06, 4)
+            m.bar("yellow", points[i], points[(i + 1) % 4], 0.06, 4, closed=False)
     for x in np.linspace(-18, 18, 10):
         for y in (-16.0, 16.0):
-            m.bar("yellow", (x, y, 22.9), (x, y, 24.2), 0.06, 4)
+            m.bar("yellow", (x, y, 22.9), (x, y, 24.2), 0.06, 4, closed=False)
     # quarters with windows
     m.box("white", (-11.5, -7.5, 27.5), (11, 13, 9))
     m.box("cream", (-11.5, -7.5, 32.4), (11.6, 13.6, 0.6))
@@ -193,39 +203,38 @@ def rig() -> Model:
         m.box("glass", (-11.5, -7.5, z + 0.3), (9.6, 13.15, 0.9))
     # helideck
     m.add("green", trimesh.creation.cylinder(8.0, 0.6, sections=8).apply_translation((-17, -11, 36)))
-    m.add("white", trimesh.creation.annulus(4.4, 5.0, 0.1, sections=32).apply_translation((-17, -11, 36.35)))
+    m.add("white", trimesh.creation.annulus(4.4, 5.0, 0.1, sections=24).apply_translation((-17, -11, 36.35)))
     for x, y, sx, sy in ((-18.3, -11, 0.7, 4.4), (-15.7, -11, 0.7, 4.4), (-17, -11, 2.6, 0.7)):
         m.box("white", (x, y, 36.36), (sx, sy, 0.1))
     for dx, dy in ((-4, -4), (4, -4), (-4, 4), (4, 4)):
-        m.bar("steel", (-15 + dx * 0.6, -9 + dy * 0.6, 31.5), (-17 + dx, -11 + dy, 35.8), 0.22, 6)
+        m.bar("steel", (-15 + dx * 0.6, -9 + dy * 0.6, 31.5), (-17 + dx, -11 + dy, 35.8), 0.22, 6, closed=False)
     # derrick
     m.box("steel", (3, 3, 25.0), (11, 11, 4.2))
     m.lattice("red", square(4.5, 27.0, 3, 3), square(1.3, 56.0, 3, 3), 7, 0.16)
     m.box("white", (3, 3, 56.6), (3.2, 3.2, 1.2))
     m.bar("white", (3, 3, 57), (3, 3, 62), 0.12, 6)
-    m.bar("dark", (3, 3, 27), (3, 3, 52), 0.22, 6)
+    m.bar("dark", (3, 3, 27), (3, 3, 52), 0.22, 6, closed=False)
     m.box("orange", (3, 3, 43), (1.6, 1.6, 2.6))
     # tanks and modules
-    for i, x in enumerate((10.5, 14.5)):
-        m.bar("white", (x, -14, 25.1), (x, -3, 25.1), 1.7, 20)
-        m.bar("red", (x, -9.2, 25.1), (x, -8.2, 25.1), 1.75, 20)
-        del i
-    m.add("white", trimesh.creation.cylinder(2.6, 7.0, sections=24).apply_translation((13, 10.5, 26.4)))
-    m.cone("white", 2.6, 0.4, 29.9, 31.0)
+    for x in (10.5, 14.5):
+        m.bar("white", (x, -14, 25.1), (x, -3, 25.1), 1.7, 16)
+        m.bar("red", (x, -9.2, 25.1), (x, -8.2, 25.1), 1.75, 16, closed=False)
+    m.add("white", trimesh.creation.cylinder(2.6, 7.0, sections=20).apply_translation((13, 10.5, 26.4)))
+    m.cone("white", 2.6, 0.4, 29.9, 31.0, 20)
     m.parts["white"][-1].apply_translation((13, 10.5, 0))
-    m.bar("steel", (11, 3, 23), (11, 3, 36), 0.7, 12)
-    m.bar("steel", (13, 3.6, 23), (13, 3.6, 34), 0.5, 12)
+    m.bar("steel", (11, 3, 23), (11, 3, 36), 0.7, 10)
+    m.bar("steel", (13, 3.6, 23), (13, 3.6, 34), 0.5, 10)
     for y in (10.5, 13.5):
         m.box("orange", (-6, y, 24.3), (10, 2.3, 2.6))
     m.box("blue", (-6, 12.0, 26.8), (9, 2.3, 2.4))
     # crane
-    m.bar("yellow", (15, 14, 22), (15, 14, 33), 1.0, 14)
+    m.bar("yellow", (15, 14, 22), (15, 14, 33), 1.0, 12, closed=False)
     m.box("yellow", (15, 14, 34.2), (3.4, 3.0, 2.8), 0.6)
     m.lattice("yellow", [(15.6, 14.8, 34.0), (14.6, 15.4, 34.0), (15.2, 15.2, 35.2)],
               [(26.2, 28.8, 50.0), (25.7, 29.1, 50.0), (26.0, 29.0, 50.6)], 7, 0.11)  # fmt: skip
-    m.bar("dark", (26, 29, 50), (26, 29, 33), 0.08, 4)
+    m.bar("dark", (26, 29, 50), (26, 29, 33), 0.08, 4, closed=False)
     m.box("red", (26, 29, 32.4), (0.8, 0.8, 1.2))
-    m.bar("dark", (14.2, 13.0, 38.5), (26, 29, 50.3), 0.06, 4)
+    m.bar("dark", (14.2, 13.0, 38.5), (26, 29, 50.3), 0.06, 4, closed=False)
     m.bar("yellow", (15, 14, 35), (14.2, 13.0, 38.7), 0.25, 6)
     # flare boom
     m.lattice("steel", [(-17, 10, 22.8), (-17, 13, 22.8), (-17, 11.5, 25.2)],
@@ -234,27 +243,28 @@ def rig() -> Model:
     m.bar("rust", (-42.6, 17.9, 44.0), (-43.4, 18.1, 46.2), 0.55, 10)
     # lifeboats and boat landing
     for y in (-6.0, 2.0):
-        boat = trimesh.creation.capsule(height=4.2, radius=1.25, count=(12, 12))
+        boat = trimesh.creation.capsule(height=4.2, radius=1.25, count=(8, 10))
         boat.apply_transform(trimesh.transformations.rotation_matrix(math.pi / 2, [1, 0, 0]))
         m.add("orange", boat.apply_translation((19.6, y + 2.1, 20.4)))
-        m.bar("steel", (18, y, 22.5), (19.6, y, 22.0), 0.2, 6)
+        m.bar("steel", (18, y, 22.5), (19.6, y, 22.0), 0.2, 6, closed=False)
     m.box("dark", (0, -16.4, 2.6), (12, 2.4, 0.4))
-    m.bar("steel", (-4, -16, 2.6), (-4, -14, 15), 0.2, 6)
-    m.bar("steel", (4, -16, 2.6), (4, -14, 15), 0.2, 6)
+    m.bar("steel", (-4, -16, 2.6), (-4, -14, 15), 0.2, 6, closed=False)
+    m.bar("steel", (4, -16, 2.6), (4, -14, 15), 0.2, 6, closed=False)
     return m
 
 
 def can_buoy(paint: str) -> Model:
     """A flat drum of radius 0.6 and height 0.7 with a lattice tower and a lamp; the hull is the drum."""
     m = Model()
-    m.cone(paint, 0.6, 0.6, -0.35, 0.22, 40)
-    m.cone("dark", 0.601, 0.601, -0.352, -0.2, 40)
-    m.cone("white", 0.602, 0.602, -0.02, 0.12, 40)
-    m.cone(paint, 0.6, 0.52, 0.22, 0.35, 40)
+    edges = (-0.35, -0.2, -0.02, 0.12, 0.22)
+    for color, (bottom, top) in zip(("dark", paint, "white", paint), pairwise(edges), strict=True):
+        m.cone(color, 0.6, 0.6, bottom, top, 32, closed=False)
+    m.add("dark", trimesh.creation.cylinder(0.6, 0.01, sections=32).apply_translation((0, 0, -0.345)))
+    m.cone(paint, 0.6, 0.52, 0.22, 0.35, 32)
     m.lattice(paint, square(0.3, 0.33), square(0.1, 1.35), 3, 0.018)
-    m.cone(paint, 0.17, 0.17, 1.33, 1.42, 20)
-    m.cone("lamp", 0.085, 0.085, 1.42, 1.6, 16)
-    m.cone("dark", 0.11, 0.02, 1.6, 1.68, 16)
+    m.cone(paint, 0.17, 0.17, 1.33, 1.42, 16)
+    m.cone("lamp", 0.085, 0.085, 1.42, 1.6, 12, closed=False)
+    m.cone("dark", 0.11, 0.02, 1.6, 1.68, 12)
     for angle in (0.0, math.pi / 2):
         board = trimesh.creation.box((0.44, 0.02, 0.34))
         board.apply_transform(trimesh.transformations.rotation_matrix(angle, [0, 0, 1]))

@@ -1,6 +1,7 @@
 """How water looks, as data: its colours, optics, ripples and sky, and how these numbers travel to the shader."""
 
 import functools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -156,17 +157,17 @@ def as_linear_bytes(color: RGB) -> tuple[int, int, int]:
 
 
 def waterline_table(waterlines: Sequence[Waterline]) -> np.ndarray:
-    """The uniforms of the waterlines, (4 MAX_WATERLINES, 3) float32, as the shader declares them.
+    """The uniforms of the waterlines, twelve numbers each in the order of the shader, as (4 MAX_WATERLINES, 3) float32.
 
     A corner of 0 means none. Raises ValueError for more than MAX_WATERLINES.
     """
     if len(waterlines) > MAX_WATERLINES:
         raise argument_error("waterlines", len(waterlines), f"at most {MAX_WATERLINES}")
-    table = np.zeros((4 * MAX_WATERLINES, 3), np.float32)
+    table = np.zeros((MAX_WATERLINES, 12), np.float32)
     for k, line in enumerate(waterlines):
-        shape = (*line.centre, line.heading), (*line.half_sides, line.corner), (line.bottom, line.top, 0.0)
-        table[4 * k : 4 * k + 4] = *shape, linear(line.color)
-    return table
+        place = *line.centre, math.cos(line.heading), math.sin(line.heading)
+        table[k] = *place, *line.half_sides, line.corner, line.top, *linear(line.color), line.bottom
+    return table.reshape(-1, 3)
 
 
 class Grid(NamedTuple):

@@ -61,7 +61,7 @@ RUN = """([constants, shader, expression, table, uniforms, tileSide, tile, detai
     if (tileSide) texture(1, tileSide, tileSide, decode(tile), gl.RGBA16F, true);
     for (const name of ["waveSlopes", "wavePlaces"]) gl.uniform1i(gl.getUniformLocation(program, name), 1);
     for (const [name, value] of Object.entries(uniforms)) {
-        gl.uniform3f(gl.getUniformLocation(program, name), ...value);
+        gl[`uniform${value.length}fv`](gl.getUniformLocation(program, name), value);
     }
     const target = gl.createTexture();
     gl.activeTexture(gl.TEXTURE2);
@@ -91,7 +91,7 @@ def evaluate(
 ) -> NDArray[np.float64]:
     """A GLSL expression, a vec4, at each of (n, up to 4) points, in it "p": (n, 4).
 
-    uniforms: vec3 by name; the others are 0. tile: (m, m, 4), of both textures of the waves. details:
+    uniforms: vectors by name; the others are 0. tile: (m, m, 4), of both textures of the waves. details:
     of the shader.
     """
     inputs = np.zeros((len(points), 4))

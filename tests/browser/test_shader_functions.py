@@ -230,16 +230,31 @@ def test_rays_from_the_water_meet_what_stands_in_it_and_above_it(page: Any) -> N
     """A box of 4 m by 2 m and 3 m high that is turned by a right angle, 10 m away, and a deck from 8 to 9 m over it."""
     box = Waterline((10.0, 0.0), np.pi / 2, (1.9, 0.9), 0.1, 3.0, color=(1.0, 0.0, 0.0))
     deck = Waterline((10.0, 0.0), 0.0, (1.9, 1.9), 0.1, 9.0, 8.0, (0.0, 0.0, 1.0))
-    uniforms = {f"waterlines[{k}]": row for k, row in enumerate(waterline_table([box, deck]))}
+    table = waterline_table([box, deck]).reshape(-1, 4)
+    uniforms = {f"waterlines[{k}]": row for k, row in enumerate(table)}
     rises = {0.1: (1.0, 0.0), 0.25: (1.0, 0.0), 0.6: (0.0, 0.0), 1.05: (0.0, 1.0), 1.5: (0.0, 0.0)}  # red, blue
     rays = np.array([(1.0, 0.0, rise) for rise in rises] + [(-1.0, 0.0, 0.1), (1.0, 0.35, 0.1), (1.0, 0.15, 0.1)])
     expected = [*rises.values(), (0.0, 0.0), (0.0, 0.0), (1.0, 0.0)]
-    met = evaluate(page, "mirroredHulls(vec3(0.0), normalize(p.xyz), 0.002, vec3(1.0))", rays, uniforms)
+    met = evaluate(page, "meetHulls(vec3(0.0), normalize(p.xyz), 0.002, vec3(1.0), p.w)", rays, uniforms)
     np.testing.assert_allclose(met[:, [0, 2]], expected, atol=0.02)
     np.testing.assert_allclose(met[:, 3], np.sum(expected, axis=1), atol=0.02)
     # Facets that are tilted spread the rays: what is small and far is mirrored in part.
-    spread = evaluate(page, "mirroredHulls(vec3(0.0), normalize(p.xyz), 0.3, vec3(1.0))", rays[:1], uniforms)
+    spread = evaluate(page, "meetHulls(vec3(0.0), normalize(p.xyz), 0.3, vec3(1.0), p.w)", rays[:1], uniforms)
     assert 0.1 < spread[0, 3] < 0.95
+
+
+def test_the_distance_from_what_stands_in_the_water(page: Any) -> None:
+    """A turned rectangle of 4 m by 2 m with round corners, a circle, and a deck over both, which does not count."""
+    box, circle = Waterline((10.0, 0.0), 0.4, (1.5, 0.5), 0.5, 3.0), Waterline((-6.0, 2.0), 0.0, (0.0, 0.0), 1.5, 3.0)
+    deck = Waterline((0.0, 0.0), 0.0, (20.0, 20.0), 0.1, 9.0, 8.0)
+    table = waterline_table([box, circle, deck]).reshape(-1, 4)
+    uniforms = {f"waterlines[{k}]": row for k, row in enumerate(table)}
+    places = np.random.default_rng(2).uniform(-15.0, 15.0, (500, 2))
+    expression = "(meetHulls(vec3(p.xy, 0.0), vec3(0.0, 0.0, 1.0), 0.1, vec3(1.0), p.w), vec4(p.w))"
+    offset = (places - box.centre) @ [[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]]
+    from_box = np.hypot(*np.maximum(np.abs(offset) - box.half_sides, 0.0).T) - box.corner
+    expected = np.maximum(np.minimum(from_box, np.hypot(*(places - circle.centre).T) - circle.corner), 0.0)
+    np.testing.assert_allclose(evaluate(page, expression, places, uniforms)[:, 0], expected, atol=1e-4)
 
 
 def test_numbers_become_the_next_half_precision_numbers(page: Any) -> None:

@@ -23,12 +23,27 @@ const AMBIENT_GLSL = `
   uniform vec3 skyTerms[9];
   vec3 skyLight(vec3 normal) {
     vec3 d = inverseTransformDirection(normal, viewMatrix);
-    return max(skyTerms[0] + skyTerms[1] * d.x + skyTerms[2] * d.y + skyTerms[3] * d.z + skyTerms[4] * d.x * d.y +
-               skyTerms[5] * d.y * d.z + skyTerms[6] * d.z * d.x + skyTerms[7] * (d.x * d.x - d.y * d.y) +
-               skyTerms[8] * (3.0 * d.z * d.z - 1.0), 0.0);
+    vec3 light = skyTerms[0] + skyTerms[1] * d.x + skyTerms[2] * d.y + skyTerms[3] * d.z;
+    #if DETAILS > 0
+      light += skyTerms[4] * d.x * d.y + skyTerms[5] * d.y * d.z + skyTerms[6] * d.z * d.x +
+               skyTerms[7] * (d.x * d.x - d.y * d.y) + skyTerms[8] * (3.0 * d.z * d.z - 1.0);
+    #endif
+    return max(light, 0.0);
   }
   #define getIBLIrradiance(normal) (PI * envMapIntensity * skyLight(normal))
   #define getIBLRadiance(view, normal, roughness) (envMapIntensity * skyLight(normal))`;
+
+// At the lowest quality nothing mirrors: suns and sky light matt surfaces, and of the sky the first four terms do.
+const MATT_GLSL = `
+  #undef STANDARD
+  #define LAMBERT
+  #undef RE_Direct
+  #undef RE_IndirectDiffuse
+  #undef RE_IndirectSpecular
+  #define RE_Direct(light, place, normal, view, coat, material, found) \\
+    found.directDiffuse += saturate(dot(normal, light.direction)) * light.color * BRDF_Lambert(diffuseColor.rgb)
+  #define RE_IndirectDiffuse(irradiance, place, normal, view, coat, material, found) \\
+    found.indirectDiffuse += irradiance * BRDF_Lambert(diffuseColor.rgb)`;
 
 const skyTerms = { value: null };
 let samples = null; // { target, dome, key } with which the photograph is read
@@ -36,6 +51,8 @@ let samples = null; // { target, dome, key } with which the photograph is read
 function addAmbient(shader) {
   Object.assign(shader.uniforms, { skyTerms });
   insertAfter(shader, "fragmentShader", "envmap_physical_pars_fragment", AMBIENT_GLSL);
+  shader.fragmentShader = withDetails(shader.fragmentShader);
+  if (QUALITY.details() === 0) shader.fragmentShader = shader.fragmentShader.replace("#include <lights_physical_fragment>", MATT_GLSL);
 }
 
 // The terms of the polynomial in a direction.
@@ -74,7 +91,7 @@ function readSky(renderer, scene, mesh) {
   }
 }
 
-// Whether a material is lit so. At the lowest quality everything is, and nothing mirrors.
+// Whether a material is lit so. At the lowest quality everything is.
 const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0;
 
 // Light viser's own meshes so; those with a shader of ours ask for it themselves.
@@ -83,15 +100,15 @@ function lightMeshes(renderer, scene) {
   let plain = null; // an ordinary mesh, not an instanced one: its class makes the triangle
   scene.traverseVisible((object) => {
     if (!object.isMesh) return;
-    lit.push(...[object.material].flat().filter((one) => one.isMeshStandardMaterial));
+    lit.push(...[object.material].flat().filter((one) => one.isMeshStandardMaterial && !one.isMeshPhysicalMaterial));
     const isPlain = Object.getPrototypeOf(object.constructor) === Object.getPrototypeOf(scene.constructor);
     if (isPlain && object.material.isMeshStandardMaterial) plain ??= object;
   });
   if (plain) readSky(renderer, scene, plain);
   for (const one of skyTerms.value ? lit : []) {
     const { springtide } = one.userData;
-    if (springtide && springtide !== AMBIENT) continue;
-    if (isRough(one)) replaceShader(one, AMBIENT, addAmbient);
+    if (springtide && !springtide.startsWith(AMBIENT)) continue;
+    if (isRough(one)) replaceShader(one, keyWithDetails(AMBIENT), addAmbient);
     else if (springtide) replaceShader(one, "", () => {});
   }
 }

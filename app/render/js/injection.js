@@ -82,8 +82,8 @@ shaders.push({
       insertAfter(shader, "fragmentShader", "common", UNDERWATER_GLSL);
       addPlace(shader);
     };
-    const key = `springtide-vertex-colors-${dark ? "dark" : "light"}${underwater ? base : ""}${open}${isAmbient ? "-ambient" : ""}`;
-    return replaceShader(mesh.material, key, edit) ? mesh.material : null;
+    const key = `springtide-vertex-colors-${dark ? "dark" : "light"}${underwater ? base : ""}${open}`;
+    return replaceShader(mesh.material, isAmbient ? keyWithDetails(`${key}-ambient`) : key, edit) ? mesh.material : null;
   },
 });
 

@@ -16,44 +16,57 @@ const OPEN_GLSL = `
   // Half side of the surface, depth, size of the scene [m]; x, y, heading of the body; its half sides, corner.
   uniform vec3 openWater[3];
   const vec3 DEEP = vec3(0.035, 0.165, 0.255), LIT = vec3(0.36, 0.62, 0.70), SUN = vec3(-0.50, 0.30, -0.81);
-  float hashed(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }
-  float noise(vec2 p) {
-    vec2 i = floor(p), f = fract(p);
-    f *= f * (3.0 - 2.0 * f);
-    return mix(mix(hashed(i), hashed(i + vec2(1, 0)), f.x), mix(hashed(i + vec2(0, 1)), hashed(i + vec2(1, 1)), f.x), f.y);
+  // Noise of mean 1/2 between random numbers at whole places, and its two slopes.
+  vec3 noiseAndSlope(vec2 p) {
+    vec2 i = floor(p), f = p - i, u = f * f * (3.0 - 2.0 * f), du = 6.0 * f * (1.0 - f);
+    const uvec2 FACTORS = uvec2(1597334673u, 3812015801u);
+    uvec2 low = uvec2(ivec2(i)) * FACTORS, high = low + FACTORS;
+    uvec4 corners = uvec4(low.x ^ low.y, high.x ^ low.y, low.x ^ high.y, high.x ^ high.y) * FACTORS.x;
+    vec4 random = vec4(corners >> 8) / 16777216.0;
+    vec2 along = mix(random.xz, random.yw, u.x), across = mix(random.xy, random.zw, u.y);
+    return vec3(mix(along.x, along.y, u.y), du * vec2(across.y - across.x, along.y - along.x));
   }
-  // The sky towards d.
-  vec3 skyColor(vec3 d) {
-    float up = max(d.y, 0.0), sun = max(dot(d, SUN), 0.0);
-    vec3 color = mix(vec3(0.84, 0.89, 0.93), vec3(0.27, 0.48, 0.73), 1.0 - exp(-3.5 * up));
-    vec2 p = 1.3 * d.xz / (up + 0.12);
-    float cloud = 0.5 * noise(p) + 0.3 * noise(2.3 * p + 7.0) + 0.2 * noise(5.1 * p);
-    color = mix(color, vec3(0.96, 0.97, 0.98), 0.7 * smoothstep(0.48, 0.8, cloud) * smoothstep(0.0, 0.2, up));
+  float noise(vec2 p) { return noiseAndSlope(p).x; }
+  // The sky towards d without clouds, and how much of them there is by p, their place.
+  vec3 clearSky(vec3 d) {
+    float sun = max(dot(d, SUN), 0.0);
+    vec3 color = mix(vec3(0.84, 0.89, 0.93), vec3(0.27, 0.48, 0.73), 1.0 - exp(-3.5 * max(d.y, 0.0)));
     return color + vec3(1.0, 0.86, 0.62) * (0.22 * pow(sun, 12.0) + pow(sun, 700.0));
   }
+  vec2 cloudPlace(vec3 d) { return 1.3 * d.xz / (max(d.y, 0.0) + 0.12); }
+  vec3 withClouds(vec3 color, vec3 d, float cloud) {
+    return mix(color, vec3(0.96, 0.97, 0.98), 0.7 * smoothstep(0.48, 0.8, cloud) * smoothstep(0.0, 0.2, d.y));
+  }
+  vec3 skyColor(vec3 d) {
+    vec2 p = cloudPlace(d);
+    return withClouds(clearSky(d), d, 0.5 * noise(p) + 0.3 * noise(2.3 * p + 7.0) + 0.2 * noise(5.1 * p));
+  }
+  // In moving water, small clouds are not seen.
+  vec3 mirroredSky(vec3 d) { return withClouds(clearSky(d), d, 0.6 * noise(cloudPlace(d)) + 0.2); }
   float mirrored(float cosine) { return 0.02 + 0.98 * pow(1.0 - clamp(cosine, 0.0, 1.0), 5.0); }
   // Where the surface is drawn by its mesh, 1, and where behind everything, 0.
   float meshed(vec2 p) { vec2 a = abs(p) / openWater[0].x; return 1.0 - smoothstep(0.7, 0.97, max(a.x, a.y)); }
   // The normal of the surface with ripples, which are lost in the distance [m].
   vec3 rippled(vec3 normal, vec2 p, float away, float t) {
     vec2 q = 40.0 * p / openWater[0].z;
-    vec2 slope = vec2(noise(q + 0.9 * t) - noise(q.yx - 0.7 * t), noise(1.7 * q.yx + t) - noise(1.9 * q + 0.8 * t));
+    vec2 slope = 0.8 * noiseAndSlope(0.7 * q + 0.7 * t).yz + 0.5 * noiseAndSlope(1.3 * q.yx - vec2(0.7, -0.8) * t).yz;
     return normalize(normal + 0.22 * exp(-away / (4.0 * openWater[0].z)) * vec3(slope.x, 0.0, slope.y));
   }
   // The sky in the surface, seen along d from above, and the share of light that is mirrored.
   vec4 seaColor(vec3 d, vec3 normal) {
     vec3 up = reflect(d, normal);
     up.y = abs(up.y);
-    return vec4(skyColor(normalize(up)), min(mirrored(dot(-d, normal)), 0.75));
+    return vec4(mirroredSky(normalize(up)), min(mirrored(dot(-d, normal)), 0.75));
   }
   // What is seen along d of a colour under water, through the level sea where its mesh does not draw it.
   vec3 seenThrough(vec3 color, vec3 d) {
     if (cameraPosition.y < 0.0 || d.y >= 0.0) return color;
-    float away = -cameraPosition.y / d.y;
+    float away = -cameraPosition.y / d.y, lost = smoothstep(6.0, 90.0, away / openWater[0].z);
     vec2 p = cameraPosition.xz + away * d.xz;
+    float level = 1.0 - meshed(p);
+    if (level + lost <= 0.0) return color;
     vec4 sea = seaColor(d, rippled(vec3(0, 1, 0), p, away, openTime));
-    color = mix(color, sea.rgb, sea.a * (1.0 - meshed(p)));
-    return mix(color, skyColor(vec3(d.x, 0.02, d.z)), smoothstep(6.0, 90.0, away / openWater[0].z));
+    return mix(mix(color, sea.rgb, sea.a * level), clearSky(vec3(d.x, 0.02, d.z)), lost);
   }
   // Distance [m] of a level place to the outline of the body.
   float toBody(vec2 p) {

@@ -30,7 +30,7 @@ function uniformsOf(base, mesh) {
     uniforms.eye = { value: [0, 0, 0] };
     for (const name of ["polarPlace", "polarSteps"]) uniforms[name] = { value: [0, 0, 0, 0] };
     for (const name of ["polarTurn", "farDepth"]) uniforms[name] = { value: 0 };
-    uniforms.waterlines = { value: Array.from({ length: 4 * MAX_WATERLINES }, () => mesh.position.clone().set(0, 0, 0)) };
+    uniforms.waterlines = { value: new Float32Array(12 * MAX_WATERLINES) };
     uniformsByName.set(base, uniforms);
   }
   return uniformsByName.get(base);
@@ -178,14 +178,11 @@ shaders.push({
     drawSkyTable(base, sea, renderer, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);
     const lines = meshOf(`${base}/water_lines`);
-    if (lines) {
-      const numbers = lines.geometry.attributes.position.array;
-      sea.uniforms.waterlines.value.forEach((vector, k) => vector.fromArray(numbers, 3 * k));
-    }
+    if (lines) sea.uniforms.waterlines.value = lines.geometry.attributes.position.array;
     const { shown, ringLaw, cutout, slick, waterlines } = sea.uniforms, [drawSky, wireframe] = shown.value.toArray();
     // Compiling takes seconds: a sea keeps the programs for oil and hulls when they have gone.
     sea.hasOil ||= slick.value.z > 0;
-    sea.hasHulls ||= waterlines.value[1].z > 0;
+    sea.hasHulls ||= waterlines.value[6] > 0; // the corner of the first one
     const parts = { RINGS: ringLaw.value.y, CUTOUT: cutout.value.z, WIRE: wireframe, OIL: sea.hasOil, HULLS: sea.hasHulls };
     const variantOf = (...names) => {
       const defined = names.filter((name) => parts[name] > 0);

@@ -321,9 +321,10 @@ const WATER_GLSL = {
                                               + patches.y * gradientNoise(x / (ripple.y * 7.0) - seaState.x * 0.03).x);
       float power = GUST_MEAN * GUST_MEAN + GUST_CONTRAST * GUST_CONTRAST * NOISE_VARIANCE * dot(patches, patches);
       gust = max(gust, 0.15) / sqrt(power);
-      for (int k = 0; k < 9; k++) {
+      const int SHOWN = min(4 * DETAILS + 1, 9);
+      for (int k = 0; k < SHOWN; k++) {
         if (float(k) >= octaves) break;
-        float seen = k < 4 * DETAILS + 1 ? 1.0 - smoothstep(0.12, 0.5, footprint / wave) : 0.0;
+        float seen = 1.0 - smoothstep(0.12, 0.5, footprint / wave);
         lost += each * (1.0 - seen * seen);
         if (seen > 0.0) {
           vec2 d = vec2(cos(angle), sin(angle));
@@ -336,6 +337,7 @@ const WATER_GLSL = {
         wave *= 0.47;
         angle += (mod(float(k), 2.0) < 0.5 ? 0.9 : -1.3);
       }
+      lost += each * max(octaves - float(SHOWN), 0.0);
       return vec4(slope * gust, lost * gust * gust, gust);
     }
 
@@ -500,45 +502,36 @@ const WATER_GLSL = {
       return fresnel(max(dot(V, H), 0.0), index) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
     }
 
-    // What stands in the water or above it, four vectors each: x, y, heading; half sides and corner [m] (0: none);
-    // bottom, top [m], unused; colour.
-    uniform vec3 waterlines[4 * MAX_WATERLINES];
+    // What stands in the water or above it, three vectors each: x, y, cosine and sine of its heading; half sides, corner
+    // [m] (0: none), top [m]; colour, bottom [m].
+    uniform vec4 waterlines[3 * MAX_WATERLINES];
 
-    // Distance [m] of a point from the nearest of them; 0 inside.
-    float distanceToHull(vec2 x) {
-      float nearest = 1e3;
-      for (int k = 0; k < MAX_WATERLINES; k++) {
-        vec3 place = waterlines[4 * k], size = waterlines[4 * k + 1];
-        if (size.z <= 0.0) break;
-        if (waterlines[4 * k + 2].x > 0.0) continue; // above the water
-        vec2 d = x - place.xy, e = vec2(cos(place.z), sin(place.z));
-        d = abs(vec2(dot(d, e), dot(d, vec2(-e.y, e.x))));
-        nearest = min(nearest, length(max(d - size.xy, 0.0)) - size.z);
-      }
-      return max(nearest, 0.0);
-    }
-
-    // What a ray from the water meets of them: (light, share of the ray). Each is taken for an upright elliptic cylinder.
-    // spread: width of the ray over its length, as the facets that mirror it are tilted; around: the light on them.
-    vec4 mirroredHulls(vec3 at, vec3 R, float spread, vec3 around) {
+    // What a ray R from the water meets of them: (light, share of the ray). Each is taken for an upright elliptic
+    // cylinder. spread: width of the ray over its length, as the facets that mirror it are tilted; around: the light on
+    // them; near: distance [m] of the nearest one that stands in the water, 0 inside. One loop for both, because software
+    // renderers take long to read an array.
+    vec4 meetHulls(vec3 at, vec3 R, float spread, vec3 around, out float near) {
       vec4 found = vec4(0.0);
+      float sunny = max(dot(-R.xy, sunDirection.xy), 0.0) / max(length(R.xy), 1e-3);
+      vec3 light = around + 0.3183 * sunLight * sunny;
+      near = 1e3;
       for (int k = 0; k < MAX_WATERLINES; k++) {
-        vec3 place = waterlines[4 * k], size = waterlines[4 * k + 1], rise = waterlines[4 * k + 2];
+        vec4 place = waterlines[3 * k], size = waterlines[3 * k + 1], color = waterlines[3 * k + 2];
         if (size.z <= 0.0) break;
-        vec2 e = vec2(cos(place.z), sin(place.z)), d = at.xy - place.xy, sides = size.xy + size.z;
-        vec2 p = vec2(dot(d, e), dot(d, vec2(-e.y, e.x))) / sides;
-        vec2 r = vec2(dot(R.xy, e), dot(R.xy, vec2(-e.y, e.x))) / sides;
+        vec2 d = at.xy - place.xy, e = place.zw, n = vec2(-e.y, e.x), unit = 1.0 / (size.xy + size.z);
+        d = vec2(dot(d, e), dot(d, n));
+        near = min(near, color.w > 0.0 ? 1e3 : length(max(abs(d) - size.xy, 0.0)) - size.z);
+        vec2 p = d * unit, r = vec2(dot(R.xy, e), dot(R.xy, n)) * unit;
         float rr = max(dot(r, r), 1e-6), nearest = -dot(p, r) / rr;
         if (nearest <= 0.0) continue;
         vec2 c = p + nearest * r;
-        float wide = spread * nearest + 0.02, gap = (length(c) - 1.0) * min(sides.x, sides.y);
-        float z = at.z + max(nearest - sqrt(max(1.0 - dot(c, c), 0.0) / rr), 0.0) * R.z;
-        float cover = (1.0 - smoothstep(-wide, wide, gap)) * (1.0 - smoothstep(rise.y - wide, rise.y + wide, z));
-        if (rise.x > 0.0) cover *= smoothstep(rise.x - wide, rise.x + wide, z);
-        float sunny = max(dot(-R.xy, sunDirection.xy), 0.0) / max(length(R.xy), 1e-3);
-        vec3 lit = waterlines[4 * k + 3] * (around + 0.3183 * sunLight * sunny);
-        found = mix(found, vec4(lit, 1.0), cover);
+        float cc = dot(c, c), wide = spread * nearest + 0.02, gap = (sqrt(cc) - 1.0) / max(unit.x, unit.y);
+        float z = at.z + max(nearest - sqrt(max(1.0 - cc, 0.0) / rr), 0.0) * R.z;
+        float cover = (1.0 - smoothstep(-wide, wide, gap)) * (1.0 - smoothstep(size.w - wide, size.w + wide, z));
+        if (color.w > 0.0) cover *= smoothstep(color.w - wide, color.w + wide, z);
+        found = mix(found, vec4(color.rgb * light, 1.0), cover);
       }
+      near = max(near, 0.0);
       return found;
     }
 
@@ -629,18 +622,6 @@ const WATER_GLSL = {
         rough = max(rough, 0.0);
       }
       #endif
-      // Water that washes around a hull foams, the wider the higher the waves; close to it less light comes in.
-      float whitened = clamp(foamShare, 0.0, 1.0);
-      #ifdef HULLS
-        float hull = distanceToHull(at.xy);
-        float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
-        wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
-        whitened = clamp(max(whitened, 0.8 * wash * wash), 0.0, 1.0);
-      #endif
-      vec4 bubbles = foamCover(rest, whitened, footprint);
-      // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816): their bubbles are
-      // a thin layer, and half of what is seen there is the water.
-      float foam = bubbles.x * mix(0.5, 1.0, smoothstep(0.1, 0.7, whitened));
       vec4 rings = rainSlopes(rest, footprint);
       slope += rings.xy;
       float variance = optics.y * optics.y + 0.5 * (rough + fine.z + rings.z);
@@ -664,11 +645,22 @@ const WATER_GLSL = {
       vec3 ambient = ambientLight();
       vec3 mirrored = behindRain(addClouds(sky(R, dim), R, max(dim, 0.1), ambient, true).rgb, R);
       #ifdef HULLS
-        if (hull < 60.0) {
-          vec4 hulls = mirroredHulls(at, R, 1.5 * sigma, around);
-          mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a);
-        }
+        float hull;
+        vec4 hulls = meetHulls(at, R, 1.5 * sigma, around, hull);
+        mirrored = mix(mirrored, hulls.rgb / max(hulls.a, 1e-3), hulls.a * (1.0 - smoothstep(50.0, 60.0, hull)));
       #endif
+
+      // Water that washes around a hull foams, the wider the higher the waves; close to it less light comes in.
+      float whitened = clamp(foamShare, 0.0, 1.0);
+      #ifdef HULLS
+        float wash = (1.0 - smoothstep(0.0, 0.15 + 0.35 * sqrt(seaState.y), hull)) * smoothstep(0.05, 0.6, seaState.y);
+        wash *= (1.0 - oil) * (0.75 + 0.5 * gradientNoise(at.xy * 2.3 - 0.4 * seaState.x).x);
+        whitened = clamp(max(whitened, 0.8 * wash * wash), 0.0, 1.0);
+      #endif
+      vec4 bubbles = foamCover(rest, whitened, footprint);
+      // Whitecaps reflect about half of the light when they are old (Koepke 1984, Appl. Opt. 23:1816): their bubbles are
+      // a thin layer, and half of what is seen there is the water.
+      float foam = bubbles.x * mix(0.5, 1.0, smoothstep(0.1, 0.7, whitened));
 
       float glints = DETAILS > 1 ? GLINT_SHARE : WIDE_GLINT_SHARE;
       vec3 facet = facetAt(rest, facetWidth(steps), glints * variance);

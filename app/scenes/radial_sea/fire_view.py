@@ -16,7 +16,7 @@ from app.scenes.radial_sea.well_blowout import FIRE, JET_VELOCITY, SMOKE_LIFE
 from sim.particles.fire import share_left
 from sim.particles.plume import soot_made
 
-MAX_FIRE_SPLATS, MAX_OIL_SPLATS = 2000, 900
+MAX_FIRE_SPLATS, MAX_OIL_SPLATS = 1500, 900
 HEAT = (0.0, 0.15, 0.26, 0.34, 0.5, 0.8, 1.0)  # of a parcel, at which it has the colour below
 HEAT_COLOURS = np.array([
     (104, 98, 92),

@@ -11,8 +11,8 @@ from tests.browser.conftest import new_page
 STATE = """() => ({ ...window.__springtide?.quality?.now(), width: document.querySelector("canvas[data-engine]")?.width,
     line: document.querySelector("#springtide-slow")?.innerText ?? "",
     now: document.querySelector("[data-springtide-quality-now]")?.innerText ?? null,
-    detail: (window.__viserMutable?.nodeRefFromName?.["/sea"]?.children?.find(c => c.isMesh)
-        ?.material.userData.springtide ?? "") })"""
+    detail: (window.__viserMutable?.nodeRefFromName?.["/sea"]?.children
+        ?.find(c => c.isMesh && c.visible && c.layers.mask)?.material.userData.springtide ?? "") })"""
 # What the automatic choice makes of frames of these lengths [ms]: its step after each list of [length, number].
 JUDGED = """lists => { const judge = window.__springtide.quality.makeJudge();
     return lists.map(list => { for (const [length, n] of list) for (let k = 0; k < n; k++) judge.take(length);

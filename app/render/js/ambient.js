@@ -2,7 +2,8 @@
 // pixel in the photograph of the sky: these are a quarter of the cost of a cloth. Spherical harmonics: R. Ramamoorthi,
 // P. Hanrahan, "An efficient representation for irradiance environment maps", SIGGRAPH 2001.
 //
-// The photograph is read once. Without float targets, or if the program does not link, three's own lookups stay.
+// The photograph is read once, beside the page: to wait for it would be to wait for all that is drawn before. Without float
+// targets, or if the program does not link, three's own lookups stay.
 
 const AMBIENT = "springtide-ambient"; // key of viser's shader with this light
 const ROUGH = 0.9; // roughness, from which on a reflection is as blurred as this light
@@ -46,7 +47,9 @@ const MATT_GLSL = `
     found.indirectDiffuse += irradiance * BRDF_Lambert(diffuseColor.rgb)`;
 
 const skyTerms = { value: null };
-let samples = null; // { target, dome, key } with which the photograph is read
+const LIKELY_SKY = [0.7, 0.75, 0.8]; // until the photograph is read
+let skiesRead = 0; // frames.js draws when it changes
+let samples = null; // the table with which the photograph is read
 
 function addAmbient(shader) {
   Object.assign(shader.uniforms, { skyTerms });
@@ -66,25 +69,57 @@ function readSky(renderer, scene, mesh) {
   if (!Target || !renderer.extensions.has("EXT_color_buffer_float")) return;
   const key = [photograph.uuid, photograph.version, ...scene.environmentRotation.toArray()].join();
   if (samples?.key === key) return;
-  if (!samples) {
-    const how = { type: FLOAT, format: RGBA, minFilter: NEAREST, magFilter: NEAREST, depthBuffer: false };
-    const dome = makeDome({ geometry: mesh.geometry, mesh });
-    dome.removeFromParent();
-    samples = { target: new Target(DIRECTIONS, 1, how), dome };
-  }
-  samples.key = key;
-  litBy(samples.dome.material, scene);
-  const isDrawn = drawInto(renderer, samples, "springtide-sky-samples", (shader) => {
+  const how = { type: FLOAT, format: RGBA, minFilter: NEAREST, magFilter: NEAREST, depthBuffer: false };
+  samples ??= makeTable({ geometry: mesh.geometry, mesh }, new Target(DIRECTIONS, 1, how));
+  const isDrawn = drawTable(renderer, scene, samples, key, "springtide-sky-samples", (shader) => {
     shader.vertexShader = TARGET_VERTEX;
     shader.fragmentShader = SKY_SAMPLES_FRAGMENT;
   });
   if (!isDrawn) return;
-  const numbers = new Float32Array(4 * DIRECTIONS);
-  renderer.readRenderTargetPixels(samples.target, 0, 0, DIRECTIONS, 1, numbers);
-  skyTerms.value = MEAN_SQUARES.map(() => mesh.position.clone().set(0, 0, 0));
+  skyTerms.value ??= MEAN_SQUARES.map((_, i) => mesh.position.clone().fromArray(i === 0 ? LIKELY_SKY : [0, 0, 0]));
+  readSamples(renderer, samples.target, (numbers) => {
+    if (samples.key !== key) return;
+    setTerms(numbers);
+    skiesRead += 1;
+    window.__viserMutable.requestRender();
+  });
+}
+
+// Read what is drawn into a target of DIRECTIONS pixels.
+function readSamples(renderer, target, take) {
+  const numbers = new Float32Array(4 * DIRECTIONS), gl = renderer.getContext();
+  if (QUALITY.isWhole()) {
+    renderer.readRenderTargetPixels(target, 0, 0, DIRECTIONS, 1, numbers);
+    return void take(numbers);
+  }
+  const before = renderer.getRenderTarget(), buffer = gl.createBuffer();
+  renderer.setRenderTarget(target);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+  gl.bufferData(gl.PIXEL_PACK_BUFFER, numbers.byteLength, gl.STREAM_READ);
+  gl.readPixels(0, 0, DIRECTIONS, 1, gl.RGBA, gl.FLOAT, 0);
+  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+  renderer.setRenderTarget(before);
+  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl.flush();
+  const look = () => {
+    if (gl.isContextLost()) return;
+    if (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return void setTimeout(look, LOOK_INTERVAL);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
+    gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, numbers);
+    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
+    gl.deleteBuffer(buffer);
+    gl.deleteSync(fence);
+    take(numbers);
+  };
+  setTimeout(look, LOOK_INTERVAL);
+}
+
+// The terms of a sky with these colours in DIRECTIONS, red, green, blue and one more number each.
+function setTerms(numbers) {
+  for (const term of skyTerms.value) term.set(0, 0, 0);
   for (let k = 0; k < DIRECTIONS; k++) {
     const z = 1 - (2 * k + 1) / DIRECTIONS, level = Math.sqrt(1 - z * z), a = GOLDEN_ANGLE * k;
-    const color = mesh.position.clone().fromArray(numbers, 4 * k);
+    const color = skyTerms.value[0].clone().fromArray(numbers, 4 * k);
     termsOf(level * Math.cos(a), level * Math.sin(a), z).forEach((term, i) => {
       skyTerms.value[i].addScaledVector(color, term / (DIRECTIONS * MEAN_SQUARES[i]));
     });
@@ -99,7 +134,7 @@ function lightMeshes(renderer, scene) {
   const lit = [];
   let plain = null; // an ordinary mesh, not an instanced one: its class makes the triangle
   scene.traverseVisible((object) => {
-    if (!object.isMesh) return;
+    if (!object.isMesh || object.layers.mask === 0) return;
     lit.push(...[object.material].flat().filter((one) => one.isMeshStandardMaterial && !one.isMeshPhysicalMaterial));
     const isPlain = Object.getPrototypeOf(object.constructor) === Object.getPrototypeOf(scene.constructor);
     if (isPlain && object.material.isMeshStandardMaterial) plain ??= object;

@@ -85,7 +85,7 @@ function inputsOf(renderer, scene, camera) {
   const list = [
     isDark(), devicePixelRatio, details, pixels, canvas.width, canvas.height, canvas.clientWidth, canvas.clientHeight,
     toneMapping, toneMappingExposure, outputColorSpace, shadowMap.enabled, scene.environmentIntensity,
-    scene.backgroundIntensity, scene.backgroundBlurriness, scene.fog, camera, awaitsSky(scene),
+    scene.backgroundIntensity, scene.backgroundBlurriness, scene.fog, camera, awaitsSky(scene), skiesRead, programsReady,
   ];
   list.textures = new Set();
   for (const part of ["background", "environment", "environmentRotation", "backgroundRotation", "overrideMaterial"]) {
@@ -99,7 +99,7 @@ function inputsOf(renderer, scene, camera) {
 function paceFrames(renderer) {
   const gl = renderer.getContext(), keepsPixels = gl.getContextAttributes()?.preserveDrawingBuffer;
   let last = null; // the inputs of the frame that the canvas shows
-  let drawing = null; // of that frame while it is being drawn: its fence, and whether it compiled a program
+  let drawing = null; // of that frame while it is being drawn: its fence, and whether it had a new program
   let length = 0; // [ms] of it
   let started = 0, pressed = 0, left = 0; // when it began, when something in the panel was pressed, frames left to the panel
 
@@ -134,7 +134,8 @@ function paceFrames(renderer) {
     return true;
   }
 
-  const newestProgram = () => renderer.info.programs?.at(-1)?.id;
+  let knownPrograms = ""; // with the last frame
+  const programs = () => `${renderer.info.programs?.at(-1)?.id} ${programsReady}`;
 
   wrapMethod(renderer, "render", (earlier) => function (scene, camera) {
     const viewer = window.__viserMutable;
@@ -148,11 +149,12 @@ function paceFrames(renderer) {
     const inputs = inputsOf(renderer, scene, camera);
     if (last?.length === inputs.length && inputs.every((input, k) => Object.is(input, last[k]))) return;
     if (last && hasToWait()) return void viewer.requestRender();
-    const newest = newestProgram();
     [started, left] = [performance.now(), 0];
     earlier.call(this, scene, camera);
     last = inputs;
-    awaitEnd(newestProgram() !== newest);
+    const known = programs();
+    awaitEnd(known !== knownPrograms);
+    knownPrograms = known;
   });
   // It clears the canvas.
   wrapMethod(renderer, "setSize", (earlier) => function (...size) {

@@ -36,6 +36,53 @@ function replaceShader(material, key, edit) {
   return true;
 }
 
+// Programs that the browser is still compiling. It does so beside the page where it has KHR_parallel_shader_compile.
+const awaited = new Set();
+const LOOK_INTERVAL = 30; // [ms] between two looks at them
+let programsReady = 0; // counts on with each of them; frames.js draws when it changes
+let isCompiling = false; // whether this frame has begun to use a program, in a browser that compiles while the page waits
+
+function lookForPrograms() {
+  const before = programsReady;
+  for (const program of awaited) {
+    if (program.program && program.isReady?.() === false) continue; // one that is gone has none
+    awaited.delete(program);
+    programsReady += 1;
+  }
+  if (awaited.size > 0) setTimeout(lookForPrograms, LOOK_INTERVAL);
+  if (programsReady > before) window.__viserMutable.requestRender();
+}
+
+// Give an object a material with another shader as soon as its program is compiled; until then it keeps the one that it has.
+// Where the page waits for a program, only one is compiled in each frame. key: of the shader; edit(shader): changes it; scene:
+// whose lights it has. Returns whether the object has a material with some shader.
+function dress(renderer, object, key, edit, camera, scene = object) {
+  const { userData } = object, earlier = object.material;
+  userData.materials ??= new Map([["", earlier]]); // by key of their shader
+  const { materials } = userData, bare = materials.get("");
+  if (!materials.has(key)) {
+    materials.set(key, bare.clone());
+    replaceShader(materials.get(key), key, edit);
+  }
+  const next = materials.get(key);
+  if (next === earlier) return true;
+  object.material = next;
+  renderer.compile(object, camera, scene);
+  const program = renderer.properties.get(next).currentProgram, isBeside = renderer.extensions.has("KHR_parallel_shader_compile");
+  if (QUALITY.isWhole() || (isBeside ? program.isReady?.() !== false : !isCompiling)) {
+    isCompiling = true;
+    return true;
+  }
+  if (awaited.size === 0) setTimeout(lookForPrograms, LOOK_INTERVAL);
+  awaited.add(program);
+  object.material = earlier;
+  return earlier !== bare;
+}
+
+function disposeMaterials(object) {
+  for (const material of object.userData.materials?.values() ?? [object.material]) material.dispose();
+}
+
 // Whether the program of a material linked. If a driver refuses it, the material gets viser's shader back, so that the
 // mesh is still drawn, and the server is not told that the shader is active.
 function isLinked(renderer, material) {
@@ -124,13 +171,14 @@ function beforeRender(renderer, scene, camera) {
   }
   window.__springtide = { memory: () => ({ ...renderer.info.memory }), quality: QUALITY, skiesDrawn }; // tests read it
   QUALITY.beforeRender(renderer);
+  isCompiling = false;
+  drawOneLightOfEachSun(scene);
   const active = [];
   forEachShaded((shader, node) => {
     const material = shader.update({ ...node, renderer, scene, camera });
     if (material && isLinked(renderer, material)) active.push(node.base);
   });
   for (const shader of shaders) if (shader.removeUnused) shader.removeUnused();
-  drawOneLightOfEachSun(scene);
   lightMeshes(renderer, scene);
   dressSmoke(scene);
   dressLabels(renderer, scene, camera);

@@ -83,17 +83,15 @@ const LIT_FRAGMENT = `
 
 // Resources of a lit sea: the grid with a second material, a triangle, tiles, and their render targets.
 function makeLit(sea) {
-  const grid = new sea.mesh.constructor(sea.polar.geometry, new sea.mesh.material.constructor());
-  grid.frustumCulled = false;
-  const [corners, triangle, light] = [makeDome(sea), makeDome(sea), makeDome(sea)];
+  const [corners, grid, triangle, light] = [1, 2, 3, 4].map(() => makeDome(sea));
   const targets = { vertices: null, places: null, counts: null, lights: null };
-  const lit = { corners, grid, triangle, light, tiles: null, ...targets, size: "" };
-  for (const dome of [corners, triangle, light]) {
-    dome.removeFromParent();
-    dome.material.depthTest = false;
+  for (const drawn of [corners, grid, triangle, light]) {
+    drawn.removeFromParent();
+    Object.assign(drawn.material, { fog: false, toneMapped: false, depthTest: false });
   }
-  for (const { material } of [corners, grid, triangle, light]) material.fog = material.toneMapped = false;
-  return lit;
+  grid.geometry.dispose();
+  Object.assign(grid.material, { depthTest: true, depthWrite: true, side: sea.mesh.material.side });
+  return { corners, grid, triangle, light, tiles: null, ...targets, size: "" };
 }
 
 // Two triangles for each tile: its column, its row, and which of its corners.
@@ -118,11 +116,8 @@ function disposeLit(sea) {
   const { lit } = sea;
   if (!lit) return;
   disposeTargets(lit);
-  for (const { geometry, material } of [lit.corners, lit.triangle, lit.light]) {
-    geometry.dispose();
-    material.dispose();
-  }
-  lit.grid.material.dispose();
+  for (const { geometry } of [lit.corners, lit.triangle, lit.light]) geometry.dispose();
+  for (const drawn of [lit.corners, lit.grid, lit.triangle, lit.light]) disposeMaterials(drawn);
   sea.lit = null;
 }
 
@@ -143,38 +138,37 @@ function resizeLit(base, sea, width, height) {
   [uniforms.seaTiles.value, uniforms.seaLight.value] = [lit.counts.texture, lit.lights.texture];
 }
 
-// Find the light of every pixel of the sea; false where this browser cannot.
+// Find the light of every pixel of the sea: false where this browser cannot, null while it compiles the programs.
 function lightSea(base, sea, renderer, scene, camera, shape, light) {
   const { uniforms } = sea;
-  if (!uniforms.skyTable.value) return false;
+  if (!uniforms.skyTable.value || sea.isUnlit) return false;
   const lit = (sea.lit ??= makeLit(sea)), before = renderer.getRenderTarget(), gl = renderer.getContext();
-  const materials = [lit.corners, lit.grid, lit.triangle, lit.light].map(({ material }) => material);
-  if (materials.some((material) => refused.has(material))) return false;
   resizeLit(base, sea, before?.width ?? gl.drawingBufferWidth, before?.height ?? gl.drawingBufferHeight);
-  lit.grid.geometry = sea.polar.geometry;
-  lit.grid.material.side = sea.mesh.material.side;
-  litBy(lit.light.material, scene);
-  const programs = [
-    [`${shape.key} vertices`, TARGET_VERTEX, shape.defines + VERTICES_FRAGMENT],
-    [`${shape.key} places`, PLACED + WATER_VERTEX, shape.defines + PLACES_FRAGMENT],
-    ["springtide-water tiles", TARGET_VERTEX, TILES_FRAGMENT],
-    [keyWithDetails(`${light.key} light`), LIGHT_VERTEX, withSky(light.defines + LIGHT_FRAGMENT, uniforms)],
+  Object.assign(lit.grid, { geometry: sea.polar.geometry, visible: sea.polar.visible });
+  litBy(lit.light, scene);
+  const passes = [
+    [lit.vertices, lit.corners, `${shape.key} vertices`, TARGET_VERTEX, shape.defines + VERTICES_FRAGMENT],
+    [lit.places, lit.grid, `${shape.key} places`, PLACED + WATER_VERTEX, shape.defines + PLACES_FRAGMENT],
+    [lit.counts, lit.triangle, "springtide-water tiles", TARGET_VERTEX, TILES_FRAGMENT],
+    [lit.lights, lit.light, keyWithDetails(`${light.key} light`), LIGHT_VERTEX, withSky(light.defines + LIGHT_FRAGMENT, uniforms)],
   ];
-  for (const [k, [name, vertexShader, fragmentShader]] of programs.entries()) {
-    replaceShader(materials[k], name, (shader) => {
+  const alpha = renderer.getClearAlpha();
+  let isWhole = true;
+  renderer.setClearAlpha(0);
+  for (const [target, drawn, key, vertexShader, fragmentShader] of passes) {
+    renderer.setRenderTarget(target);
+    const isDressed = dress(renderer, drawn, key, (shader) => {
       Object.assign(shader.uniforms, uniforms);
       Object.assign(shader, { vertexShader, fragmentShader });
-    });
-  }
-  const alpha = renderer.getClearAlpha();
-  renderer.setClearAlpha(0);
-  const passes = [[lit.vertices, lit.corners], [lit.places, lit.grid], [lit.counts, lit.triangle], [lit.lights, lit.light]];
-  for (const [target, drawn] of passes) {
-    renderer.setRenderTarget(target);
+    }, camera);
+    isWhole &&= isDressed;
+    if (!isDressed) continue;
     renderer.clear();
     renderer.render(drawn, camera);
   }
   renderer.setClearAlpha(alpha);
   renderer.setRenderTarget(before);
-  return materials.every((material) => isLinked(renderer, material));
+  if (!isWhole) return null;
+  sea.isUnlit = !passes.every(([, drawn]) => isLinked(renderer, drawn.material));
+  return !sea.isUnlit;
 }

@@ -25,6 +25,7 @@ function finenessOf({ drawingBufferWidth, drawingBufferHeight }) {
   return drawingBufferWidth * drawingBufferHeight > MANY_PIXELS ? 2 : 1;
 }
 
+// The mesh of a sea as coarse or fine as this, with the materials that it has.
 function makePolar(sea, fineness) {
   const { rings, spokes } = POLAR[fineness], rows = rings + DOUBLED;
   const numbers = new Float32Array(3 * rows * spokes), index = new Uint32Array(6 * (rows - 1) * (spokes - 1));
@@ -40,11 +41,10 @@ function makePolar(sea, fineness) {
   const geometry = new sea.geometry.constructor(), { position } = sea.geometry.attributes;
   geometry.setAttribute("position", new position.constructor(numbers, 3));
   geometry.setIndex(new sea.geometry.index.constructor(index, 1));
-  const polar = new sea.mesh.constructor(geometry, sea.mesh.material);
-  polar.frustumCulled = false;
-  polar.raycast = () => {};
+  const polar = sea.polar ?? makeDome(sea);
+  polar.geometry.dispose();
+  Object.assign(polar, { geometry, renderOrder: 0 });
   Object.assign(polar.userData, { fineness, springtideDerived: true });
-  sea.mesh.parent.add(polar);
   return polar;
 }
 

@@ -201,6 +201,8 @@ const QUALITY = (() => {
     choice: () => choice,
     now: () => ({ ...current, step: STEPS.indexOf(current), steps: STEPS.length }),
     isCapturing, // a picture that the server asked for
+    // Whether this frame has to be as it says, however long that takes: it does not change afterwards.
+    isWhole: () => isFixed || isCapturing() || window.__springtideClip === true,
     // How much detail the shaders of this frame have: 2 all, 1 less, 0 least.
     details: () => (isFixed || isCapturing() ? 2 : current.details),
     // Begin with a renderer: at the step that it had when the page was last open, and at the last one if it has no

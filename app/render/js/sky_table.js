@@ -42,48 +42,58 @@ function wantSky() {
 const skyTables = new Map(); // name of the node -> { target, dome, key }, kept for good as its uniforms
 let skiesDrawn = 0; // tests read it
 
-// Let a material that is drawn outside of the scene have its photograph of the sky.
-function litBy(material, { environment, environmentIntensity, environmentRotation }) {
-  Object.assign(material, { envMap: environment, envMapIntensity: environmentIntensity });
-  material.envMapRotation.copy(environmentRotation);
+// Let the materials of an object that is drawn outside of the scene have its photograph of the sky.
+function litBy(object, { environment, environmentIntensity, environmentRotation }) {
+  for (const material of object.userData.materials?.values() ?? [object.material]) {
+    Object.assign(material, { envMap: environment, envMapIntensity: environmentIntensity });
+    material.envMapRotation.copy(environmentRotation);
+  }
 }
 
-// Draw the dome of a table into its target, with the shader that `edit` makes. Returns false if it did not link.
-function drawInto(renderer, { target, dome }, key, edit) {
+// A triangle that covers a target, and the target.
+function makeTable(sea, target) {
+  const dome = makeDome(sea);
+  dome.removeFromParent();
   dome.material.fog = dome.material.toneMapped = dome.material.depthTest = false;
-  replaceShader(dome.material, key, edit);
+  return { target, dome, key: "" };
+}
+
+// Draw a table if it is not the one with this key, with the shader that `edit` makes. Returns whether it is drawn: false if
+// it did not link, null while its program is not compiled.
+function drawTable(renderer, scene, table, key, name, edit) {
+  const { target, dome } = table, { camera } = window.__viserMutable;
+  if (table.key === key) return !refused.has(dome.material);
+  litBy(dome, scene);
   const before = renderer.getRenderTarget();
   renderer.setRenderTarget(target);
-  renderer.render(dome, window.__viserMutable.camera);
+  const isDressed = dress(renderer, dome, name, edit, camera);
+  if (isDressed) renderer.render(dome, camera);
   renderer.setRenderTarget(before);
+  if (!isDressed) return null;
+  table.key = key;
   return isLinked(renderer, dome.material);
 }
 
-// Draw the table of the sea `base` if it is not that of this photograph and these uniforms.
+// Draw the table of the sea `base` if it is not that of this photograph and these uniforms. False while it is not compiled.
 function drawSkyTable(base, sea, renderer, scene) {
   const photograph = scene.environment, Target = photograph?.renderTarget?.constructor;
-  if (!Target || !renderer.extensions.has("EXT_color_buffer_float")) return;
+  if (!Target || !renderer.extensions.has("EXT_color_buffer_float")) return true;
   const { uniforms } = sea, { environmentIntensity, environmentRotation } = scene;
   const numbers = [...SKY_UNIFORMS, "fromSea"].flatMap((name) => uniforms[name].value.toArray());
   const key = [photograph.uuid, photograph.version, environmentIntensity, ...environmentRotation.toArray(), ...numbers].join();
   if (!skyTables.has(base)) {
     const how = { type: HALF_FLOAT, format: RGBA, minFilter: LINEAR, magFilter: LINEAR, wrapS: REPEAT, wrapT: CLAMP };
-    const target = new Target(SKY_COLUMNS, (SKY_BLUR.length + 1) * SKY_ROWS + 3, { ...how, depthBuffer: false });
-    const dome = makeDome(sea);
-    dome.removeFromParent();
-    skyTables.set(base, { target, dome, key: "" });
+    skyTables.set(base, makeTable(sea, new Target(SKY_COLUMNS, (SKY_BLUR.length + 1) * SKY_ROWS + 3, { ...how, depthBuffer: false })));
   }
-  const table = skyTables.get(base);
-  if (table.key === key || refused.has(table.dome.material)) return;
-  table.key = key;
-  skiesDrawn += 1;
-  litBy(table.dome.material, scene);
-  const isDrawn = drawInto(renderer, table, "springtide-sky-table", (shader) => {
+  const table = skyTables.get(base), isNew = table.key !== key;
+  const isDrawn = drawTable(renderer, scene, table, key, "springtide-sky-table", (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = TARGET_VERTEX;
     shader.fragmentShader = SKY_TABLE_FRAGMENT;
   });
-  uniforms.skyTable.value = isDrawn ? table.target.texture : null;
+  if (isDrawn && isNew) skiesDrawn += 1;
+  uniforms.skyTable.value = isDrawn === false ? null : table.target.texture;
+  return isDrawn !== null;
 }
 
 // The text of a fragment shader that shows the sky of these uniforms.

@@ -38,7 +38,7 @@ function uniformsOf(base, mesh) {
 
 function makeSea(mesh, uniforms) {
   // widest, highest: greatest displacement [m] along the level and upwards; cell: of the simulated grid [m]
-  const made = { polar: null, lit: null, dome: null, triangle: null }, size = { widest: 0, highest: 0, cell: 1 };
+  const made = { polar: null, plain: null, lit: null, dome: null, triangle: null, isUnlit: false }, size = { widest: 0, highest: 0, cell: 1 };
   return { mesh, geometry: mesh.geometry, uniforms, filled: -1, hasOil: false, hasHulls: false, ...made, ...size };
 }
 
@@ -123,21 +123,36 @@ function makeDome(sea) {
   return dome;
 }
 
-function disposePolar(sea) {
-  if (!sea.polar) return;
-  sea.polar.removeFromParent();
-  sea.polar.geometry.dispose(); // the material is viser's
-  sea.polar = null;
+function disposeSea(sea) {
+  disposeLit(sea);
+  for (const drawn of [sea.polar, sea.plain, sea.dome]) {
+    if (!drawn) continue;
+    drawn.removeFromParent();
+    disposeMaterials(drawn);
+  }
+  sea.polar?.geometry.dispose();
+  sea.triangle?.dispose();
+  sea.polar = sea.plain = sea.dome = sea.triangle = null;
 }
 
-function disposeSea(sea) {
-  disposePolar(sea);
-  disposeLit(sea);
-  if (!sea.dome) return;
-  sea.dome.removeFromParent();
-  sea.triangle.dispose();
-  sea.dome.material.dispose();
-  sea.dome = null;
+// Plain water, while the browser compiles the programs of the sea.
+function showPlain(sea, renderer, camera, scene, shape) {
+  const { polar } = sea;
+  if (!sea.plain) {
+    sea.plain = makeDome(sea);
+    sea.plain.geometry.dispose();
+    sea.plain.renderOrder = 0;
+    sea.plain.userData.springtideDerived = true;
+    Object.assign(sea.plain.material, { depthWrite: true, side: sea.mesh.material.side });
+  }
+  sea.plain.geometry = polar.geometry;
+  sea.plain.visible = polar.visible && dress(renderer, sea.plain, `${shape.key} plain`, (shader) => {
+    Object.assign(shader.uniforms, sea.uniforms);
+    shader.vertexShader = shape.defines + WATER_VERTEX;
+    shader.fragmentShader = shape.defines + PLAIN_FRAGMENT;
+  }, camera, scene);
+  polar.visible = false;
+  if (sea.dome) sea.dome.visible = false;
 }
 
 // Until a sea's programs are compiled, and where its mesh is made anew, the photograph behind it would show its land. The
@@ -162,6 +177,13 @@ shaders.push({
     return applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array);
   },
   update({ base, mesh, data, renderer, scene, camera }) {
+    if (refused.has(mesh.material)) {
+      if (seas.has(base)) disposeSea(seas.get(base));
+      mesh.layers.mask = 1;
+      delete mesh.geometry.computeVertexNormals;
+      showPhotograph(scene, true);
+      return null;
+    }
     showPhotograph(scene, false);
     const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
     if (!surface || !rest) return null;
@@ -172,10 +194,10 @@ shaders.push({
       mesh.geometry.computeVertexNormals = () => {}; // the slopes replace them: viser need not compute them each frame
     }
     wantSky();
-    mesh.layers.mask = 0; // the polar grid is drawn in its place, with its material
+    mesh.layers.mask = 0; // the polar grid is drawn in its place
     if (!this.unpack({ base, mesh }) || awaitsSky(scene)) return null;
     readMaterial(sea, data);
-    drawSkyTable(base, sea, renderer, scene);
+    const hasTable = drawSkyTable(base, sea, renderer, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);
     const lines = meshOf(`${base}/water_lines`);
     if (lines) sea.uniforms.waterlines.value = lines.geometry.attributes.position.array;
@@ -194,42 +216,44 @@ shaders.push({
     // viser asks three for a reversed depth buffer; a browser without clip control has none.
     sea.uniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     const fineness = finenessOf(renderer.getContext());
-    if (sea.polar?.userData.fineness !== fineness) disposePolar(sea);
-    sea.polar ??= makePolar(sea, fineness);
+    if (!sea.polar) {
+      sea.polar = makePolar(sea, fineness);
+      Object.assign(sea.polar.material, { depthWrite: true, side: mesh.material.side });
+    } else if (sea.polar.userData.fineness !== fineness) makePolar(sea, fineness);
     aimPolar(sea, camera);
-    const isLit = sea.polar.visible && lightSea(base, sea, renderer, scene, camera, shape, light);
-    const edit = (shader) => {
+    const isLit = lightSea(base, sea, renderer, scene, camera, shape, light);
+    const key = isLit === false ? keyWithDetails(whole.key) : `${shape.key} lit`;
+    const hasSurface = dress(renderer, sea.polar, key, (shader) => {
       Object.assign(shader.uniforms, sea.uniforms);
-      shader.vertexShader = (isLit ? PLACED : shape.defines) + WATER_VERTEX;
-      shader.fragmentShader = isLit ? shape.defines + LIT_FRAGMENT : withSky(whole.defines + WATER_FRAGMENT, sea.uniforms);
-    };
-    if (!replaceShader(mesh.material, isLit ? `${shape.key} lit` : keyWithDetails(whole.key), edit)) {
-      disposeSea(sea);
-      mesh.layers.mask = 1;
-      delete mesh.geometry.computeVertexNormals;
-      showPhotograph(scene, true);
-      return null;
-    }
-    sea.polar.material = mesh.material;
-
+      shader.vertexShader = (isLit === false ? shape.defines : PLACED) + WATER_VERTEX;
+      shader.fragmentShader = isLit === false ? withSky(whole.defines + WATER_FRAGMENT, sea.uniforms) : shape.defines + LIT_FRAGMENT;
+    }, camera, scene);
     if (drawSky && !sea.dome) {
       sea.dome = makeDome(sea);
       sea.triangle = sea.dome.geometry;
     }
+    let hasDome = true;
     if (sea.dome) {
       sea.dome.visible = drawSky > 0;
       sea.dome.geometry = isLit ? sea.lit.tiles : sea.triangle;
-      replaceShader(sea.dome.material, keyWithDetails(`springtide-dome${isLit ? " in tiles" : ""}`), (shader) => {
+      hasDome = dress(renderer, sea.dome, keyWithDetails(`springtide-dome${isLit === false ? "" : " in tiles"}`), (shader) => {
         Object.assign(shader.uniforms, sea.uniforms);
-        shader.vertexShader = isLit ? `#define TILES\n${DOME_VERTEX}` : DOME_VERTEX;
+        shader.vertexShader = isLit === false ? DOME_VERTEX : `#define TILES\n${DOME_VERTEX}`;
         shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
-      });
+      }, camera, scene);
+    }
+    const isReady = hasTable && isLit !== null && hasSurface && hasDome;
+    if (sea.plain) sea.plain.visible = false;
+    if (!isReady) showPlain(sea, renderer, camera, scene, shape);
+    else if (!isLinked(renderer, sea.polar.material)) {
+      refused.add(mesh.material);
+      return this.update({ base, mesh, data, renderer, scene, camera });
     }
     // The server may add meshes for browsers without this shader (Water._draw_plain); here they are hidden.
     for (const part of ["foam", "wire", "sea", "slick"]) {
       const plain = meshOf(`${base}/plain_${part}`);
       if (plain) plain.visible = false;
     }
-    return mesh.material;
+    return isReady ? sea.polar.material : null;
   },
 });

@@ -824,6 +824,20 @@ const WATER_FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
+// The sea in few words: its colour, and the sky at its horizon where one looks flatly at it.
+const PLAIN_FRAGMENT = `
+  ${WATER_PLACE}
+  uniform vec3 deepColor, lens;
+  const vec3 AROUND = vec3(0.45, 0.55, 0.68); // about the page's own sky
+  void main() {
+    cutOut();
+    vec3 V = eye - seaPlace(), N = normalize(cross(dFdx(vSea), dFdy(vSea)));
+    float far = length(V), grazing = pow(1.0 - abs(dot(N, V)) / far, 4.0), lost = 1.0 - exp(-far / lens.x);
+    gl_FragColor = vec4(mix(mix(deepColor, AROUND, 0.7 * grazing), AROUND, lost), 1.0);
+    #include <tonemapping_fragment>
+    #include <colorspace_fragment>
+  }`;
+
 const TILE = 16; // [pixels] side of the squares in which sea and sky are shaded
 // The corners of tiles of the canvas (lit_sea.js), by position: column, row, and which corner. Other tiles than those of
 // one kind, sea (0) or anything else (1), have no area.

@@ -1,0 +1,128 @@
+"""A sea waits for its programs without stopping the page, and shows plain water or its last programs meanwhile.
+
+The browser of these tests compiles while the page waits; KHR_parallel_shader_compile is imitated.
+"""
+
+import contextlib
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from app.render.injection import injector_of
+from app.server.viewer import Viewer
+from tests.browser.conftest import new_page
+
+# A browser with the extension, in which the programs of the sea are ready when `held` says so: all but that of plain
+# water.
+BESIDE = """(() => { const P = WebGL2RenderingContext.prototype, COMPLETION_STATUS = 0x91B1;
+    const { getExtension, getProgramParameter, shaderSource, attachShader } = P;
+    window.held = true;
+    P.getExtension = function (name) {
+        const isAsked = name === "KHR_parallel_shader_compile";
+        return isAsked ? { COMPLETION_STATUS_KHR: COMPLETION_STATUS } : getExtension.call(this, name); };
+    P.shaderSource = function (shader, text) {
+        [shader.isOfSea, shader.isPlain] = [/uniform highp sampler2D (sea|sky)/.test(text), text.includes("AROUND")];
+        shaderSource.call(this, shader, text); };
+    P.attachShader = function (program, shader) {
+        program.isOfSea ||= shader.isOfSea;
+        program.isPlain ||= shader.isPlain;
+        attachShader.call(this, program, shader); };
+    P.getProgramParameter = function (program, what) {
+        const isHeld = window.held && program.isOfSea && !program.isPlain && !program.isDone;
+        if (what === COMPLETION_STATUS) return !isHeld && (program.isDone = true);
+        if (isHeld) window.hasWaited = true;
+        return getProgramParameter.call(this, program, what); };
+})();"""
+# For each frame of the browser in which programs of the sea are used for the first time, how many.
+FIRST_USES = """(() => { const P = WebGL2RenderingContext.prototype, { shaderSource, attachShader, useProgram } = P;
+    let frame = 0;
+    const known = new Set(), count = () => { frame += 1; requestAnimationFrame(count); };
+    requestAnimationFrame(count);
+    window.firstUses = {};
+    P.shaderSource = function (shader, text) {
+        shader.isOfSea = /uniform highp sampler2D (sea|sky)/.test(text);
+        shaderSource.call(this, shader, text); };
+    P.attachShader = function (program, shader) {
+        program.isOfSea ||= shader.isOfSea;
+        attachShader.call(this, program, shader); };
+    P.useProgram = function (program) {
+        if (program?.isOfSea && !known.has(program)) window.firstUses[frame] = (window.firstUses[frame] ?? 0) + 1;
+        known.add(program);
+        useProgram.call(this, program); };
+})();"""
+# The shaders of the sea with which the page draws.
+DRAWN = """() => { const found = [];
+    window.__viserMutable?.scene?.traverseVisible(({ material, parent }) => {
+        const key = material?.userData?.springtide;
+        if (key?.startsWith("springtide-water") || key?.startsWith("springtide-dome")) found.push(key); });
+    return found.sort(); }"""
+CHOOSE = """quality => { localStorage.setItem("springtide-quality", quality);
+    window.dispatchEvent(new StorageEvent("storage", { key: "springtide-quality" })); }"""
+
+
+@contextlib.contextmanager
+def open_sea(chromium: Any, script: str) -> Iterator[tuple[Viewer, Any]]:
+    """A server and a page without pixels, with this script, on a square sea at quality low."""
+    lab = Viewer("127.0.0.1", 0)
+    page = new_page(chromium, 400, 300, drawn=False)
+    page.add_init_script(f"{script} localStorage.setItem('springtide-quality', 'low');")
+    try:
+        lab.open("square_sea")
+        page.goto(f"http://127.0.0.1:{lab.port}/?hideViserLogo")
+        yield lab, page
+    finally:
+        page.close()
+        lab.shut()
+
+
+def wait_for(page: Any, shaders: list[str]) -> None:
+    page.wait_for_function(f"shaders => ({DRAWN})().join() === shaders.join()", arg=shaders, timeout=60_000)
+
+
+def test_a_page_never_waits_for_a_program_of_the_sea(chromium: Any) -> None:
+    with open_sea(chromium, BESIDE) as (_, page):
+        wait_for(page, ["springtide-water/sea plain"])
+        page.evaluate("window.held = false")
+        wait_for(page, ["springtide-dome in tiles with details 0", "springtide-water/sea lit"])
+        # Other programs are needed for another quality: until they are ready, the last ones draw.
+        page.evaluate("window.held = true")
+        page.evaluate(CHOOSE, "high")
+        page.wait_for_function("window.__springtide.quality.details() === 2")
+        page.wait_for_timeout(1000)
+        assert page.evaluate(DRAWN) == ["springtide-dome in tiles with details 0", "springtide-water/sea lit"]
+        page.evaluate("window.held = false")
+        wait_for(page, ["springtide-dome in tiles", "springtide-water/sea lit"])
+        assert not page.evaluate("window.hasWaited === true")
+
+
+def test_a_browser_that_waits_for_programs_gets_one_in_a_frame(chromium: Any) -> None:
+    with open_sea(chromium, FIRST_USES) as (_, page):
+        wait_for(page, ["springtide-dome in tiles with details 0", "springtide-water/sea lit"])
+        page.wait_for_timeout(500)
+        uses = page.evaluate("Object.values(window.firstUses)")
+        assert sum(uses) >= 6
+        assert max(uses) <= 2  # the surface and the sky are first drawn together
+
+
+def test_an_image_for_the_server_waits_for_the_whole_sea(chromium: Any) -> None:
+    with open_sea(chromium, BESIDE) as (lab, page):
+        wait_for(page, ["springtide-water/sea plain"])
+        (client,) = lab.server.get_clients().values()
+        image = threading.Thread(target=client.get_render, args=(30, 40))
+        image.start()
+        while image.is_alive():
+            page.wait_for_timeout(50)
+        assert page.evaluate("window.hasWaited")
+        assert "springtide-water/sea lit" in page.evaluate(DRAWN)
+
+
+@pytest.mark.parametrize("script", [BESIDE.replace("window.held = true;", "window.held = false;"), FIRST_USES])
+def test_the_server_learns_that_the_sea_is_drawn_by_its_shader(chromium: Any, script: str) -> None:
+    with open_sea(chromium, script) as (lab, page):
+        injector = injector_of(lab.server)
+        assert injector is not None
+        while not injector.is_active("/sea"):
+            page.wait_for_timeout(50)
+        assert page.evaluate(DRAWN) == ["springtide-dome in tiles with details 0", "springtide-water/sea lit"]

@@ -175,12 +175,14 @@ def test_each_program_that_depends_on_the_details_has_three_variants() -> None:
     scripts = source_of("water.js") + source_of("rain.js")
     sources = re.findall(r"fragmentShader = (.*);", scripts)
     assert sorted(sources) == [
-        "isLit ? shape.defines + LIT_FRAGMENT : withSky(whole.defines + WATER_FRAGMENT, sea.uniforms)",
+        "isLit === false ? withSky(whole.defines + WATER_FRAGMENT, sea.uniforms) : shape.defines + LIT_FRAGMENT",
+        "shape.defines + PLAIN_FRAGMENT",
         "withSky(DOME_FRAGMENT, sea.uniforms)",
         "withSky(RAIN_FRAGMENT, sea.uniforms)",
     ]
-    keys = re.findall(r"replaceShader\([\w.]+, (.*), (?:edit\)|\(shader)", scripts)
-    assert len(keys) == len(sources)
+    keys = re.findall(r"(?:replaceShader\([\w.]+|dress\(renderer, sea\.dome), (.*), (?:edit\)|\(shader)", scripts)
+    keys += re.findall(r"const key = (.*);", scripts)
+    assert len(keys) == sum("withSky(" in source for source in sources)
     assert all("keyWithDetails(" in key for key in keys)
     lit = re.findall(r"^ +\[(.+), [\w +]+_VERTEX, (.+_FRAGMENT.*)\],$", source_of("lit_sea.js"), re.MULTILINE)
     assert [("keyWithDetails(" in key, "withSky(" in source) for key, source in lit] == 3 * [(False, False)] + [

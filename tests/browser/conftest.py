@@ -61,6 +61,9 @@ PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.came
     const box = viewer.canvas.getBoundingClientRect(), place = camera.position.clone().set(...point);
     top.parent.localToWorld(place).project(camera);
     return [box.left + box.width * (1 + place.x) / 2, box.top + box.height * (1 - place.y) / 2]; }"""
+# Choose a quality, as another tab of the browser does.
+CHOOSE = """quality => { localStorage.setItem("springtide-quality", quality);
+    window.dispatchEvent(new StorageEvent("storage", { key: "springtide-quality" })); }"""
 # What viser itself logs without harm: its drag layer at each drag of a node.
 # The notes of viser and of the lab on slow drawing, and the time line, which lie over the picture.
 NO_NOTES = "[class*=Notif], #springtide-slow, #springtide-time { display: none !important }"

@@ -12,7 +12,7 @@ import pytest
 
 from app.render.injection import injector_of
 from app.server.viewer import Viewer
-from tests.browser.conftest import new_page
+from tests.browser.conftest import CHOOSE, new_page
 
 # A browser with the extension, in which the programs of the sea are ready when `held` says so: all but that of plain
 # water.
@@ -54,12 +54,10 @@ FIRST_USES = """(() => { const P = WebGL2RenderingContext.prototype, { shaderSou
 })();"""
 # The shaders of the sea with which the page draws.
 DRAWN = """() => { const found = [];
-    window.__viserMutable?.scene?.traverseVisible(({ material, parent }) => {
+    window.__viserMutable?.scene?.traverseVisible(({ material }) => {
         const key = material?.userData?.springtide;
         if (key?.startsWith("springtide-water") || key?.startsWith("springtide-dome")) found.push(key); });
     return found.sort(); }"""
-CHOOSE = """quality => { localStorage.setItem("springtide-quality", quality);
-    window.dispatchEvent(new StorageEvent("storage", { key: "springtide-quality" })); }"""
 
 
 @contextlib.contextmanager

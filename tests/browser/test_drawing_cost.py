@@ -19,7 +19,7 @@ import pytest
 
 from app.messages import Pause
 from app.server.viewer import Viewer
-from tests.browser.conftest import Chromium, new_page
+from tests.browser.conftest import CHOOSE, Chromium, new_page
 
 WIDTH, HEIGHT = 640, 400  # [pixels]
 LARGE = 1920, 1080  # [pixels]
@@ -56,8 +56,6 @@ TAKE_OVER = """() => { const viewer = window.__viserMutable, scene = viewer.scen
         return earlier.call(this, renderer, of, camera, target);
     };
     viewer.requestRender(); }"""
-CHOOSE = """quality => { localStorage.setItem("springtide-quality", quality);
-    window.dispatchEvent(new StorageEvent("storage", { key: "springtide-quality" })); }"""
 # Times [ms] of pictures, each waited for; the first ones compile programs.
 TIME = """count => { const times = [];
     for (let k = -20; k < count; k++) {

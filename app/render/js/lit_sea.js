@@ -83,14 +83,12 @@ const LIT_FRAGMENT = `
 
 // Resources of a lit sea: the grid with a second material, a triangle, tiles, and their render targets.
 function makeLit(sea) {
-  const [corners, grid, triangle, light] = [1, 2, 3, 4].map(() => makeDome(sea));
+  const grid = makeGrid(sea), [corners, triangle, light] = [makeDome(sea), makeDome(sea), makeDome(sea)];
   const targets = { vertices: null, places: null, counts: null, lights: null };
   for (const drawn of [corners, grid, triangle, light]) {
     drawn.removeFromParent();
-    Object.assign(drawn.material, { fog: false, toneMapped: false, depthTest: false });
+    Object.assign(drawn.material, { fog: false, toneMapped: false, depthTest: drawn === grid });
   }
-  grid.geometry.dispose();
-  Object.assign(grid.material, { depthTest: true, depthWrite: true, side: sea.mesh.material.side });
   return { corners, grid, triangle, light, tiles: null, ...targets, size: "" };
 }
 

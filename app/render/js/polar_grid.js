@@ -25,8 +25,8 @@ function finenessOf({ drawingBufferWidth, drawingBufferHeight }) {
   return drawingBufferWidth * drawingBufferHeight > MANY_PIXELS ? 2 : 1;
 }
 
-// The mesh of a sea as coarse or fine as this, with the materials that it has.
-function makePolar(sea, fineness) {
+// Make the mesh of a sea as coarse or fine as this.
+function setFineness(sea, fineness) {
   const { rings, spokes } = POLAR[fineness], rows = rings + DOUBLED;
   const numbers = new Float32Array(3 * rows * spokes), index = new Uint32Array(6 * (rows - 1) * (spokes - 1));
   for (let ring = 0, k = 0, at = 0; ring < rows; ring++) {
@@ -41,11 +41,9 @@ function makePolar(sea, fineness) {
   const geometry = new sea.geometry.constructor(), { position } = sea.geometry.attributes;
   geometry.setAttribute("position", new position.constructor(numbers, 3));
   geometry.setIndex(new sea.geometry.index.constructor(index, 1));
-  const polar = sea.polar ?? makeDome(sea);
-  polar.geometry.dispose();
-  Object.assign(polar, { geometry, renderOrder: 0 });
-  Object.assign(polar.userData, { fineness, springtideDerived: true });
-  return polar;
+  sea.polar.geometry.dispose();
+  sea.polar.geometry = geometry;
+  sea.polar.userData.fineness = fineness;
 }
 
 // The border of what a camera sees as directions in the frame of the sea, up to HIGHEST, and where it meets the horizon.

@@ -62,7 +62,8 @@ function makeTable(sea, target) {
 // it did not link, null while its program is not compiled.
 function drawTable(renderer, scene, table, key, name, edit) {
   const { target, dome } = table, { camera } = window.__viserMutable;
-  if (table.key === key) return !refused.has(dome.material);
+  if (refused.has(dome.material)) return false;
+  if (table.key === key) return true;
   litBy(dome, scene);
   const before = renderer.getRenderTarget();
   renderer.setRenderTarget(target);

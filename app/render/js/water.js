@@ -123,6 +123,15 @@ function makeDome(sea) {
   return dome;
 }
 
+// A mesh for the polar grid, which has its geometry.
+function makeGrid(sea) {
+  const grid = makeDome(sea);
+  grid.renderOrder = 0;
+  grid.userData.springtideDerived = true;
+  Object.assign(grid.material, { depthWrite: true, side: sea.mesh.material.side });
+  return grid;
+}
+
 function disposeSea(sea) {
   disposeLit(sea);
   for (const drawn of [sea.polar, sea.plain, sea.dome]) {
@@ -138,13 +147,7 @@ function disposeSea(sea) {
 // Plain water, while the browser compiles the programs of the sea.
 function showPlain(sea, renderer, camera, scene, shape) {
   const { polar } = sea;
-  if (!sea.plain) {
-    sea.plain = makeDome(sea);
-    sea.plain.geometry.dispose();
-    sea.plain.renderOrder = 0;
-    sea.plain.userData.springtideDerived = true;
-    Object.assign(sea.plain.material, { depthWrite: true, side: sea.mesh.material.side });
-  }
+  sea.plain ??= makeGrid(sea);
   sea.plain.geometry = polar.geometry;
   sea.plain.visible = polar.visible && dress(renderer, sea.plain, `${shape.key} plain`, (shader) => {
     Object.assign(shader.uniforms, sea.uniforms);
@@ -216,10 +219,8 @@ shaders.push({
     // viser asks three for a reversed depth buffer; a browser without clip control has none.
     sea.uniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     const fineness = finenessOf(renderer.getContext());
-    if (!sea.polar) {
-      sea.polar = makePolar(sea, fineness);
-      Object.assign(sea.polar.material, { depthWrite: true, side: mesh.material.side });
-    } else if (sea.polar.userData.fineness !== fineness) makePolar(sea, fineness);
+    sea.polar ??= makeGrid(sea);
+    if (sea.polar.userData.fineness !== fineness) setFineness(sea, fineness);
     aimPolar(sea, camera);
     const isLit = lightSea(base, sea, renderer, scene, camera, shape, light);
     const key = isLit === false ? keyWithDetails(whole.key) : `${shape.key} lit`;

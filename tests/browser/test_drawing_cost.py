@@ -26,7 +26,7 @@ LARGE = 1920, 1080  # [pixels]
 TURNS = 5
 PICTURES = 200  # timed on a graphics processor
 MIN_TIME = 0.4  # [s] of a measurement: the browser counts processor time in hundredths of a second
-WARM_UP = 2  # pictures: the first sets the number of pixels, and compiles programs
+WARM_UP = 12  # pictures: the first sets the number of pixels, and each compiles a program of the sea
 PAGE = Path(__file__).with_name("three_ocean.html")
 SCENES = {
     "square sea": ("square_sea", ""),

@@ -13,7 +13,7 @@ from app.render.material import MAX_WATERLINES
 SHADER = (resources.files("app.render") / "js" / "water_shader.js").read_text("utf-8")
 # A picture of float numbers, a point for each input. What three would insert is left out: no function here uses it.
 # Numbers travel as the bytes of single-precision numbers in base 64: a list of them takes seconds.
-RUN = """([constants, shader, expression, table, uniforms, tileSide, tile, details]) => {
+RUN = """([constants, shader, expression, table, uniforms, tileSide, tile, details, functions]) => {
     const decode = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
     const points = decode(table);
     const GLSL = new Function(`${constants}; ${shader}; return WATER_GLSL;`)();
@@ -39,6 +39,7 @@ RUN = """([constants, shader, expression, table, uniforms, tileSide, tile, detai
         uniform highp sampler2D inputs;
         out vec4 result;
         ${chunks}
+        ${functions}
         void main() {
             vec4 p = texelFetch(inputs, ivec2(gl_FragCoord.xy), 0);
             result = ${expression};
@@ -88,18 +89,20 @@ def evaluate(
     uniforms: dict[str, Any] | None = None,
     tile: NDArray[np.float64] | None = None,
     details: int = 2,
+    functions: str = "",
 ) -> NDArray[np.float64]:
     """A GLSL expression, a vec4, at each of (n, up to 4) points, in it "p": (n, 4).
 
     uniforms: vectors by name; the others are 0. tile: (m, m, 4), of both textures of the waves. details:
-    of the shader.
+    of the shader. functions: GLSL that the expression needs beside the shader of water.
     """
     inputs = np.zeros((len(points), 4))
     inputs[:, : points.shape[1]] = points
     values = {name: [float(v) for v in value] for name, value in (uniforms or {}).items()}
     side, texels = (0, "") if tile is None else (len(tile), in_base_64(tile))
     constants = f"const MAX_WATERLINES = {json.dumps(MAX_WATERLINES)}"
-    found = page.evaluate(RUN, [constants, SHADER, expression, in_base_64(inputs), values, side, texels, details])
+    given = [constants, SHADER, expression, in_base_64(inputs), values, side, texels, details, functions]
+    found = page.evaluate(RUN, given)
     return np.frombuffer(base64.b64decode(found), np.float32).astype(float).reshape(-1, 4)
 
 

@@ -35,20 +35,22 @@ BESIDE = """(() => { const P = WebGL2RenderingContext.prototype, COMPLETION_STAT
         if (isHeld) window.hasWaited = true;
         return getProgramParameter.call(this, program, what); };
 })();"""
-# For each frame of the browser in which programs of the sea are used for the first time, how many.
+# For each frame of the browser in which programs of the sea are used for the first time, how many; and the first one of all.
 FIRST_USES = """(() => { const P = WebGL2RenderingContext.prototype, { shaderSource, attachShader, useProgram } = P;
     let frame = 0;
     const known = new Set(), count = () => { frame += 1; requestAnimationFrame(count); };
     requestAnimationFrame(count);
     window.firstUses = {};
     P.shaderSource = function (shader, text) {
-        shader.isOfSea = /uniform highp sampler2D (sea|sky)/.test(text);
+        [shader.isOfSea, shader.isPlain] = [/uniform highp sampler2D (sea|sky)/.test(text), text.includes("AROUND")];
         shaderSource.call(this, shader, text); };
     P.attachShader = function (program, shader) {
         program.isOfSea ||= shader.isOfSea;
+        program.isPlain ||= shader.isPlain;
         attachShader.call(this, program, shader); };
     P.useProgram = function (program) {
         if (program?.isOfSea && !known.has(program)) window.firstUses[frame] = (window.firstUses[frame] ?? 0) + 1;
+        if (program?.isOfSea) window.isPlainFirst ??= program.isPlain;
         known.add(program);
         useProgram.call(this, program); };
 })();"""
@@ -102,10 +104,37 @@ def test_a_browser_that_waits_for_programs_gets_one_in_a_frame(chromium: Any) ->
         uses = page.evaluate("Object.values(window.firstUses)")
         assert sum(uses) >= 6
         assert max(uses) <= 2  # the surface and the sky are first drawn together
+        assert page.evaluate("window.isPlainFirst")
+
+
+def test_plain_water_does_not_wait_for_the_photograph_of_the_sky(chromium: Any) -> None:
+    late = """(() => { let photograph = null;
+        window.held = true;
+        const wait = () => { const scene = window.__viserMutable?.scene;
+            if (!scene) return void setTimeout(wait, 1);
+            photograph = scene.environment;
+            Object.defineProperty(scene, "environment", {
+                get: () => (window.held ? null : photograph), set: (value) => { photograph = value; } }); };
+        wait(); })();"""
+    with open_sea(chromium, late) as (_, page):
+        wait_for(page, ["springtide-water/sea plain"])
+        page.evaluate("window.held = false")
+        wait_for(page, ["springtide-dome in tiles with details 0", "springtide-water/sea lit"])
+
+
+@pytest.mark.parametrize(("renderer", "width"), [("SwiftShader", 256), ("A graphics card", 1024)])
+def test_the_photograph_of_the_sky_is_small_without_a_graphics_card(chromium: Any, renderer: str, width: int) -> None:
+    """It is blurred before it is first drawn: in software four seconds for the whole one."""
+    name = f"""{{ const P = WebGL2RenderingContext.prototype, {{ getParameter }} = P;
+        P.getParameter = function (what) {{ return what === 0x9246 ? "{renderer}" : getParameter.call(this, what); }}; }}"""
+    with open_sea(chromium, name) as (_, page):
+        wait_for(page, ["springtide-dome in tiles with details 0", "springtide-water/sea lit"])
+        assert page.evaluate("window.__viserMutable.scene.environment.image.width") == width
 
 
 def test_an_image_for_the_server_waits_for_the_whole_sea(chromium: Any) -> None:
     with open_sea(chromium, BESIDE) as (lab, page):
+        page.wait_for_function("window.__viserMutable?.scene?.environment")
         wait_for(page, ["springtide-water/sea plain"])
         (client,) = lab.server.get_clients().values()
         image = threading.Thread(target=client.get_render, args=(30, 40))

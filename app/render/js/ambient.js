@@ -21,7 +21,7 @@ const SKY_SAMPLES_FRAGMENT = `
     gl_FragColor = vec4(textureCubeUV(envMap, envMapRotation * d, 1.0).rgb, 1.0);
   }`;
 const AMBIENT_GLSL = `
-  uniform vec3 skyTerms[9];
+  uniform vec3 skyTerms[10];
   vec3 skyLight(vec3 normal) {
     vec3 d = inverseTransformDirection(normal, viewMatrix);
     vec3 light = skyTerms[0] + skyTerms[1] * d.x + skyTerms[2] * d.y + skyTerms[3] * d.z;
@@ -29,7 +29,7 @@ const AMBIENT_GLSL = `
       light += skyTerms[4] * d.x * d.y + skyTerms[5] * d.y * d.z + skyTerms[6] * d.z * d.x +
                skyTerms[7] * (d.x * d.x - d.y * d.y) + skyTerms[8] * (3.0 * d.z * d.z - 1.0);
     #endif
-    return max(light, 0.0);
+    return max(light, skyTerms[9]); // the darkest
   }
   #define getIBLIrradiance(normal) (PI * envMapIntensity * skyLight(normal))
   #define getIBLRadiance(view, normal, roughness) (envMapIntensity * skyLight(normal))`;
@@ -46,7 +46,7 @@ const MATT_GLSL = `
   #define RE_IndirectDiffuse(irradiance, place, normal, view, coat, material, found) \\
     found.indirectDiffuse += irradiance * BRDF_Lambert(diffuseColor.rgb)`;
 
-const skyTerms = { value: null };
+const skyTerms = { value: null }; // the nine terms, and the least light of all directions
 const LIKELY_SKY = [0.7, 0.75, 0.8]; // until the photograph is read
 let skiesRead = 0; // frames.js draws when it changes
 let samples = null; // the table with which the photograph is read
@@ -76,7 +76,7 @@ function readSky(renderer, scene, mesh) {
     shader.fragmentShader = SKY_SAMPLES_FRAGMENT;
   });
   if (!isDrawn) return;
-  skyTerms.value ??= MEAN_SQUARES.map((_, i) => mesh.position.clone().fromArray(i === 0 ? LIKELY_SKY : [0, 0, 0]));
+  skyTerms.value ??= [...MEAN_SQUARES, 0].map((_, i) => mesh.position.clone().fromArray(i === 0 ? LIKELY_SKY : [0, 0, 0]));
   readSamples(renderer, samples.target, (numbers) => {
     if (samples.key !== key) return;
     setTerms(numbers);
@@ -116,14 +116,24 @@ function readSamples(renderer, target, take) {
 
 // The terms of a sky with these colours in DIRECTIONS, red, green, blue and one more number each.
 function setTerms(numbers) {
-  for (const term of skyTerms.value) term.set(0, 0, 0);
-  for (let k = 0; k < DIRECTIONS; k++) {
+  const directions = Array.from({ length: DIRECTIONS }, (_, k) => {
     const z = 1 - (2 * k + 1) / DIRECTIONS, level = Math.sqrt(1 - z * z), a = GOLDEN_ANGLE * k;
-    const color = skyTerms.value[0].clone().fromArray(numbers, 4 * k);
-    termsOf(level * Math.cos(a), level * Math.sin(a), z).forEach((term, i) => {
-      skyTerms.value[i].addScaledVector(color, term / (DIRECTIONS * MEAN_SQUARES[i]));
-    });
+    return termsOf(level * Math.cos(a), level * Math.sin(a), z);
+  });
+  const terms = skyTerms.value.slice(0, -1), least = skyTerms.value.at(-1), color = least.clone();
+  for (const [i, term] of terms.entries()) {
+    term.set(0, 0, 0);
+    for (const [k, direction] of directions.entries()) {
+      term.addScaledVector(color.fromArray(numbers, 4 * k), direction[i] / (DIRECTIONS * MEAN_SQUARES[i]));
+    }
   }
+  least.set(Infinity, Infinity, Infinity);
+  for (const direction of directions) {
+    color.set(0, 0, 0);
+    for (const [i, term] of terms.entries()) color.addScaledVector(term, direction[i]);
+    least.min(color);
+  }
+  least.clampScalar(0, Infinity);
 }
 
 // Whether a material is lit so. At the lowest quality everything is.

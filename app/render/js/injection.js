@@ -172,6 +172,7 @@ function beforeRender(renderer, scene, camera) {
   window.__springtide = { memory: () => ({ ...renderer.info.memory }), quality: QUALITY, skiesDrawn }; // tests read it
   QUALITY.beforeRender(renderer);
   isCompiling = false;
+  shrinkPhotograph(renderer, scene);
   drawOneLightOfEachSun(scene);
   const active = [];
   forEachShaded((shader, node) => {

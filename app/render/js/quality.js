@@ -201,6 +201,7 @@ const QUALITY = (() => {
     choice: () => choice,
     now: () => ({ ...current, step: STEPS.indexOf(current), steps: STEPS.length }),
     isCapturing, // a picture that the server asked for
+    isSoftware: () => SOFTWARE.test(rendererName), // whether there is no graphics card, as far as is known
     // Whether this frame has to be as it says, however long that takes: it does not change afterwards.
     isWhole: () => isFixed || isCapturing() || window.__springtideClip === true,
     // How much detail the shaders of this frame have: 2 all, 1 less, 0 least.
@@ -210,7 +211,7 @@ const QUALITY = (() => {
     start(renderer) {
       rendererName = nameOf(renderer);
       const kept = readSteps()[rendererName];
-      judge = makeJudge(kept in Object.keys(STEPS) ? kept : SOFTWARE.test(rendererName) ? STEPS.length - 1 : 0);
+      judge = makeJudge(kept in Object.keys(STEPS) ? kept : this.isSoftware() ? STEPS.length - 1 : 0);
       show();
       if (isFixed) return;
       wrapMethod(renderer, "setPixelRatio", (earlier) => function () {

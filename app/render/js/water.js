@@ -38,7 +38,7 @@ function uniformsOf(base, mesh) {
 
 function makeSea(mesh, uniforms) {
   // widest, highest: greatest displacement [m] along the level and upwards; cell: of the simulated grid [m]
-  const made = { polar: null, plain: null, lit: null, dome: null, triangle: null, isUnlit: false }, size = { widest: 0, highest: 0, cell: 1 };
+  const made = { polar: null, plain: null, lit: null, dome: null, triangle: null, isReady: false, isUnlit: false }, size = { widest: 0, highest: 0, cell: 1 };
   return { mesh, geometry: mesh.geometry, uniforms, filled: -1, hasOil: false, hasHulls: false, ...made, ...size };
 }
 
@@ -144,18 +144,38 @@ function disposeSea(sea) {
   sea.polar = sea.plain = sea.dome = sea.triangle = null;
 }
 
-// Plain water, while the browser compiles the programs of the sea.
-function showPlain(sea, renderer, camera, scene, shape) {
-  const { polar } = sea;
+// Give plain water its program: it is drawn while the browser compiles those of the sea. Returns whether it has one.
+function dressPlain(sea, renderer, camera, scene, shape) {
   sea.plain ??= makeGrid(sea);
-  sea.plain.geometry = polar.geometry;
-  sea.plain.visible = polar.visible && dress(renderer, sea.plain, `${shape.key} plain`, (shader) => {
+  return dress(renderer, sea.plain, `${shape.key} plain`, (shader) => {
     Object.assign(shader.uniforms, sea.uniforms);
     shader.vertexShader = shape.defines + WATER_VERTEX;
     shader.fragmentShader = shape.defines + PLAIN_FRAGMENT;
   }, camera, scene);
-  polar.visible = false;
-  if (sea.dome) sea.dome.visible = false;
+}
+
+// Give a sea and its sky their programs. Returns whether they have them.
+function dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole }) {
+  const hasTable = drawSkyTable(base, sea, renderer, scene);
+  const isLit = lightSea(base, sea, renderer, scene, camera, shape, light);
+  const key = isLit === false ? keyWithDetails(whole.key) : `${shape.key} lit`;
+  const hasSurface = dress(renderer, sea.polar, key, (shader) => {
+    Object.assign(shader.uniforms, sea.uniforms);
+    shader.vertexShader = (isLit === false ? shape.defines : PLACED) + WATER_VERTEX;
+    shader.fragmentShader = isLit === false ? withSky(whole.defines + WATER_FRAGMENT, sea.uniforms) : shape.defines + LIT_FRAGMENT;
+  }, camera, scene);
+  if (sea.uniforms.shown.value.x > 0 && !sea.dome) {
+    sea.dome = makeDome(sea);
+    sea.triangle = sea.dome.geometry;
+  }
+  if (!sea.dome) return hasTable && isLit !== null && hasSurface;
+  sea.dome.geometry = isLit ? sea.lit.tiles : sea.triangle;
+  const hasDome = dress(renderer, sea.dome, keyWithDetails(`springtide-dome${isLit === false ? "" : " in tiles"}`), (shader) => {
+    Object.assign(shader.uniforms, sea.uniforms);
+    shader.vertexShader = isLit === false ? DOME_VERTEX : `#define TILES\n${DOME_VERTEX}`;
+    shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
+  }, camera, scene);
+  return hasTable && isLit !== null && hasSurface && hasDome;
 }
 
 // Until a sea's programs are compiled, and where its mesh is made anew, the photograph behind it would show its land. The
@@ -198,9 +218,8 @@ shaders.push({
     }
     wantSky();
     mesh.layers.mask = 0; // the polar grid is drawn in its place
-    if (!this.unpack({ base, mesh }) || awaitsSky(scene)) return null;
+    if (!this.unpack({ base, mesh })) return null;
     readMaterial(sea, data);
-    const hasTable = drawSkyTable(base, sea, renderer, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);
     const lines = meshOf(`${base}/water_lines`);
     if (lines) sea.uniforms.waterlines.value = lines.geometry.attributes.position.array;
@@ -222,39 +241,22 @@ shaders.push({
     sea.polar ??= makeGrid(sea);
     if (sea.polar.userData.fineness !== fineness) setFineness(sea, fineness);
     aimPolar(sea, camera);
-    const isLit = lightSea(base, sea, renderer, scene, camera, shape, light);
-    const key = isLit === false ? keyWithDetails(whole.key) : `${shape.key} lit`;
-    const hasSurface = dress(renderer, sea.polar, key, (shader) => {
-      Object.assign(shader.uniforms, sea.uniforms);
-      shader.vertexShader = (isLit === false ? shape.defines : PLACED) + WATER_VERTEX;
-      shader.fragmentShader = isLit === false ? withSky(whole.defines + WATER_FRAGMENT, sea.uniforms) : shape.defines + LIT_FRAGMENT;
-    }, camera, scene);
-    if (drawSky && !sea.dome) {
-      sea.dome = makeDome(sea);
-      sea.triangle = sea.dome.geometry;
-    }
-    let hasDome = true;
-    if (sea.dome) {
-      sea.dome.visible = drawSky > 0;
-      sea.dome.geometry = isLit ? sea.lit.tiles : sea.triangle;
-      hasDome = dress(renderer, sea.dome, keyWithDetails(`springtide-dome${isLit === false ? "" : " in tiles"}`), (shader) => {
-        Object.assign(shader.uniforms, sea.uniforms);
-        shader.vertexShader = isLit === false ? DOME_VERTEX : `#define TILES\n${DOME_VERTEX}`;
-        shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
-      }, camera, scene);
-    }
-    const isReady = hasTable && isLit !== null && hasSurface && hasDome;
-    if (sea.plain) sea.plain.visible = false;
-    if (!isReady) showPlain(sea, renderer, camera, scene, shape);
-    else if (!isLinked(renderer, sea.polar.material)) {
+    const isInView = sea.polar.visible;
+    // Where only one program is compiled in a frame, that of plain water comes first.
+    const hasPlain = sea.isReady || dressPlain(sea, renderer, camera, scene, shape);
+    sea.isReady = !awaitsSky(scene) && dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole });
+    if (sea.isReady && !isLinked(renderer, sea.polar.material)) {
       refused.add(mesh.material);
       return this.update({ base, mesh, data, renderer, scene, camera });
     }
+    sea.polar.visible = isInView && sea.isReady;
+    Object.assign(sea.plain, { geometry: sea.polar.geometry, visible: isInView && hasPlain && !sea.isReady });
+    if (sea.dome) sea.dome.visible = drawSky > 0 && sea.isReady;
     // The server may add meshes for browsers without this shader (Water._draw_plain); here they are hidden.
     for (const part of ["foam", "wire", "sea", "slick"]) {
       const plain = meshOf(`${base}/plain_${part}`);
       if (plain) plain.visible = false;
     }
-    return isReady ? sea.polar.material : null;
+    return sea.isReady ? sea.polar.material : null;
   },
 });

@@ -16,12 +16,16 @@ const SKY_TABLE_FRAGMENT = `
     int row = int(gl_FragCoord.y), block = row / SKY_ROWS;
     float a = 6.2831853 * gl_FragCoord.x / float(${SKY_COLUMNS}), up = float(row - block * SKY_ROWS) / float(SKY_ROWS - 1);
     float e = 1.5707963 * up * up;
-    vec3 d = vec3(cos(e) * vec2(cos(a), sin(a)), sin(e)), c;
-    if (block < SKY_BLURS) c = sky(d, SKY_BLUR[block]);
-    else if (block == SKY_BLURS) c = clearSky(d);
-    else if (row == SKY_HEIGHT - 3) c = horizon(d);
-    else if (row == SKY_HEIGHT - 2) c = meanHorizon();
-    else c = ambientLight();
+    // Each row is made of two looks at the sky, so that all pixels do the same: a software renderer does what any row needs.
+    vec3 d = vec3(cos(e) * vec2(cos(a), sin(a)), sin(e)), ways[2] = vec3[](d, d);
+    vec2 blurs = block < SKY_BLURS ? vec2(SKY_BLUR[min(block, SKY_BLURS - 1)]) : vec2(0.08, 0.33);
+    if (row == SKY_HEIGHT - 3) ways = vec3[](levelOf(d), levelOf(d));
+    if (row == SKY_HEIGHT - 2) ways = vec3[](levelOf(sunDirection), levelOf(-sunDirection));
+    if (row >= SKY_HEIGHT - 3) blurs = vec2(skyFold.y);
+    if (row == SKY_HEIGHT - 1) { ways = vec3[](vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0)); blurs = vec2(1.0); }
+    vec3 seen[2];
+    for (int k = 0; k < 2; k++) seen[k] = sky(ways[k], blurs[k]);
+    vec3 c = block == SKY_BLURS ? withEvenHue(seen[0], seen[1]) : 0.5 * (seen[0] + seen[1]);
     gl_FragColor = vec4(c, 1.0);
   }`;
 

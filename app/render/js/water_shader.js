@@ -192,6 +192,14 @@ const WATER_GLSL = {
     uniform vec3 rainVeil; // extinction of light by rain [1/m], height from which it falls [m], unused
     vec3 levelOf(vec3 d) { return vec3(d.xy / max(length(d.xy), 1e-4), 0.0); }
 
+    // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
+    vec3 withEvenHue(vec3 sharp, vec3 soft) {
+      vec3 w = vec3(0.3, 0.5, 0.2);
+      float light = dot(sharp, w), even = dot(soft, w);
+      float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
+      return mix(soft * (light / even), sharp, detail);
+    }
+
     // sky: radiance of the sky without clouds in the direction d. ambientLight: its mean. horizon: of the haze in the
     // direction d. meanHorizon: the mean of both sides, which is scattered where the direction is steep, and lights from
     // around. clearSky: the sky as it is seen. With a table (sky_table.js) they are looked up in it.
@@ -217,14 +225,7 @@ const WATER_GLSL = {
       vec3 ambientLight() { return photograph(vec3(0.0, 0.0, 1.0), 1.0); }
       vec3 horizon(vec3 d) { return sky(levelOf(d), skyFold.y); }
       vec3 meanHorizon() { return 0.5 * (horizon(sunDirection) + horizon(-sunDirection)); }
-      // The colours of the photographs come in blocks of some degrees: take the brightness sharp and the hue blurred.
-      vec3 clearSky(vec3 d) {
-        vec3 sharp = sky(d, 0.08), soft = sky(d, 0.33);
-        vec3 w = vec3(0.3, 0.5, 0.2);
-        float light = dot(sharp, w), even = dot(soft, w);
-        float detail = 0.6 * smoothstep(0.15, 0.5, abs(light - even) / even);
-        return mix(soft * (light / even), sharp, detail);
-      }
+      vec3 clearSky(vec3 d) { return withEvenHue(sky(d, 0.08), sky(d, 0.33)); }
     #endif
 
     // The glow of the air around the sun, at a distance from its direction.

@@ -30,9 +30,9 @@ from app.render.viser_types import GuiHandle, ViserEvent
 LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
 SCRIPTS = (
-    "quality.js", "frames.js", "injection.js", "photograph.js", "packed.js", "underwater.js", "open_water.js", "contact.js",
-    "water_shader.js", "sky_table.js", "polar_grid.js", "lit_sea.js", "half.js", "water.js", "rain.js", "smoke.js",
-    "sun.js", "ambient.js", "dark.js", "labels.js",
+    "quality.js", "frames.js", "injection.js", "packed.js", "underwater.js", "open_water.js", "contact.js",
+    "water_shader.js", "photograph.js", "sky_table.js", "polar_grid.js", "lit_sea.js", "half.js", "water.js", "rain.js",
+    "smoke.js", "sun.js", "ambient.js", "dark.js", "labels.js",
 )  # fmt: skip
 CONTACT_SHADOW = "contact_shadow"
 

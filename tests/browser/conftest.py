@@ -64,10 +64,14 @@ PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.came
 # Choose a quality, as another tab of the browser does.
 CHOOSE = """quality => { localStorage.setItem("springtide-quality", quality);
     window.dispatchEvent(new StorageEvent("storage", { key: "springtide-quality" })); }"""
-# What viser itself logs without harm: its drag layer at each drag of a node.
+# As if the browser drew with a graphics card: the parameter is UNMASKED_RENDERER_WEBGL.
+WITH_CARD = """const get = WebGL2RenderingContext.prototype.getParameter;
+WebGL2RenderingContext.prototype.getParameter = function (name) {
+    return name === 0x9246 ? "A graphics card" : get.call(this, name); };"""
 # The notes of viser and of the lab on slow drawing, and the time line, which lie over the picture.
 NO_NOTES = "[class*=Notif], #springtide-slow, #springtide-time { display: none !important }"
 STALLED = 60.0  # [s] after which a page that gets nothing any more is loaded again, with a warning
+# What viser itself logs without harm: its drag layer at each drag of a node.
 HARMLESS_ERRORS = ("preventDefault inside passive",)
 # The same when one scene or preset follows another: viser 1.1's client collects the updates of a frame and applies them
 # after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a

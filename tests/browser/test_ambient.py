@@ -17,7 +17,7 @@ START = """const vector = (x = 0, y = 0, z = 0) => ({ x, y, z,
         fromArray(a, at = 0) { return this.set(a[at], a[at + 1], a[at + 2]); },
         addScaledVector(v, s) { return this.set(this.x + s * v.x, this.y + s * v.y, this.z + s * v.z); },
         min(v) { return this.set(Math.min(this.x, v.x), Math.min(this.y, v.y), Math.min(this.z, v.z)); },
-        clampScalar(low) { return this.set(Math.max(this.x, low), Math.max(this.y, low), Math.max(this.z, low)); } });"""
+        max(v) { return this.set(Math.max(this.x, v.x), Math.max(this.y, v.y), Math.max(this.z, v.z)); } });"""
 FIND = f"""(lights) => {{ {START} {AMBIENT}
     skyTerms.value = Array.from({{ length: 10 }}, () => vector());
     setTerms(lights);

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from app.server.viewer import Viewer
-from tests.browser.conftest import new_page
+from tests.browser.conftest import WITH_CARD, new_page
 
 STATE = """() => ({ ...window.__springtide?.quality?.now(), width: document.querySelector("canvas[data-engine]")?.width,
     line: document.querySelector("#springtide-slow")?.innerText ?? "",
@@ -18,10 +18,6 @@ JUDGED = """lists => { const judge = window.__springtide.quality.makeJudge();
     return lists.map(list => { for (const [length, n] of list) for (let k = 0; k < n; k++) judge.take(length);
                                return judge.step(); }); }"""
 
-# As if the browser drew with a graphics card: the parameter is UNMASKED_RENDERER_WEBGL.
-WITH_CARD = """const get = WebGL2RenderingContext.prototype.getParameter;
-WebGL2RenderingContext.prototype.getParameter = function (name) {
-    return name === 0x9246 ? "A graphics card" : get.call(this, name); };"""
 # As if drawing took so long in each frame [ms], whatever this machine can do. The page waits, as a loop that runs so
 # long takes a core.
 SLOW_FRAMES = """const next = window.requestAnimationFrame.bind(window);

@@ -133,7 +133,7 @@ function setTerms(numbers) {
     for (const [i, term] of terms.entries()) color.addScaledVector(term, direction[i]);
     least.min(color);
   }
-  least.clampScalar(0, Infinity);
+  least.max(color.set(0, 0, 0));
 }
 
 // Whether a material is lit so. At the lowest quality everything is.

@@ -99,11 +99,9 @@ function readSamples(renderer, target, take) {
   gl.readPixels(0, 0, DIRECTIONS, 1, gl.RGBA, gl.FLOAT, 0);
   gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
   renderer.setRenderTarget(before);
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-  gl.flush();
-  const look = () => {
+  const fence = setFence(gl), look = () => {
+    if (!isPassed(gl, fence)) return void setTimeout(look, LOOK_INTERVAL);
     if (gl.isContextLost()) return;
-    if (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return void setTimeout(look, LOOK_INTERVAL);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
     gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, numbers);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);

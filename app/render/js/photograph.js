@@ -4,7 +4,7 @@
 // pixels, and half a second for the copy.
 
 const SMALL_SKY = 256; // [pixels] width of the copy; the table of the sky has as many columns
-const halves = new Map(); // photograph or copy -> copy of half its width; null where it cannot be made
+const halves = new WeakMap(); // photograph or copy -> copy of half its width; null where it cannot be made
 
 // Of three this uses the frame buffer of a target, which is missing if another renderer has drawn it.
 function halve(renderer, larger) {
@@ -22,7 +22,7 @@ function halve(renderer, larger) {
   renderer.state.bindFramebuffer(gl.READ_FRAMEBUFFER, null);
   renderer.setRenderTarget(before);
   larger.addEventListener("dispose", () => {
-    halves.delete(larger);
+    texture.dispose(); // and what is made of it
     target.dispose();
   });
   return texture;

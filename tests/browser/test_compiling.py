@@ -14,14 +14,8 @@ from app.render.injection import injector_of
 from app.server.viewer import Viewer
 from tests.browser.conftest import CHOOSE, WITH_CARD, new_page
 
-# A browser with the extension, in which the programs of the sea are ready when `held` says so: all but that of plain
-# water.
-BESIDE = """(() => { const P = WebGL2RenderingContext.prototype, COMPLETION_STATUS = 0x91B1;
-    const { getExtension, getProgramParameter, shaderSource, attachShader } = P;
-    window.held = true;
-    P.getExtension = function (name) {
-        const isAsked = name === "KHR_parallel_shader_compile";
-        return isAsked ? { COMPLETION_STATUS_KHR: COMPLETION_STATUS } : getExtension.call(this, name); };
+# Mark the programs of the sea, and that of plain water.
+MARKED = """(() => { const P = WebGL2RenderingContext.prototype, { shaderSource, attachShader } = P;
     P.shaderSource = function (shader, text) {
         [shader.isOfSea, shader.isPlain] = [/uniform highp sampler2D (sea|sky)/.test(text), text.includes("AROUND")];
         shaderSource.call(this, shader, text); };
@@ -29,6 +23,15 @@ BESIDE = """(() => { const P = WebGL2RenderingContext.prototype, COMPLETION_STAT
         program.isOfSea ||= shader.isOfSea;
         program.isPlain ||= shader.isPlain;
         attachShader.call(this, program, shader); };
+})();"""
+# A browser with the extension, in which the programs of the sea are ready when `held` says so: all but that of plain
+# water.
+BESIDE = """(() => { const P = WebGL2RenderingContext.prototype, COMPLETION_STATUS = 0x91B1;
+    const { getExtension, getProgramParameter } = P;
+    window.held = true;
+    P.getExtension = function (name) {
+        const isAsked = name === "KHR_parallel_shader_compile";
+        return isAsked ? { COMPLETION_STATUS_KHR: COMPLETION_STATUS } : getExtension.call(this, name); };
     P.getProgramParameter = function (program, what) {
         const isHeld = window.held && program.isOfSea && !program.isPlain && !program.isDone;
         if (what === COMPLETION_STATUS) return !isHeld && (program.isDone = true);
@@ -37,18 +40,11 @@ BESIDE = """(() => { const P = WebGL2RenderingContext.prototype, COMPLETION_STAT
 })();"""
 # For each frame of the browser in which programs of the sea are used for the first time, how many; and whether the very
 # first one is that of plain water.
-FIRST_USES = """(() => { const P = WebGL2RenderingContext.prototype, { shaderSource, attachShader, useProgram } = P;
+FIRST_USES = """(() => { const P = WebGL2RenderingContext.prototype, { useProgram } = P;
     let frame = 0;
     const known = new Set(), count = () => { frame += 1; requestAnimationFrame(count); };
     requestAnimationFrame(count);
     window.firstUses = {};
-    P.shaderSource = function (shader, text) {
-        [shader.isOfSea, shader.isPlain] = [/uniform highp sampler2D (sea|sky)/.test(text), text.includes("AROUND")];
-        shaderSource.call(this, shader, text); };
-    P.attachShader = function (program, shader) {
-        program.isOfSea ||= shader.isOfSea;
-        program.isPlain ||= shader.isPlain;
-        attachShader.call(this, program, shader); };
     P.useProgram = function (program) {
         if (program?.isOfSea && !known.has(program)) window.firstUses[frame] = (window.firstUses[frame] ?? 0) + 1;
         if (program?.isOfSea) window.isPlainFirst ??= program.isPlain;
@@ -68,7 +64,7 @@ def open_sea(chromium: Any, script: str) -> Iterator[tuple[Viewer, Any]]:
     """A server and a page without pixels, with this script, on a square sea at quality low."""
     lab = Viewer("127.0.0.1", 0)
     page = new_page(chromium, 400, 300, drawn=False)
-    page.add_init_script(f"{script} localStorage.setItem('springtide-quality', 'low');")
+    page.add_init_script(f"{MARKED} {script} localStorage.setItem('springtide-quality', 'low');")
     try:
         lab.open("square_sea")
         page.goto(f"http://127.0.0.1:{lab.port}/?hideViserLogo")

@@ -77,39 +77,17 @@ function readSky(renderer, scene, mesh) {
   });
   if (!isDrawn) return;
   skyTerms.value ??= [...MEAN_SQUARES, 0].map((_, i) => mesh.position.clone().fromArray(i === 0 ? LIKELY_SKY : [0, 0, 0]));
-  readSamples(renderer, samples.target, (numbers) => {
+  const numbers = new Float32Array(4 * DIRECTIONS), asked = [samples.target, 0, 0, DIRECTIONS, 1, numbers];
+  const take = () => {
     if (samples.key !== key) return;
     setTerms(numbers);
     skiesRead += 1;
     window.__viserMutable.requestRender();
-  });
-}
-
-// Read what is drawn into a target of DIRECTIONS pixels.
-function readSamples(renderer, target, take) {
-  const numbers = new Float32Array(4 * DIRECTIONS), gl = renderer.getContext();
-  if (QUALITY.isWhole()) {
-    renderer.readRenderTargetPixels(target, 0, 0, DIRECTIONS, 1, numbers);
-    return void take(numbers);
-  }
-  const before = renderer.getRenderTarget(), buffer = gl.createBuffer();
-  renderer.setRenderTarget(target);
-  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
-  gl.bufferData(gl.PIXEL_PACK_BUFFER, numbers.byteLength, gl.STREAM_READ);
-  gl.readPixels(0, 0, DIRECTIONS, 1, gl.RGBA, gl.FLOAT, 0);
-  gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
-  renderer.setRenderTarget(before);
-  const fence = setFence(gl), look = () => {
-    if (!isPassed(gl, fence)) return void setTimeout(look, LOOK_INTERVAL);
-    if (gl.isContextLost()) return;
-    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
-    gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, numbers);
-    gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
-    gl.deleteBuffer(buffer);
-    gl.deleteSync(fence);
-    take(numbers);
   };
-  setTimeout(look, LOOK_INTERVAL);
+  if (QUALITY.isWhole()) {
+    renderer.readRenderTargetPixels(...asked);
+    take();
+  } else renderer.readRenderTargetPixelsAsync(...asked).then(take, () => {}); // it fails where the context is lost
 }
 
 // The terms of a sky with these colours in DIRECTIONS, red, green, blue and one more number each.

@@ -96,20 +96,6 @@ function inputsOf(renderer, scene, camera) {
   return list;
 }
 
-// A sign that the graphics process comes to after all that it was told before.
-function setFence(gl) {
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-  gl.flush();
-  return fence;
-}
-
-// Whether it has come there, or never will, as the context is lost. The fence is deleted then.
-function isPassed(gl, fence) {
-  if (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
-  gl.deleteSync(fence);
-  return true;
-}
-
 function paceFrames(renderer) {
   const gl = renderer.getContext(), keepsPixels = gl.getContextAttributes()?.preserveDrawingBuffer;
   let last = null; // the inputs of the frame that the canvas shows
@@ -121,7 +107,8 @@ function paceFrames(renderer) {
   function isDrawn() {
     if (!drawing) return true;
     const { fence, compiled } = drawing;
-    if (!isPassed(gl, fence)) return false;
+    if (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    gl.deleteSync(fence);
     drawing = null;
     length = performance.now() - started;
     QUALITY.take(length, started, compiled);
@@ -131,7 +118,8 @@ function paceFrames(renderer) {
   // The graphics process draws on its own: without waiting for it, the panel would stand behind several frames.
   function awaitEnd(compiled) {
     if (drawing) gl.deleteSync(drawing.fence); // a new size is drawn at once
-    const mine = (drawing = { fence: setFence(gl), compiled });
+    const mine = (drawing = { fence: gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0), compiled });
+    gl.flush();
     const look = () => {
       if (drawing === mine && !isDrawn()) requestAnimationFrame(look);
     };

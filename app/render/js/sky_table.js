@@ -16,7 +16,8 @@ const SKY_TABLE_FRAGMENT = `
     int row = int(gl_FragCoord.y), block = row / SKY_ROWS;
     float a = 6.2831853 * gl_FragCoord.x / float(${SKY_COLUMNS}), up = float(row - block * SKY_ROWS) / float(SKY_ROWS - 1);
     float e = 1.5707963 * up * up;
-    // Each row is made of two looks at the sky, so that all pixels do the same: a software renderer does what any row needs.
+    // Each row is made of two looks at the sky, where those without a table (WATER_GLSL.sky) are, so that all pixels do the
+    // same: a software renderer does for each pixel what any row needs.
     vec3 d = vec3(cos(e) * vec2(cos(a), sin(a)), sin(e)), ways[2] = vec3[](d, d);
     vec2 blurs = block < SKY_BLURS ? vec2(SKY_BLUR[min(block, SKY_BLURS - 1)]) : vec2(0.08, 0.33);
     if (row == SKY_HEIGHT - 3) ways = vec3[](levelOf(d), levelOf(d));

@@ -115,7 +115,7 @@ class Version(argparse.Action):
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
         """Called for the option."""
-        from app.experiments.tables import machine
+        from app.study.tables import machine
 
         print(machine())
         parser.exit()
@@ -528,7 +528,7 @@ def run_export(arguments: argparse.Namespace) -> int:
     """`springtide export`."""
     scene = scene_named(arguments.scene)
     params = read_params(scene, arguments)
-    from app.export.command import export
+    from app.study.export.command import export
 
     a = arguments
     return export(a.scene, params, a.seconds, a.rate, a.start, a.format, a.out)
@@ -544,14 +544,14 @@ def run_bench(arguments: argparse.Namespace) -> int:
 
 def run_stability(arguments: argparse.Namespace) -> int:
     """`springtide stability`."""
-    from app.stability.command import run
+    from app.study.stability.command import run
 
     return run(quick=arguments.quick, out=arguments.out)
 
 
 def run_sweep(arguments: argparse.Namespace) -> int:
     """`springtide sweep`."""
-    from app.sweep.command import sweep
+    from app.study.sweep.command import sweep
 
     return sweep(arguments.spec, arguments.out, arguments.scheduler, fresh=arguments.fresh)
 

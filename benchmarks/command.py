@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
-from app.experiments import tables
 from app.files import make_out_folder
 from app.formats import text_tables
+from app.study import tables
 from benchmarks.options import places
 from benchmarks.peers.command import measure_peers
 from sim.parameters import choice_error

@@ -17,9 +17,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from app.experiments import tables
 from app.files import make_out_folder
 from app.formats import text_tables
+from app.study import tables
 from sim.files import replacing
 from sim.validation import argument_error
 

@@ -11,8 +11,7 @@ ROOT = Path(__file__).parent.parent
 SOURCES = sorted(path for top in ("sim", "app", "assets", "benchmarks", "tests") for path in (ROOT / top).rglob("*.py"))
 # Folders of app/ from left to right: none imports a folder to its left. Those of one entry do not import each other.
 ORDER = (
-    ("sweep", "stability", "export"),
-    ("experiments",),
+    ("study",),
     ("commands", "notebook"),
     ("server",),
     ("panel",),

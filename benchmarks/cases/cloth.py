@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 from rich.progress import track
 
-from app.experiments.tables import front
 from app.scenes.timer import effort_clock
+from app.study.tables import front
 from benchmarks.reference import RESOLUTION, Positions, Reference, largest_distances
 from benchmarks.timing import processor_time
 from sim.frames import steps_for
@@ -153,7 +153,7 @@ def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
     """Work-precision diagrams by file name, one for each size."""
-    from app.experiments.tables import work_precision
+    from app.study.tables import work_precision
 
     return {
         f"cloth_{task.strip('C()')}": work_precision(

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import track
 
-from app.experiments.tables import front
+from app.study.tables import front
 from benchmarks.reference import RESOLUTION, Reference, largest_distances
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.state import State, advance
@@ -153,7 +153,7 @@ def findings(table: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def figures(table: list[dict[str, Any]]) -> dict[str, Any]:
     """A work-precision diagram of each problem, by file name."""
-    from app.experiments.tables import work_precision
+    from app.study.tables import work_precision
 
     drawn = {}
     for problem in PROBLEMS:

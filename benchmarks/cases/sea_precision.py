@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from app.experiments.tables import MARKERS
 from app.scenes.charts import PALETTE
+from app.study.tables import MARKERS
 from sim.ocean import Sea
 from sim.ocean.query import sample
 from sim.ocean.wave_sum import Bands, VertexSums, add_waves, wave_rows

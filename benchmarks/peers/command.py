@@ -4,8 +4,8 @@ import functools
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.experiments import tables
 from app.formats import text_tables
+from app.study import tables
 from benchmarks.peers import ladder
 from benchmarks.tasks import cloth, mooring, rope, sea
 from sim.validation import argument_error

@@ -237,8 +237,8 @@ def figure(rows: Rows, title: str) -> Any:
     """Error against run time of every peer's ladder in one task, and of our quickest runs, in logarithmic axes."""
     from matplotlib.figure import Figure
 
-    from app.experiments.tables import MARKERS
     from app.scenes.charts import PALETTE
+    from app.study.tables import MARKERS
 
     drawn = Figure(figsize=(8.0, 5.6), layout="constrained")
     drawn.suptitle(f"{title}: the ladders of other programs, and our quickest run at each of their errors")

@@ -8,8 +8,8 @@ import pytest
 
 from app.__main__ import main
 from app.commands.checkout import ELSEWHERE
-from app.experiments import tables
 from app.formats import text_tables
+from app.study import tables
 from benchmarks import command
 from benchmarks.cases import rope
 

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from app.experiments import tables
+from app.study import tables
 from benchmarks import command
 from benchmarks.cases import rope as rope_case
 from benchmarks.peers import ladder as peer_ladder

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from app.__main__ import main
-from app.experiments import tables
 from app.scenes import NAMES, scene_named
+from app.study import tables
 from sim.parameters import parameters_of
 from tests.full_disk import full_disk
 from tests.stress.clients import clients_of, until

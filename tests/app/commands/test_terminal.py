@@ -14,8 +14,8 @@ from rich.console import Console
 from app.__main__ import main, make_parser
 from app.formats import text_tables
 from app.scenes import NAMES, scene_named
-from app.sweep import workers
-from app.sweep.case import run_case
+from app.study.sweep import workers
+from app.study.sweep.case import run_case
 from benchmarks import hydrodynamics
 from sim.parameters import parameters_of
 

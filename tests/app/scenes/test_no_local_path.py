@@ -32,8 +32,8 @@ from app.scenes.setups import (
 )
 from app.server.loop import SimLoop
 from app.server.replay_file import replay_html
-from app.sweep.results import about
-from app.sweep.spec import make_spec, read_spec
+from app.study.sweep.results import about
+from app.study.sweep.spec import make_spec, read_spec
 
 KIND = scene_named("radial_sea")
 SMALL: dict[str, Any] = {"bodies": 1, "rings": 20, "spokes": 24, "wave_count": 20}

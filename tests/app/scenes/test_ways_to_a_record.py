@@ -13,7 +13,7 @@ from app.panel.task_setups import setup_of_task
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import make_setup, read_file, read_query, write_value
-from app.sweep.spec import make_spec
+from app.study.sweep.spec import make_spec
 from sim.parameters import Value
 
 Values = dict[str, Value]

@@ -1,1 +1,0 @@
-"""Common parts of sweep, stability and bench: a process pool, tables and figures."""

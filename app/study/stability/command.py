@@ -1,0 +1,45 @@
+"""`springtide stability`: measure, print tables, and write tables and figures."""
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from app.files import make_out_folder
+from app.formats import text_tables
+from app.study import tables
+from app.study.stability import damping, drift, figures, linear, rope
+
+PARTS: tuple[tuple[str, str, Any, Callable[[Any], Any], Callable[[Any], Any]], ...] = (
+    ("linear", "Linear oscillator, h ω and ζ", linear, linear.boundary_rows, figures.linear_figure),
+    ("rope", "Rope, step and stiffness", rope, rope.boundary_rows, figures.rope_figure),
+    ("damping", "Networks, step and damping", damping, damping.curve_rows, figures.damping_figure),
+    ("drift", "Energy of the undamped rope", drift, drift.course_rows, figures.drift_figure),
+)
+
+
+def run(*, quick: bool, out: Path | None, workers: int = 0) -> int:
+    """Measure all maps and print their tables; with `out`, write tables and figures there.
+
+    workers: processes, 0 for one on each core.
+
+    Returns the exit status, 0. Raises ValueError for an `out` that is not a folder.
+    """
+    make_out_folder("--out", out)
+    print(tables.machine())
+    for name, title, part, details, figure in PARTS:
+        found = part.measure(quick=quick, workers=workers)
+        table = part.rows(found)
+        text_tables.print_table(title, table)
+        if out is None:
+            continue
+        kept = {name: table, f"{name}_curves": details(found)}
+        tables.write_results(kept, functools.partial(named_figure, name, figure, found), out)
+    if out is not None:
+        tables.keep_machine(out)
+    return 0
+
+
+def named_figure(name: str, figure: Callable[[Any], Any], found: Any) -> dict[str, Any]:
+    """The figure of a map, by its name."""
+    return {name: figure(found)}

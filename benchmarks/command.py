@@ -13,7 +13,7 @@ from types import ModuleType
 from app.files import make_out_folder
 from app.formats import text_tables
 from app.study import tables
-from benchmarks.options import places
+from benchmarks.names import places
 from benchmarks.peers.command import measure_peers
 from sim.parameters import choice_error
 from sim.validation import argument_error

@@ -1,20 +1,13 @@
-"""Names of the benchmarks and options of their command; imports none of them, as every command reads this."""
+"""`springtide bench`: the arguments of the command; the benchmarks are imported when they run."""
 
 import argparse
-import pkgutil
 from pathlib import Path
 
-CASES = Path(__file__).with_name("cases")
+from benchmarks.names import places
 
 
-def places() -> dict[str, str]:
-    """Name of each benchmark -> its module, in alphabetical order."""
-    names = sorted(info.name for info in pkgutil.iter_modules([str(CASES)]))
-    return {name.rstrip("_"): f"benchmarks.cases.{name}" for name in names}  # `class_` for the word `class`
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of `springtide bench`."""
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
     names = f"the benchmarks to run (default: all): {', '.join(places())}"
     parser.add_argument("names", nargs="*", metavar="NAME", help=names)
     parser.add_argument("--quick", action="store_true", help="fewer and shorter runs: a minute each")
@@ -24,3 +17,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--students", type=int, metavar="N", help="of the benchmark class: 1 to 100 (default: 8)")
     compared = "measure two commits of this repository in turns instead"
     parser.add_argument("--compare", nargs=2, metavar=("A", "B"), help=compared)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run benchmarks, or compare two commits; returns the exit status."""
+    a = arguments
+    if a.compare:
+        from benchmarks.compare import compare
+
+        return compare(a.names, tuple(a.compare), a.quick, a.out)
+    from benchmarks import command
+
+    return command.run(a.names, a.quick, a.peers, a.out, a.students)

@@ -66,7 +66,8 @@ def test_a_headless_run_imports_no_viewer(tmp_path: Path) -> None:
     """Every scene, one after the other: what one of them imported would still be there."""
     code = (
         f"from app.__main__ import main; status = [main(['run', name, '--seconds', '0.02', '--out', sys.argv[1]]) "
-        f"for name in {NAMES}]\nimport app.study.sweep.case; drawing = ('viser', 'app.render', 'app.panel', 'app.server');"
+        f"for name in {NAMES}]\nimport app.study.sweep.case; "
+        "drawing = ('viser', 'app.render', 'app.panel', 'app.server');"
         "print(status, sorted(n for n in sys.modules if n.startswith(drawing) or n.endswith('view')))"
     )
     assert python(code, str(tmp_path / "x.npz"))[-1] == f"{[0] * len(NAMES)} []"

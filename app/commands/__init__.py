@@ -1,1 +1,1 @@
-"""The commands `springtide`, `springtide run`, `springtide lab` and `springtide warmup`: one module each."""
+"""The commands of `springtide`: one module each, with add_arguments(parser) and run(arguments)."""

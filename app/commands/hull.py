@@ -1,44 +1,40 @@
-"""`springtide hull`, and the line about a mesh that every start with one prints: its size, volume and draft."""
+"""`springtide hull`: size, volume, draft and stability of a mesh, or where it is open."""
 
-import math
+import argparse
 import warnings
 from pathlib import Path
 
 import numpy as np
 
+from app.commands.added_files import naming_extra
+from app.commands.mesh_facts import size_text, size_warning
+from app.commands.options import add_mesh_reading, mesh_reading, quantity
 from app.formats import text_tables
-from sim.floating import Body, Hull, equilibrium_draft, metacentric_height, righting_arm
+from sim.floating import Body, Hull, metacentric_height, righting_arm
 from sim.floating.closed_mesh import open_edges
 from sim.floating.hull import MeshReading, open_mesh_from_file
 from sim.floating.mesh_repair import place_of_gaps, remedy
 from sim.validation import check_number
 
-LONGEST, SHORTEST = 500.0, 0.05  # [m] of a hull, outside which its file is likely to have another unit
 HEELS = (5, 10, 15, 20, 30, 40, 50, 60)  # [degrees]
 SEA_DENSITY = 1025.0  # [kg/m3]
 OPEN = 1  # exit status for a mesh that is not closed
 
 
-def hull_line(name: str, hull: Hull, density: float) -> str:
-    """Size, volume and draft of a hull of a density [kg/m3] in sea water, in one line."""
-    draft = equilibrium_draft(hull, density)
-    rest = "sinks" if math.isinf(draft) else f"floats {draft:.3g} m deep"
-    return f"{name}: {size_text(hull.size)}, {hull.volume:.4g} m3, {rest} at {density:g} kg/m3"
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    parser.add_argument("hull", type=Path, metavar="FILE", help="a mesh, as of --hull")
+    density = "of the whole hull, mass over volume (default: 500)"
+    parser.add_argument("--density", type=quantity("kg/m3"), default=500.0, metavar="KG/M3", help=density)
+    gravity = "height of the centre of gravity over the keel (default: that of the volume)"
+    parser.add_argument("--kg", type=quantity("m"), metavar="METRES", help=gravity)
+    add_mesh_reading(parser)
 
 
-def size_text(size: np.ndarray) -> str:
-    """Length, width and height (3,) [m] in words."""
-    x, y, z = size
-    return f"{x:.4g} m long, {y:.4g} m wide, {z:.4g} m high"
-
-
-def size_warning(name: str, size: np.ndarray, reading: MeshReading) -> str:
-    """A sentence about a hull of unlikely size (3,) [m], "" for any other."""
-    longest = float(size.max())
-    if SHORTEST <= longest <= LONGEST:
-        return ""
-    unit = reading.unit or "m"
-    return f"Warning: {name} is {longest:.4g} m long, read in {unit}; --hull-unit takes m, cm, mm or ft"
+def run(arguments: argparse.Namespace) -> int:
+    """Print the facts of a mesh; returns the exit status."""
+    with naming_extra("meshes", arguments.hull):
+        return print_facts(arguments.hull, mesh_reading(arguments), arguments.density, arguments.kg)
 
 
 def print_facts(path: Path, reading: MeshReading, density: float, keel_to_gravity: float | None) -> int:

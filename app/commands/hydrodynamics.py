@@ -1,11 +1,14 @@
 """`springtide hydrodynamics`: linear coefficients of a hull of one's own."""
 
+import argparse
 import importlib.util
 from pathlib import Path
 
 from rich import get_console
 from rich.progress import Progress
 
+from app.commands.checkout import of_checkout
+from app.commands.options import add_mesh_reading, mesh_reading
 from app.formats import text_tables
 from sim.floating import Hull
 from sim.floating.boundary_elements import FREQUENCIES, make_table
@@ -14,6 +17,25 @@ from sim.floating.linear_table import place_of_table, write_table
 from sim.validation import argument_error
 
 DRAFT_SHARES = (0.15, 0.3, 0.5, 0.7, 0.85)  # of the height of a hull, at which its coefficients are computed
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    parser.add_argument("hull", type=Path, nargs="?", metavar="HULL", help="a closed mesh, as of --hull")
+    out = "where to write the table (default: HULL.hydrodynamics.npz, where --hull finds it)"
+    parser.add_argument("--out", type=Path, metavar="FILE.npz", help=out)
+    compare = "in a checkout: set the shipped shapes beside Capytaine, live"
+    parser.add_argument("--compare", action="store_true", help=compare)
+    add_mesh_reading(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compute the table of a hull, or compare the shipped ones; returns the exit status."""
+    if arguments.compare == (arguments.hull is not None):
+        raise ValueError("HULL: give a mesh file, or --compare without one")
+    if arguments.compare:
+        return of_checkout("--compare", "hydrodynamics").compare()
+    return make(arguments.hull, arguments.out, mesh_reading(arguments))
 
 
 def require_capytaine() -> None:

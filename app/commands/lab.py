@@ -1,141 +1,115 @@
-"""`springtide lab new` and `springtide lab check`."""
+"""`springtide lab`: a folder of exercises made, worked on live, and checked; a class followed."""
 
-from collections.abc import Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+import argparse
 from pathlib import Path
 
-from rich import get_console
-from rich.console import Console
-from rich.text import Text
+from app.commands import open_lab
+from app.commands.added_files import SCENE_OF_FILE
+from app.messages import BaseParams
+from app.scenes import scene_named
 
-from app.files import check_out_file
-from app.formats import text_tables
-from app.lab.check import FolderResult, TaskResult, check_folder
-from app.lab.folder import folder_names, make_folder
-from app.lab.mistakes import mistakes, present_mistake, standing
-from app.lab.report import page_of
-from app.lab.results_file import csv_text, json_text
-from app.lab.runners import Runners
-from app.lab.task import load_tasks
-from sim.files import replacing
-
-STYLES = {
-    "right": "green",
-    "wrong": "red",
-    "failed": "red",
-    "not checked": "yellow",
-    "incomplete": "yellow",
-    "not begun": "dim",
-}
-ITEM_WIDTH = 7  # [characters]
-STATE_WIDTH = 2 + max(map(len, STYLES))  # [characters]
-FREQUENT = 3  # mistakes of a class that are printed
-PARALLEL = 2  # folders of a class that are checked at the same time
+LIVE = "live"  # the command of the lab that need not be named
 
 
-def new(folder: Path, tasks: Sequence[Path], *, solutions: bool) -> int:
-    """Write the exercises into a folder; returns the exit status."""
-    written = make_folder(folder, load_tasks(*tasks), solutions=solutions)
-    text_tables.say(f"wrote {', '.join(path.name for path in written)}. Begin with README.md.", folder)
-    return 0
+def add_arguments(lab: argparse.ArgumentParser) -> None:
+    """The commands of `springtide lab`."""
+    commands = lab.add_subparsers(metavar="DIR, new or check", required=True)
+    lab.epilog = (
+        "`springtide lab DIR` opens the scenes with the functions in that folder, live; "
+        "`springtide lab class/*` shows the teacher of a class who is at which task."
+    )
+    live = commands.add_parser(LIVE, prog=lab.prog)
+    made = "a folder that `springtide lab new` has made; several: those of a class"
+    live.add_argument("folders", type=Path, nargs="+", metavar="DIR", help=made)
+    open_lab.add_arguments(live)
+    live.set_defaults(run=run_live)
+    # The options of `springtide lab DIR` stand in the help of `springtide lab`: nobody asks for that of DIR.
+    lab.format_help = lambda: f"{argparse.ArgumentParser.format_help(lab)}\n{live.format_help()}"
+    new = commands.add_parser("new", help="write a folder with the exercises")
+    new.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
+    new.add_argument("--solutions", action="store_true", help="for teachers: with the reference solutions")
+    new.set_defaults(run=run_new)
+    check = commands.add_parser("check", help="check the exercises; status 0 where all that is mandatory is right")
+    check.add_argument("folders", type=Path, nargs="+", metavar="DIR", help="one folder, or those of a class")
+    json = "write the results as JSON; without a file, print them"
+    check.add_argument("--json", type=Path, nargs="?", const=Path("-"), metavar="FILE", help=json)
+    check.add_argument("--csv", type=Path, metavar="FILE.csv", help="write a table, one row a folder")
+    check.add_argument("--all", action="store_true", help="list the tasks that are not begun, too")
+    check.add_argument("--report", type=Path, metavar="FILE.html", help="write the page to hand in")
+    check.set_defaults(run=run_check)
+    for command in (live, new, check):
+        more = "a folder with tasks of your own, beside those of the course; see docs/lab.md"
+        command.add_argument("--tasks", type=Path, action="append", default=[], metavar="FOLDER", help=more)
 
 
-def check(
-    folders: Sequence[Path], tasks: Sequence[Path], out: dict[str, Path | None], *, everything: bool = False
-) -> int:
-    """Check folders, and write the requested reports; returns 0 if every mandatory task of every folder is right.
-
-    out: "json", "csv" and "report", each the file to write, or None. everything: print tasks not begun too.
-    """
-    for option, path in out.items():
-        if path is not None and str(path) != "-":
-            check_out_file(f"--{option}", path)
-    found = load_tasks(*tasks)
-    curves, runners = out["report"] is not None, Runners()
-    with ThreadPoolExecutor(min(PARALLEL, len(folders))) as pool:
-        try:
-            results = list(pool.map(lambda one: check_folder(one, found, curves=curves, runners=runners), folders))
-        except BaseException:  # Ctrl-C does not wait for endless functions
-            runners.abort()
-            raise
-    if out["json"] is not None and str(out["json"]) == "-":
-        print(json_text(results))
-    else:
-        print_results(results, everything=everything)
-    write_files(results, out)
-    return 0 if all(result.is_complete for result in results) else 1
+def with_live(words: list[str]) -> list[str]:
+    """The words after `springtide lab`, with the command that `springtide lab DIR` leaves out."""
+    return words if {*words[:1]} <= {"new", "check", LIVE, "-h", "--help"} else [LIVE, *words]
 
 
-def write_files(results: Sequence[FolderResult], out: dict[str, Path | None]) -> None:
-    """Write the files that are asked for, each whole or not at all."""
-    for option, make in (("json", json_text), ("csv", csv_text), ("report", page_of)):
-        path = out[option]
-        if path is not None and str(path) != "-":
-            with replacing(path) as draft:
-                draft.write_text(make(results), "utf-8")
+def run(arguments: argparse.Namespace) -> int:
+    """Run the command of the lab that was named; returns the exit status."""
+    return arguments.run(arguments)
 
 
-def print_results(results: Sequence[FolderResult], *, everything: bool = False) -> None:
-    """Print the result of one folder, or a row for each folder of a class.
+def run_live(arguments: argparse.Namespace) -> int:
+    """`springtide lab DIR`."""
+    if len(arguments.folders) > 1:
+        return serve_class(arguments)
+    from app.lab.session import Session
+    from app.lab.task import load_tasks
+    from app.lab.workbook import Workbook
 
-    everything: list the tasks that are not begun too.
-    """
-    if len(results) > 1:
-        names = folder_names(result.folder for result in results)
-        text_tables.print_table("", [class_row(result, names[result.folder]) for result in results])
-        print_frequent((names[result.folder], result.tasks) for result in results)
-        return
-    result, console = results[0], get_console()
-    for entry in result.tasks:
-        if everything or entry.state != "not begun":
-            print_task(entry, console)
-    problems = dict.fromkeys(text for entry in result.tasks for text in entry.problems)  # of a broken file one
-    for text in [result.answers.error, *problems]:
-        if text:
-            console.print()
-            text_tables.say(plain(text))
-    for entry in result.tasks:
-        for text in entry.missing:
-            console.print()
-            text_tables.say(f"{entry.task.item}, still to do: {text}")
-    rest = () if everything else [entry.task.optional for entry in result.tasks if entry.state == "not begun"]
-    (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
-    console.print()
-    if rest:
-        text_tables.say(f"Not begun: {rest.count(False)} tasks, {rest.count(True)} optional ones; --all lists them.")
-    said = f"{right} of {count} tasks right, {more} of {optional} optional ones ({result.seconds:.1f} s)."
-    text_tables.say(said)
+    session = Session(arguments.folders[0], load_tasks(*arguments.tasks), arguments.tasks)
+    try:
+        verdicts = session.versions
+        states = lambda: {name: verdict.state for name, verdict in verdicts.verdicts.items()}  # noqa: E731
+        workbook = Workbook(session.tasks, session.folder, states)
+        choose_scene(arguments, workbook.set_up_of(workbook.task).scene)
+        return open_lab.run(arguments, session, workbook)
+    finally:
+        session.close()
 
 
-def print_task(entry: TaskResult, console: Console) -> None:
-    """Print one line: item, state and title."""
-    head = f"{entry.task.item:<{ITEM_WIDTH}}{entry.state:<{STATE_WIDTH}}"
-    line = Text(f"{head}{plain(entry.task.title)}{' (optional)' if entry.task.optional else ''}")
-    line.stylize(STYLES[entry.state], ITEM_WIDTH, len(head))
-    console.print(line, soft_wrap=True)
+def choose_scene(arguments: argparse.Namespace, of_task: str) -> None:
+    """Have a student's lab begin where the work is, if nothing else is asked for. of_task: scene of the next task."""
+    is_asked = arguments.scene or arguments.resume or arguments.preset is not None or arguments.set
+    if not is_asked and all(getattr(arguments, option) is None for option in SCENE_OF_FILE):
+        arguments.scene = of_task
+    if open_lab.scene_name(arguments) == open_lab.DEFAULT_SCENE and arguments.preset is None and not arguments.set:
+        arguments.first_params = first_rope_of_student
 
 
-def plain(text: str) -> str:
-    """A text of a student for the terminal, with control characters written out."""
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+def first_rope_of_student() -> BaseParams:
+    """The rope that a student's lab opens: with RK4 a right solution equals the program's to rounding."""
+    from app.scenes.setups import make_setup
+
+    return make_setup(scene_named(open_lab.DEFAULT_SCENE), "", {"integrator": "rk4"}).params
 
 
-def class_row(result: FolderResult, name: str) -> dict[str, str]:
-    """Result of the check of one folder of a class. name: of the folder."""
-    (right, count), (more, optional) = result.count(optional=False), result.count(optional=True)
-    return {
-        "Folder": plain(name),
-        "Name": plain(result.answers.name),
-        "Right": f"{right} of {count}, {more} of {optional} optional",
-        "Tasks": standing(result.tasks),
-        "Mistake": plain(result.answers.error or present_mistake(result.tasks)),
-    }
+def serve_class(arguments: argparse.Namespace) -> int:
+    """`springtide lab class/*`."""
+    from app.commands.lab_class import serve_class as serve_page
+
+    plain = argparse.ArgumentParser()
+    open_lab.add_arguments(plain)
+    for name, default in vars(plain.parse_args([])).items():
+        if name not in ("port", "no_open") and getattr(arguments, name) != default:
+            option = f"--{name.replace('_', '-')}"
+            raise ValueError(f"{option}: the page of a class takes --port, --no-open and --tasks only")
+    return serve_page(arguments.folders, arguments.tasks, arguments.port, browser=not arguments.no_open)
 
 
-def print_frequent(students: Iterable[tuple[str, Sequence[TaskResult]]]) -> None:
-    """Print the mistakes that most students of a class have. students: name of the folder and results of each."""
-    found = [mistake for mistake in mistakes(students) if len(mistake.folders) > 1][:FREQUENT]
-    for mistake in found:
-        get_console().print()
-        names = ", ".join(mistake.folders)
-        text_tables.say(plain(f"{len(mistake.folders)} students, {mistake.place}: {mistake.text} ({names})"))
+def run_new(arguments: argparse.Namespace) -> int:
+    """`springtide lab new`."""
+    from app.commands.lab_folders import new
+
+    return new(arguments.folder, arguments.tasks, solutions=arguments.solutions)
+
+
+def run_check(arguments: argparse.Namespace) -> int:
+    """`springtide lab check`."""
+    from app.commands.lab_folders import check
+
+    out = {"json": arguments.json, "csv": arguments.csv, "report": arguments.report}
+    return check(arguments.folders, arguments.tasks, out, everything=arguments.all)

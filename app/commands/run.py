@@ -1,5 +1,6 @@
 """`springtide run`: a scene without a browser, sampled into one .npz file with units and all parameters."""
 
+import argparse
 import json
 from pathlib import Path
 from typing import Any
@@ -8,8 +9,11 @@ import numpy as np
 from rich import get_console
 from rich.progress import Progress
 
+from app.commands.list_scene import list_scene, list_scenes
+from app.commands.options import add_parameters, quantity, read_params
 from app.files import check_out_file
 from app.formats.text_tables import say
+from app.scenes import NAMES, scene_named
 from app.scenes.contract import Scene, SceneKind
 from app.scenes.setups import shared_values
 from app.scenes.stepping import steps_to
@@ -19,6 +23,35 @@ from sim.validation import DivergenceError, argument_error, check_number
 MAX_DURATION = 1e6  # [s] of simulated time
 MAX_RATE = 1e5  # [Hz]
 MAX_BYTES = 4e9  # of a run's arrays, in memory and in the file before it is compressed
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    parser.add_argument("scene", nargs="?", default="", metavar="SCENE", help=", ".join(NAMES))
+    parser.add_argument(
+        "--list",
+        action="store_true",
+        help="list the scene's parameters, presets and measures instead; without SCENE, the scenes",
+    )
+    parser.add_argument("--seconds", type=quantity("s"), metavar="S", help="simulated time [s]")
+    parser.add_argument("--out", type=Path, metavar="FILE.npz")
+    rate = "frames a simulated second (default: 30)"
+    parser.add_argument("--rate", type=quantity("Hz"), default=30.0, metavar="HZ", help=rate)
+    add_parameters(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run a scene into a file, or list what it has; returns the exit status."""
+    if arguments.list:
+        return list_scene(scene_named(arguments.scene)) if arguments.scene else list_scenes()
+    if not arguments.scene:
+        raise ValueError(f"SCENE: missing; one of {', '.join(NAMES)}")
+    scene = scene_named(arguments.scene)
+    for option in ("seconds", "out"):
+        if getattr(arguments, option) is None:
+            raise ValueError(f"--{option}: missing; or give --list for the scene's parameters, presets and measures")
+    params = read_params(scene, arguments)
+    return run_to_file(arguments.scene, scene, params, arguments.seconds, arguments.rate, arguments.out)
 
 
 def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds: float, rate: float, out: Path) -> int:

@@ -1,5 +1,6 @@
 """`springtide warmup`: compile every kernel and plan every transform, with progress."""
 
+import argparse
 import os
 import subprocess
 import sys
@@ -10,8 +11,26 @@ from rich import get_console
 from app.files import make_out_folder
 from app.scenes import NAMES
 from app.scenes.warmup import all_pieces, compile_here
-from sim.cache import SHARED_VARIABLE, host_levels, level_environment
+from sim.cache import INSTALLED, SHARED_VARIABLE, host_levels, level_environment
 from sim.jit import CACHE
+from sim.validation import argument_error
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    into = "for all users, into a folder that SPRINGTIDE_KERNELS names; without a name into that of the installation"
+    parser.add_argument("--into", nargs="?", const="", metavar="FOLDER", help=into)
+    level = "with --into: for all processors of a level (x86-64-v3, x86-64-v4, arm64), or all: each that this one has"
+    parser.add_argument("--processor", default="", metavar="LEVEL", help=level)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compile all kernels; returns the exit status."""
+    if arguments.into is not None:
+        return warm_up_into(Path(arguments.into) if arguments.into else INSTALLED, arguments.processor)
+    if arguments.processor:
+        raise argument_error("--processor", arguments.processor, "a level together with --into")
+    return warm_up()
 
 
 def warm_up() -> int:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from app.commands.lab import check
+from app.commands.lab_folders import check
 from app.lab.folder import make_folder
 from app.lab.rope_march import Segment
 from app.lab.runner import Runner

@@ -10,7 +10,7 @@ from unittest import mock
 
 import pytest
 
-from app.__main__ import make_parser
+from app.__main__ import Parser, make_parser
 from app.notebook.server_proxy import LAB_VARIABLE
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import FILE_KEYS, FILES, read_file
@@ -37,16 +37,17 @@ EXAMPLES = {
 EXAMPLE_FOLDERS = {path.rpartition("/")[0] for path in EXAMPLES}
 
 
-def subcommands() -> dict[str, argparse.ArgumentParser]:
+def subcommands() -> dict[str, Parser]:
     """The parser of each sub-command; "" is serving."""
     parser = make_parser()
     return {"": parser, **dict(parsers_below(parser))}
 
 
-def parsers_below(parser: argparse.ArgumentParser, prefix: str = "") -> Iterator[tuple[str, argparse.ArgumentParser]]:
+def parsers_below(parser: Parser, prefix: str = "") -> Iterator[tuple[str, Parser]]:
     """The sub-commands of a parser, and theirs: `lab` and `lab new`."""
     for action in parser._actions:
         for name, inner in action.choices.items() if isinstance(action, argparse._SubParsersAction) else ():
+            inner.add_arguments()
             yield prefix + name, inner
             yield from parsers_below(inner, f"{prefix}{name} ")
 

@@ -1,5 +1,6 @@
 """`springtide export`: a scene as a sequence of files, in a folder that appears whole."""
 
+import argparse
 import importlib.util
 import json
 import os
@@ -8,7 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from app.commands.options import add_parameters, quantity, read_params
 from app.formats.text_tables import say
+from app.scenes import scene_named
 from app.scenes.setups import shared_values
 from app.study.export import cloth_meshes, sea_pictures
 from app.study.export.cloth_meshes import ClothMeshes
@@ -26,6 +29,26 @@ MAX_DURATION = 1e5  # [s] of simulated time, and until the first frame
 RATES = 1.0, 1000.0  # [Hz]
 MAX_BYTES = 50e9  # of all files, before they are compressed
 VERSION = 1  # of the JSON file
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    seconds = quantity("s")
+    parser.add_argument("scene", metavar="SCENE", help="square_sea (EXR or PNG pictures that tile) or cloth (OBJ)")
+    parser.add_argument("--seconds", type=seconds, required=True, metavar="S", help="simulated time [s]")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new or empty folder")
+    rate = "frames a simulated second (default: 30)"
+    parser.add_argument("--rate", type=quantity("Hz"), default=30.0, metavar="HZ", help=rate)
+    parser.add_argument("--start", type=seconds, default=0.0, metavar="S", help="time of the first frame (default: 0)")
+    forms = "exr (32-bit, the sea's default if OpenEXR is installed, else png), exr16, png, or obj (the cloth's)"
+    parser.add_argument("--format", metavar="FORMAT", help=forms)
+    add_parameters(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the frames of a scene; returns the exit status."""
+    a = arguments
+    return export(a.scene, read_params(scene_named(a.scene), a), a.seconds, a.rate, a.start, a.format, a.out)
 
 
 def is_installed(form: str) -> bool:

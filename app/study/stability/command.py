@@ -1,5 +1,6 @@
 """`springtide stability`: measure, print tables, and write tables and figures."""
 
+import argparse
 import functools
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +19,18 @@ PARTS: tuple[tuple[str, str, Any, Callable[[Any], Any], Callable[[Any], Any]], .
 )
 
 
-def run(*, quick: bool, out: Path | None, workers: int = 0) -> int:
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    parser.add_argument("--quick", action="store_true", help="coarse maps: within a minute")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write tables (CSV) and figures to this folder")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Measure the maps; returns the exit status."""
+    return measure_maps(quick=arguments.quick, out=arguments.out)
+
+
+def measure_maps(*, quick: bool, out: Path | None, workers: int = 0) -> int:
     """Measure all maps and print their tables; with `out`, write tables and figures there.
 
     workers: processes, 0 for one on each core.

@@ -1,5 +1,6 @@
 """`springtide sweep`: check everything, run the cases that are not finished yet, write the results whole."""
 
+import argparse
 import contextlib
 import importlib.util
 from collections.abc import Callable, Generator, Iterator
@@ -19,6 +20,19 @@ FIGURE_SUFFIXES = (".png", ".svg")
 
 Outcomes = Generator[tuple[int, Outcome], None, None]  # the number and the outcome of each case, as it is finished
 Run = Callable[[dict[int, Any]], Outcomes]  # takes jobs by number
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of the command."""
+    parser.add_argument("spec", type=Path, metavar="SPEC.toml", help="what to sweep; for examples see assets/sweeps")
+    parser.add_argument("--out", type=Path, required=True, metavar="FILE.nc")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="run on a Dask cluster instead of this machine's cores")
+    parser.add_argument("--fresh", action="store_true", help="start over, and replace earlier results")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the sweep; returns the exit status."""
+    return sweep(arguments.spec, arguments.out, arguments.scheduler, fresh=arguments.fresh)
 
 
 def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bool = False) -> int:

@@ -90,10 +90,10 @@ def test_a_hostile_preset_is_refused(text, tmp_path, capsys):
 
 
 def test_a_solver_that_fails_is_one_line_and_status_1(monkeypatch, capsys):
-    def fail(_):
+    def fail(*_, **__):
         raise ConvergenceError("a state of rest", "3 N at node 7", 40)
 
-    monkeypatch.setattr("app.__main__.run_sweep", fail)
+    monkeypatch.setattr("app.study.sweep.command.sweep", fail)
     assert main(["sweep", "a.toml", "--out", "a.nc"]) == 1
     assert (
         capsys.readouterr().err == "springtide: a state of rest: no solution after 40 iterations; 3 N at node 7 left\n"

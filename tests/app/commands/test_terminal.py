@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from app.__main__ import main, make_parser
+from app.__main__ import Parser, main, make_parser
 from app.formats import text_tables
 from app.scenes import NAMES, scene_named
 from app.study.sweep import workers
@@ -38,12 +38,13 @@ def check_whole(said: str, *texts: str) -> None:
         assert text in " ".join(said.split()), text
 
 
-def parsers(parser: argparse.ArgumentParser, words: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+def parsers(parser: Parser, words: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
     """The words of every command."""
     yield words
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for name, inner in action.choices.items():
+                inner.add_arguments()
                 yield from parsers(inner, (*words, name))
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.commands.lab import print_results
+from app.commands.lab_folders import print_results
 from app.formats import text_tables
 from benchmarks.compare import shown as shown_ratio
 

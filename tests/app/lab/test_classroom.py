@@ -414,7 +414,7 @@ def test_the_page_takes_no_option_of_a_lab(
 
 def test_several_folders_are_a_class(folders: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
     served: list[list[Path]] = []
-    monkeypatch.setattr("app.__main__.serve_class", lambda arguments: served.append(arguments.folders) or 0)
+    monkeypatch.setattr("app.commands.lab.serve_class", lambda arguments: served.append(arguments.folders) or 0)
     monkeypatch.setattr("app.lab.session.Session", lambda *_: pytest.fail("one folder of several is served"))
     for several in (folders[:2], folders[:3]):
         assert main(["lab", *map(str, several)]) == 0

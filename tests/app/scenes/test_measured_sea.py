@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.__main__ import main, make_parser, read_params
+from app.__main__ import main, make_parser
+from app.commands.options import read_params
 from app.scenes import scene_named
 from app.scenes.radial_sea.report import readout_of
 from app.scenes.square_sea.report import readout

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.__main__ import with_mooring
+from app.commands.added_files import with_mooring
 from app.messages import GrabTo, Place, Release, RestartStatistics
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene

@@ -5,7 +5,8 @@ from collections.abc import Callable
 
 import pytest
 
-from app.__main__ import make_parser, read_params
+from app.__main__ import make_parser
+from app.commands.options import read_params
 from app.lab import task
 from app.messages import BaseParams
 from app.notebook.lab import read_setup as read_notebook

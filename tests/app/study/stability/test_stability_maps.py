@@ -139,7 +139,7 @@ def test_the_command_keeps_tables_and_figures(tmp_path, monkeypatch, capsys, map
     monkeypatch.setattr(rope, "INTEGRATORS", names)
     monkeypatch.setattr(drift, "INTEGRATORS", names)
     monkeypatch.setattr(damping, "INTEGRATORS", names)
-    assert command.run(quick=True, out=tmp_path, workers=1) == 0
+    assert command.measure_maps(quick=True, out=tmp_path, workers=1) == 0
     assert "leapfrog" in capsys.readouterr().out
     kept = {path.name for path in tmp_path.iterdir()}
     for name in ("linear", "rope", "damping", "drift"):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import viser
 
-from app.panel.round_step import round_step
+from app.formats.round_step import round_step
 from app.render.html import fill
 from app.render.viser_types import GuiHandle, ViserEvent
 from sim.parameters import Parameter, Value, clamp_value, in_words, parse_value

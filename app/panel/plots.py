@@ -14,9 +14,9 @@ import viser
 from numpy.typing import NDArray
 from viser import uplot
 
+from app.formats.round_step import round_step
 from app.messages import ChartLine, PlotRow
 from app.panel.recording_files import Plotted
-from app.panel.round_step import round_step
 from app.render.viser_types import GuiHandle
 from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
 from app.scenes.contract import AnyKind, AnySnapshot

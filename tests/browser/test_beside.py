@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from app.scenes.setups import read_query
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.view import camera_of
 from app.server.viewer import Viewer
 
@@ -92,7 +93,7 @@ def test_the_camera_over_a_sea_is_as_far_from_its_middle_in_both_panes(open_tab:
                     found.append(np.array([client.camera.position, client.camera.look_at]) - middle)
             return found
 
-        expected = np.array(camera_of("deck", 128.0)) - (64.0, 64.0, 0.0)
+        expected = np.array(camera_of(SquareSeaParams(length=128.0))) - (64.0, 64.0, 0.0)
         tab.wait(lambda: len(offsets()) == 2 and np.allclose(offsets(), [expected, expected], atol=0.05))
     finally:
         viewer.shut()

@@ -30,12 +30,17 @@ VIEW_HEIGHTS = {
     "platform": 20.0,
     "gull": 40.0,
 }  # [m] of the camera
+VIEW_TITLES = {
+    **{name: f"{name.capitalize()}, {height:g} m up" for name, height in VIEW_HEIGHTS.items()},
+    "gauge": "Beside the wave gauge",
+}
 PLANET_TITLES = {
     "by mass": "By mass",
     "by gravity": "By gravity",
     **{name: f"{name}, {number(planet.gravity)} m/s²" for name, planet in SOLAR_SYSTEM.items()},
 }
 GAUGE_OFFSET_SHARE = (0.06, -0.015)  # of the tile's side: where the wave gauge stands, from the middle of the tile
+MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] of a wave gauge near the camera, before a click has placed it
 SURFACE_TENSION = 0.0728  # [N/m] of water against air
 MAX_POINTS, MAX_POINTS_OF_HIGH_ORDER = 256, 128  # of a nonlinear sea, up to order 3 and above
 LONG_CRESTED_STARTS = ("breather", "groups")
@@ -57,10 +62,7 @@ class SquareSeaParams:
     planet: str = in_main("by mass", choices=PLANET_TITLES, doc="What sets the gravity")
     planet_mass: float = in_main(1.0, 0.01, 100.0, "Earths", "Mass of the planet", log_from=0.01, title="Mass")
     gravity: float = in_main(9.81, 0.01, 1000.0, "m/s²", "Gravity", log_from=0.01)
-    view: str = in_main(
-        "deck", choices={name: f"{name.capitalize()}, {height:g} m up" for name, height in VIEW_HEIGHTS.items()},
-        doc="Where the camera stands", affects="look",
-    )  # fmt: skip
+    view: str = in_main("deck", choices=VIEW_TITLES, doc="Where the camera stands", affects="look")
 
     spectrum: str = in_waves("pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
     wind_direction: float = in_main(20.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y")
@@ -168,13 +170,13 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
     "Heavy planet": {"planet_mass": 100.0, "length": 128.0, "wind_speed": 10.0, "visibility": 1500.0, "view": "mast"},
     "Rain shower": {
-        "rain": 30.0, "length": 32.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 0.4,
-        "frame_rate": 24.0, "view": "swimmer", "drops": 600, "foam": False, "clouds": 1.0, "sun": 8.0,
+        "rain": 30.0, "length": 40.0, "wind_speed": 0.5, "wind_direction": 70.0, "mesh": "256", "rings": 0.8,
+        "frame_rate": 24.0, "view": "deck", "drops": 1500, "foam": False, "clouds": 1.0, "sun": 8.0,
     },
     "Peregrine breather": {
         "order": 4, "start": "breather", "spectrum": "regular", "wave_height": 1.27, "wave_period": 5.06,
         "wind_direction": 0.0, "wind_speed": 4.0, "length": 960.0, "mesh": "256", "speed": 8.0, "sun": 150.0,
-        "foam_by_wind": False, "foam_threshold": 0.6, "view": "side",
+        "foam_by_wind": False, "foam_threshold": 0.6, "view": "gauge", "plot_wave_gauge": True,
     },
     "Steep waves split into groups": {
         "order": 4, "start": "groups", "spectrum": "regular", "wave_height": 1.4, "wave_period": 5.06,
@@ -185,12 +187,13 @@ PRESETS: dict[str, dict[str, Any]] = {
         "order": 3, "start": "rogue", "spectrum": "sea_state", "hs": 8.4, "tp": 15.0, "second_height": 8.4,
         "second_period": 15.0, "wind_direction": -60.0, "second_direction": 60.0, "spreading": "cos2s",
         "spread_exponent": 25.0, "wind_speed": 20.0, "deep": False, "depth": 70.0, "length": 1200.0, "size": "128",
-        "seed": 1, "foam_by_wind": False, "foam_threshold": 0.3, "foam_fade": 1.0, "speed": 2.0, "view": "platform",
-        "clouds": 1.0, "daylight": 0.7, "visibility": 3000.0,
+        "seed": 1, "foam_by_wind": False, "foam_threshold": 0.3, "foam_fade": 1.0, "speed": 2.0, "view": "gauge",
+        "plot_wave_gauge": True,
+        "clouds": 1.0, "daylight": 1.0, "visibility": 3000.0,
     },
     "Steep storm": {
         "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",
-        "foam_by_wind": False, "foam_threshold": 0.7, "view": "bridge", "clouds": 0.9, "daylight": 0.8,
+        "foam_by_wind": False, "foam_threshold": 0.7, "view": "gauge", "clouds": 0.9, "daylight": 0.8,
         "visibility": 2000.0,
     },
 }  # fmt: skip
@@ -204,7 +207,7 @@ ABOUT = {  # preset -> what it shows and what to try
     "Rain shower": "Rain on nearly calm water: watch the rings spread.",
     "Peregrine breather": "Even waves gather within a minute into one that is three times as high.",
     "Steep waves split into groups": "Even, steep waves split into groups within a minute; at order 1 they do not.",
-    "Draupner": "A crossing sea makes a crest of 18.5 m after 60 s, as it was measured in 1995.",
+    "Draupner": "A crossing sea of 11.9 m makes a crest of 18.5 m after 60 s, as was measured in 1995.",
     "Steep storm": "Steep waves of a short fetch break: run on to a high crest.",
 }
 
@@ -237,6 +240,15 @@ def solved_points(p: SquareSeaParams) -> int:
     if not marches(p) or p.start in LONG_CRESTED_STARTS:
         return size
     return min(size, MAX_POINTS if p.order <= 3 else MAX_POINTS_OF_HIGH_ORDER)
+
+
+def gauge_home(params: SquareSeaParams) -> tuple[float, float]:
+    """Initial place of the wave gauge [m], until a click moves it: near the camera, or where a high wave is to come."""
+    x, y = (
+        math.copysign(min(abs(share) * params.length, math.inf if marches(params) else limit), share)
+        for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
+    )
+    return 0.5 * params.length + x, 0.5 * params.length + y
 
 
 def gravity(params: SquareSeaParams) -> float:

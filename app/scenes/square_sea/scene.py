@@ -19,11 +19,11 @@ from app.scenes.square_sea.foam import MeshFoam, WavePace
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings, pack_frame, readings_of, unpack_frame
 from app.scenes.square_sea.parameters import (
     ABOUT,
-    GAUGE_OFFSET_SHARE,
     PRESETS,
     SquareSeaParams,
     acting,
     conditions,
+    gauge_home,
     hidden,
     marches,
     rain_settings,
@@ -57,19 +57,6 @@ NONLINEAR = "nonlinear waves"
 STEP = 1 / 60  # [s] of the clock; nothing is integrated over it
 START_WIND_SPEEDS = {"calm": 3.0, "storm": 24.0}  # [m/s] wind of the sea at a reset, by the parameter `start`
 PLOT_ROW_INTERVAL = 0.1  # [s] of simulated time between two plot rows
-MAX_GAUGE_OFFSET = (12.0, 3.0)  # [m] of a wave gauge near the camera, before a click has placed it
-
-
-def gauge_home(length: float, *, is_near: bool = True) -> tuple[float, float]:
-    """Initial place of the wave gauge [m] on a tile of this length [m], until a click moves it.
-
-    is_near: to the camera; else where a rogue wave is seen as a whole.
-    """
-    x, y = (
-        math.copysign(min(abs(share) * length, limit if is_near else math.inf), share)
-        for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
-    )
-    return 0.5 * length + x, 0.5 * length + y
 
 
 def warm_up() -> Pieces:
@@ -144,7 +131,7 @@ class SquareSeaScene:
     def reset(self) -> None:
         """The sea at time 0, with the wave gauge where a new scene has it."""
         self.steps, self.gauge_placed = 0, False  # placed: by a click
-        self.gauge.put(gauge_home(self.params.length, is_near=not marches(self.params)))
+        self.gauge.put(gauge_home(self.params))
         self.begin_plots()
         self.make_sea()
         self.read_gauge()  # for the row of the start

@@ -11,6 +11,7 @@ import viser
 
 from app.formats.formatting import number, percent
 from app.formats.packing import compile_packing
+from app.formats.round_step import round_step
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, PointAlong, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
@@ -18,6 +19,7 @@ from app.render.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
+from app.render.staff import COLOURS, UPRIGHT, add_staff
 from app.render.viser_inside import set_arrays
 from app.render.water import DrawnWater, Tile
 from app.scenes.contract import Pieces, SceneView
@@ -29,9 +31,12 @@ from app.scenes.square_sea.parameters import (
     SURFACE_TENSION,
     VIEW_HEIGHTS,
     SquareSeaParams,
+    gauge_home,
     gravity,
+    marches,
     rain_settings,
 )
+from app.scenes.square_sea.quantities import here
 from app.scenes.square_sea.rain_view import RainMesh
 from app.scenes.square_sea.tile_mesh import Highest
 from sim.particles.rain import rainfall
@@ -48,6 +53,9 @@ TARGETS = {  # [m] of each view: how far ahead its target is, and the target's h
     "platform": (120.0, 12.0),
     "gull": (70.0, 0.0),
 }
+# Of the significant height: where the camera stands beside the wave gauge, and the height of its target there.
+GAUGE_VIEW = (-2.0, -6.0, 0.8), 0.5
+MIN_GAUGE_VIEW_HEIGHT = 1.0  # [m] of the waves, of which the distance of that camera is a multiple
 CAMERA_SETBACK = 0.14  # of the tile's side: how far the camera stands behind the middle of the tile,
 MAX_CAMERA_SETBACK = 20.0  # [m] but no farther than this, so that it is near the rain
 OVERCAST_TINT = (0.80, 0.92, 1.02)  # colour filter on the sky where clouds cover all of it
@@ -61,11 +69,19 @@ MAX_RIPPLE_SLOPE = 0.25  # rms, beyond which the shader's ripples look like nois
 RAIN_BLUR = 0.9  # of the haze's colour in rain: all of the sky is haze there, and shows the blocks of the photograph
 GAUGE_SIDES = 24  # of its cylinders
 FLOAT_RADIUS, FLOAT_TOP, SPAR_RADIUS, SPAR_TOP = 0.45, 0.5, 0.09, 3.0  # [m]
+STAFF_SLENDERNESS = 0.12  # radius of the staff, over the height of a band
+LEVEL_COLOUR = (0.96, 0.84, 0.2)
 GAUGE_COLOUR, SPAR_COLOUR = (0.94, 0.376, 0.125), (0.96, 0.96, 0.94)
 
 
-def camera_of(view: str, length: float) -> tuple[Vector, Vector]:
-    """Position and target [m] of a view over a tile of side `length` [m]; its height does not depend on the tile."""
+def camera_of(params: SquareSeaParams) -> tuple[Vector, Vector]:
+    """Position and target [m] of a view over the tile; its height depends on the waves beside the wave gauge only."""
+    view, length = params.view, params.length
+    gauge_x, gauge_y = gauge_home(params)
+    if view == "gauge":
+        hs = max(here(params).height, MIN_GAUGE_VIEW_HEIGHT)
+        (x, y, z), target_height = GAUGE_VIEW
+        return (gauge_x + x * hs, gauge_y + y * hs, z * hs), (gauge_x, gauge_y, target_height * hs)
     ahead, target_height = TARGETS[view]
     if view == "side":  # across the wind, along the crests of waves that run to +x
         x = (0.5 + GAUGE_OFFSET_SHARE[0]) * length
@@ -93,6 +109,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         self.water: DrawnWater | None = None
         self.rain: RainMesh | None = None
         self.gauge: WaveGaugeMesh | None = None
+        self.staff: WaveStaff | None = None
         self.mark: viser.LabelHandle | None = None
         self.marked: Highest | None = None  # crest that the mark is on
         self.mesh_shape: tuple[int, float] = (0, DEFAULTS.length)  # vertices along a side, length [m]
@@ -105,7 +122,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
 
     def first_view(self, params: SquareSeaParams) -> tuple[Vector, Vector]:
         """Position and target [m] of a camera that has not been moved."""
-        return camera_of(params.view, params.length)
+        return camera_of(params)
 
     async def on_click(self, event: Any) -> None:
         """Report the point under the mouse to the scene."""
@@ -138,7 +155,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         self.material = material
         if p.view != self.view:
             self.view = p.view
-            place_cameras(self.server, *camera_of(p.view, p.length))
+            place_cameras(self.server, *camera_of(p))
         if self.last is None or frame.vertices is not self.last.vertices:
             frame.sent.numbers = self.water.set_surface(frame.vertices, frame.slopes, frame.foam, frame.time)
             self.show_rain(frame)
@@ -205,13 +222,32 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
             self.rain.show(rain)
 
     def show_gauge(self, frame: SeaFrame) -> None:
-        """Draw the wave gauge where it is shown."""
+        """Draw the wave gauge where it is shown: a buoy, or in a nonlinear sea a staff."""
+        if marches(frame.params):
+            self.show_staff(frame)
+            return
+        if self.staff is not None:
+            self.staff.remove()
+            self.staff = None
         if self.gauge is None and frame.gauge is not None:
             self.gauge = WaveGaugeMesh(self.server)
         if self.gauge is not None:
             self.gauge.show(frame.gauge)
             assert self.water is not None
             self.water.set_waterlines(waterlines_of(frame.gauge))
+
+    def show_staff(self, frame: SeaFrame) -> None:
+        """Draw the staff at the wave gauge; it is made for one place and one height of the waves."""
+        place = None if frame.gauge is None else (*frame.gauge[:2], here(frame.params).height)
+        if self.gauge is not None:
+            self.gauge.show(None)
+        if self.staff is not None and self.staff.place != place:
+            self.staff.remove()
+            self.staff = None
+        if self.staff is None and place is not None:
+            self.staff = WaveStaff(self.server, place)
+        assert self.water is not None
+        self.water.set_waterlines([] if self.staff is None else [self.staff.waterline])
 
     def mark_highest(self, frame: SeaFrame) -> None:
         """Mark the highest crest since the start, at its place and height."""
@@ -301,6 +337,38 @@ class WaveGaugeMesh:
             part.visible = position is not None
             if position is not None:
                 set_arrays(part, batched_positions=np.array([position]))
+
+
+class WaveStaff:
+    """A staff that stands in the sea: bands, a ring at still water, and the height at every second band."""
+
+    def __init__(self, server: viser.ViserServer, place: Vector) -> None:
+        """place: x and y [m], and the significant height of the waves [m], of which the bands are a part."""
+        x, y, height = self.place = place
+        band = round_step(max(height, MIN_GAUGE_VIEW_HEIGHT) / 3.0)
+        above, below = math.ceil(2.0 * height / band) + 1, math.ceil(1.5 * height / band) + 1
+        radius = STAFF_SLENDERNESS * band
+        scene = server.scene
+        self.handles = [
+            add_staff(server, "/staff", (x, y, 0.0), band, range(-below, above), radius),
+            scene.add_batched_meshes_simple(
+                "/staff/level", *upright(1.4 * radius, -0.04 * band, 0.04 * band),
+                batched_wxyzs=UPRIGHT[None], batched_positions=np.array([(x, y, 0.0)], np.float32),
+                batched_colors=as_linear_bytes(LEVEL_COLOUR), lod="off",
+            ),
+            *(
+                scene.add_label(
+                    f"/staff/{i}", f"{number(i * band)} m" if i else "still water", anchor="center-left",
+                    position=(x + 1.6 * radius, y, i * band),
+                )
+                for i in range(0, above + 1, 2)
+            ),
+        ]  # fmt: skip
+        self.waterline = Waterline((x, y), 0.0, (0.0, 0.0), radius, above * band, color=COLOURS[0])
+
+    def remove(self) -> None:
+        """Take it away, and with it all that is named below it."""
+        self.handles[0].remove()
 
 
 def waterlines_of(gauge: Vector | None) -> list[Waterline]:

@@ -1,5 +1,6 @@
 """The view of the square sea on a viser server without a browser."""
 
+import dataclasses
 import math
 from types import SimpleNamespace
 from typing import Any
@@ -10,9 +11,12 @@ import trimesh
 import viser
 from viser._messages import SetOrientationMessage, SetPositionMessage
 
+from app.formats.formatting import number
+from app.formats.round_step import round_step
 from app.render.material import blend
 from app.scenes.square_sea import rain_view
 from app.scenes.square_sea.parameters import RainSettings, SquareSeaParams
+from app.scenes.square_sea.quantities import here
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.view import (
     GAUGE_SIDES,
@@ -116,3 +120,31 @@ def test_ripples_have_the_slope_that_the_mesh_lacks_up_to_a_bound(server: viser.
     assert missing > 0.001
     assert view.material.ripple_slope == pytest.approx(min(math.sqrt(missing), MAX_RIPPLE_SLOPE), abs=5e-4)
     assert (view.material.ripple_slope == MAX_RIPPLE_SLOPE) is (wind == 30.0)
+
+
+def test_a_nonlinear_sea_has_a_staff_beside_which_its_camera_stands(server: viser.ViserServer) -> None:
+    params = SquareSeaParams(size="64", mesh="32", order=3, start="rogue", view="gauge", length=800.0, wind_speed=15.0)
+    view, scene = SquareSeaView(server, lambda command: None), SquareSeaScene(params)
+    view.show(scene.frame())
+    staff, (x, y) = view.staff, scene.gauge.at
+    assert view.gauge is None
+    assert staff is not None
+    hs = here(params).height
+    bands = staff.handles[0]
+    feet, band = bands.batched_positions, bands.vertices[:, 2].max()
+    np.testing.assert_allclose(feet[:, :2], np.broadcast_to((x, y), (len(feet), 2)), rtol=1e-6)
+    assert band == pytest.approx(round_step(hs / 3.0))
+    assert feet[:, 2].min() < -1.5 * hs
+    assert feet[:, 2].max() + band > 2.0 * hs
+    texts = {label.text: label.position[2] for label in staff.handles[2:]}
+    assert texts.pop("still water") == 0.0
+    assert all(number(height) + " m" == text for text, height in texts.items())
+    (eye_x, eye_y, eye_z), target = view.first_view(params)
+    assert target == (x, y, 0.5 * hs)
+    assert math.hypot(eye_x - x, eye_y - y) == pytest.approx(math.hypot(2.0, 6.0) * hs)
+    assert eye_z > 0.5 * hs
+    scene.change_forces(dataclasses.replace(params, order=1, start="as set"))
+    scene.reset()
+    view.show(scene.frame())
+    assert view.staff is None
+    assert view.gauge is not None

@@ -16,6 +16,7 @@ This file alone uses names of numba that are not public. `check` tries all of th
 import contextlib
 import functools
 import hashlib
+import inspect
 import pickle
 import sys
 import warnings
@@ -137,10 +138,26 @@ def without_processor(key: Any) -> tuple[Any, Any]:
 
 
 def file_name(function: Callable[..., Any]) -> str:
-    """Name of a kernel's files: by its name and its code, wherever it stands in its source."""
-    digest = hashlib.sha256(repr(contents(function.__code__)).encode()).hexdigest()[:8]
+    """Name of a kernel's files: by its name, its code and what it uses, wherever it stands in its source.
+
+    The folder is named by the sources, which are not always what runs: Python takes byte code for new if the time of
+    the source in whole seconds, and its size, are the same.
+    """
+    used = inspect.getclosurevars(function)
+    names = {**used.globals, **used.nonlocals}
+    code = contents(function.__code__), [(name, described(names[name])) for name in sorted(names)]
+    digest = hashlib.sha256(repr(code).encode()).hexdigest()[:8]
     name = function.__qualname__.replace("<", "").replace(">", "")
     return f"{name}-{digest}.{sys.implementation.cache_tag}"
+
+
+def described(value: Any) -> Any:
+    """What a name stands for in a kernel: another kernel, by the name of its files, or a number; "" for all else."""
+    if isinstance(value, VariantEntry):
+        return [described(kernel) for kernel in value.variants.values()]
+    if isinstance(value, Entry):
+        return value.file_name
+    return repr(value) if isinstance(value, bool | int | float | np.number) else ""
 
 
 def contents(code: CodeType) -> tuple[Any, ...]:
@@ -387,6 +404,7 @@ class Entry(Kernel):
     """A kernel as Python calls it; other kernels are given its part."""
 
     part: Any
+    file_name: str
 
     def compile(self, sig: Any) -> Any:
         """Called by Python with arguments of new types."""
@@ -439,28 +457,30 @@ def make_kernel(
     noalias, counts: whether arrays that are written overlap no other, and whether array arguments are counted.
     """
     options = {**options, "_nrt": counts, "no_cfunc_wrapper": True, **({"noalias": True} if noalias else {})}
-    entry = compiled(function, folders, "", EntryCompiler, EntryResult, options)
-    part = compiled(function, folders, "-part", PartCompiler, PartResult, {**options, "no_cpython_wrapper": True})
+    name = file_name(function)
+    entry = compiled(function, folders, name, EntryCompiler, EntryResult, options)
+    options["no_cpython_wrapper"] = True
+    part = compiled(function, folders, f"{name}-part", PartCompiler, PartResult, options)
     entry.__class__, part.__class__ = Entry, Part
-    entry.part = part
+    entry.part, entry.file_name = part, name
     return entry
 
 
 def compiled(
     function: Callable[..., Any],
     folders: Folders | None,
-    suffix: str,
+    name: str,
     pipeline: type,
     result: type,
     options: dict[str, Any],
 ) -> Any:
-    """numba's function of one form of a kernel, kept in `folders`, in files with `suffix`, as `result` says."""
+    """numba's function of one form of a kernel, kept in `folders`, in files of this name, as `result` says."""
     made = numba.njit(cache=folders is not None, pipeline_class=pipeline, **options)(function)
     made._compiler._customize_flags = KernelFlags  # type: ignore[attr-defined]
     if folders is not None:
         cache = made._cache  # type: ignore[attr-defined]
         cache.__class__ = KernelCache
-        cache._cache_file = KernelFiles(folders, file_name(function) + suffix)
+        cache._cache_file = KernelFiles(folders, name)
         cache._impl.__class__ = result
     return made
 

@@ -31,6 +31,7 @@ for line in sys.stdin:
         try:
             os.environ.update(environment)
             sys.path[:0] = environment.get("PYTHONPATH", "").split(os.pathsep)
+            sys.dont_write_bytecode = bool(os.environ.get("PYTHONDONTWRITEBYTECODE"))  # read at a start only
             for number, name in enumerate(("in", "out", "errors")):
                 os.dup2(os.open(os.path.join(folder, name), os.O_RDWR | os.O_CREAT), number)
             signal.alarm(120)

@@ -41,7 +41,7 @@ def number(value: float, digits: int = 3) -> str:
 
 def decimal(value: float, decimals: int) -> str:
     """At most `decimals` digits after the point, without trailing zeros; thousands apart, and a real minus sign."""
-    text = f"{value:,.{decimals}f}"
+    text = f"{value:z,.{decimals}f}"
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return text.replace(",", THOUSANDS).replace("-", "−")
@@ -54,7 +54,7 @@ def fixed(value: float, decimals: int, *, sign: bool = False) -> str:
     """
     if not math.isfinite(value):
         return NO_NUMBER
-    return f"{value:{'+' if sign else ''},.{decimals}f}".replace(",", THOUSANDS).replace("-", "−")
+    return f"{value:{'+' if sign else ''}z,.{decimals}f}".replace(",", THOUSANDS).replace("-", "−")
 
 
 def percent(share: float, digits: int = 2) -> str:

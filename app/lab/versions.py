@@ -56,8 +56,9 @@ def stamps(folder: Path, ending: str) -> Stamps | None:
 class Look:
     """Looks at the files of a folder that have one ending."""
 
-    def __init__(self, folder: Path, ending: str) -> None:
-        self.folder, self.ending = folder, ending
+    def __init__(self, folder: Path, ending: str, max_settle: float = MAX_SETTLE_TIME) -> None:
+        """max_settle: [s] that a look waits at most until a save is complete."""
+        self.folder, self.ending, self.max_settle = folder, ending, max_settle
         self.seen: Stamps | None = None
         self.sure_at = 0.0  # [s] of the monotonic clock from which equal stamps mean equal files
 
@@ -68,7 +69,7 @@ class Look:
             return False
         if now == self.seen:
             return time.monotonic() < self.sure_at
-        end = time.monotonic() + MAX_SETTLE_TIME
+        end = time.monotonic() + self.max_settle
         while self.seen is not None and time.monotonic() < end:
             time.sleep(SETTLE_TIME)
             before, now = now, stamps(self.folder, self.ending)

@@ -16,6 +16,7 @@ from app.lab.answers import DONE, FILE, SHOWN, Answers, Value, change_answer, ch
 from app.lab.folder import MAX_PICTURES, PICTURES
 from app.lab.live_values import LiveNumber, LiveValues
 from app.lab.task import PREDICTION, Question, Task, TaskSetup
+from app.lab.versions import Look
 from app.render.formula import formula
 from sim.files import replacing
 from sim.parameters import choice_error
@@ -50,7 +51,7 @@ class Workbook:
             check_laws(task)
         self.lock = threading.RLock()
         self.answers = Answers("", {})
-        self.read_at: tuple[int, int] | None = None  # time and size of the file that was read
+        self.file = None if folder is None else Look(folder, FILE, 0.0)
         self.revision: int = 0  # how often the answers have changed
         self.looked_at: set[str] = set()  # names of the tasks that show their answer, where there is no folder
         self.refresh()
@@ -97,21 +98,15 @@ class Workbook:
     # ----- answers
 
     def refresh(self) -> None:
-        """Read answers.toml where it has changed since it was read."""
-        if self.folder is None:
+        """Read answers.toml where it may have changed since it was read."""
+        if self.folder is None or self.file is None:
             return
         with self.lock:
-            try:
-                status = (self.folder / FILE).stat()
-                found = status.st_mtime_ns, status.st_size
-            except OSError:
-                found = None
-            if found != self.read_at or found is None:
+            if self.file.has_changed() or not (self.folder / FILE).exists():
                 answers = read_answers(self.folder)
                 if answers != self.answers:
                     self.answers = answers
                     self.revision += 1
-                self.read_at = found
 
     def verdict(self, task: Task, question: Question) -> AnswerVerdict:
         """The answer to a question, and the check's result."""

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sim.angles import angle_from, within_turn
 from sim.floating.closed_mesh import ClosedMesh, check_hull
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import (
@@ -154,7 +155,7 @@ def converted(
     added = matrix("added_mass") / scale
     k = wavenumber_of(omega[waves] / math.sqrt(g), water)
     X = sum(by_omega[name][waves] for name in FORCES)
-    headings = np.mod(numbers(dataset, "wave_direction", ("wave_direction",), path), 2 * math.pi)
+    headings = within_turn(numbers(dataset, "wave_direction", ("wave_direction",), path))
     path_length = mesh.centre[0] * np.cos(headings) + mesh.centre[1] * np.sin(headings)
     phase = np.exp(-1j * k[:, None] * path_length)[:, :, None]
     X = X @ S * phase / (rho * g * unit * length)
@@ -335,7 +336,7 @@ def place_of_heading(headings: np.ndarray, path: str, heading: float | None) -> 
     """Index of the one of headings (n,) [rad] that is asked for. Raises ValueError without it."""
     if heading is None:
         return 0
-    miss = np.abs(np.angle(np.exp(1j * (headings - check_angle("heading", heading)))))
+    miss = np.abs(angle_from(headings, check_angle("heading", heading)))
     if not len(miss) or miss.min() > SAME_HEADING:
         known = ", ".join(f"{one:.4g}" for one in headings)
         raise argument_error("heading", heading, f"one that the dataset has: {known} rad")
@@ -347,8 +348,8 @@ def resampled(X: np.ndarray, headings: np.ndarray, path: str) -> np.ndarray:
 
     Headings from 0 to 90, or to 180, degrees are mirrored, of a hull that is as symmetric as that needs.
     """
-    order = np.argsort(headings)
-    headings, X = headings[order], X[:, order]
+    headings, order = np.unique(headings, return_index=True)  # some datasets have 0 and a whole turn
+    X = X[:, order]
     for end, factor in ((math.pi / 2, MIRROR_X), (math.pi, MIRROR_Y)):
         if abs(headings[0]) < 1e-6 and abs(headings[-1] - end) < 1e-6:
             mirrored, at = X * factor, headings < end - 1e-6

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sim.angles import angle_from
 from sim.floating.body import Body, Fleet
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers
 from sim.floating.hydrodynamics import DIRECTIONS, afloat
@@ -104,7 +105,7 @@ class WaveExcitation:
         bearing = np.arctan2(ky, kx)[amplitude > 0.0]
         for b, q in enumerate(self.kind):
             heading = self.kinds[q].heading
-            away = np.abs(np.angle(np.exp(1j * (bearing - heading_angle(fleet.rotation[b]) - heading))))
+            away = np.abs(angle_from(bearing, heading_angle(fleet.rotation[b]) + heading))
             if (away > HEADING_TOLERANCE).any():  # False for nan: all headings
                 given = (
                     f"a hull with a dataset of {heading:.4g} rad only, in waves up to {away.max():.3g} rad from that"

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.angles import angle_from
 from sim.floating.body import Body, check_body, check_pose
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.hydrodynamics import DIRECTIONS, LEVEL_MOTIONS, lagrange, linear_hull, plane_force
@@ -85,7 +86,7 @@ def linear_forces(
         C[2:5, 2:5] += gravity * change * forces[2:5]
     fluid = density * hull.volume / linear.volume  # [kg/m3] mean density of the displaced fluids
     mass = density * np.block([[hull.volume * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), hull.inertia]])
-    if abs(math.remainder(heading - linear.heading, 2.0 * math.pi)) > MAX_MISS:  # False for nan: all headings
+    if abs(angle_from(heading, linear.heading)) > MAX_MISS:  # False for nan: all headings
         raise argument_error("heading", heading, f"{linear.heading:g} rad, the only one that the hull's dataset has")
     index, weights = lagrange(np.append(DIRECTIONS, 2.0 * math.pi), heading % (2.0 * math.pi))
     k = linear.wavenumber(w / math.sqrt(gravity))

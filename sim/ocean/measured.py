@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.angles import ROUNDING, within_turn
 from sim.ocean.spectra.record import Conditions, Spectrum, SpreadConditions, from_frequency
 from sim.validation import argument_error, as_array
 
@@ -105,10 +106,10 @@ def measured_spectrum(
         theta = as_array("direction", direction, allowed)
         if theta.ndim != 1 or len(theta) < MIN_DIRECTIONS or not np.isfinite(theta).all():
             raise argument_error("direction", theta.tolist() if theta.ndim == 1 else theta.shape, allowed)
-        theta = np.mod(theta, 2.0 * math.pi)
+        theta = within_turn(theta)
         order = np.argsort(theta)
         theta = theta[order]
-        if not (np.diff(theta) > 0.0).all():
+        if not (np.diff(theta) > ROUNDING).all():
             raise argument_error("direction", direction, allowed)
         shape, unit = (*f.shape, *theta.shape), "m2/Hz/rad"
     allowed = f"finite numbers, 0 or above [{unit}], of shape {shape}, some above 0"

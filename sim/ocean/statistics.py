@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from sim.angles import direction_of, within_turn
 from sim.ocean.gerstner import energy_range
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.validation import argument_error, check_not_negative
@@ -55,7 +56,7 @@ def theory(spectrum: Spectrum[Any], conditions: Conditions, k_max: float = 1e4, 
     peak = omega[np.argmax(along / (k * conditions.group_speed(k)))]
     east, north = (cells * np.cos(theta)).sum(), (cells * np.sin(theta)).sum()
     return Statistics(
-        4.0 * math.sqrt(along.sum()), 2.0 * math.pi / peak, float((along * k**2).sum()), _direction(east, north)
+        4.0 * math.sqrt(along.sum()), 2.0 * math.pi / peak, float((along * k**2).sum()), direction_of(east, north)
     )
 
 
@@ -92,7 +93,11 @@ def _polar_cells(
     if spectrum.line is not None:
         kx, ky, m0 = spectrum.line(conditions)
         row = int(np.argmin(np.abs(log_k - math.log(math.hypot(kx, ky)))))
-        cells[row, round(math.atan2(ky, kx) / (2.0 * math.pi) * theta.size) % theta.size] += m0
+        # to the two cells beside its direction, so that none is chosen by a rounding
+        place = float(within_turn(math.atan2(ky, kx))) / (2.0 * math.pi) * theta.size
+        column, share = int(place), place % 1.0
+        cells[row, column] += (1.0 - share) * m0
+        cells[row, (column + 1) % theta.size] += share * m0
     return k, cells, theta
 
 
@@ -142,7 +147,7 @@ def measured(
         turned = twice * (before.imag * h.real - before.real * h.imag)
         turned = np.divide(turned, scale, out=np.zeros_like(turned), where=some)
         if resolved_in_time(peak_period, interval):
-            direction = _direction(float((turned * kx).sum()), float((turned * ky).sum()))
+            direction = direction_of(float((turned * kx).sum()), float((turned * ky).sum()))
     return Statistics(
         4.0 * math.sqrt(energy.sum()),
         peak_period,
@@ -195,12 +200,8 @@ def _of_energy(sea: "Sea", energy: np.ndarray) -> Statistics:
         4.0 * math.sqrt(energy.sum()),
         _peak_period(sea.frequencies, energy),
         float((energy * k**2).sum()),
-        _direction((energy * kx * inverse).sum(), (energy * ky * inverse).sum()),
+        direction_of((energy * kx * inverse).sum(), (energy * ky * inverse).sum()),
     )
-
-
-def _direction(east: float, north: float) -> float:
-    return math.atan2(north, east) if math.hypot(east, north) > 0.0 else math.nan
 
 
 class _Bins(NamedTuple):

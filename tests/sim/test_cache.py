@@ -32,7 +32,7 @@ def add_twice(x):
     add_one(x)
 '''
 LOADED, COMPILED = "1 0 3.0", "0 1 3.0"
-# That of a source of the same length, changed within the same second, would be taken for new.
+# Python takes byte code for new if the time of the source in whole seconds, and its size, are the same.
 NO_BYTE_CODE = {"PYTHONDONTWRITEBYTECODE": "1"}
 
 
@@ -43,13 +43,14 @@ class Place:
         self.module, self.own, self.shared = folder / "twice.py", folder / "own", folder / "shared"
         self.module.write_text(SOURCE.format(""), "utf-8")
 
-    def run(self, own: Path | None = None, shared: Path | None = None, level: str = "") -> str:
+    def run(self, own: Path | None = None, shared: Path | None = None, level: str = "", **environment: str) -> str:
         """What two kernels do with these folders."""
         environment = {
             "SPRINGTIDE_CACHE": str(own or self.own),
             "SPRINGTIDE_KERNELS": os.pathsep.join([*([str(shared)] if shared else []), noted()]),
             "PYTHONPATH": str(self.module.parent),
             **NO_BYTE_CODE,
+            **environment,
         }
         return python(TWICE, **environment, **(level_environment(level) if level else {}))
 
@@ -116,8 +117,26 @@ def test_kernels_of_the_distribution_are_found_where_it_is_installed(place: Plac
     assert python(TWICE, **surroundings) == LOADED
     assert not list(place.own.rglob("*.nb?"))
     place.module.write_text(SOURCE.format("").replace("1.0", "2.0"), "utf-8")
+    assert not (place.module.parent / "__pycache__").exists()
     assert python(TWICE, **surroundings) == "0 1 5.0"
     assert place.files(package) == before
+
+
+@pytest.mark.parametrize("named", ["", "STEP"])
+def test_a_kernel_of_old_byte_code_is_not_kept_for_the_new_source(place: Place, named: str) -> None:
+    """Python runs the old byte code; the next one, which reads the source, does not get that kernel."""
+    source = SOURCE.format("STEP = 1.0").replace("+= 1.0", f"+= {named or 1.0}")
+    place.module.write_text(source, "utf-8")
+    second = place.module.stat().st_mtime_ns // 10**9 * 10**9
+    os.utime(place.module, ns=(second, second))
+    byte_code = {"PYTHONDONTWRITEBYTECODE": ""}
+    assert place.run(**byte_code) == COMPILED
+    place.module.write_text(source.replace("1.0", "2.0"), "utf-8")
+    os.utime(place.module, ns=(second, second))
+    assert place.run(**byte_code) == COMPILED
+    shutil.rmtree(place.module.parent / "__pycache__")
+    assert place.run() == "0 1 5.0"
+    assert place.run() == "1 0 5.0"
 
 
 def test_kernels_of_another_processor_are_left_alone(place: Place) -> None:

@@ -141,6 +141,12 @@ def rain_text(rain: "RainReadings") -> str:
     return f"Rain {number(rain.rate)} mm/h. Shown: {shown} of {falling} falling drops. {rings}"
 
 
+def whole_degrees(direction: float) -> str:
+    """A direction [rad] in whole degrees above -180 and up to 180, so that west has one sign."""
+    text = fixed(math.degrees(direction), 0)
+    return "180" if text == "−180" else text
+
+
 def statistics_table(r: Report, source: str = "an open sea") -> Html:
     """The statistics: as drawn, as expected of this tile, and of an endless sea, which `source` names."""
     now = {name: read(OF_REPORT, name, r) for name in OF_REPORT}
@@ -148,7 +154,7 @@ def statistics_table(r: Report, source: str = "an open sea") -> Html:
     band = BAND_WIDTH * now["height_scatter"] * expected
     inside = abs(now["significant_height"] - expected) <= band + 1e-9
     height = number(now["significant_height"])
-    direction = bold(fixed(math.degrees(r.measured.direction), 0))
+    direction = bold(whole_degrees(r.measured.direction))
     if now["expected_period"] > 0.0 and not resolved_in_time(now["expected_period"], r.interval):
         direction = coloured("not resolved in time", WARNING_COLOUR)
     measured = table(
@@ -165,7 +171,7 @@ def statistics_table(r: Report, source: str = "an open sea") -> Html:
                 bold(number(now["mean_square_slope"])),
                 number(now["expected_slope"]),
             ),
-            ("direction [°]", direction, fixed(math.degrees(r.theory.statistics.direction), 0)),
+            ("direction [°]", direction, whole_degrees(r.theory.statistics.direction)),
         ),
     )
     if not endless > 0.0:

@@ -9,7 +9,8 @@ import math
 
 import numpy as np
 
-from sim.ocean.spectra.record import Conditions, Spectrum, angle_from
+from sim.angles import angle_from
+from sim.ocean.spectra.record import Conditions, Spectrum
 from sim.parameters import parameter
 
 KM_WATER = 370.0  # [rad/m] wavenumber of the slowest wave on clean water under 9.81 m/s2, eq. 24

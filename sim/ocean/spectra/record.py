@@ -9,6 +9,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.angles import angle_from
 from sim.interruption import pieces
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
@@ -312,8 +313,3 @@ def second_system(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
     theta = angle_from(np.arctan2(ky, kx), c.second_direction)
     S = peaked(w, c.second_height, 2.0 * math.pi / c.second_period, SECOND_PEAK)
     return S * cos2s(SECOND_EXPONENT, theta) * c.group_speed(k) / k
-
-
-def angle_from(theta: np.ndarray, direction: float) -> np.ndarray:
-    """theta - direction brought to [-pi, pi] [rad]."""
-    return np.mod(theta - direction + np.pi, 2.0 * np.pi) - np.pi

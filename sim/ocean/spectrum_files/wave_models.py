@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from sim.angles import within_turn
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.contents import FORMS, made, nearest, read_text, towards
 from sim.validation import argument_error, unreadable
@@ -35,8 +36,8 @@ def from_wavespectra(path: Path, when: datetime.datetime | None) -> Spectrum[Any
             return made(path, time, f, np.asarray(data.squeeze().values, float))
         density = np.asarray(data.transpose("freq", "dir").values, float) * (180.0 / math.pi)
         degrees = np.asarray(data["dir"].values, float)
-        _, once = np.unique(np.mod(degrees, 360.0), return_index=True)
-        return made(path, time, f, density[:, once], towards(degrees[once]))
+        directions, once = np.unique(within_turn(towards(degrees)), return_index=True)
+        return made(path, time, f, density[:, once], directions)
     except ValueError as error:
         if str(error).startswith(("path: ", "time: ")):
             raise

@@ -68,6 +68,7 @@ def test_a_bound_of_steps_is_one_that_holds(step: float, text: str) -> None:
 def test_a_fixed_number_of_decimals() -> None:
     assert (fixed(1.0, 2), fixed(math.nan, 2), fixed(math.inf, 0)) == ("1.00", "–", "–")
     assert (fixed(-0.5, 1), fixed(0.5, 1, sign=True), fixed(12345.6, 1)) == ("−0.5", "+0.5", "12\u202f345.6")
+    assert (fixed(-0.4, 0), fixed(-0.04, 1, sign=True), number(-0.0)) == ("0", "+0.0", "0")
 
 
 def test_large_counts_are_in_words() -> None:

@@ -1,5 +1,6 @@
 """The workbook: what it keeps in answers.toml, what it refuses, and what it remembers."""
 
+import os
 import threading
 import time
 from pathlib import Path
@@ -257,6 +258,12 @@ def test_edits_of_the_file_are_seen(folder: Path) -> None:
     book.refresh()
     assert book.revision == revision + 1
     assert book.verdict(DRAFT, MEASURE).state == "wrong"
+    # again within the same tick of the clock of files, and of the same size
+    stamp = (folder / FILE).stat().st_mtime_ns
+    (folder / FILE).write_text("[extra_draft]\nmeasure = 8\n", "utf-8")
+    os.utime(folder / FILE, ns=(stamp, stamp))
+    book.refresh()
+    assert book.answers.of(DRAFT, MEASURE) == 8.0
 
 
 def test_what_is_read_off_is_a_number_of_the_scene() -> None:

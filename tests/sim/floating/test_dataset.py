@@ -77,6 +77,17 @@ def test_the_response_of_one_of_two_bodies_by_period_is_capytaines(bodies, name,
     assert_is_capytaines(body, bodies, f"{name}__", math.radians(heading))
 
 
+@pytest.mark.parametrize("end", [2.0 * math.pi, -1e-17])
+def test_a_dataset_with_a_whole_turn_beside_0_is_read(tmp_path, bodies, end):
+    def add(d):
+        ahead = d.isel(wave_direction=[0]).assign_coords(wave_direction=[end])
+        return xarray.concat([d, ahead], "wave_direction", data_vars="minimal")
+
+    body = box("fore", BOXES["fore"][1][:2], written(bodies, tmp_path, add), body="fore")
+    assert_is_capytaines(body, bodies, "fore__", 0.0)
+    assert_is_capytaines(body, bodies, "fore__", math.radians(330.0))
+
+
 @pytest.mark.parametrize("axis", ["period", "freq", "wavelength", "wavenumber"])
 def test_every_axis_of_frequencies_is_read(tmp_path, depths, axis):
     """The infinite frequency has a wavelength and a period of 0."""

@@ -26,6 +26,14 @@ def test_the_seven_are_there():
     assert names <= set(SPECTRA)
 
 
+@pytest.mark.parametrize("degrees", [1.0, 30.0, 179.5, 180.0, -180.0, -37.0])
+def test_a_regular_wave_runs_along_the_wind(degrees):
+    """Also between the directions of the sum; that of west is 180 degrees."""
+    c = under("regular", wind_direction=math.radians(degrees))
+    wanted = math.radians(180.0 if degrees == -180.0 else degrees)
+    assert theory(SPECTRA["regular"], c).direction == pytest.approx(wanted, abs=1e-5)
+
+
 @pytest.mark.parametrize("name", [name for name, s in SPECTRA.items() if s.significant_height and not s.line])
 def test_declared_height_is_the_integral(name):
     spectrum = SPECTRA[name]

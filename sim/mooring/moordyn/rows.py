@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 from sim.mooring.moordyn.sections import (
     BODIES,
     LINES,
-    NUMBER,
     POINTS,
     TYPES,
-    Row,
     Section,
     check_columns,
     number_in,
@@ -24,6 +22,8 @@ from sim.mooring.moordyn.sections import (
     whole_in,
 )
 from sim.mooring.system import Line, LineType, Point, Vector
+from sim.tables import Row, factor_of, measure_of, number_of
+from sim.tables.columns import FORCE, STRAIN
 from sim.validation import argument_error
 
 ATTACHMENT = re.compile(r"([A-Za-z]+)(\d*)", re.ASCII)
@@ -79,7 +79,7 @@ def only_number(where: str, text: str, reason: str) -> float:
 def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tuple[float, float], ...]]:
     """EA [N], and the rows of a file of strain and tension, none for a number."""
     where = f"{where}: EA"
-    if NUMBER.fullmatch(text):
+    if number_of(text) is not None:
         return number_in(where, text), ()
     if "|" in text or text.upper().startswith("SYROPE"):
         raise argument_error(
@@ -89,6 +89,7 @@ def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tu
         return number_in(where, text), ()
     rows = [(0.0, 0.0)]
     lines = read_text(folder / text).splitlines()
+    check_curve_units(f"{where}: {text}, line {CURVE_HEADER}", lines[CURVE_HEADER - 1 : CURVE_HEADER])
     for number, line in enumerate(lines[CURVE_HEADER:], CURVE_HEADER + 1):
         words = line.split()
         if not words or line.lstrip().startswith(("#", "!")):
@@ -102,6 +103,14 @@ def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tu
             f"{where}: {text}", f"{len(rows) - 1} rows", f"1 to {MAX_CURVE_ROWS - 1} rows of strain and tension"
         )
     return rows[-1][1] / rows[-1][0], tuple(rows)
+
+
+def check_curve_units(where: str, lines: list[str]) -> None:
+    """Raises ValueError for a line of units other than those that MoorDyn reads, which looks at no header."""
+    for word in " ".join(lines).split():
+        measure = measure_of(word.strip("[]()"))
+        if measure is not None and any(factor_of(kind, measure)[0] not in (None, 1.0) for kind in (STRAIN, FORCE)):
+            raise argument_error(where, word, "strain without a unit, and tension in N, as MoorDyn reads them")
 
 
 def listed(names: Collection[object]) -> str:

@@ -14,6 +14,7 @@ from app.export.cloth_meshes import ClothMeshes
 from app.export.sea_pictures import SeaPictures
 from app.export.sequence import Exporter, Sequence
 from app.formats.text_tables import say
+from app.scenes import scene_named
 from app.scenes.setups import shared_values
 from sim.files import draft_of
 from sim.validation import DivergenceError, argument_error, check_number
@@ -67,6 +68,7 @@ def export(scene: str, params: Any, seconds: float, rate: float, start: float, f
             "version": VERSION, "scene": scene, "format": form, "frames": len(times), "first_number": 1, "rate": rate,
             "rate_unit": "Hz", "start": times[0] if times else start, "start_unit": "s", **sequence.about(),
             "parameters": shared_values(params), "diverged": problem,
+            "notes": list(scene_named(scene).notes(params)),
         }  # fmt: skip
         (draft / "sequence.json").write_text(json.dumps(about, indent=2, ensure_ascii=False) + "\n", "utf-8")
         if out.is_dir():

@@ -1,8 +1,4 @@
-"""Tables of text files: rows of words, and columns with names, units, conventions and missing values.
-
-    table = read_table(text, path, MEANINGS, ("frequency", "density"))
-    table.columns["density"].values  # (n,) in the unit of its kind, nan where a value is missing
-"""
+"""Tables of text files: rows of words, and columns with names, units, conventions and missing values."""
 
 from sim.tables.columns import Column, ColumnTable, Kind, Meaning, factor_of, read_columns, read_table
 from sim.tables.numbers import is_value, number_of, values_of

@@ -148,8 +148,6 @@ def read_body(row: Row) -> FileBody:
     for name, numbers in (("mass", [mass]), ("volume", [volume]), ("I", inertia), ("CdA", drag), ("Ca", added)):
         if min(numbers) < 0.0:
             raise argument_error(f"{where}: {name}", min(numbers), "0 or above")
-        if kind == "free" and name in ("mass", "I") and min(numbers) == 0.0:
-            raise argument_error(f"{where}: {name}", 0.0, "a number above 0, as the body is free")
     return FileBody(
         whole_in(where, words[0]), kind, place, turn, mass,
         np.array([0.0, 0.0, centre[0]] if len(centre) == 1 else centre), np.resize(inertia, 3), volume,
@@ -167,11 +165,15 @@ def rotation(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:
 
 
 def read_point(row: Row, bodies: Mapping[int, FileBody]) -> Point:
-    """ID Attachment X Y Z M V CdA [CA], or with FX FY FZ before CdA; a point of a body is at a place in its axes."""
+    """ID Attachment X Y Z M V CdA [CA], or with FX FY FZ before CdA; a point of a body is at a place in its axes.
+
+    A tenth column is an index of MoorDyn-F for points of other programs. MoorDyn does not read it.
+    """
     where = f"{POINTS}, line {row.number}"
     words = check_columns(where, row.words, 8, 12)
-    if len(words) in (10, 11):
-        raise argument_error(where, " ".join(words), "8 or 9 columns, or 12 with a force")
+    if len(words) == 11:
+        raise argument_error(where, " ".join(words), "8 to 10 columns, or 12 with a force")
+    words = words[:9] if len(words) == 10 else words
     kind, number = read_kind(f"{where}: attachment", words[1])
     numbers = [number_in(where, text) for text in words[2:]]
     place, (mass, volume) = np.array(numbers[:3]), numbers[3:5]

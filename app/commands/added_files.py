@@ -65,13 +65,15 @@ def with_mooring(params: Any, path: Path, given: Container[str]) -> Any:
     given: names of parameters that keep their values.
     Raises ValueError for another scene or a file that cannot be read, ConvergenceError for one without a state of rest.
     """
-    from sim.mooring import critical_step, read_moordyn
+    from sim.mooring import critical_step
     from sim.parameters import clamp_value, parameters_of
     from sim.validation import argument_error
 
     if not hasattr(params, "moordyn_file"):
         raise argument_error("--mooring", str(path), "a MoorDyn file with the scene mooring only")
-    system = read_moordyn(path, lambda text: say_on_error_stream(f"{path.name}: {text}"))
+    from app.scenes.mooring.from_file import mooring_of
+
+    system = mooring_of(str(path)).system
     if system.node_count > MAX_MOORING_NODES:
         raise argument_error("--mooring", f"{path} of {system.node_count} nodes", f"at most {MAX_MOORING_NODES}")
     params = dataclasses.replace(params, moordyn_file=str(path))

@@ -101,7 +101,8 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
                 arrays[key][frame] = array
             count = frame + 1
             progress.update(task, completed=frame)
-    about = {"scene": name, "parameters": shared_values(params), "units": units, "diverged": problem}
+    about = {"scene": name, "parameters": shared_values(params), "units": units, "diverged": problem,
+             "notes": list(scene.notes(params))}  # fmt: skip
     kept = {"t": times[:count], **{key: array[:count] for key, array in arrays.items()}}
     write_arrays(out, {**kept, "about": np.array(json.dumps(about))})
     say(f"{count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}", out)

@@ -47,7 +47,8 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
         "now": ((), np.array(scene.time), attributes("s", "simulated time of the state")),
     }
     values = {name: getattr(scene.params, name) for name in parameters_of(scene.params)}
-    about = {"scene": kind.name, "link": link, "parameters": json.dumps(values)}
+    about = {"scene": kind.name, "link": link, "parameters": json.dumps(values),
+             "notes": "\n".join(kind.notes(scene.params))}  # fmt: skip
     return xr.Dataset(found, coordinates, about)
 
 

@@ -58,6 +58,7 @@ def recording_npz(kind: AnyKind, frames: Sequence[Kept]) -> bytes:
         "scene": kind.name,
         "parameters": shared_values(chosen[-1].params),
         "units": {"t": "s", **{name: units[name] for name in form}},
+        "notes": list(kind.notes(chosen[-1].params)),
     }
     content = io.BytesIO()
     arrays = {name: np.stack(column) for name, column in columns.items()}

@@ -267,6 +267,9 @@ class SceneKind(Generic[P, F, R]):
     remedy: Callable[..., Advice | None] | None = None
     # Of a snapshot: a value that mends the state that the scene starts with, offered under its control.
     advice: Callable[..., Advice | None] | None = None
+    # Of parameters: lines on the files that they name, on what was read and what was left out. The command line prints
+    # them, the page shows them under "Files", and files of runs and recordings keep them.
+    notes: Callable[[P], Sequence[str]] = lambda params: ()
     warnings: Callable[..., Sequence[str]] | None = None  # of a scene that begins: sentences on its start
     awaited: Awaited | None = None  # event that the panel offers to run on to
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults

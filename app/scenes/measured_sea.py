@@ -4,8 +4,8 @@ import functools
 from typing import Any
 
 from app.formats.formatting import number
-from app.render.html import Html, fill
-from app.scenes.sea_parameters import spectrum_in_file
+from app.render.html import Html, bold, fill, join
+from app.scenes.sea_parameters import notes_on_file, spectrum_in_file
 
 
 @functools.lru_cache(maxsize=8)
@@ -22,3 +22,11 @@ def measured_text(params: Any) -> Html:
         "<div>Measured, {}: significant height {} m, peak period {} s.</div>",
         spectrum_in_file(params.spectrum_file, params.spectrum_time).title, number(height), number(period),
     )  # fmt: skip
+
+
+def files_folder(params: Any) -> dict[str, str]:
+    """Heading -> HTML of the folder on the file of a measured spectrum; none without one."""
+    if not params.spectrum_file:
+        return {}
+    title = fill("<div>{}</div>", bold(spectrum_in_file(params.spectrum_file, params.spectrum_time).title))
+    return {"Files": join((title, *(fill("<div>{}</div>", note) for note in notes_on_file(params))))}

@@ -47,6 +47,11 @@ def chosen_spectrum(params: Any) -> Spectrum[Any]:
     return SPECTRA[params.spectrum]
 
 
+def notes_on_file(params: Any) -> tuple[str, ...]:
+    """Lines on the file of a measured spectrum, none without one."""
+    return chosen_spectrum(params).notes if params.spectrum_file else ()
+
+
 def unused_waves(params: Any) -> set[str]:
     """Names of the parameters of waves that have no effect on the chosen spectrum."""
     unused = chosen_spectrum(params).unused(spectrum_values(params))

@@ -30,7 +30,7 @@ from sim.floating.hydrodynamics import (
     wavenumber_of,
 )
 from sim.floating.linear_table import LinearTable
-from sim.validation import argument_error, check_angle, check_kind, check_positive, check_vector
+from sim.validation import Refusals, argument_error, check_angle, check_kind, check_positive, check_vector
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -117,6 +117,7 @@ def converted(
     if missing:
         raise argument_error("path", path, f"a dataset of Capytaine's with {', '.join(missing)}, which this one lacks")
     dataset = with_speed_zero(dataset, path)
+    check_asked(dataset, path, body, depth, draft, rotation_center)
     dataset, water = with_one_depth(dataset, path, depth)
     dataset = by_frequency(dataset, path)
     dataset, chosen = of_one_body(dataset, path, body)
@@ -176,6 +177,33 @@ def converted(
         depth=water / length,
         heading=only,
     )
+
+
+def check_asked(
+    dataset: "Dataset",
+    path: str,
+    body: str | None,
+    depth: float | None,
+    draft: float | None,
+    rotation_center: Sequence[float] | None,
+) -> None:
+    """Raises ValueError with all that the dataset leaves open and its reader has not said, in one message."""
+    asked, chosen = Refusals(), ""
+    with asked:
+        with_one_depth(dataset, path, depth)
+    with asked:
+        chosen = of_one_body(dataset, path, body)[1]
+    axis = dataset["influenced_dof"]
+    names = [chosen] if chosen or axis.ndim != 1 else [str(one).rpartition("__")[0] for one in axis.values]
+    for needed in (lambda name: draft_of(dataset, path, name, draft),
+                   lambda name: centre_of(dataset, path, name, rotation_center)):  # fmt: skip
+        trials = [Refusals() for _ in names]
+        for trial, name in zip(trials, names, strict=True):
+            with trial:
+                needed(name)
+        if all(trial.reasons for trial in trials):
+            asked.reasons.append(trials[0].reasons[0])
+    asked.check()
 
 
 def with_speed_zero(dataset: "Dataset", path: str) -> "Dataset":

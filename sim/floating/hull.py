@@ -156,4 +156,10 @@ def open_mesh_from_file(path: str | Path, reading: MeshReading = AS_IT_IS) -> Me
     mesh = read_mesh(where, reading.unit)
     if not len(mesh.faces) or not np.isfinite(mesh.vertices).all() or mesh.faces.max() >= len(mesh.vertices):
         return mesh  # `checked_mesh` says what is wrong with it
-    return Mesh(*repaired(*mesh, reading.weld, reading.mirror, reading.cap))
+    try:
+        return Mesh(*repaired(*mesh, reading.weld, reading.mirror, reading.cap))
+    except ValueError as error:
+        help = remedy(*mesh) if reading.cap and not reading.mirror else ""
+        if not help:
+            raise
+        raise ValueError(f"{error}; {help} closes it") from None

@@ -1,8 +1,11 @@
-"""Open meshes: where they are open, and three ways to close one: weld, mirror, and a deck.
+"""Open meshes: where they are open, and four ways to close one: divide edges, weld, mirror, and a deck.
 
-A mesh is open where an edge has no opposite. CAD programs leave gaps between surfaces, which `welded` closes; models of
-symmetric hulls are halves, which `mirrored` completes; hulls of shells have no deck, which `capped` adds.
+A mesh is open where an edge has no opposite. In meshes of panels one long edge may meet several short ones of finer
+neighbours: `divided` splits it at their nodes. CAD programs leave gaps between surfaces, which `welded` closes; models
+of symmetric hulls are halves, which `mirrored` completes; hulls of shells have no deck, which `capped` adds.
 """
+
+import itertools
 
 import numpy as np
 
@@ -13,6 +16,8 @@ AXES = ("x", "y")
 WELDS = (1e-6, 1e-5, 1e-4, 1e-3)  # [m] that are tried for advice
 LEVEL = 1e-3  # of the largest extent: how far the edges of a plane of symmetry may lie from it
 TURNS = np.array([[0, 1, 2], [0, 2, 3]])  # corners of the two triangles of a quadrangle
+ON_EDGE = 1e-6  # of the size of a mesh: how far a node may lie from the edge that it divides
+MAX_DIVIDED = 100_000  # open edges, up to which they are looked at one by one
 SIMPLE_LOOP = "an open loop that does not cross itself, as seen from above"
 SMALLEST_EAR = 1e-12  # of the area of a loop
 
@@ -47,6 +52,48 @@ def welded(vertices: np.ndarray, faces: np.ndarray, tolerance: float) -> tuple[n
     )
     faces = label[faces]
     return vertices, faces[~degenerate(faces)]
+
+
+def divided(vertices: np.ndarray, faces: np.ndarray, tolerance: float) -> np.ndarray:
+    """The faces (m, 3) with open edges divided at the ends of other open edges on them, within a tolerance [m].
+
+    No corner moves.
+    """
+    edges = open_boundary(faces)
+    if not 0 < len(edges) <= MAX_DIVIDED:
+        return faces
+    nodes = np.unique(edges)
+    nodes = nodes[np.argsort(vertices[nodes, 0], kind="stable")]
+    places = vertices[nodes]
+    ends = vertices[edges]
+    low = np.searchsorted(places[:, 0], ends[:, :, 0].min(axis=1) - tolerance)
+    high = np.searchsorted(places[:, 0], ends[:, :, 0].max(axis=1) + tolerance, side="right")
+    on: dict[tuple[int, int], list[int]] = {}  # edge -> the nodes on it, from its first corner on
+    for (a, b), (start, end), first, last in zip(edges.tolist(), ends, low.tolist(), high.tolist(), strict=True):
+        along = end - start
+        length = float(np.linalg.norm(along))
+        if length <= 2.0 * tolerance:
+            continue
+        offset = places[first:last] - start
+        at = offset @ along / length
+        aside = np.linalg.norm(offset - np.outer(at / length, along), axis=1)
+        chosen = np.flatnonzero((aside <= tolerance) & (at > tolerance) & (at < length - tolerance))
+        if len(chosen):
+            on[a, b] = nodes[first:last][chosen[np.argsort(at[chosen])]].tolist()
+    if not on:
+        return faces
+    whole = np.array([not any((row[i - 1], row[i]) in on for i in range(3)) for row in faces.tolist()])
+    found, left = [], faces[~whole].tolist()
+    while left:
+        face = left.pop()
+        turned = ((face[i - 2], face[i - 1], face[i]) for i in range(3))
+        edge = next(((a, b, c) for a, b, c in turned if (a, b) in on and c not in on[a, b]), None)
+        if edge is None:
+            found.append(face)
+        else:
+            a, b, c = edge
+            left.extend([u, v, c] for u, v in itertools.pairwise([a, *on[a, b], b]))
+    return np.concatenate([faces[whole], np.array(found, faces.dtype).reshape(-1, 3)])
 
 
 def mirrored(vertices: np.ndarray, faces: np.ndarray, axis: str, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
@@ -165,12 +212,15 @@ def repaired(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The mesh welded to a tolerance [m], mirrored across an axis ("x" or "y"), and with a deck ("deck").
 
+    Open edges are divided at nodes on them.
+
     Raises ValueError for a value that is not allowed or does not fit the mesh.
     """
     check_not_negative("weld", weld, "m")
     vertices, faces = welded(vertices, faces, weld)
+    size = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
+    faces = divided(vertices, faces, max(weld, ON_EDGE * size))
     if mirror:
-        size = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
         vertices, faces = mirrored(vertices, faces, mirror, max(weld, 1e-6 * size))
     if cap:
         check_choice("cap", cap, ("deck",))

@@ -9,7 +9,8 @@
     '1.06 m, 1.1 m'
 
 Between its frequencies and directions a spectrum is linear, outside them it is 0: a buoy that stops at 0.485 Hz has no
-shorter waves. Directions are where waves go to, as everywhere in the library; `read_spectrum` turns those of files.
+shorter waves, and directions over a part of the circle have none in the rest of it. Directions are where waves go to,
+as everywhere in the library; `read_spectrum` turns those of files.
 
 A buoy knows four numbers of the directions at each frequency, those of the first two terms of Fourier's series. The
 spreading with these four and the greatest entropy is that of Lygre and Krogstad (1986, J. Phys. Oceanogr. 16:2052).
@@ -28,6 +29,8 @@ from sim.validation import argument_error, as_array
 LOWEST, HIGHEST = 1e-4, 100.0  # [Hz]
 MIN_DIRECTIONS = 4
 MAX_FIRST = 0.998  # of r1: the spreading of a single direction has no finite density
+GAP = 1.9  # of the widest step between directions: a wider one is no step, but the part of the circle without waves
+EDGE = 1e-9  # [rad] in which the density falls to 0 at the ends of a sector
 SLACK = 1e-6  # by which the second term stays inside what the first one allows
 
 
@@ -37,14 +40,12 @@ class Measured:
     def __init__(self, frequency: np.ndarray, density: np.ndarray, direction: np.ndarray | None = None) -> None:
         """frequency (n,) [Hz] rising, density (n,) [m2/Hz], or (n, m) [m2/Hz/rad] at directions (m,) [rad], rising."""
         self.frequencies, self.directions = frequency, direction
-        self.both: np.ndarray | None = None  # (n, m + 2), the circle closed at both ends
+        self.both: np.ndarray | None = None  # (n, k) over one turn, from one direction to itself
         self.density = density
         if direction is not None:
-            turn = 2.0 * math.pi
-            self.directions = np.concatenate([[direction[-1] - turn], direction, [direction[0] + turn]])
-            self.both = np.concatenate([density[:, -1:], density, density[:, :1]], axis=1)
-            around = np.diff(self.directions[1:])
-            self.density = 0.5 * (around * (self.both[:, 1:-1] + self.both[:, 2:])).sum(axis=1)
+            self.directions, self.both = around(direction, density)
+            steps = np.diff(self.directions)
+            self.density = 0.5 * (steps * (self.both[:, :-1] + self.both[:, 1:])).sum(axis=1)
 
     def of_frequency(self, w: np.ndarray, _: Conditions) -> np.ndarray:
         """S(omega) [m2 s] over all directions."""
@@ -59,7 +60,7 @@ class Measured:
         f = c.omega(k) / (2.0 * math.pi)
         inside = (f >= self.frequencies[0]) & (f <= self.frequencies[-1])
         i, u = place_in(self.frequencies, f)
-        theta = self.directions[1] + np.mod(np.arctan2(ky, kx) - self.directions[1], 2.0 * math.pi)
+        theta = self.directions[0] + np.mod(np.arctan2(ky, kx) - self.directions[0], 2.0 * math.pi)
         j, v = place_in(self.directions, theta)
         E = self.both
         low, high = (1.0 - v) * E[i, j] + v * E[i, j + 1], (1.0 - v) * E[i + 1, j] + v * E[i + 1, j + 1]
@@ -74,6 +75,30 @@ class Measured:
     def peak(self, _: Conditions | None = None) -> float:
         """Angular frequency [rad/s] of the largest density."""
         return 2.0 * math.pi * float(self.frequencies[self.density.argmax()])
+
+
+def around(direction: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Directions (k,) [rad] of one turn, the last one the first, and densities (n, k) there.
+
+    Given are directions (m,) [rad], rising within a turn, and densities (n, m). A gap of more than GAP of the widest
+    other step makes them a sector: its ends reach half a step farther, and the gap has no waves.
+    """
+    turn = 2.0 * math.pi
+    steps = np.diff(direction, append=direction[0] + turn)
+    last = int(steps.argmax())
+    if steps[last] <= GAP * np.delete(steps, last).max():
+        return np.append(direction, direction[0] + turn), np.concatenate([density, density[:, :1]], axis=1)
+    direction, density = np.roll(direction, -last - 1), np.roll(density, -last - 1, axis=1)
+    direction = direction[0] + np.mod(direction - direction[0], turn)
+    first, end = (
+        direction[0] - 0.5 * (direction[1] - direction[0]),
+        direction[-1] + 0.5 * (direction[-1] - direction[-2]),
+    )
+    none = np.zeros((len(density), 1))
+    return (
+        np.concatenate([[first], direction, [end, end + EDGE, first + turn - EDGE, first + turn]]),
+        np.concatenate([density[:, :1], density, density[:, -1:], none, none, density[:, :1]], axis=1),
+    )
 
 
 def place_in(nodes: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

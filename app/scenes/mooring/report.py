@@ -106,7 +106,7 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
         "Bed and slack": join((bed_table(snapshot), said)),
     }
     path = snapshot.params.moordyn_file
-    return {"File": file_text(path, snapshot.readings.fault), **notes} if path else notes
+    return {"Files": file_text(path, snapshot.readings.fault), **notes} if path else notes
 
 
 def file_text(path: str, fault: Fault | None) -> Html:

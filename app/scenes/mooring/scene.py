@@ -71,6 +71,11 @@ def warnings(scene: LineScene) -> list[str]:
     return [*said, *(raised_points(mooring_of(path)) if path else ())]
 
 
+def notes(params: MooringParams) -> tuple[str, ...]:
+    """Lines on the file of the mooring, none without one."""
+    return mooring_of(params.moordyn_file).notes if params.moordyn_file else ()
+
+
 SCENE = SceneKind(
     name="mooring",
     title="Mooring",
@@ -91,6 +96,7 @@ SCENE = SceneKind(
     },
     remedy=remedy,
     advice=advice,
+    notes=notes,
     warnings=warnings,
     quantities=QUANTITIES,
 )  # fmt: skip

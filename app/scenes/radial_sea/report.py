@@ -9,7 +9,7 @@ import numpy as np
 from app.formats.formatting import fixed, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.html import Html, bold, faint, fill, info, join, table
-from app.scenes.measured_sea import measured_text
+from app.scenes.measured_sea import files_folder, measured_text
 from app.scenes.quantities import read, written
 from app.scenes.radial_sea.bodies import BodyReading
 from app.scenes.radial_sea.budget import budget_html, budget_marks
@@ -181,6 +181,7 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
         "Fluids": fluids_html(snapshot),
         "Spill budget": budget_html(snapshot.frame.params, snapshot.readings.weathering),
         "Radial or square": surfaces_html(snapshot),
+        **files_folder(snapshot.frame.params),
     }
 
 

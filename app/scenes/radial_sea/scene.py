@@ -32,6 +32,7 @@ from app.scenes.radial_sea.quantities import QUANTITIES
 from app.scenes.radial_sea.radiated_waves import RadiatedWaves
 from app.scenes.radial_sea.wave_choice import draw, wave_choice_of
 from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach, wave_left
+from app.scenes.sea_parameters import notes_on_file
 from sim.floating import Body, Hull, MotionCoefficients, Shape, make_fleet, shape_from_file, step, still_water
 from sim.interruption import kept_whole
 from sim.ocean.fluid_column import FluidColumn
@@ -448,5 +449,6 @@ SCENE = SceneKind(
     },
     packing=FramePacking(pack_frame, unpack_frame),
     quantities=QUANTITIES,
+    notes=notes_on_file,
     needs=needs,
 )

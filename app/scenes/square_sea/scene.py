@@ -15,6 +15,7 @@ from app.scenes.contract import Awaited, FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
+from app.scenes.sea_parameters import notes_on_file
 from app.scenes.square_sea.foam import MeshFoam, WavePace
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings, pack_frame, readings_of, unpack_frame
 from app.scenes.square_sea.parameters import (
@@ -395,6 +396,7 @@ SCENE = SceneKind(
     frame_units={"vertices": "m", "slopes": "", "foam": "0 to 1"},
     packing=FramePacking(pack_frame, unpack_frame),
     quantities=QUANTITIES,
+    notes=notes_on_file,
     instant=SeaInstant,
     awaited=Awaited(f"Run on until a crest of {HIGH_CREST:g} Hs", AWAITED_HINT, marches, has_high_crest),
     middle=lambda params: (0.5 * params.length, 0.5 * params.length),

@@ -23,7 +23,7 @@ from app.render.staff import COLOURS, UPRIGHT, add_staff
 from app.render.viser_inside import set_arrays
 from app.render.water import DrawnWater, Tile
 from app.scenes.contract import Pieces, SceneView
-from app.scenes.measured_sea import height_and_period
+from app.scenes.measured_sea import files_folder, height_and_period
 from app.scenes.square_sea import report
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import (
@@ -296,7 +296,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
-        return {"Waves, foam and rain": report.readout(snapshot)}
+        return {"Waves, foam and rain": report.readout(snapshot), **files_folder(snapshot.frame.params)}
 
     def close(self) -> None:
         """Remove the click callback, which viser keeps when it removes the nodes of a scene."""

@@ -90,6 +90,7 @@ def export(scene: str, params: Any, seconds: float, rate: float, start: float, f
             "version": VERSION, "scene": scene, "format": form, "frames": len(times), "first_number": 1, "rate": rate,
             "rate_unit": "Hz", "start": times[0] if times else start, "start_unit": "s", **sequence.about(),
             "parameters": shared_values(params), "diverged": problem,
+            "notes": list(scene_named(scene).notes(params)),
         }  # fmt: skip
         (draft / "sequence.json").write_text(json.dumps(about, indent=2, ensure_ascii=False) + "\n", "utf-8")
         if out.is_dir():

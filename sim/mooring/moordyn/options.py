@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from sim.mooring.moordyn.sections import NUMBER, OPTIONS, Row, check_columns, number_in
+from sim.mooring.moordyn.sections import OPTIONS, check_columns, number_in
+from sim.tables import Row, number_of
 from sim.validation import Refusals, argument_error
 
 # Options of a System, by MoorDyn's names in small letters.
@@ -49,12 +50,12 @@ def add_option(found: Options, row: Row) -> None:
         found.steering.append(name)
     elif key in WATER:
         if value.strip("\"'").lower() not in ("", "none") and (
-            not NUMBER.fullmatch(value) or number_in(where, value) != 0.0
+            number_of(value) is None or number_in(where, value) != 0.0
         ):
             found.warnings.append(
                 f"{name} {value}: waves and currents of files are not read; set `{WATER[key]}` of the System"
             )
-    elif key in BED or (key == "wtrdpth" and not NUMBER.fullmatch(value) and "." in value):
+    elif key in BED or (key == "wtrdpth" and number_of(value) is None and "." in value):
         found.warnings.append(
             f"{name} {value}: the bed is level here, at the depth of the lowest anchor; set `depth` of the System"
         )

@@ -5,18 +5,20 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
-
+from sim.mooring.moordyn.bodies import drag_of, free_body, is_point, least_inertia, merge
 from sim.mooring.moordyn.options import read_options
-from sim.mooring.moordyn.rows import FileBody, ends_first, read_body, read_line, read_point, read_type
+from sim.mooring.moordyn.rows import ends_first, read_body, read_line, read_point, read_type
 from sim.mooring.moordyn.sections import BODIES, LINES, OPTIONS, POINTS, TYPES, Row, Section, read_text, split_sections
-from sim.mooring.system import MooredBody, Point, System
+from sim.mooring.system import Point, System
 from sim.mooring.turning import with_turning
 from sim.validation import ConvergenceError, Refusals, argument_error
 
 HELD = (
     1e-6  # of a free body's weight on an arm of 1 m, as stiffness of rotation: statics need one where no line turns it
 )
+
+LIGHT = 1e-3  # of the mass of the ends of its lines: that of a free body without its own
+SAME_PLACE = 1e-6  # [m]
 
 T = TypeVar("T")
 
@@ -47,21 +49,29 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> 
         order = ends_first(found[LINES], points)
         read = lambda row: read_line(row, order, kinds, points)  # noqa: E731
         lines = read_rows(found[LINES], LINES, "ID", read, lambda line: line.id, wrong)
+    left = [column_left_out(found[POINTS])] if POINTS in found else []
     options = read_options(found[OPTIONS].rows if OPTIONS in found else [], wrong)
     wrong.check()
     depth = depth_of(options.fields, points.values(), options.warnings)
     fields: dict[str, Any] = {name: value for name, value in options.fields.items() if name != "depth"}
     free = [body for body in bodies.values() if body.kind == "free"]
+    for body in [body for body in free if is_point(body, points.values())]:
+        free.remove(body)
+        left.append(merge(body, points, lines))
     dragged = [drag_of(body) for body in free if body.drag_area > 0.0]
+    least = {body.id: least_inertia(body, points, lines.values()) for body in free}
+    left.extend(f"body {one} has less mass or inertia than a thousandth of its lines' ends: it has that"
+                for one, (mass, _) in least.items() if mass > 0.0)  # fmt: skip
     water = {"gravity": fields.get("gravity", System.gravity), "density": fields.get("density", System.density)}
-    system = System(
-        tuple(lines.values()), (*points.values(), *dragged), depth, tuple(free_body(body, **water) for body in free),
-        slack_damping=True, **fields,
-    )  # fmt: skip
+    moved = tuple(free_body(body, *least[body.id], **water) for body in free)
+    system = System(tuple(lines.values()), (*points.values(), *dragged), depth, moved, slack_damping=True, **fields)
     if free:
         system = turned(system, options.warnings)
-    if options.steering and say is not None:
-        say(f"left out, as they steer MoorDyn only: {', '.join(options.steering)}")
+    if options.steering:
+        left.append(f"left out, as they steer MoorDyn only: {', '.join(options.steering)}")
+    if say is not None:
+        for text in filter(None, left):
+            say(text)
     for text in options.warnings:
         say(text) if say is not None else warnings.warn(f"{path.name}: {text}", stacklevel=2)
     return system
@@ -107,26 +117,9 @@ def depth_of(fields: Mapping[str, float], points: Iterable[Point], said: list[st
     return fields.get("depth", lowest)
 
 
-def drag_of(body: FileBody) -> Point:
-    """The point in the middle of a body on which its drag acts; its ID is below 0."""
-    x, y, z = body.place.tolist()
-    return Point(-body.id, "body", (x, y, z), drag_area=body.drag_area, body=body.id)
-
-
-def free_body(body: FileBody, gravity: float, density: float) -> MooredBody:
-    """The Body of a row: weight and the buoyancy of all its volume act at its centre of gravity, as in MoorDyn."""
-    arm, turn = body.turn @ body.centre, body.turn
-    cross = np.cross(np.eye(3), arm)  # cross @ v = arm x v
-    mass = np.zeros((6, 6))
-    mass[:3, :3] = body.mass * np.eye(3) + density * body.volume * (turn * body.added) @ turn.T
-    mass[3:, 3:] = (turn * body.inertia) @ turn.T - body.mass * cross @ cross
-    mass[3:, :3] = body.mass * cross
-    mass[:3, 3:] = mass[3:, :3].T
-    lift = (density * body.volume - body.mass) * gravity
-    # What sinks hangs below the middle, and what floats is above it; the other way round nothing but lines turns it.
-    upright = max(lift * float(arm[2]), 0.0)
-    held = HELD * max(abs(lift), body.mass * gravity, 1.0)
-    stiffness = np.diag([0.0, 0.0, 0.0, upright + held, upright + held, held])
-    moment = np.cross(arm, (0.0, 0.0, lift))
-    x, y, z = body.place.tolist()
-    return MooredBody(body.id, (x, y, z), mass, stiffness, steady=(0.0, 0.0, lift, *moment.tolist()))
+def column_left_out(section: Section) -> str:
+    """A line on the tenth column of points, which MoorDyn does not read, "" where there is none."""
+    if all(len(row.words) != 10 for row in section.rows):
+        return ""
+    name = section.columns[9] if len(section.columns) == 10 else "without a name"
+    return f"left out, as MoorDyn does not read it: the tenth column of points, {name}"

@@ -12,10 +12,8 @@ from numpy.typing import NDArray
 from sim.mooring.moordyn.sections import (
     BODIES,
     LINES,
-    NUMBER,
     POINTS,
     TYPES,
-    Row,
     Section,
     check_columns,
     number_in,
@@ -24,6 +22,8 @@ from sim.mooring.moordyn.sections import (
     whole_in,
 )
 from sim.mooring.system import Line, LineType, Point, Vector
+from sim.tables import Row, factor_of, measure_of, number_of
+from sim.tables.columns import FORCE, STRAIN
 from sim.validation import argument_error
 
 ATTACHMENT = re.compile(r"([A-Za-z]+)(\d*)", re.ASCII)
@@ -79,7 +79,7 @@ def only_number(where: str, text: str, reason: str) -> float:
 def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tuple[float, float], ...]]:
     """EA [N], and the rows of a file of strain and tension, none for a number."""
     where = f"{where}: EA"
-    if NUMBER.fullmatch(text):
+    if number_of(text) is not None:
         return number_in(where, text), ()
     if "|" in text or text.upper().startswith("SYROPE"):
         raise argument_error(
@@ -89,6 +89,7 @@ def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tu
         return number_in(where, text), ()
     rows = [(0.0, 0.0)]
     lines = read_text(folder / text).splitlines()
+    check_curve_units(f"{where}: {text}, line {CURVE_HEADER}", lines[CURVE_HEADER - 1 : CURVE_HEADER])
     for number, line in enumerate(lines[CURVE_HEADER:], CURVE_HEADER + 1):
         words = line.split()
         if not words or line.lstrip().startswith(("#", "!")):
@@ -102,6 +103,14 @@ def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tu
             f"{where}: {text}", f"{len(rows) - 1} rows", f"1 to {MAX_CURVE_ROWS - 1} rows of strain and tension"
         )
     return rows[-1][1] / rows[-1][0], tuple(rows)
+
+
+def check_curve_units(where: str, lines: list[str]) -> None:
+    """Raises ValueError for a line of units other than those that MoorDyn reads, which looks at no header."""
+    for word in " ".join(lines).split():
+        measure = measure_of(word.strip("[]()"))
+        if measure is not None and any(factor_of(kind, measure)[0] not in (None, 1.0) for kind in (STRAIN, FORCE)):
+            raise argument_error(where, word, "strain without a unit, and tension in N, as MoorDyn reads them")
 
 
 def listed(names: Collection[object]) -> str:
@@ -139,8 +148,6 @@ def read_body(row: Row) -> FileBody:
     for name, numbers in (("mass", [mass]), ("volume", [volume]), ("I", inertia), ("CdA", drag), ("Ca", added)):
         if min(numbers) < 0.0:
             raise argument_error(f"{where}: {name}", min(numbers), "0 or above")
-        if kind == "free" and name in ("mass", "I") and min(numbers) == 0.0:
-            raise argument_error(f"{where}: {name}", 0.0, "a number above 0, as the body is free")
     return FileBody(
         whole_in(where, words[0]), kind, place, turn, mass,
         np.array([0.0, 0.0, centre[0]] if len(centre) == 1 else centre), np.resize(inertia, 3), volume,
@@ -158,11 +165,15 @@ def rotation(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:
 
 
 def read_point(row: Row, bodies: Mapping[int, FileBody]) -> Point:
-    """ID Attachment X Y Z M V CdA [CA], or with FX FY FZ before CdA; a point of a body is at a place in its axes."""
+    """ID Attachment X Y Z M V CdA [CA], or with FX FY FZ before CdA; a point of a body is at a place in its axes.
+
+    A tenth column is an index of MoorDyn-F for points of other programs. MoorDyn does not read it.
+    """
     where = f"{POINTS}, line {row.number}"
     words = check_columns(where, row.words, 8, 12)
-    if len(words) in (10, 11):
-        raise argument_error(where, " ".join(words), "8 or 9 columns, or 12 with a force")
+    if len(words) == 11:
+        raise argument_error(where, " ".join(words), "8 to 10 columns, or 12 with a force")
+    words = words[:9] if len(words) == 10 else words
     kind, number = read_kind(f"{where}: attachment", words[1])
     numbers = [number_in(where, text) for text in words[2:]]
     place, (mass, volume) = np.array(numbers[:3]), numbers[3:5]

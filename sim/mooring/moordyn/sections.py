@@ -5,9 +5,9 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
+from sim.tables import Row, number_of
 from sim.validation import Refusals, argument_error, unreadable
 
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?", re.ASCII)
 HEADER = re.compile(r"-{3,}\s*(.*?)\s*-*$")
 COUNT = re.compile(r"\d+\s+N[A-Z]\w+", re.ASCII)  # "3 NLines - number of lines", of version 1
 MAX_BYTES = 20_000_000
@@ -25,13 +25,6 @@ REFUSED = {
 }  # fmt: skip
 # Rod types mean nothing without rods, and outputs are what MoorDyn would write.
 UNREAD = ("ROD TYPES", "ROD DICTIONARY", "OUTPUT", "NEED THIS LINE", "END")
-
-
-class Row(NamedTuple):
-    """The words of a line."""
-
-    number: int  # of the line, from 1
-    words: list[str]
 
 
 class Section(NamedTuple):
@@ -111,14 +104,14 @@ def is_section(name: str) -> bool:
 
 def check_names(section: str, number: int, line: str, words: list[str]) -> None:
     """Raises ValueError for a row of numbers where names of columns or units are expected."""
-    if any(map(NUMBER.fullmatch, words)):
+    if any(number_of(word) is not None for word in words):
         raise argument_error(f"{section}, line {number}", line.strip(), "a line of column names, then one of units")
 
 
 def number_in(where: str, text: str) -> float:
     """The finite number that `text` is; raises ValueError otherwise."""
-    value = float(re.sub("[dD]", "e", text)) if NUMBER.fullmatch(text) else math.nan
-    if not math.isfinite(value):
+    value = number_of(text)
+    if value is None or math.isinf(value):
         raise argument_error(where, text, "a finite number")
     return value
 

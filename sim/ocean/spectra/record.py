@@ -118,6 +118,7 @@ class Spectrum(NamedTuple, Generic[C]):
     wind_height: float = 10.0  # [m] of the wind speed that it takes
     by_wind: bool = True  # whether the wind makes its waves: without wind there are none
     line: Callable[[C], tuple[float, float, float]] | None = None  # (kx, ky [rad/m], m0 [m2]) of one regular wave
+    notes: tuple[str, ...] = ()  # of one from a file: lines on what was read, and on what was left out
 
     @property
     def title(self) -> str:

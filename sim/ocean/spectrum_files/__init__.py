@@ -13,31 +13,44 @@ from typing import Any
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import from_buoy, from_summary
 from sim.ocean.spectrum_files.contents import read_text, read_time
+from sim.ocean.spectrum_files.swan import from_swan
 from sim.ocean.spectrum_files.tables import from_table
 from sim.ocean.spectrum_files.wave_models import NETCDF, from_wavespectra
-from sim.validation import argument_error, check_kind
+from sim.tables import number_of
+from sim.validation import argument_error, check_kind, is_whole_number
 
 __all__ = ["read_spectrum"]
 
 
-def read_spectrum(path: str | Path, time: str | None = None) -> Spectrum[Any]:
+def read_spectrum(path: str | Path, time: str | None = None, place: int | None = None) -> Spectrum[Any]:
     """The spectrum in a file, or its record nearest to a time, "2020-01-02 05:00", by default its last one.
 
-    With directions it has those of the file, else waves spread about the wind's direction. Raises ValueError for a file
-    that holds none, in one line; ModuleNotFoundError without `wavespectra` or xarray, where the format needs them.
+    place: of a file with several, from 1; by default the first one with data. With directions the spectrum has those of
+    the file, else waves spread about the wind's direction. Its `notes` say what was read, and what was left out.
+
+    Raises ValueError for a file that holds none, in one line; ModuleNotFoundError without `wavespectra` or xarray,
+    where the format needs them.
     """
     check_kind("path", path, str | os.PathLike, "the name of a file")
     path = Path(path)
+    if place is not None and not (is_whole_number(place) and place > 0):
+        raise argument_error("place", place, "a whole number, 1 or above")
     when = None if time is None else read_time(time)
     if path.suffix.lower() in NETCDF:
-        return from_wavespectra(path, when)
+        return from_wavespectra(path, when, place)
     text = read_text(path)
     head = next((line for line in text.splitlines() if line.strip()), "")
     words = head.lstrip("# ").split()
-    if head.lstrip("'\" ").upper().startswith(("SWAN", "WAVEWATCH")):
+    kind = head.lstrip("'\" ").upper()
+    if kind.startswith("SWAN"):
+        return from_swan(text, path, when, place)
+    if place is not None:
+        raise argument_error("place", place, "a place of a file with several, of SWAN or netCDF")
+    if kind.startswith("WAVEWATCH"):
         return from_wavespectra(path, when)
     if words[:4] and words[0].strip("#") in ("YY", "YYYY") and words[1:3] == ["MM", "DD"]:
-        return from_summary(text, path, when) if "SwH" in words else from_buoy(text, path, when)
+        is_spectrum = all(number_of(word) is not None for word in words[5:]) or "(" in text.partition("\n")[0]
+        return from_buoy(text, path, when) if is_spectrum else from_summary(text, path, when)
     if when is not None:
         raise argument_error("time", time, "a time for a file with records of several times; this is a table of one")
     return from_table(text, path)

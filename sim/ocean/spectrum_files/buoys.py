@@ -1,4 +1,4 @@
-"""Text files of NDBC's buoys: densities, the four moments of their directions, and summaries.
+"""Text files of NDBC's buoys: densities, the four moments of their directions, summaries, and heights and periods.
 
 https://www.ndbc.noaa.gov/faq/measdes.shtml describes them: alpha1 and alpha2 are directions that waves come from.
 """
@@ -14,15 +14,24 @@ import numpy as np
 
 from sim.ocean.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import SECOND_EXPONENT, SECOND_PEAK, Spectrum, peaked
-from sim.ocean.spectrum_files.contents import DIRECTIONS, line_error, made, nearest, read_text, towards
+from sim.ocean.spectrum_files.contents import DIRECTIONS, filled, made, nearest, read_text, towards
+from sim.ocean.spectrum_files.sense import COMPASS
+from sim.tables import line_error, values_of
 from sim.validation import argument_error
 
-MISSING = 999.0  # and above: what a buoy's file does not have
 REALTIME = {".swdir": "alpha1", ".swdir2": "alpha2", ".swr1": "r1", ".swr2": "r2"}  # endings of files beside .data_spec
 HISTORY = {"d": "alpha1", "i": "alpha2", "j": "r1", "k": "r2"}  # letter in 44013w2020.txt, which is w for the density
-HISTORY_NAME = re.compile(r"^(.{5})w(\w+\.txt(?:\.gz)?)$")
-COMPASS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")
+HISTORY_NAME = re.compile(r"^(.{5})([a-z])(\d{4}\w*\.txt(?:\.gz)?)$")  # station, letter, year
+LARGEST = 30.0  # [m2/Hz] that whole numbers in a file of unknown letter may be densities
+TURN, PERCENT = 360.0, 100.0  # largest values of alpha1, alpha2, and of r1, r2
 WIND_SEA_EXPONENT = 10.0  # s of cos2s of wind waves (Goda 2010, Sec. 2.3)
+# Files of heights and periods: columns of height [m], period [s] and direction, and s of the spreading.
+SUMMARIES: dict[str, tuple[tuple[Any, ...], ...]] = {
+    "an NDBC summary": (
+        ("SwH", "SwP", "SwD", SECOND_EXPONENT), ("WWH", "WWP", "WWD", WIND_SEA_EXPONENT),
+    ),
+    "standard meteorological data of NDBC": (("WVHT", "DPD", "MWD", WIND_SEA_EXPONENT),),
+}  # fmt: skip
 SUMMARY_FREQUENCIES = np.geomspace(0.01, 5.0, 800)  # [Hz]
 
 
@@ -36,12 +45,10 @@ class Records(NamedTuple):
 
 def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum[Any]:
     """The spectrum of an NDBC file of densities, with the directions of the files beside it."""
-    kind = kind_of(text)
-    if kind != "density":
-        raise argument_error(
-            "path", str(path), f"the file of densities (.data_spec, or w in its name); this is of {kind}"
-        )
     density = records_of(text, path)
+    kind = kind_of(text, path, density)
+    if kind != "density":
+        raise argument_error("path", str(path), f"{file_of_densities(path)}; this is of {kind}")
     whole = np.isfinite(density.values).sum(axis=1) >= 3
     if not whole.any():
         raise argument_error("path", str(path), "a file with a record of at least three densities")
@@ -50,7 +57,7 @@ def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum
     time, there = density.time[i], np.isfinite(density.values[i])
     order = np.argsort(density.frequency[there])
     f, S = density.frequency[there][order], density.values[i][there][order]
-    moments = {kind: moment_at(other, time, f) for kind, other in files_beside(path).items()}
+    moments = {kind: moment_at(other, kind, time, f) for kind, other in files_beside(path).items()}
     known = {kind: values for kind, values in moments.items() if values is not None}
     if not {"alpha1", "r1"} <= known.keys():
         if known:
@@ -64,11 +71,27 @@ def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum
     return made(path, time, f, S[:, None] * D, DIRECTIONS)
 
 
-def kind_of(text: str) -> str:
-    """The quantity in a buoy's file by its first line: alpha1, alpha2, r1, r2 or density."""
+def kind_of(text: str, path: Path, records: Records) -> str:
+    """The quantity in a buoy's file: by its first line, by the letter in its name, or by its values."""
     head = text.partition("\n")[0].lower()
     found = re.search(r"\b(alpha[12]|r[12])_1\b", head)
-    return found.group(1) if found else "density"
+    if found is not None:
+        return found.group(1)
+    history = HISTORY_NAME.match(path.name)
+    if history is not None and history[2] in HISTORY:
+        return HISTORY[history[2]]
+    values = records.values[np.isfinite(records.values)]
+    # degrees and percents are whole numbers, and no sea has only such densities
+    if len(values) and (values == np.rint(values)).all() and LARGEST < values.max() <= TURN:
+        return "directions, or of r1 or r2, as its values are whole numbers"
+    return "density"
+
+
+def file_of_densities(path: Path) -> str:
+    """The file that is meant, for messages."""
+    history = HISTORY_NAME.match(path.name)
+    name = f"{history[1]}w{history[3]}" if history is not None else ".data_spec or .swden, or w in its name"
+    return f"the file of densities ({name})"
 
 
 def files_beside(path: Path) -> dict[str, Path]:
@@ -76,29 +99,31 @@ def files_beside(path: Path) -> dict[str, Path]:
     found = {kind: path.with_suffix(ending) for ending, kind in REALTIME.items()}
     history = HISTORY_NAME.match(path.name)
     if history is not None:
-        found = {kind: path.with_name(history[1] + letter + history[2]) for letter, kind in HISTORY.items()}
+        found = {kind: path.with_name(history[1] + letter + history[3]) for letter, kind in HISTORY.items()}
     return {kind: other for kind, other in found.items() if other.is_file() and other != path}
 
 
-def moment_at(path: Path, time: datetime.datetime, frequency: np.ndarray) -> np.ndarray | None:
+def moment_at(path: Path, kind: str, time: datetime.datetime, frequency: np.ndarray) -> np.ndarray | None:
     """Values (n,) of a file of directions at this time and these frequencies [Hz]; None without them.
 
     Where one is missing, it is that of the nearest frequency that has one.
+    Raises ValueError for values that this kind cannot have: files whose names are exchanged.
     """
     records = records_of(read_text(path), path)
+    largest = TURN if kind.startswith("alpha") else PERCENT
+    if (records.values > largest).any():
+        raise argument_error(
+            "path", str(path), f"a file of {kind}, up to {largest:g}; here is {np.nanmax(records.values):g}"
+        )
     if time not in records.time:
         return None
     values = records.values[records.time.index(time)]
-    there = np.isfinite(values)
-    if not there.any():
-        return None
-    near = np.abs(frequency[:, None] - records.frequency[there]).argmin(axis=1)
-    return values[there][near]
+    return filled(frequency, records.frequency, values) if np.isfinite(values).any() else None
 
 
 def shares(r: np.ndarray) -> np.ndarray:
     """r1 or r2 from 0 to 1; files of past years have percents."""
-    return np.clip(r / 100.0 if (r > 1.0).any() else r, 0.0, 1.0)
+    return np.clip(r / PERCENT if (r > 1.0).any() else r, 0.0, 1.0)
 
 
 def records_of(text: str, path: Path) -> Records:
@@ -131,7 +156,7 @@ def records_of(text: str, path: Path) -> Records:
     if not rows or frequency is None:
         raise argument_error("path", str(path), "a file with at least one record")
     values = np.array(rows)
-    values[(values >= MISSING) | (values < 0.0)] = math.nan
+    values[values < 0.0] = math.nan
     return Records(times, frequency, values)
 
 
@@ -155,23 +180,25 @@ def clock_time(words: list[str], path: Path, number: int) -> datetime.datetime:
 
 
 def floats(words: list[str], path: Path, number: int) -> np.ndarray:
-    """Numbers of a line; MM, as NDBC writes a missing one, is nan. Raises ValueError that names the line."""
-    try:
-        found = np.array([math.nan if word == "MM" else float(word) for word in words])
-    except ValueError:
-        raise line_error(path, number, "numbers") from None
-    if np.isinf(found).any():
-        raise line_error(path, number, "finite numbers")
+    """Numbers of a line, nan where one is missing. Raises ValueError that names the line."""
+    found, wrong = values_of(words)
+    if wrong is not None:
+        raise line_error(path, number, "numbers")
     return found
 
 
 def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spectrum[Any]:
-    """Swell and wind sea of an NDBC summary (.spec), which has heights, periods and directions, and no spectrum.
+    """Heights, periods and directions of a file without a spectrum, in the shape of JONSWAP with gamma 3.3.
 
-    Both get the shape of JONSWAP with gamma 3.3 and the spreading cos2s.
+    Those are swell and wind sea of an NDBC summary (.spec), or WVHT, DPD and MWD of standard meteorological data. They
+    spread as cos2s.
     """
     lines = [(i, line.split()) for i, line in enumerate(text.splitlines(), start=1) if line.strip()]
-    head = [word.strip("#") for word in lines[0][1]]
+    head = " ".join(lines[0][1]).lstrip("# ").split()
+    kind = next((one for one in SUMMARIES if set(SUMMARIES[one][0][:2]) <= set(head)), None)
+    if kind is None:
+        raise argument_error("path", str(path), f"{file_of_densities(path)}; this has no waves: {' '.join(head)[:80]}")
+    clock = 5 if head[4:5] == ["mm"] else 4
     times, rows = [], []
     for number, words in lines[1:]:
         if words[0].startswith("#"):
@@ -180,26 +207,43 @@ def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spect
             raise line_error(path, number, f"{len(head)} columns; here are {len(words)}")
         row = dict(zip(head, words, strict=True))
         try:
-            systems = [(row[h], row[p], row[d], s) for h, p, d, s in
-                       (("SwH", "SwP", "SwD", SECOND_EXPONENT), ("WWH", "WWP", "WWD", WIND_SEA_EXPONENT))]  # fmt: skip
+            found = [system_of([row[one] for one in columns], s, path, number) for *columns, s in SUMMARIES[kind]]
         except KeyError as missing:
-            raise line_error(path, 1, f"the columns SwH SwP SwD WWH WWP WWD; {missing} is not here") from None
-        whole = [one for one in systems if "MM" not in one[:2] and one[2] in COMPASS]
-        if whole:
-            times.append(clock_time(words[:5], path, number))
-            rows.append((number, whole))
+            raise line_error(path, lines[0][0], f"the columns of {kind}; {missing} is not here") from None
+        systems = [system for system in found if system is not None]
+        if systems:
+            times.append(clock_time(words[:clock], path, number))
+            rows.append(systems)
     if not rows:
-        raise argument_error("path", str(path), "a summary with a record of swell or wind sea")
+        raise argument_error("path", str(path), f"{kind} with a record of waves")
     i = nearest(times, when, path)
-    number, systems = rows[i]
+    f, systems = SUMMARY_FREQUENCIES, rows[i]
+    notes = [f"{kind}, without a spectrum: heights and periods in the shape of JONSWAP"]
+    heights = [S for S, _, _ in systems]
+    if any(mean is None for _, mean, _ in systems):
+        return made(path, times[i], f, sum(heights), notes=notes)
+    total = sum(S[:, None] * spread_by_mean(DIRECTIONS, mean, np.array([s / (s + 1.0)])) for S, mean, s in systems)
+    return made(path, times[i], f, total, DIRECTIONS, notes=notes)
+
+
+def system_of(
+    words: list[str], exponent: float, path: Path, number: int
+) -> tuple[np.ndarray, np.ndarray | None, float] | None:
+    """S [m2/Hz] of SUMMARY_FREQUENCIES, where it goes to (1,) [rad] and s, of height, period and direction.
+
+    The direction is of the compass or in degrees; None if it is missing. None for waves that are missing.
+    """
+    # each by itself, as none is a neighbour of another
+    H, T = (float(floats([word], path, number)[0]) for word in words[:2])
+    if not (math.isfinite(H) and math.isfinite(T)):
+        return None
+    if H > 0.0 and not 1.0 <= T <= 60.0:
+        raise line_error(path, number, "periods of 1 to 60 s")
+    bearing = 22.5 * COMPASS.index(words[2]) if words[2] in COMPASS else float(values_of(words[2:3], TURN)[0][0])
+    if not bearing <= TURN and not math.isnan(bearing):
+        raise line_error(path, number, f"directions of 0 to {TURN:g} degrees")
     f = SUMMARY_FREQUENCIES
-    total = np.zeros((len(f), len(DIRECTIONS)))
-    for height, period, bearing, s in systems:
-        H, T = floats([height, period], path, number)
-        if H > 0.0 and not 1.0 <= T <= 60.0:
-            raise line_error(path, number, "periods of 1 to 60 s")
-        mean = np.array([float(towards(np.array(22.5 * COMPASS.index(bearing))))])
-        if H > 0.0:
-            S = 2.0 * math.pi * peaked(2.0 * math.pi * f, H, 2.0 * math.pi / T, SECOND_PEAK)
-            total += S[:, None] * spread_by_mean(DIRECTIONS, mean, np.array([s / (s + 1.0)]))
-    return made(path, times[i], f, total, DIRECTIONS)
+    S = np.zeros(len(f))
+    if H > 0.0:
+        S = 2.0 * math.pi * peaked(2.0 * math.pi * f, H, 2.0 * math.pi / T, SECOND_PEAK)
+    return S, None if math.isnan(bearing) else np.array([float(towards(np.array(bearing)))]), exponent

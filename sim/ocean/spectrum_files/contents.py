@@ -1,8 +1,10 @@
 """Common parts of all formats of spectra: the text of a file, times, directions, and the spectrum made of them."""
 
+import codecs
 import datetime
 import gzip
 import zlib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ import numpy as np
 
 from sim.ocean.measured import measured_spectrum
 from sim.ocean.spectra.record import Spectrum
+from sim.ocean.spectrum_files.sense import sense_of
 from sim.validation import argument_error, unreadable
 
 MAX_BYTES = 100_000_000  # of a text file, unpacked
@@ -30,6 +33,8 @@ def read_time(text: str) -> datetime.datetime:
 def read_text(path: Path) -> str:
     """The text of a file, also of one that gzip has packed. Raises ValueError where it cannot be read."""
     try:
+        if path.is_file() and path.stat().st_size > MAX_BYTES:
+            raise argument_error("path", str(path), f"{FORMS}, of at most {MAX_BYTES // 1_000_000} MB")
         with path.open("rb") as file:
             packed = file.read(2) == b"\x1f\x8b"
         with gzip.open(path) if packed else path.open("rb") as file:
@@ -38,9 +43,16 @@ def read_text(path: Path) -> str:
         raise argument_error("path", str(path), f"{FORMS}; what gzip has packed is damaged here") from None
     except OSError as error:
         raise unreadable("path", path, error) from None
-    if len(found) > MAX_BYTES or b"\0" in found:
+    if len(found) > MAX_BYTES:
+        raise argument_error("path", str(path), f"{FORMS}, of at most {MAX_BYTES // 1_000_000} MB unpacked")
+    if found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return found.decode("utf-16", errors="replace")
+    if b"\0" in found:
         raise argument_error("path", str(path), FORMS)
-    return found.decode("utf-8-sig", errors="replace")
+    try:
+        return found.decode("utf-8-sig")
+    except UnicodeDecodeError:  # of spreadsheets on Windows: it matters in units only
+        return found.decode("cp1252", errors="replace")
 
 
 def titled(path: Path, time: datetime.datetime | None) -> str:
@@ -53,12 +65,31 @@ def towards(degrees: np.ndarray) -> np.ndarray:
     return np.radians(270.0 - np.asarray(degrees))
 
 
-def made(path: Path, time: datetime.datetime | None, *given: Any) -> Spectrum[Any]:
-    """`measured_spectrum` of these arrays. Raises ValueError that names the file."""
+def made(path: Path, time: datetime.datetime | None, *given: Any, notes: Sequence[str] = ()) -> Spectrum[Any]:
+    """`measured_spectrum` of these arrays; notes: a line on each thing that was left out, or assumed.
+
+    Raises ValueError that names the file.
+    """
     try:
-        return measured_spectrum(*given, name=titled(path, time))
+        found = measured_spectrum(*given, name=titled(path, time))
     except ValueError as error:
         raise ValueError(f"path: {path}: {error}") from None
+    return found._replace(notes=(*sense_of(found), *notes))
+
+
+def filled(frequency: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values (n,) at frequencies (n,), each that of the nearest of its own frequencies (m,) that has one, or nan."""
+    there = np.isfinite(values)
+    if not there.any():
+        return np.full(len(frequency), np.nan)
+    return values[there][np.abs(frequency[:, None] - own[there]).argmin(axis=1)]
+
+
+def unrepeated(direction: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Directions (m,) [rad] and densities (n, m) without the last, where it is the first one after a turn."""
+    turns = (direction[-1] - direction[0]) / (2.0 * np.pi)
+    is_repeated = abs(turns) > 0.5 and abs(turns - round(turns)) < 1e-6 and np.allclose(density[:, -1], density[:, 0])
+    return (direction[:-1], density[:, :-1]) if is_repeated else (direction, density)
 
 
 def nearest(times: list[datetime.datetime], when: datetime.datetime | None, path: Path) -> int:
@@ -70,8 +101,3 @@ def nearest(times: list[datetime.datetime], when: datetime.datetime | None, path
         allowed = f"{min(times):%Y-%m-%d %H:%M} to {max(times):%Y-%m-%d %H:%M}, near a record of {path.name}"
         raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
     return i
-
-
-def line_error(path: Path, number: int, allowed: str) -> ValueError:
-    """The error of a line."""
-    return argument_error("path", f"{path}, line {number}", allowed)

@@ -10,28 +10,34 @@ import numpy as np
 from sim.ocean.measured import spread_by_mean
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import shares
-from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, line_error, made, towards
+from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, filled, made, unrepeated
+from sim.tables import ColumnTable, Meaning, Row, line_error, number_of, read_columns, split_rows, values_of
+from sim.tables.columns import DENSITY, DIRECTION, FREQUENCY, OMEGA, SHARE, SPREAD, TURN, factor_of, header_of, in_doubt
+from sim.tables.headers import BRACKETS, letters_of
+from sim.tables.units import measure_of
 from sim.validation import argument_error
 
-COLUMNS = {  # of a table with one row a frequency, by the letters and digits of its header
-    "frequency": ("frequency", "freq", "f", "frequencyhz", "freqhz", "fhz"),
-    "omega": ("omega", "w", "omegarads", "wrads"),
-    "density": (
-        "density",
-        "s",
-        "energy",
-        "spectraldensity",
-        "psd",
-        "e",
-        "variancedensity",
-        "ef",
-        "sm2hz",
-        "densitym2hz",
+MEANINGS = (
+    Meaning("frequency", FREQUENCY, ("frequency", "freq", "f", "wavefrequency"), "Hz"),
+    Meaning("frequency", OMEGA, ("omega", "w", "ω", "angularfrequency", "circularfrequency"), "rad/s"),
+    Meaning(
+        "density", DENSITY,
+        ("density", "s", "energy", "spectraldensity", "spectralenergy", "energydensity", "psd", "e", "variancedensity",
+         "spectrum", "sf", "ef", "sw", "sω", "efth", "wavespectrum", "wavespectraldensity"), "m2 s",
     ),
-    "alpha1": ("direction", "dir", "alpha1", "meandirection", "mwd", "theta", "a1", "mdir"),
-    "r1": ("r1",),
-    "spread": ("spread", "spreading", "spr", "directionalspread", "sigma"),
-}
+    Meaning(
+        "direction", DIRECTION,
+        ("direction", "dir", "alpha1", "meandirection", "mwd", "theta", "θ", "a1", "mdir", "wavedirection",
+         "meanwavedirection", "dirmean"), "deg",
+    ),
+    Meaning("r1", SHARE, ("r1",), "1"),
+    Meaning(
+        "spread", SPREAD,
+        ("spread", "spreading", "spr", "directionalspread", "directionalspreading", "sigma", "dspr"), "deg",
+    ),
+)  # fmt: skip
+OMEGA_NAMES = next(meaning.names for meaning in MEANINGS if meaning.kind is OMEGA)
+LEAST_DIRECTIONS = 4  # columns of a table with a row of directions
 
 
 def from_table(text: str, path: Path) -> Spectrum[Any]:
@@ -39,83 +45,109 @@ def from_table(text: str, path: Path) -> Spectrum[Any]:
 
     Columns by name, or frequency and density without names; or a first row of directions, and densities over both.
     """
-    rows = table_rows(text)
+    rows, comments = split_rows(text, path)
     if len(rows) < 3:
         raise argument_error("path", str(path), FORMS)
-    number, head = rows[0]
-    numeric = [is_number(word) for word in head]
-    if len(head) > 4 and all(numeric[1:]) and (not numeric[0] or len(head) > len(COLUMNS)):
+    head = rows[0].words
+    numbers = [number_of(word) is not None for word in head]
+    if len(head) > LEAST_DIRECTIONS and all(numbers[1:]) and (not numbers[0] or len(head) > len(MEANINGS)):
         return from_matrix(rows, path)
-    if all(numeric):
-        if len(head) != 2:
-            raise line_error(path, number, "two columns, frequency [Hz] and density [m2/Hz], or names of columns")
-        names, body = ["frequency", "density"], rows
-    else:
-        names, body = [column_of(word) for word in head], rows[1:]
-    if not {"density"} < set(names) or not {"frequency", "omega"} & set(names):
+    table = read_columns(rows, comments, path, MEANINGS, ("frequency", "density"))
+    if "frequency" not in table.columns or "density" not in table.columns:
         raise line_error(
-            path, number, "the columns frequency [Hz] and density [m2/Hz]; and direction and spread, or r1"
+            path, rows[0].number, "the columns frequency [Hz] and density [m2/Hz]; and direction and spread, or r1"
         )
-    values = np.array([numbers_of(words, path, line, len(names), names) for line, words in body])
-    columns = {name: values[:, i] for i, name in enumerate(names) if name}
-    f = columns["frequency"] if "frequency" in columns else columns["omega"] / (2.0 * math.pi)
-    S = columns["density"] * (1.0 if "frequency" in columns else 2.0 * math.pi)
-    order = np.argsort(f)
-    columns = {name: column[order] for name, column in columns.items()}
+    return from_columns(table, path)
+
+
+def from_columns(table: ColumnTable, path: Path) -> Spectrum[Any]:
+    """The spectrum of the columns of a table; rows without frequency or density are left out."""
+    axis, density = table.columns["frequency"], table.columns["density"]
+    f, S = axis.values, density.values
+    if density.is_angular is None and axis.is_angular:
+        S = TURN * S
+    notes = list(table.notes)
+    there = np.isfinite(f) & np.isfinite(S)
+    if not there.all():
+        lost = ", ".join(f"{one:.4g}" for one in f[~there & np.isfinite(f)][:6])
+        notes.append(f"{rows_of(np.asarray(~there))} without a value left out{f', at {lost} Hz' if lost else ''}")
+    order = np.flatnonzero(there)[np.argsort(f[there], kind="stable")]
     f, S = f[order], S[order]
-    if "alpha1" not in columns or not {"r1", "spread"} & columns.keys():
-        return made(path, None, f, S)
-    # the spread of a buoy is sqrt(2 - 2 r1), Kuik, van Vledder, Holthuijsen 1988, J. Phys. Oceanogr. 18:1020
-    r1 = columns["r1"] if "r1" in columns else 1.0 - 0.5 * np.radians(columns["spread"]) ** 2
-    return made(
-        path, None, f, S[:, None] * spread_by_mean(DIRECTIONS, towards(columns["alpha1"]), shares(r1)), DIRECTIONS
-    )
+    direction, spread, r1 = (table.columns.get(key) for key in ("direction", "spread", "r1"))
+    if direction is None or (spread is None and r1 is None):
+        if direction is not None or spread is not None or r1 is not None:
+            notes.append("directions left out: they need a column of direction, and one of spread or r1")
+        return made(path, None, f, S, notes=notes)
+    mean = filled(f, f, direction.values[order])
+    if r1 is not None:
+        first = shares(filled(f, f, r1.values[order]))
+    else:
+        assert spread is not None
+        # the spread of a buoy is sqrt(2 - 2 r1), Kuik, van Vledder, Holthuijsen 1988, J. Phys. Oceanogr. 18:1020
+        first = np.clip(1.0 - 0.5 * filled(f, f, spread.values[order]) ** 2, 0.0, 1.0)
+    if not (np.isfinite(mean).all() and np.isfinite(first).all()):
+        raise argument_error("path", str(path), "directions with at least one value")
+    return made(path, None, f, S[:, None] * spread_by_mean(DIRECTIONS, mean, first), DIRECTIONS, notes=notes)
 
 
-def from_matrix(rows: list[tuple[int, list[str]]], path: Path) -> Spectrum[Any]:
-    """The spectrum of rows of densities [m2/Hz/degree] behind a frequency, under a row of directions [degrees]."""
-    number, head = rows[0]
-    degrees = numbers_of(head[1:], path, number, len(head) - 1)
-    values = np.array([numbers_of(words, path, line, len(head)) for line, words in rows[1:]])
-    values = values[np.argsort(values[:, 0])]
-    return made(path, None, values[:, 0], values[:, 1:] * (180.0 / math.pi), towards(degrees))
+def rows_of(chosen: np.ndarray) -> str:
+    """The number of chosen rows (n,), in words."""
+    count = int(chosen.sum())
+    return "1 row" if count == 1 else f"{count} rows"
 
 
-def table_rows(text: str) -> list[tuple[int, list[str]]]:
-    """(number, words) of the lines of a table, without comments. Semicolons and tabs allow decimal commas."""
-    rows = []
-    for number, line in enumerate(text.splitlines(), start=1):
-        if not line.strip() or line.lstrip().startswith(("#", "%", "//")):
-            continue
-        mark = next((mark for mark in (";", "\t", ",") if mark in line), None)
-        words = [word.strip().strip('"') for word in line.split(mark)]
-        rows.append((number, words if mark == "," else [w.replace(",", ".") if is_number(w.replace(",", ".")) else w
-                                                        for w in words]))  # fmt: skip
-    return rows
+def from_matrix(rows: list[Row], path: Path) -> Spectrum[Any]:
+    """The spectrum of rows of densities behind a frequency, under a row of directions.
 
-
-def is_number(word: str) -> bool:
-    """True for the text of a number."""
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
-
-
-def column_of(word: str) -> str:
-    """The name of a column by its header, "" for another one."""
-    letters = re.sub(r"[^a-z0-9]", "", re.sub(r"[\[(].*?[\])]", "", word.lower()))
-    return next((name for name, known in COLUMNS.items() if letters in known), "")
-
-
-def numbers_of(words: list[str], path: Path, number: int, count: int, names: list[str] | None = None) -> np.ndarray:
-    """The numbers (count,) of a row of a table; nan for the words of columns without a name, where these are known.
-
-    Raises ValueError that names the line.
+    The first word of that row may have units in brackets, and the convention of the directions:
+    "f (Hz), to (deg), S (m2/Hz/deg)". Without them they are Hz, degrees that waves come from, and m2/Hz/degree.
     """
-    if len(words) != count:
-        raise line_error(path, number, f"{count} columns; here are {len(words)}")
-    if not all(is_number(word) for i, word in enumerate(words) if names is None or names[i]):
-        raise line_error(path, number, "numbers")
-    return np.array([float(word) if is_number(word) else math.nan for word in words])
+    head, rows = rows[0], rows[1:]
+    corner = head.words[0]
+    convention = header_of(corner, {}, path, head.number).convention
+    is_angular = letters_of(re.split(r"[\W_]", corner.strip(), maxsplit=1)[0]) in OMEGA_NAMES
+    per_hertz, per_angle, density = TURN if is_angular else 1.0, math.pi / 180.0, None
+    degree, is_given = math.pi / 180.0, False
+    frequency = 1.0 / TURN if is_angular else 1.0
+    for unit in (header_of(f"x ({part})", {}, path, head.number).unit for part in BRACKETS.findall(corner)):
+        measure = measure_of(unit) if unit else None
+        of_frequency = factor_of(OMEGA if is_angular else FREQUENCY, measure) if measure else (None, None)
+        if measure is not None and of_frequency[0] is not None:
+            frequency, per_hertz = of_frequency[0], TURN if of_frequency[1] else 1.0
+        elif measure is not None and not measure.dimensions and measure.angle == 1.0:
+            degree, is_given = measure.factor, True
+        elif (
+            measure is not None
+            and measure.dimensions == DENSITY.dimensions
+            and measure.angle in (-1.0, -2.0)
+            and (measure.is_cyclic == (measure.angle == -1.0))
+        ):
+            density = measure.factor * (1.0 if measure.is_cyclic else TURN)
+        elif unit:
+            raise line_error(path, head.number, f"units as in 'f (Hz), direction (deg), S (m2/Hz/deg)', not {unit}")
+    per_angle = degree
+    angles = np.array([number_of(word) for word in head.words[1:]], float)
+    if not is_given and in_doubt(angles, DIRECTION.doubt):
+        raise line_error(
+            path, head.number, "the unit of the directions in its first word, as 'f (Hz), direction (rad)'"
+        )
+    for row in rows:
+        if len(row.words) != len(head.words):
+            raise line_error(path, row.number, f"{len(head.words)} columns; here are {len(row.words)}")
+    columns = []
+    for i in range(len(head.words)):
+        values, wrong = values_of([row.words[i] for row in rows])
+        if wrong is not None:
+            raise line_error(path, rows[wrong].number, "numbers")
+        columns.append(values)
+    values = np.stack(columns, axis=1)
+    there = np.isfinite(values)
+    whole, some = there.all(axis=1), there[:, 0] & there[:, 1:].any(axis=1)
+    if (some & ~whole).any():
+        raise line_error(path, rows[int((some & ~whole).argmax())].number, "a density for each direction")
+    notes = [f"{rows_of(np.asarray(~whole))} without values left out"] if not whole.all() else []
+    values = values[whole]
+    values = values[np.argsort(values[:, 0], kind="stable")]
+    scale = density if density is not None else per_hertz / per_angle
+    theta, S = unrepeated(convention.towards(angles * degree), values[:, 1:] * scale)
+    return made(path, None, values[:, 0] * frequency, S, theta, notes=notes)

@@ -1,5 +1,7 @@
 """The waves of a measured spectrum in the scenes of both seas, from the command line on."""
 
+import html
+import json
 import math
 import re
 from pathlib import Path
@@ -11,6 +13,7 @@ from app.__main__ import main, make_parser
 from app.commands.options import read_params
 from app.scenes import scene_named
 from app.scenes.radial_sea.report import readout_of
+from app.scenes.radial_sea.view import RadialSeaView
 from app.scenes.square_sea.report import readout
 from app.scenes.square_sea.view import SquareSeaView
 from app.server.loop import SimLoop
@@ -110,3 +113,26 @@ def test_an_option_about_a_file_needs_the_file(words, file, monkeypatch, capsys)
     assert f"it needs --{file} FILE" in capsys.readouterr().err
     assert main(["run", "radial_sea", "--seconds", "1", "--out", "x.npz", *words]) == 2
     assert f"it needs --{file} FILE" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("scene", ["square_sea", "radial_sea"])
+def test_the_lines_on_a_file_are_printed_shown_and_kept(scene, tmp_path, capsys):
+    """By the command, in the page's folder "Files", and in the file of the run: one source for all."""
+    path, out = tmp_path / "buoy.csv", tmp_path / "run.npz"
+    rows = "".join(f"{f:.3f},{400.0 * S:.6f},315,25,good\n" for f, S in zip(FREQUENCY, DENSITY, strict=True))
+    path.write_text("f,S,direction,spread,quality\n" + rows, encoding="utf-8")
+    small = ["--set", "size=64", "mesh=32"] if scene == "square_sea" else ["--set", "bodies=0", "rig=false"]
+    assert main(["run", scene, "--spectrum", str(path), "--seconds", "0.1", "--out", str(out), *small]) == 0
+    printed = [line.removeprefix("springtide: buoy.csv: ") for line in capsys.readouterr().err.strip().splitlines()]
+    with np.load(out) as file:
+        kept = json.loads(str(file["about"]))["notes"]
+    assert printed == kept
+    assert kept[0].endswith("waves come from 315° (NW)")
+    assert kept[1].startswith("Warning: Hs ")
+    assert kept[-1] == "columns left out: quality"
+    _, _, latest = snapshot_of(scene, "--spectrum", str(path), *small)
+    view = SquareSeaView if scene == "square_sea" else RadialSeaView
+    shown = re.sub(r"<[^>]*>", "\n", view.notes(None, latest)["Files"])  # type: ignore[arg-type]
+    assert all(note in html.unescape(shown) for note in kept)
+    _, _, other = snapshot_of(scene, *small)
+    assert "Files" not in view.notes(None, other)  # type: ignore[arg-type]

@@ -153,9 +153,9 @@ def test_water_numbers_and_texts_are_those_of_the_file():
 
     snapshot = SimpleNamespace(params=p, frame=scene.frame(), readings=scene.readings())
     notes = notes_of(snapshot)  # type: ignore[arg-type]
-    assert "version1.txt" in notes["File"]
-    assert "4 lines, 6 points, 2 of them on the vessel" in notes["File"]
-    assert "dtM" in notes["File"]
+    assert "version1.txt" in notes["Files"]
+    assert "4 lines, 6 points, 2 of them on the vessel" in notes["Files"]
+    assert "dtM" in notes["Files"]
     assert SCENE.quantities["line_weight"].value(snapshot) == pytest.approx(
         9.81 * (120.0 - 1025.0 * np.pi / 4.0 * 0.08**2)
     )

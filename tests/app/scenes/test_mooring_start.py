@@ -156,7 +156,7 @@ def test_lines_and_points_of_a_file(tmp_path):
     said = f"Line 1 of 120 m cannot reach from point 1 to point 2: at least {way:g} m."
     assert warnings(scene) == [said]
     shown = snapshot_of(scene)
-    assert said in notes_of(shown)["File"]
+    assert said in notes_of(shown)["Files"]
     assert said.partition(":")[0] in figures_of(shown)
     assert remedy(shown) is None
     assert advice(shown) is None

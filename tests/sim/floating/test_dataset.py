@@ -214,3 +214,17 @@ def test_of_several_bodies_one_is_named():
     path = FOLDER / "bodies.nc"
     assert_refused("body", lambda: with_dataset(HULL, path), "fore, aft")
     assert_refused("body", lambda: with_dataset(HULL, path, body="mid"), "fore, aft")
+
+
+def test_all_that_a_dataset_does_not_say_is_asked_for_at_once(bodies, tmp_path):
+    lost = [name for name in ("draught", "rotation_center", "center_of_mass") if name in bodies.variables]
+    path = written(bodies, tmp_path, lambda dataset: dataset.drop_vars(lost))
+    with pytest.raises(ValueError, match="body: None") as error:
+        with_dataset(HULL, path)
+    assert [reason.partition(":")[0] for reason in str(error.value).split("; ") if " is not allowed" in reason] == [
+        "body", "draft", "rotation_center",
+    ]  # fmt: skip
+    with pytest.raises(ValueError, match=r"^draft: None") as error:
+        with_dataset(HULL, path, body="aft")
+    assert "rotation_center: None" in str(error.value)
+    assert with_dataset(HULL, path, body="aft", draft=2.0, rotation_center=(10.0, 5.0, 0.0)).shape.table is not None

@@ -185,3 +185,67 @@ def test_a_mesh_of_20_km_is_told_of_millimetres(tmp_path):
     assert_refused("weld", lambda: Hull.load(path, weld=-1.0), "0 or above")
     assert_refused("mirror", lambda: Hull.load(path, mirror="z"), "x, y")
     assert_refused("cap", lambda: Hull.load(path, cap="keel"), "deck")
+
+
+# --- panels whose neighbours do not share nodes ---
+
+
+def prism(sides: int, pieces: int, bottom: int, radius: float = 5.0, depth: float = 10.0) -> str:
+    """GDF of a cylinder of panels, open at the water: on each side `pieces` panels abreast, at the bottom `bottom`."""
+    angle = np.linspace(0.0, 2.0 * math.pi, sides + 1)
+    corners = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+
+    def along(i: int, count: int) -> list[np.ndarray]:
+        return [corners[i] + (corners[i + 1] - corners[i]) * share for share in np.linspace(0.0, 1.0, count + 1)]
+
+    panels = []
+    for i in range(sides):
+        for a, b in zip(along(i, pieces)[:-1], along(i, pieces)[1:], strict=True):
+            panels.append([(*a, 0.0), (*a, -depth), (*b, -depth), (*b, 0.0)])
+        for a, b in zip(along(i, bottom)[:-1], along(i, bottom)[1:], strict=True):
+            panels.append([(0.0, 0.0, -depth), (*b, -depth), (*a, -depth), (*a, -depth)])
+    rows = "".join("{:.6f} {:.6f} {:.6f}\n".format(*place) for panel in panels for place in panel)
+    return f"a cylinder\n1.0 9.80665\n0 0\n{len(panels)}\n{rows}"
+
+
+@pytest.mark.parametrize(("sides", "pieces", "bottom"), [(24, 2, 1), (12, 5, 1), (8, 1, 3), (12, 2, 3), (36, 1, 1)])
+def test_a_fine_side_on_a_coarse_bottom_is_closed_with_its_volume(tmp_path, sides, pieces, bottom):
+    path = tmp_path / "cylinder.gdf"
+    path.write_text(prism(sides, pieces, bottom), encoding="utf-8")
+    assert_refused(str(path), lambda: Hull.load(path), "--cap deck closes it")
+    volume = 0.5 * sides * 25.0 * math.sin(2.0 * math.pi / sides) * 10.0
+    assert Hull.load(path, cap="deck").volume == pytest.approx(volume, rel=1e-6)
+
+
+def test_a_box_with_one_bottom_panel_more_than_its_sides_is_closed(tmp_path):
+    """Also where its half is mirrored, and in a file of triangles."""
+    sides = [[(-5, 2, -2), (-5, 2, 0), (5, 2, 0), (5, 2, -2)], [(-5, 0, -2), (-5, 0, 0), (-5, 2, 0), (-5, 2, -2)],
+             [(5, 2, -2), (5, 2, 0), (5, 0, 0), (5, 0, -2)]]  # fmt: skip
+    bottom = [[(x, 0, -2), (x, 2, -2), (x + 2, 2, -2), (x + 2, 0, -2)] for x in range(-5, 5, 2)]
+    corners = np.array([*sides, *bottom], float)
+    rows = "".join("{:g} {:g} {:g}\n".format(*place) for panel in corners for place in panel)
+    path = tmp_path / "box.gdf"
+    path.write_text(f"half a box\n1.0 9.80665\n0 0\n{len(corners)}\n{rows}", encoding="utf-8")
+    hull = Hull.load(path, mirror="y", cap="deck")
+    assert hull.volume == pytest.approx(80.0)
+    assert_refused("cap", lambda: Hull.load(path, cap="deck"), "--mirror y --cap deck closes it")
+    triangles = corners[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
+    made = stl(tmp_path / "box.stl", triangles, np.arange(len(triangles)).reshape(-1, 3))
+    assert Hull.load(made, weld=1e-5, mirror="y", cap="deck").volume == pytest.approx(80.0, rel=1e-5)
+
+
+def test_a_hole_with_nodes_near_its_edges_stays_open():
+    """Edges are divided only where a node lies on them: one that is a centimetre away does not."""
+    vertices = np.concatenate([VERTICES, [[0.0, -3.0, 3.01]]])
+    faces = np.concatenate([DECK, SIDES[SIDES[:, 0] != 0], [[0, 4, 8], [4, 5, 8], [5, 1, 8]]])
+    points, found = repaired(vertices, faces, 0.0, "", "")
+    assert open_edges(found)
+    vertices[8, 2] = 3.0
+    points, found = repaired(vertices, faces, 0.0, "", "")
+    assert not open_edges(found)
+    assert enclosed_volume(points, found) == pytest.approx(VOLUME)
+
+
+def test_a_file_with_two_bottom_panels_between_its_sides_is_a_box():
+    path = Path(__file__).parent / "field" / "panels_hanging_nodes.gdf"
+    assert Hull.load(path, cap="deck").volume == pytest.approx(80.0)

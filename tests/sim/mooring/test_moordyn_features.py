@@ -182,7 +182,7 @@ def test_of_very_many_obstacles_the_first_ones_are_named_and_the_others_counted(
 
 
 @pytest.mark.parametrize(("row", "name"), [
-    ("1 Free 0 0 -5 0 0 0 0 0 4 1 1 0", "mass"), ("1 Free 0 0 -5 0 0 0 9 0 4|0|4 1 1 0", "I"),
+    ("1 Free 0 0 -5 0 0 0 -1 0 4 1 1 0", "mass"), ("1 Free 0 0 -5 0 0 0 9 0 4|-1|4 1 1 0", "I"),
     ("1 Free 0 0 -5 0 0 0 9 0|1 4 1 1 0", "CG"), ("1 Free 0 0 -5 0 0 0 9 0 4 -1 1 0", "volume"),
     ("1 Body2 0 0 -5 0 0 0 9 0 4 1 1 0", "attachment"), ("1 Free 0 0 -5 0 0 0 9 0 4 1 1|1|1|1 0", "CdA"),
 ])  # fmt: skip
@@ -191,8 +191,94 @@ def test_a_body_that_is_none_is_refused(tmp_path, row, name):
     assert_refused(f"BODIES, line 13: {name}", lambda: read_moordyn(path))
 
 
+POINTS_OF_10 = """--- a taut rope, its points with an index of MoorDyn-F
+---------------------- LINE TYPES -------------------------------
+Name  Diam  MassDen  EA     BA/-zeta EI Cd  Ca  CdAx CaAx
+(-)   (m)   (kg/m)   (N)    (N-s/-) (-) (-) (-) (-)  (-)
+rope  0.1   8.5      2.0E7  -1.0    0   1.6 1.0 0.2  0.0
+---------------------- POINTS -----------------------------------
+ID Type     X     Y  Z    M    V     CdA   CA  ExternIdx
+(-) (-)    (m)   (m) (m)  (kg) (m^3) (m^2) (-) (-)
+1  Vessel  -20.0 0.0 -8.0   0  0     0.5   0.3   4
+2  Fixed  -150.0 0.0 -120.0 0  0     0     0     0
+---------------------- LINES ------------------------------------
+ID LineType AttachA AttachB UnstrLen NumSegs Outputs
+(-) (-)     (-)     (-)     (m)      (-)     (-)
+1  rope     2       1       168.0    20      -
+"""
+
+
+def test_a_tenth_column_of_points_is_left_out_with_a_line_that_names_it(tmp_path):
+    path, said = tmp_path / "line.txt", []
+    path.write_text(POINTS_OF_10, encoding="utf-8")
+    system = read_moordyn(path, said.append)
+    assert said == ["left out, as MoorDyn does not read it: the tenth column of points, externidx"]
+    assert system.points[0] == Point(1, "coupled", (-20.0, 0.0, -8.0), 0.0, 0.0, 0.5, 0.3)
+    nine = "\n".join(line.rsplit(None, 1)[0] if line.startswith(("1  Vessel", "2  Fixed")) else line
+                     for line in POINTS_OF_10.replace("  ExternIdx", "").splitlines())  # fmt: skip
+    path.write_text(nine, encoding="utf-8")
+    said.clear()
+    assert read_moordyn(path, said.append) == system
+    assert said == []
+    assert system.at_rest().tension[1][0] > 0.0
+
+
+BUOY = (FILES / "buoy.txt").read_text(encoding="utf-8")
+ROW = "1 free 0 0 -20 0 0 0 4000 0.5 9000 12.0 6.0|10.0 0.5"
+
+
+def buoy(tmp_path, row: str, *replacements: tuple[str, str]) -> System:
+    """The system of the buoy's file with another body."""
+    text = BUOY
+    for old, new in ((ROW, row), *replacements):
+        assert old in text
+        text = text.replace(old, new)
+    (tmp_path / "buoy.txt").write_text(text, encoding="utf-8")
+    return read_moordyn(tmp_path / "buoy.txt", lambda _: None)
+
+
+def test_a_free_body_without_inertia_whose_points_are_in_its_middle_is_a_free_point(tmp_path):
+    """Its lines lead to the point, which has the mass, volume and drag of the body and of its points."""
+    at_middle = [("4 Body1 1.5 0.0 -1.0 0 0 0 0", "4 Body1 0 0 0 100 0.5 0.25 0"),
+                 ("5 Body1 -0.75 1.299038105676658 -1.0", "5 Body1 0 0 0"),
+                 ("6 Body1 -0.75 -1.299038105676658 -1.0", "6 Body1 0 0 0")]  # fmt: skip
+    system = buoy(tmp_path, "1 free 0 0 -20 0 0 0 4000 0 0 12.0 6.0 0.5", *at_middle)
+    assert system.bodies == ()
+    assert [point.id for point in system.points] == [1, 2, 3, 4]
+    point = system.points[3]
+    assert point[:2] == (4, "free")
+    assert (point.mass, point.volume, point.drag_area) == pytest.approx((4100.0, 12.5, 6.25))
+    assert point.added_mass * point.volume == pytest.approx(6.0)
+    assert [line.end for line in system.lines] == [4, 4, 4]
+    with_point = BUOY.replace(ROW + "\n", "").replace(
+        "4 Body1 1.5 0.0 -1.0 0 0 0 0", "4 Free 0 0 -20 4100 12.5 6.25 0.48"
+    )
+    with_point = "\n".join(line for line in with_point.splitlines() if not line.startswith(("5 Body", "6 Body")))
+    (tmp_path / "point.txt").write_text(
+        with_point.replace("2 rope 2 5", "2 rope 2 4").replace("3 rope 3 6", "3 rope 3 4"), "utf-8"
+    )
+    assert read_moordyn(tmp_path / "point.txt") == system
+
+
+def test_a_free_body_without_mass_is_where_its_lines_hold_it(tmp_path):
+    """A plate that three ropes hang from: as a body of a gram for its mass and inertia."""
+    massless = buoy(tmp_path, "1 free 0 0 -20 0 0 0 0 0 0 12.0 6.0 0.5")
+    light = buoy(tmp_path, "1 free 0 0 -20 0 0 0 1e-3 0 1e-3 12.0 6.0 0.5")
+    rests = [system.at_rest() for system in (massless, light)]
+    for line in (1, 2, 3):
+        assert rests[0].tension[line] == pytest.approx(rests[1].tension[line], rel=1e-6)
+    mass = np.asarray(massless.bodies[0].mass)
+    assert 0.0 < mass[0, 0] - 0.5 * 1025.0 * 12.0 < 0.1
+    assert (np.linalg.eigvalsh(mass) > 0.0).all()
+    from sim.mooring import critical_step
+
+    assert critical_step(massless, "rk4") > 0.2 * critical_step(of_file("buoy"), "rk4")
+
+
 TABLES = [
     ("c.dat, line 5", "a\nb\nc\n0 0\n0.1 hard\n", "'hard'"),
+    ("c.dat, line 3", "curve\nStrain Tension\n(-) (kN)\n0 0\n0.1 1e2\n", "tension in N"),
+    ("c.dat, line 3", "curve\nStrain Tension\n(%) (N)\n0 0\n10 1e5\n", "strain without a unit"),
     ("c.dat, line 5", "a\nb\nc\n0 0\n0.1 1e5 7\n", "2 columns"),
     ("c.dat", "a\nb\nc\n", "rows"),
     ("line type c: curve", "a\nb\nc\n0 0\n0.1 1e5\n0.2 1e5\n", "growing"),

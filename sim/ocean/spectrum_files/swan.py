@@ -1,0 +1,209 @@
+"""Spectral files of SWAN: one or two dimensions, several places and times (SWAN User Manual, Appendix D).
+
+A place without data, as one that is dry, is passed over.
+"""
+
+import datetime
+import math
+import re
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sim.ocean.measured import spread_by_mean
+from sim.ocean.spectra.record import Spectrum
+from sim.ocean.spectrum_files.contents import DIRECTIONS, filled, made, nearest, unrepeated
+from sim.tables import line_error, number_of
+from sim.tables.columns import WEIGHT
+from sim.tables.headers import convention_of
+from sim.validation import argument_error
+
+PLACES, FREQUENCIES = ("LOCATIONS", "LONLAT"), ("AFREQ", "RFREQ")
+CONVENTIONS = {"NDIR": convention_of(["north", "from"]), "CDIR": convention_of(["axis", "to"])}
+NO_DATA = ("NODATA", "ZERO")
+MAX_COUNT = 1_000_000  # of places, frequencies or directions
+UNITS = {"m2/hz": 1.0, "j/m2/hz": 1.0 / WEIGHT, "m2/hz/degr": 180.0 / math.pi, "j/m2/hz/degr": 180.0 / math.pi / WEIGHT}
+
+
+class Lines:
+    """The lines of a file that are no comments, one after the other."""
+
+    def __init__(self, text: str, path: Path) -> None:
+        """All lines are ahead."""
+        self.path = path
+        self.rows = [(i, words) for i, line in enumerate(text.splitlines(), 1)
+                     if (words := line.split()) and not line.lstrip().startswith("$")]  # fmt: skip
+        self.at = 0
+
+    @property
+    def key(self) -> str:
+        """The first word of the line that comes next, in capitals; "" at the end."""
+        return self.rows[self.at][1][0].upper() if self.at < len(self.rows) else ""
+
+    def next(self) -> list[str]:
+        """The words of the next line. Raises ValueError at the end of the file."""
+        if self.at >= len(self.rows):
+            raise argument_error("path", str(self.path), "a whole file of SWAN; it ends early")
+        self.at += 1
+        return self.rows[self.at - 1][1]
+
+    def error(self, allowed: str) -> ValueError:
+        """The error of the line that was read last."""
+        return line_error(self.path, self.rows[max(self.at - 1, 0)][0], allowed)
+
+    def numbers(self, count: int) -> list[float]:
+        """The first numbers of the next line. Raises ValueError that names it."""
+        found = [number_of(word) for word in self.next()[:count]]
+        if len(found) < count or any(one is None or math.isinf(one) for one in found):
+            raise self.error(f"{count} numbers")
+        return [one for one in found if one is not None]
+
+    def count(self) -> int:
+        """The whole number of the next line."""
+        found = self.numbers(1)[0]
+        if found != int(found) or not 1 <= found <= MAX_COUNT:
+            raise self.error(f"a whole number from 1 to {MAX_COUNT}")
+        return int(found)
+
+
+class SwanHead(NamedTuple):
+    """The part of a file before its spectra."""
+
+    has_times: bool
+    places: list[list[float]]  # x, y [m], or longitude and latitude [degrees]
+    frequency: np.ndarray  # (n,) [Hz]
+    directions: np.ndarray | None  # (m,) [rad] where waves go to, of a file of two dimensions
+    quantities: list[tuple[str, str, float]]  # name, unit and the value that stands for none
+
+
+def from_swan(text: str, path: Path, when: datetime.datetime | None, place: int | None) -> Spectrum[Any]:
+    """The spectrum at a place, counted from 1, or at the first one with data, and at the time that is nearest.
+
+    Raises ValueError that names the line.
+    """
+    lines = Lines(text, path)
+    head = read_head(lines)
+    if place is not None and not 1 <= place <= len(head.places):
+        raise argument_error("place", place, f"1 to {len(head.places)}, the places of {path.name}")
+    starts: list[int] = []  # of the spectra of each time
+    times: list[datetime.datetime] = []
+    while lines.key:
+        if head.has_times:
+            times.append(time_of(lines))
+        starts.append(lines.at)
+        blocks = [skip_block(lines, head) for _ in head.places]
+        if not any(blocks):
+            starts.pop()
+            times = times[: len(starts)]
+    if not starts:
+        raise argument_error("path", str(path), "a file of SWAN with data at one of its places")
+    i = nearest(times, when, path) if head.has_times else 0
+    lines.at = starts[i]
+    for number in range(1, len(head.places) + 1):
+        block = read_block(lines, head)
+        if block is not None and place in (None, number):
+            return spectrum_of(block, head, number, path, times[i] if head.has_times else None)
+    raise argument_error("place", place, f"a place of {path.name} with data")
+
+
+def read_head(lines: Lines) -> SwanHead:
+    """Everything before the first spectrum."""
+    lines.next()
+    has_times = lines.key == "TIME"
+    if has_times:
+        lines.next()
+        lines.next()
+    if lines.key not in PLACES:
+        lines.next()
+        raise lines.error("LOCATIONS or LONLAT")
+    lines.next()
+    places = [lines.numbers(2) for _ in range(lines.count())]
+    if lines.key not in FREQUENCIES:
+        lines.next()
+        raise lines.error("AFREQ or RFREQ")
+    lines.next()
+    frequency = np.array([lines.numbers(1)[0] for _ in range(lines.count())])
+    directions = None
+    if lines.key in CONVENTIONS:
+        convention = CONVENTIONS[lines.next()[0].upper()]
+        directions = convention.towards(np.radians([lines.numbers(1)[0] for _ in range(lines.count())]))
+    if lines.key != "QUANT":
+        lines.next()
+        raise lines.error("QUANT")
+    lines.next()
+    quantities = []
+    for _ in range(lines.count()):
+        quantities.append((lines.next()[0].upper(), lines.next()[0].lower(), lines.numbers(1)[0]))
+    if quantities[0][0] not in ("VADENS", "ENDENS") or quantities[0][1] not in UNITS:
+        raise lines.error("the density VaDens or EnDens first, in m2/Hz or J/m2/Hz, with /degr where directions are")
+    return SwanHead(has_times, places, frequency, directions, quantities)
+
+
+def time_of(lines: Lines) -> datetime.datetime:
+    """The time in the next line, as 20210305.044000."""
+    word = lines.next()[0]
+    try:
+        if not re.fullmatch(r"\d{8}\.\d{6}", word):
+            raise ValueError
+        return datetime.datetime.strptime(word, "%Y%m%d.%H%M%S")
+    except ValueError:
+        raise lines.error("a time such as 20210305.044000") from None
+
+
+def skip_block(lines: Lines, head: SwanHead) -> bool:
+    """Go past the spectrum of one place; True if it has data."""
+    if lines.next()[0].upper() in NO_DATA:
+        return False
+    lines.at += len(head.frequency) + (head.directions is not None)
+    if lines.at > len(lines.rows):
+        lines.next()  # raises
+    return True
+
+
+def read_block(lines: Lines, head: SwanHead) -> np.ndarray | None:
+    """The values of one place (n, m), nan for those that stand for none, or None without data."""
+    first = lines.next()[0].upper()
+    if first in NO_DATA:
+        return None
+    if head.directions is None:
+        if first != "LOCATION":
+            raise lines.error("LOCATION and its number, or NODATA")
+        rows = np.array([lines.numbers(len(head.quantities)) for _ in head.frequency])
+        for i, (_, _, none) in enumerate(head.quantities):
+            rows[np.isclose(rows[:, i], none), i] = math.nan
+        return rows
+    if first != "FACTOR":
+        raise lines.error("FACTOR, ZERO or NODATA")
+    factor = lines.numbers(1)[0]
+    rows = np.array([lines.numbers(len(head.directions)) for _ in head.frequency])
+    rows[np.isclose(rows, head.quantities[0][2])] = math.nan
+    return factor * rows
+
+
+def spectrum_of(
+    block: np.ndarray, head: SwanHead, number: int, path: Path, time: datetime.datetime | None
+) -> Spectrum[Any]:
+    """The spectrum of the values of a place."""
+    scale = UNITS[head.quantities[0][1]]
+    x, y = head.places[number - 1]
+    notes = [f"place {number} of {len(head.places)}, at {x:g}, {y:g}"] if len(head.places) > 1 else []
+    there = np.isfinite(block).all(axis=1) if head.directions is not None else np.isfinite(block[:, 0])
+    if not there.all():
+        notes.append(f"{(~there).sum()} frequencies without a value left out")
+    f, block = head.frequency[there], block[there]
+    if head.directions is not None:
+        theta, S = unrepeated(head.directions, block * scale)
+        return made(path, time, f, S, theta, notes=notes)
+    names = [name for name, _, _ in head.quantities]
+    S = block[:, 0] * scale
+    if not ({"NDIR", "CDIR"} & set(names) and "DSPRDEGR" in names):
+        return made(path, time, f, S, notes=notes)
+    direction = next(name for name in names if name in CONVENTIONS)
+    mean = CONVENTIONS[direction].towards(np.radians(filled(f, f, block[:, names.index(direction)])))
+    spread = np.radians(filled(f, f, block[:, names.index("DSPRDEGR")]))
+    if not (np.isfinite(mean).all() and np.isfinite(spread).all()):
+        return made(path, time, f, S, notes=[*notes, "no directions at this place"])
+    # Kuik, van Vledder, Holthuijsen 1988, J. Phys. Oceanogr. 18:1020
+    first = np.clip(1.0 - 0.5 * spread**2, 0.0, 1.0)
+    return made(path, time, f, S[:, None] * spread_by_mean(DIRECTIONS, mean, first), DIRECTIONS, notes=notes)

@@ -1,0 +1,23 @@
+"""Tables of text files: rows of words, and columns with names, units, conventions and missing values."""
+
+from sim.tables.columns import Column, ColumnTable, Kind, Meaning, factor_of, read_columns, read_table
+from sim.tables.numbers import is_value, number_of, values_of
+from sim.tables.rows import Row, line_error, split_rows
+from sim.tables.units import measure_of
+
+__all__ = [
+    "Column",
+    "ColumnTable",
+    "Kind",
+    "Meaning",
+    "Row",
+    "factor_of",
+    "is_value",
+    "line_error",
+    "measure_of",
+    "number_of",
+    "read_columns",
+    "read_table",
+    "split_rows",
+    "values_of",
+]

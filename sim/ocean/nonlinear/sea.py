@@ -28,8 +28,8 @@ from sim.ocean.any_sea import AnySea, RadialSurface, SurfaceAt
 from sim.ocean.nonlinear.energy import EnergyBalance, SeaEnergy
 from sim.ocean.nonlinear.equations import WaveEquations
 from sim.ocean.nonlinear.fade_in import FadeIn
-from sim.ocean.nonlinear.flow import set_heights
 from sim.ocean.nonlinear.instant import NonlinearInstant
+from sim.ocean.nonlinear.lattice_sum import parts_of, set_elevations
 from sim.ocean.nonlinear.march import LinearMarch, March
 from sim.ocean.nonlinear.padded_transforms import PaddedTransforms
 from sim.ocean.nonlinear.start import checked_size, free_waves, mean_wavenumber, resized, started
@@ -230,7 +230,7 @@ class NonlinearSea(AnySea):
         self.advance(t)
         height, modes = np.empty(len(where)), self._equations.modes
         if exact:
-            set_heights(where, self._now.u[0], modes.kx, modes.ky, height)
+            set_elevations(where, np.array(self.length), parts_of(self._now.u[0], modes.weight), height)
         else:
             sample(self._cells(where), self.height, 1.0, height)
         return height, np.zeros(len(where))

@@ -41,6 +41,6 @@ def separable_flow(points: np.ndarray, spectrum: np.ndarray, length: float) -> n
     kx = np.arange(columns) * (2.0 * math.pi / length)
     ky = np.fft.fftfreq(rows, 1.0 / rows) * (2.0 * math.pi / length)
     out = np.empty((len(points), 4))
-    real, imaginary = (np.ascontiguousarray(part) for part in (spectrum.real, spectrum.imag))
+    real, imaginary = np.ascontiguousarray(np.real(spectrum)), np.ascontiguousarray(np.imag(spectrum))
     set_separable(points, real, imaginary, kx, ky, np.hypot(ky[:, None], kx), out)
     return out

@@ -14,7 +14,7 @@ from sim.waves import DEEPEST, exponential
 def parts_of(spectra: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Real and imaginary parts (..., 2, rows, columns) of spectra (..., rows, columns) times weight (columns,)."""
     weighted = spectra * weight
-    return np.ascontiguousarray(np.stack([weighted.real, weighted.imag], axis=-3))
+    return np.ascontiguousarray(np.stack([np.real(weighted), np.imag(weighted)], axis=-3))
 
 
 @kernel

@@ -14,6 +14,7 @@ import numpy as np
 
 MAX_DISTANCE = 1e12  # [m] of a position: farther away, the cells of a grid can no longer be counted
 MAX_WAVENUMBER = 1e20  # [rad/m]: its powers are still finite
+MAX_FREQUENCY = 1e10  # [rad/s] of waves: their wavenumber is then below MAX_WAVENUMBER, too
 MAX_SHOWN = 200  # characters of a value in an error
 MAX_SHOWN_PATH = 4096  # of one with a path in it, which is shown whole: most systems allow no longer one
 
@@ -205,9 +206,19 @@ def check_positions(name: str, value: Any, length: int = 2) -> np.ndarray:
 
 def check_wavenumbers(name: str, value: Any) -> np.ndarray:
     """`value` as a float64 array. Raises ValueError unless every entry is from 0 to MAX_WAVENUMBER."""
-    allowed = f"numbers from 0 to {MAX_WAVENUMBER:g} rad/m"
+    return check_up_to(name, value, MAX_WAVENUMBER, "rad/m")
+
+
+def check_frequencies(name: str, value: Any) -> np.ndarray:
+    """`value` as a float64 array. Raises ValueError unless every entry is from 0 to MAX_FREQUENCY."""
+    return check_up_to(name, value, MAX_FREQUENCY, "rad/s")
+
+
+def check_up_to(name: str, value: Any, high: float, unit: str) -> np.ndarray:
+    """`value` as a float64 array. Raises ValueError unless every entry is from 0 to `high`."""
+    allowed = f"numbers from 0 to {high:g} {unit}"
     array = as_array(name, value, allowed)
-    bad = ~((array >= 0.0) & (array <= MAX_WAVENUMBER))
+    bad = ~((array >= 0.0) & (array <= high))
     if bad.any():
         raise argument_error(name, float(array[bad].flat[0]), allowed)
     return array

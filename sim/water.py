@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from sim import dispersion
 from sim.validation import check_not_negative, check_positive
 
 SEA_DENSITY = 1025.0  # [kg/m3] of the water where none is named
@@ -29,7 +30,15 @@ class Water:
 
     def omega(self, k: np.ndarray) -> np.ndarray:
         """Angular frequency [rad/s] of gravity waves of wavenumber k [rad/m]: sqrt(g k tanh kh) (Lamb, Art. 228)."""
-        return np.sqrt(self.gravity * k * np.tanh(np.minimum(k * self.depth, 300.0)))
+        return dispersion.omega(np.asarray(k), self.gravity, self.depth)
+
+    def wavenumber(self, omega: np.ndarray) -> np.ndarray:
+        """Wavenumber [rad/m] of gravity waves of angular frequency omega [rad/s]."""
+        return dispersion.wavenumber(omega, self.gravity, self.depth)
+
+    def group_speed(self, k: np.ndarray) -> np.ndarray:
+        """Group speed [m/s] of gravity waves of wavenumber k [rad/m]."""
+        return dispersion.group_speed(np.asarray(k), self.gravity, self.depth)
 
     def is_same(self, other: "Water") -> bool:
         """True for the same water but for rounding."""

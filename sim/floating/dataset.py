@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim.angles import angle_from, within_turn
+from sim.dispersion import wavenumber
 from sim.floating.closed_mesh import ClosedMesh, check_hull
 from sim.floating.hull import Hull
 from sim.floating.hydrodynamics import (
@@ -27,7 +28,6 @@ from sim.floating.hydrodynamics import (
     lagrange,
     table_length,
     velocity_at,
-    wavenumber_of,
 )
 from sim.floating.linear_table import LinearTable
 from sim.validation import Refusals, argument_error, check_angle, check_kind, check_positive, check_vector
@@ -154,7 +154,7 @@ def converted(
     unit = length ** np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
     scale, root = np.outer(unit, unit) * length, math.sqrt(length)
     added = matrix("added_mass") / scale
-    k = wavenumber_of(omega[waves] / math.sqrt(g), water)
+    k = wavenumber(omega[waves] / math.sqrt(g), 1.0, water)
     X = sum(by_omega[name][waves] for name in FORCES)
     headings = within_turn(numbers(dataset, "wave_direction", ("wave_direction",), path))
     path_length = mesh.centre[0] * np.cos(headings) + mesh.centre[1] * np.sin(headings)

@@ -25,14 +25,10 @@ from sim.floating.motion import STANDARD, MotionCoefficients, step
 from sim.floating.stability import Loaded, is_stable, near_upright
 from sim.frames import Progress, frame_times, run_frames, steps_for
 from sim.interruption import raise_if_stopped
-from sim.ocean import Sea
-from sim.ocean.nonlinear import NonlinearSea
-from sim.ocean.radial import RadialSea, SurfaceAt
+from sim.ocean.any_sea import AnySea, SurfaceAt
 from sim.validation import argument_error, check_kind, check_number, is_whole_number
 
 LONGEST_STEP = 1 / 60  # [s]
-
-AnySea = Sea | NonlinearSea | RadialSea
 
 
 class FloatRun(NamedTuple):
@@ -66,14 +62,13 @@ class FloatState:
         """At the sea's time 0, where the bodies are. Raises ValueError as `float_in`."""
         check_kind("sea", sea, AnySea, "a Sea, a NonlinearSea or a RadialSea")
         check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
-        self.sea, self.layers = sea, layers_of(sea)
-        self.gravity = sea.column.gravity if isinstance(sea, RadialSea) else sea.conditions.gravity
+        self.sea, self.layers, self.gravity = sea, sea.layers, sea.water.gravity
         self.coefficients = coefficients._replace(gravity=self.gravity)
         self.fleet = make_fleet(bodies, self.layers)
         for i, body in enumerate(bodies):
-            check_water_depth(f"bodies[{i}]", body.hull, sea.conditions.depth if isinstance(sea, Sea) else math.inf)
+            check_water_depth(f"bodies[{i}]", body.hull, sea.water.depth)
         self.widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
-        self.excitation = WaveExcitation(bodies, self.widths, self.layers) if isinstance(sea, RadialSea) else None
+        self.excitation = WaveExcitation(bodies, self.widths, self.layers) if sea.is_sum_of_waves else None
         self.t = 0.0
         self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water in the last steps, of h [s]
         self.h = 0.0
@@ -100,7 +95,7 @@ class FloatState:
         sea, fleet = self.sea, self.fleet
         at = sea.at(fleet.position[:, :2], middle, self.widths)
         forces, acceleration = None, at.acceleration
-        if isinstance(sea, RadialSea) and self.excitation is not None:
+        if self.excitation is not None:
             forces = self.excitation.forces(fleet, at.label, sea.waves_at(middle), middle, h)
         else:  # along the way of the bodies, so that it has no mean (excitation.py)
             self.rises = (at.velocity[:, 2].copy(), *self.rises[: len(LAST_RATES)])
@@ -184,11 +179,6 @@ def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:
         if rest is not None and not is_stable(load[0], rest):
             found[load] = f"bodies[{i}]: GM = {rest.least_height:.3g} m: it is not stable upright"
     return [words for words in found.values() if words]
-
-
-def layers_of(sea: AnySea) -> Layers:
-    """(density [kg/m3], thickness [m]) of the fluids of a sea, from the top."""
-    return sea.column.layers if isinstance(sea, RadialSea) else ((sea.conditions.density, math.inf),)
 
 
 def interface_of(at: SurfaceAt, thickness: float) -> dict[str, np.ndarray]:

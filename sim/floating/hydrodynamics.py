@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.dispersion import group_speed, omega, wavenumber
 from sim.floating.closed_mesh import ClosedMesh, area_vectors
 from sim.floating.equilibrium import SEA_WATER, Layers, equilibrium_draft, upright
 from sim.floating.hull import Hull
@@ -50,8 +51,6 @@ LONG_POWERS = np.array([1.0, 1.0, 1.0, 1.0, 1.0, 2.0])  # of k, by which what is
 # small, and wrong where a hull has the coefficients of a box.
 FADING_POWERS = np.array([3.0, 3.0, 3.0, 3.0, 3.0, 2.0])
 NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
-NEWTON_STEPS = 8  # of a wavenumber from 20 % below it: to the last bit
-SHALLOW_UNTIL = 60.0  # 2 k depth, from which on x/sinh(x) is below 1e-24
 LEVEL_MOTIONS = [0, 1, 5]  # surge, sway, yaw: water that is higher, and level, does not push along them
 # Signs of the motions under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
@@ -78,7 +77,7 @@ class LongWaveForce(NamedTuple):
     def at(self, kx: np.ndarray, ky: np.ndarray, depth: float) -> np.ndarray:
         """X (..., 6) of wavenumbers kx, ky (...) [rad/m] in water of a depth [m]."""
         kx, ky = kx[..., None], ky[..., None]
-        upward = frequency_of(np.hypot(kx, ky), depth) ** 2
+        upward = omega(np.hypot(kx, ky), 1.0, depth) ** 2
         return self.rise + upward * self.lift + 1j * (kx * self.run[0] + ky * self.run[1])
 
 
@@ -110,7 +109,7 @@ class LinearHull(NamedTuple):
 
     def wavenumber(self, frequency: np.ndarray) -> np.ndarray:
         """Wavenumber [rad/m] of waves of frequencies [1/sqrt(m)] in the water that the coefficients are of."""
-        return wavenumber_of(frequency, self.depth)
+        return wavenumber(frequency, 1.0, self.depth)
 
     def at(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
         """Added mass and damping (6, 6) at a frequency [1/sqrt(m)].
@@ -146,7 +145,7 @@ class LinearHull(NamedTuple):
         beyond = self.excitation - self.long.at(nodes[:, None] * cosine, nodes[:, None] * sine, self.depth)
         scaled = (beyond / nodes[:, None, None] ** LONG_POWERS).reshape(len(nodes), -1)
         powers, fading = (np.tile(one, len(DIRECTIONS)) for one in (LONG_POWERS, FADING_POWERS))
-        index, weights = lagrange(self.frequency, np.minimum(frequency_of(k, self.depth), self.frequency[-1]))
+        index, weights = lagrange(self.frequency, np.minimum(omega(k, 1.0, self.depth), self.frequency[-1]))
         table, found = self.excitation.reshape(len(nodes), -1), np.empty((len(k), scaled.shape[1]), complex)
         for piece in pieces(len(k), PIECE):
             for i, one in enumerate(k[piece].tolist(), start=piece.start):
@@ -160,30 +159,9 @@ class LinearHull(NamedTuple):
         return found.reshape(len(k), len(DIRECTIONS), 6), is_long
 
 
-def frequency_of(k: np.ndarray, depth: float) -> np.ndarray:
-    """omega/sqrt(g) [1/sqrt(m)] of waves of wavenumbers k [rad/m] in water of a depth [m], or inf."""
-    return np.sqrt(k if math.isinf(depth) else k * np.tanh(k * depth))
-
-
-def wavenumber_of(frequency: np.ndarray, depth: float) -> np.ndarray:
-    """Wavenumber [rad/m] of waves of omega/sqrt(g) [1/sqrt(m)] in water of a depth [m], or inf, by Newton's method."""
-    deep = np.square(frequency)
-    if math.isinf(depth):
-        return deep
-    # x tanh x = y: as tanh x is below 1 and below x, the root is above y and above sqrt(y), by at most 20 %
-    y = deep * depth
-    x = np.maximum(y, np.sqrt(y))
-    for _ in range(NEWTON_STEPS):
-        t = np.tanh(x)
-        x = x - (x * t - y) / (t + x * (1.0 - t * t))
-    return x / depth
-
-
 def radiated_share(k: float, depth: float) -> float:
     """k/(4 v) [1/m^1.5], v over sqrt(g) the group velocity, of waves of wavenumber k [rad/m] at a depth [m]."""
-    frequency, twice = float(frequency_of(np.array(k), depth)), 2.0 * k * depth
-    shallow = twice / math.sinh(twice) if twice < SHALLOW_UNTIL else 0.0
-    return k / (4.0 * 0.5 * frequency / k * (1.0 + shallow))
+    return k / (4.0 * float(group_speed(np.array(k), 1.0, depth)))
 
 
 def haskind(X: np.ndarray, k: float, depth: float) -> np.ndarray:
@@ -297,7 +275,7 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
     directions = DIRECTIONS if math.isnan(table.heading) else np.full(len(DIRECTIONS), table.heading)
     path = hull.axis[0] * np.cos(directions) + hull.axis[1] * np.sin(directions)
     water = table.depth * length
-    excitation = excitation * np.exp(1j * wavenumber_of(frequency, water)[:, None] * path)[:, :, None]
+    excitation = excitation * np.exp(1j * wavenumber(frequency, 1.0, water)[:, None] * path)[:, :, None]
     added, plane, cut = S.T @ (a * scale) @ S, plane_force(hull, draft), upright(hull, draft)
     return LinearHull(
         frequency=frequency,

@@ -11,9 +11,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sim import dispersion as linear
 from sim.interruption import raise_if_stopped
 from sim.ocean.viscous_layers import Layers, surface_roots
-from sim.validation import argument_error, check_kind, check_not_negative, check_positive, check_wavenumbers
+from sim.validation import (
+    argument_error,
+    check_frequencies,
+    check_kind,
+    check_not_negative,
+    check_positive,
+    check_wavenumbers,
+)
 from sim.water import SEA_DENSITY
 
 INF = math.inf
@@ -33,8 +41,7 @@ def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.
     0.9905
     """
     k, s = _checked(k, gravity, depth, tension, density)
-    # omega^2 = (g k + (sigma/rho) k^3) tanh(k h)
-    return np.sqrt((gravity * k + s * k**3) * _tanh(k, depth))[()]
+    return linear.omega(k, gravity, depth, s)[()]
 
 
 def phase_speed(
@@ -46,9 +53,7 @@ def phase_speed(
     9.905
     """
     k, s = _checked(k, gravity, depth, tension, density)
-    endless, k = k == 0.0, np.maximum(k, _smallest(depth))
-    speed = np.sqrt((gravity / k + s * k) * _tanh(k, depth))
-    return np.where(endless & math.isinf(depth), INF, speed)[()]
+    return linear.phase_speed(k, gravity, depth, s)[()]
 
 
 def group_speed(
@@ -60,13 +65,22 @@ def group_speed(
     4.952
     """
     k, s = _checked(k, gravity, depth, tension, density)
-    endless, k = k == 0.0, np.maximum(k, _smallest(depth))
-    th = _tanh(k, depth)
-    w = np.sqrt((gravity * k + s * k**3) * th)
-    # cg = [(g + 3 s k^2) tanh kh + (g + s k^2) kh sech^2 kh] / (2 omega), sech^2 = (1 - tanh)(1 + tanh)
-    shallow = 0.0 if math.isinf(depth) else k * depth * (1.0 - th) * (1.0 + th)
-    speed = ((gravity + 3.0 * s * k**2) * th + (gravity + s * k**2) * shallow) / (2.0 * w)
-    return np.where(endless & math.isinf(depth), INF, speed)[()]
+    return linear.group_speed(k, gravity, depth, s)[()]
+
+
+def wavenumber(
+    omega: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
+) -> Any:
+    """Wavenumber [rad/m] of waves of angular frequency omega [rad/s], any shape: the inverse of `omega`.
+
+    Raises ValueError for a frequency that is negative or not finite, and as `omega`.
+
+    >>> round(float(wavenumber(1.0, depth=10.0)), 4)  # [rad/m]
+    0.1216
+    """
+    w = check_frequencies("omega", omega)
+    _, s = _checked(0.0, gravity, depth, tension, density)
+    return linear.wavenumber(w, gravity, depth, s)[()]
 
 
 def two_layer(
@@ -222,16 +236,6 @@ def _checked(k: Any, gravity: float, depth: float, tension: float, density: floa
     )
 
 
-def _tanh(k: np.ndarray, depth: float) -> np.ndarray:
-    """tanh(k depth), exactly 1 on infinite depth (where 0 * inf would not be a number)."""
-    return np.ones_like(k) if math.isinf(depth) else np.tanh(k * depth)
-
-
-def _smallest(depth: float) -> float:
-    """A wavenumber that stands for 0 in speeds: the limit is reached to rounding, and nothing divides by 0."""
-    return 1e-100 if math.isinf(depth) else 1e-10 / depth
-
-
 def _two_layer_roots(
     k: Any, rho1: float, d: float, rho2: float, g: float, h2: float, s1: float, s12: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -247,7 +251,7 @@ def _two_layer_roots(
     if rho2 < rho1:
         raise argument_error("lower_density", rho2, f"at least the upper density, {rho1:g} kg/m3")
     G1, G2 = g + s1 * k**2 / rho1, (rho2 - rho1) * g + s12 * k**2
-    t1, t2 = _tanh(k, d), _tanh(k, h2)
+    t1, t2 = linear.tanh_depth(k, d), linear.tanh_depth(k, h2)
     # X^2 (rho2 + rho1 t1 t2) - X k [rho2 G1 t1 + (rho1 G1 + G2) t2] + k^2 G1 G2 t1 t2 = 0,
     # divided by cosh kd coth kh2, so that nothing overflows. The small root by Vieta.
     A = rho2 + rho1 * t1 * t2

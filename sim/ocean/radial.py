@@ -17,13 +17,13 @@ import copy
 import dataclasses
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped, stop_request
 from sim.jit import kernel
+from sim.ocean.any_sea import AnySea, RadialSurface, SurfaceAt
 from sim.ocean.band_plan import BandPlan
 from sim.ocean.departing_waves import DepartingWaves
 from sim.ocean.fluid_column import FluidColumn
@@ -40,30 +40,10 @@ CLEAN = FluidColumn()
 TOLERANCE = 1e-7  # [m] at which a label counts as found
 
 
-class RadialSurface(NamedTuple):
-    """The sea on a grid of n points at one moment."""
-
-    vertices: np.ndarray  # (n, 3) float32 [m] from the origin of the sea
-    slope: np.ndarray  # (n, 2) float32: dz/dx, dz/dy of the displaced surface
-    jacobian: np.ndarray  # (n,) float32: below 0 the surface folds
-
-
-class SurfaceAt(NamedTuple):
-    """The sea above n points at one moment, and the interface below it (where there is one, of mean height 0)."""
-
-    height: np.ndarray  # (n,) [m]
-    slope: np.ndarray  # (n, 2)
-    velocity: np.ndarray  # (n, 3) [m/s] of the fluid at the surface
-    acceleration: np.ndarray  # (n,) [m/s2], upwards
-    interface: np.ndarray  # (n,) [m] about its mean
-    interface_slope: np.ndarray  # (n, 2)
-    interface_rise: np.ndarray  # (n,) [m/s]
-    label: np.ndarray  # (n, 2) [m] the points of the resting surface that are there now
-    residual: np.ndarray  # (n,) [m] horizontal miss, at rounding unless the surface folds
-
-
-class RadialSea:
+class RadialSea(AnySea):
     """Waves on a medium. Not for two threads at once."""
+
+    is_sum_of_waves = True
 
     def __init__(
         self, waves: Waves, column: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
@@ -75,6 +55,7 @@ class RadialSea:
         `past` [s] is the time spent on each medium. Waves never regain energy that they lost there.
         """
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs
+        self._time = 0.0
         self.choppiness = check_not_negative("choppiness", choppiness, "")
         self._departing: DepartingWaves | None = None
         self.slick: SlickCover | None = None  # what calms the waves under it
@@ -99,7 +80,7 @@ class RadialSea:
         """
         t, fade = check_finite("t", t, "s"), check_not_negative("fade", fade, "s")
         check_carried(waves or self.waves, column or self.column)
-        past = self.past
+        self._time, past = max(self._time, t), self.past
         if exposure is not None:
             exposure, past = check_not_negative("exposure", exposure, "s"), {}
         own, loss = self._own, self._lost
@@ -146,6 +127,21 @@ class RadialSea:
             self._own = dataclasses.replace(self._own, amplitude=amplitude)
 
     @property
+    def time(self) -> float:
+        """Time [s] that the waves were last asked for, or of the last change if that is later."""
+        return self._time
+
+    @property
+    def water(self) -> Water:
+        """The fluid on top, which is deep but for a layer of oil, under the column's gravity."""
+        return self._own.water
+
+    @property
+    def layers(self) -> tuple[tuple[float, float], ...]:
+        """(density [kg/m3], thickness [m]) of the fluids of the column from the top."""
+        return self.column.layers
+
+    @property
     def amplitude(self) -> np.ndarray:
         """Amplitudes (n,) [m] of the waves as they are, decayed."""
         return self._own.amplitude
@@ -171,9 +167,9 @@ class RadialSea:
             self._departing = None
             self._forget_wavenumbers()
 
-    def waves_at(self, t: float) -> Waves:
-        """All waves as high as at time t [s], without the slick; those that fade out first."""
-        t = check_finite("t", t, "s")
+    def waves_at(self, t: float | None = None) -> Waves:
+        """All waves as high as at time t [s], by default the sea's own, without the slick; first those that fade."""
+        self._time = t = self._time if t is None else check_finite("t", t, "s")
         self._drop_departed(t)
         return self._own if self._departing is None else self._departing.joined_by(self._own, t)
 
@@ -191,7 +187,7 @@ class RadialSea:
 
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
-        waves, n = self.waves_at(t), len(grid)
+        waves, n = self.waves_at(check_finite("t", t, "s")), len(grid)
         plan = self._plan
         if plan is None or plan.grid is not grid:
             plan = self._plan = BandPlan(grid, waves.k)
@@ -218,7 +214,7 @@ class RadialSea:
         widths = as_array("size", size, f"one number [m], or {n} of them")
         if widths.shape not in ((), (n,)) or not (widths >= 0.0).all():
             raise argument_error("size", size, f"one number [m], or {n} of them")
-        waves = self.waves_at(t)
+        waves = self.waves_at(check_finite("t", t, "s"))
         if self._footprints is None:
             self._footprints = Footprints(waves.k)
         weight = self._footprints.factors(np.broadcast_to(widths, (n,)))

@@ -20,6 +20,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.dispersion import tanh_depth
 from sim.jit import kernel
 from sim.ocean.evolve import add_heights, shift_time
 from sim.ocean.spectra import Conditions
@@ -59,7 +60,7 @@ class Ripples:
         self._rate, self._fall = rate, (-decay).astype(self.real)
         # The response to an impulse, k tanh(kh)/(rho omega).
         omega = 2.0 * np.pi * rate
-        tanh = np.tanh(k * conditions.depth) if math.isfinite(conditions.depth) else 1.0
+        tanh = tanh_depth(k, conditions.depth)
         push = np.divide(k * tanh, conditions.density * omega, out=np.zeros_like(omega), where=omega > 0.0)
         self._push = push.astype(self.real)
 

@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped
 from sim.ocean.amplitudes import KINDS, resolved, unit_amplitudes, with_line
+from sim.ocean.any_sea import AnySea
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.medium import Medium, medium_of
 from sim.ocean.query import query
@@ -58,7 +59,7 @@ _CONDITIONS = frozenset(f.name for f in dataclasses.fields(Conditions)) | PARAME
 _MEDIUM = frozenset(f.name for f in dataclasses.fields(Medium))
 
 
-class Sea(TileSurface):
+class Sea(TileSurface, AnySea):
     """A tile of sea. Index [i, j] of a field is x = i length/size, y = j length/size. Not for two threads at once."""
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The square sea as the radial one is asked: on a radial grid and at points.
+"""The interface of all seas (`any_sea.py`) for tiles: on a radial grid and at points.
 
 The tile repeats every `length`, which is visible from high up; its shortest wave is two cells everywhere, however near
 the viewer. Towards the horizon, where rings are wider apart than waves are long, the surface is lowered to the fraction
@@ -12,21 +12,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
+from sim.ocean.any_sea import RadialSurface, SurfaceAt
 from sim.ocean.query import bicubic, query, sample
-from sim.ocean.radial import RadialSurface, SurfaceAt
 from sim.ocean.radial_grid import FADE, RadialGrid
 from sim.validation import check_positions
+from sim.water import Water
 from sim.waves import Kinematics
 
 if TYPE_CHECKING:
+    from sim.ocean.nonlinear.surface import NonlinearSurface
     from sim.ocean.sea import Sea
+    from sim.ocean.surface import Surface
 
 INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
 REACH = 0.05  # [m] of the differences that give the slope at a point
 
 
 class TileSurface:
-    """The part of `Sea` that it shares with `RadialSea`."""
+    """The interface of all seas on a linear tile."""
+
+    is_sum_of_waves = False
 
     # The last grid, the version of the sea, and the share of each point.
     _grid_shares: tuple[RadialGrid | None, int, np.ndarray] = None, 0, np.zeros(0, np.float32)
@@ -34,18 +39,21 @@ class TileSurface:
     def on(self: Any, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
         if self._grid_shares[:2] != (grid, self.version):
-            share = np.repeat(shares(self, grid), np.diff(grid.start.astype(np.int64))).astype(np.float32)
+            k = np.hypot(self.k[:, None], self.k[None, :])
+            share = shares(k.ravel(), self.energy_at(self.time).ravel(), grid)
             self._grid_shares = grid, self.version, share
-        surface = self.surface(t)
-        D, slope = surface.displacement, surface.slope
-        n = len(grid)
-        vertices, slopes = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
-        jacobian = np.empty(n, np.float32)
         cell = self.length / self.size
-        sample_mesh(grid.x, grid.y, self._grid_shares[2], centre[0], centre[1], cell, surface.mean_height,
-                    surface.height, D[..., 0], D[..., 1], slope[..., 0], slope[..., 1], vertices, slopes,
-                    jacobian)  # fmt: skip
-        return RadialSurface(vertices, slopes, jacobian)
+        return sampled(self.surface(t), (cell, cell), self._grid_shares[2], grid, centre)
+
+    @property
+    def water(self: Any) -> Water:
+        """The water that carries the waves, without its tension."""
+        return self.conditions.water
+
+    @property
+    def layers(self: Any) -> tuple[tuple[float, float], ...]:
+        """((density [kg/m3], inf),): one fluid."""
+        return ((self.conditions.density, math.inf),)
 
     @property
     def mean_square_slope(self: Any) -> float:
@@ -78,15 +86,33 @@ class TileSurface:
         return self.waves_at(t).kinematics(points, t, stretching)
 
 
-def shares(sea: "Sea", grid: RadialGrid) -> np.ndarray:
-    """Amplitude (bands,) that the rings can show: root of the energy in waves of enough cells."""
-    energy = sea.energy_at(sea.time).ravel()
-    k = np.hypot(sea.k[:, None], sea.k[None, :]).ravel()
+def shares(k: np.ndarray, energy: np.ndarray, grid: RadialGrid) -> np.ndarray:
+    """Share (points,) float32 of the amplitude that the rings of a grid can show: root of the energy in long waves.
+
+    k [rad/m], energy: of n waves, (n,). Long enough are those of four cells.
+    """
     order = np.argsort(k)
     below = np.concatenate([[0.0], np.cumsum(energy[order])])
     limit = 2.0 * math.pi / (0.5 * sum(FADE) * grid.spacing)
     found = below[np.searchsorted(k[order], limit)]
-    return np.sqrt(found / max(float(below[-1]), 1e-30))
+    bands = np.sqrt(found / max(float(below[-1]), 1e-30))
+    return np.repeat(bands, np.diff(grid.start.astype(np.int64))).astype(np.float32)
+
+
+def sampled(
+    surface: "Surface | NonlinearSurface",
+    cell: tuple[float, float],
+    share: np.ndarray,
+    grid: RadialGrid,
+    centre: tuple[float, float],
+) -> RadialSurface:
+    """A tile's surface on a grid about `centre` [m]; cell [m] along x and y, share: see `shares`."""
+    n = len(grid)
+    vertices, slopes, jacobian = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32), np.empty(n, np.float32)
+    planes = [np.ascontiguousarray(f[..., i]) for f in (surface.displacement, surface.slope) for i in range(2)]
+    sample_mesh(grid.x, grid.y, share, *centre, *cell, surface.mean_height, surface.height, *planes,
+                vertices, slopes, jacobian)  # fmt: skip
+    return RadialSurface(vertices, slopes, jacobian)
 
 
 def particles(sea: "Sea", label: np.ndarray, t: float) -> np.ndarray:
@@ -100,18 +126,18 @@ def particles(sea: "Sea", label: np.ndarray, t: float) -> np.ndarray:
 
 
 @kernel
-def sample_mesh(x, y, share, x0, y0, cell, mean, height, dx, dy, sx, sy, vertices, slopes, jacobian):
+def sample_mesh(x, y, share, x0, y0, cell_x, cell_y, mean, height, dx, dy, sx, sy, vertices, slopes, jacobian):
     """The tile's fields at the points of a grid about (x0, y0), each lowered to its share, and the Jacobian.
 
     mean [m]: of the height; it is of second order, and falls with the square of the share.
     """
     for i in range(x.size):
         X, Y = x[i] + x0, y[i] + y0
-        u, v, s = X / cell, Y / cell, share[i]
+        u, v, s = X / cell_x, Y / cell_y, share[i]
         a, xx, xy = bicubic(dx, u, v)
         b, yx, yy = bicubic(dy, u, v)
         vertices[i, 0], vertices[i, 1] = X + s * a, Y + s * b
-        jacobian[i] = (1.0 + s * xx / cell) * (1.0 + s * yy / cell) - s * s * xy * yx / (cell * cell)
+        jacobian[i] = (1.0 + s * xx / cell_x) * (1.0 + s * yy / cell_y) - s * s * xy * yx / (cell_x * cell_y)
         vertices[i, 2] = s * (bicubic(height, u, v)[0] - mean) + s * s * mean
         slopes[i, 0] = s * bicubic(sx, u, v)[0]
         slopes[i, 1] = s * bicubic(sy, u, v)[0]

@@ -6,6 +6,7 @@ import pytest
 from benchmarks.cases import nonlinear
 from benchmarks.cases.nonlinear import ours, plain, start
 from benchmarks.peers.nonlinear import PlainSea
+from benchmarks.peers.separable import separable_flow
 from sim.ocean.nonlinear import NonlinearSea
 
 
@@ -34,3 +35,12 @@ def test_a_row_of_each_program(monkeypatch: pytest.MonkeyPatch) -> None:
     for row in found:
         assert row["form error"] < 5e-3
         assert row["phase error"] < 2e-3
+
+
+def test_the_separable_loops_have_the_flow_of_the_linear_sea() -> None:
+    random = np.random.default_rng(4)
+    eta, psi = random.normal(size=(2, 16, 16))
+    sea = NonlinearSea(length=40.0, order=1, start=(eta, psi))
+    points = np.column_stack([random.uniform(0.0, 40.0, (9, 2)), np.full(9, -25.0)])
+    found = separable_flow(points, np.fft.rfft2(sea.potential.T)[:, :-1] / 256.0, 40.0)
+    assert found[:, 1:] == pytest.approx(sea.kinematics(points).velocity, abs=1e-13)

@@ -26,8 +26,8 @@ from sim.floating.body import pack_linear
 from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
 from sim.floating.shapes import Appearance
 from sim.interruption import raise_if_stopped
+from sim.ocean.any_sea import AnySea, SurfaceAt
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.radial import RadialSea, SurfaceAt
 
 GRAVITY = 9.81  # [m/s2]
 FIRST_PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the first three bodies
@@ -311,7 +311,7 @@ class FloatingBodies:
             return at.acceleration
         return np.clip(rate_of_change(self.rises, h), -MAX_ACCELERATION * gravity, MAX_ACCELERATION * gravity)
 
-    def forces_of(self, sea: RadialSea, at: SurfaceAt, t: float, h: float) -> np.ndarray:
+    def forces_of(self, sea: AnySea, at: SurfaceAt, t: float, h: float) -> np.ndarray:
         """Force and moment (n, 6) of waves on the bodies for the next h [s], from the sea in the middle of it."""
         return self.excitation.forces(self.fleet, at.label, sea.waves_at(t), t, h)
 

@@ -15,8 +15,9 @@ from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
 from app.scenes.radial_sea.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
 from app.scenes.radial_sea.wave_choice import WaveChoice
 from sim.ocean import Sea
+from sim.ocean.any_sea import AnySea, RadialSurface
 from sim.ocean.foam import whitecaps
-from sim.ocean.radial import CLEAN, RadialSea, RadialSurface, lost
+from sim.ocean.radial import CLEAN, RadialSea, lost
 from sim.ocean.statistics import energy_by_wavenumber, expected
 from sim.waves import Waves
 
@@ -109,7 +110,7 @@ class DrawnSurface:
         return self.known_clean[1]
 
     def timed_surface(
-        self, name: str, sea: RadialSea | Sea, scene: "RadialSeaScene", centre: tuple[float, float]
+        self, name: str, sea: AnySea, scene: "RadialSeaScene", centre: tuple[float, float]
     ) -> RadialSurface:
         """Surface of a sea on the scene's grid about a centre [m]; its cost is recorded under `name`."""
         start = time.perf_counter()

@@ -14,8 +14,8 @@ from app.scenes.radial_sea.cutaway import Cutaway
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.well_blowout import OilBudget, Slick
 from sim.floating import Hull
+from sim.ocean.any_sea import RadialSurface
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.radial import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.weathering import Weathering
 

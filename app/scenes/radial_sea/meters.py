@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from sim.floating import Fleet, HeaveMeter
 from sim.floating.heave_meter import WindowMean
 from sim.floating.rotation import body_z_axes
-from sim.ocean.radial import SurfaceAt
+from sim.ocean.any_sea import SurfaceAt
 
 MIN_COSINE = 0.2  # of the angle between a body's axis and the normal of the water, where drafts still mean something
 UPWARD_FORCES = 4  # buoyancy, waves, drag, and what the motion through the water meets

@@ -35,6 +35,7 @@ from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach, wave_le
 from app.scenes.sea_parameters import notes_on_file
 from sim.floating import Body, Hull, MotionCoefficients, Shape, make_fleet, shape_from_file, step, still_water
 from sim.interruption import kept_whole
+from sim.ocean.any_sea import AnySea
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.radial import RadialSea
 from sim.ocean.radial_grid import RadialGrid
@@ -208,7 +209,7 @@ class RadialSeaScene:
         return self.tile
 
     @property
-    def sea(self) -> RadialSea | Sea:
+    def sea(self) -> AnySea:
         """The surface in force."""
         return self.sum if self.params.surface == "sum" else self.tile_now()
 
@@ -293,7 +294,7 @@ class RadialSeaScene:
                 slick = self.slick_at(bodies.fleet.position[:, :2])
                 bodies.measure(self.time, at, h, h / 2)
                 bodies.moor(h, moored=self.params.mooring)
-                forces = bodies.forces_of(sea, at, middle, h) if isinstance(sea, RadialSea) else None
+                forces = bodies.forces_of(sea, at, middle, h) if sea.is_sum_of_waves else None
                 try:
                     bodies.step(at, h, slick, coefficients, forces)
                 except FloatingPointError as error:

@@ -30,7 +30,7 @@ from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.stain_view import Stains
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
-from sim.ocean.radial import RadialSurface
+from sim.ocean.any_sea import RadialSurface
 from sim.ocean.radial_grid import RadialGrid
 
 SUN_BEARING = 1.25  # [rad] from +x: beyond the buoys, as seen from the first view

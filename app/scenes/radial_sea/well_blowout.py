@@ -9,9 +9,8 @@ import numpy as np
 
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from sim.interruption import raise_if_stopped
+from sim.ocean.any_sea import AnySea
 from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.radial import RadialSea
-from sim.ocean.sea import Sea
 from sim.ocean.slick import SlickCover, slick_radius, slick_thickness, spreading_coefficient
 from sim.ocean.weathering.laws import DRIFT
 from sim.particles.fire import Fire
@@ -138,7 +137,7 @@ class WellBlowout:
             self.closed_jets_total = JetTotal(total.ejected + jet.ejected, fed, total.hits + jet.hits)
             self.jet = None
 
-    def step(self, sea: RadialSea | Sea, t: float, duration: float) -> None:
+    def step(self, sea: AnySea, t: float, duration: float) -> None:
         """Let `duration` [s] pass, up to time t [s]."""
         if self.fire is not None:
             self.fire.step(duration)

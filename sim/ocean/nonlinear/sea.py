@@ -24,20 +24,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.ocean.any_sea import AnySea, RadialSurface, SurfaceAt
 from sim.ocean.nonlinear.energy import EnergyBalance, SeaEnergy
 from sim.ocean.nonlinear.equations import WaveEquations
 from sim.ocean.nonlinear.fade_in import FadeIn
-from sim.ocean.nonlinear.flow import set_heights
 from sim.ocean.nonlinear.instant import NonlinearInstant
+from sim.ocean.nonlinear.lattice_sum import parts_of, set_elevations
 from sim.ocean.nonlinear.march import LinearMarch, March
 from sim.ocean.nonlinear.padded_transforms import PaddedTransforms
 from sim.ocean.nonlinear.start import checked_size, free_waves, mean_wavenumber, resized, started
 from sim.ocean.nonlinear.surface import NonlinearSurface
 from sim.ocean.query import sample
-from sim.ocean.radial import SurfaceAt
+from sim.ocean.radial_grid import RadialGrid
 from sim.ocean.sea import Sea
+from sim.ocean.tile_surface import sampled, shares
 from sim.validation import (
     argument_error,
+    check_choice,
     check_finite,
     check_kind,
     check_not_negative,
@@ -46,21 +49,23 @@ from sim.validation import (
     check_positive,
     is_whole_number,
 )
-from sim.waves import Kinematics, Waves
+from sim.water import Water
+from sim.waves import STRETCHINGS, Kinematics, Waves
 
 ORDERS = (1, 7)
 FADE_PERIODS = 10.0  # of the mean wave, by default when a linear sea starts
 FIRST_STEP = 0.05  # periods of the mean wave
 
 
-class NonlinearSea:
-    """A tile of nonlinear sea that moves on in time, with the interface of `Sea` but for changes of the conditions.
+class NonlinearSea(AnySea):
+    """A tile of nonlinear sea that moves on in time, with the interface of all seas (`sim.ocean.any_sea`).
 
     Fields (n, m): [i, j] is at x = i length_x/n, y = j length_y/m. Not for two threads at once. Methods that take a
     time advance to it; they raise what `advance` raises.
     """
 
     choppiness = 0.0  # the crests are sharp by themselves
+    is_sum_of_waves = False
 
     def __init__(
         self,
@@ -95,11 +100,10 @@ class NonlinearSea:
         water = {"depth": depth, "gravity": gravity, "density": density}
         begin = started(start, size, length, water, check_finite("time", time, "s"))
         modes, u, self.conditions = begin.modes, begin.u, begin.conditions
-        self.length, self.depth, self.gravity = modes.length, modes.depth, modes.gravity
-        self.density = self.conditions.density
+        self.length = modes.length
 
         k = mean_wavenumber(modes, u[0])
-        period = 2.0 * math.pi / math.sqrt(self.gravity * k * math.tanh(min(k * self.depth, 100.0)))
+        period = 2.0 * math.pi / float(self.water.omega(np.array(k)))
         if fade is None:
             fade = FADE_PERIODS * period if begin.is_linear else 0.0
         self.fade = check_not_negative("fade", fade, "s")
@@ -108,7 +112,7 @@ class NonlinearSea:
         self.is_damped = breaking and self.order > 1
         eddy_scale = 2.0 * math.pi / period / k**2 if self.is_damped else None
         fade_in = FadeIn(begin.time, self.fade)
-        equations = WaveEquations(modes, self.order, self.density, fade_in, eddy_scale)
+        equations = WaveEquations(modes, self.order, self.water.density, fade_in, eddy_scale)
         self._begin(equations, u, begin.time)
         self._march: March | LinearMarch
         if self.order == 1:
@@ -166,6 +170,16 @@ class NonlinearSea:
         return self._now.t
 
     @property
+    def water(self) -> Water:
+        """The water that carries the waves."""
+        return self.conditions.water
+
+    @property
+    def layers(self) -> tuple[tuple[float, float], ...]:
+        """((density [kg/m3], inf),): one fluid."""
+        return ((self.conditions.density, math.inf),)
+
+    @property
     def height(self) -> np.ndarray:
         """Elevation (n, m) [m] of the surface."""
         return self._now.surface.height
@@ -216,7 +230,7 @@ class NonlinearSea:
         self.advance(t)
         height, modes = np.empty(len(where)), self._equations.modes
         if exact:
-            set_heights(where, self._now.u[0], modes.kx, modes.ky, height)
+            set_elevations(where, np.array(self.length), parts_of(self._now.u[0], modes.weight), height)
         else:
             sample(self._cells(where), self.height, 1.0, height)
         return height, np.zeros(len(where))
@@ -241,15 +255,23 @@ class NonlinearSea:
         They go on as linear waves; moorings take them, and `largest` picks a few.
         """
         self.advance(self.time if t is None else t)
-        return free_waves(self._equations.modes, self._now.u, self.time, self.conditions.water)
+        return free_waves(self._equations.modes, self._now.u, self.time, self.water)
 
-    def kinematics(self, points: ArrayLike, t: float | None = None) -> Kinematics:
+    def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
+        """The sea on a grid about `centre` (x, y) [m] at time t [s]; it does not fold."""
+        surface, waves = self.surface(t), self.waves_at(t)
+        cell = (self.length[0] / self.size[0], self.length[1] / self.size[1])
+        return sampled(surface, cell, shares(waves.k, np.square(waves.amplitude), grid), grid, centre)
+
+    def kinematics(self, points: ArrayLike, t: float | None = None, stretching: str = "constant") -> Kinematics:
         """The water at points (n, 3) [m], z up from still water, by the sum over all waves; see `flow.py`.
 
-        t [s]: by default the present time. Above the surface is the water that is on it. The pressure is that beyond
-        still water, -rho g z. Raises ValueError for another shape.
+        t [s]: by default the present time. Above the surface, in crests and in troughs, is the water that is on it.
+        This flow reaches its own surface, so that either stretching changes nothing. The pressure is that beyond still
+        water, -rho g z. Raises ValueError for another shape or stretching.
         """
         where = check_positions("points", points, 3)
+        check_choice("stretching", stretching, STRETCHINGS)
         self.advance(self.time if t is None else t)
         return self._now.flow.at(where)
 

@@ -108,12 +108,15 @@ def linear_start(waves: Waves, modes: Modes, t: float) -> np.ndarray:
 
 
 def free_waves(modes: Modes, u: np.ndarray, t: float, water: Water) -> Waves:
-    """The linear waves that have these spectra (2, rows, columns) of elevation and potential at time t [s]."""
-    there = (modes.k > 0.0) & u.any(axis=0)
-    kx, ky = (k[there] for k in np.broadcast_arrays(modes.kx, modes.ky[:, None]))
-    omega, weight = modes.omega[there], np.broadcast_to(modes.weight, there.shape)[there]
+    """The linear waves that have these spectra (2, rows, columns) of elevation and potential at time t [s].
+
+    A wave of the half plane and its complex conjugate, at -k, are one. So are the two halves of the column kx = 0.
+    """
+    KX, KY = np.broadcast_arrays(modes.kx, modes.ky[:, None])
+    there = ((KX > 0.0) | (KY > 0.0)) & u.any(axis=0)
+    kx, ky, omega = KX[there], KY[there], modes.omega[there]
     turned = 1j * omega / modes.gravity * u[1][there]
-    onward, back = 0.5 * weight * (u[0][there] + turned), 0.5 * weight * np.conj(u[0][there] - turned)
+    onward, back = u[0][there] + turned, np.conj(u[0][there] - turned)
     waves, frequency = np.concatenate([onward, back]), np.tile(omega, 2)
     phase = (np.angle(waves) + frequency * t) / (2.0 * math.pi)
     kx, ky = np.concatenate([kx, -kx]), np.concatenate([ky, -ky])

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.angles import angle_from
+from sim.dispersion import wavenumber
 from sim.interruption import pieces
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
@@ -23,7 +24,7 @@ MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take p
 PIECE = 16384  # wavenumbers at a time: these stay in the cache, and the solve yields in between
 OMEGA_RANGE = (0.05, 1e6)  # of the moments, over the lowest and the highest peak
 DIRECTIONS = 360  # over which a spectrum without a formula of S(omega) is summed
-WAVENUMBER_HALVINGS = 62  # of the logarithm of 27 decades: to the last bit
+WAVENUMBERS = (1e-12, 1e15)  # [rad/m] of all waves that a spectrum has
 SECOND_PEAK = 3.3  # gamma of the second system
 SECOND_EXPONENT = 25.0  # s of cos2s of the second system: swell that came a short way (Goda 2010, Sec. 2.3)
 
@@ -80,13 +81,9 @@ class Conditions:
         return group_speed(k, self.gravity, self.depth, self.tension, self.density)
 
     def wavenumber(self, frequency: np.ndarray) -> np.ndarray:
-        """Wavenumber [rad/m], from 1e-12 to 1e15, of waves of these angular frequencies [rad/s], by bisection."""
-        low, high = np.full(np.shape(frequency), 1e-12), np.full(np.shape(frequency), 1e15)
-        for _ in range(WAVENUMBER_HALVINGS):
-            middle = np.sqrt(low * high)
-            below = self.omega(middle) < frequency
-            low, high = np.where(below, middle, low), np.where(below, high, middle)
-        return high
+        """Wavenumber [rad/m], from 1e-12 to 1e15, of waves of these angular frequencies [rad/s]."""
+        lowest, highest = self.omega(np.array(WAVENUMBERS))
+        return wavenumber(np.clip(frequency, lowest, highest), self.gravity, self.depth, self.tension / self.density)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

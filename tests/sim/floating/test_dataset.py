@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sim.dispersion import wavenumber
 from sim.floating import Body, Hull, float_in, response_amplitude, with_dataset
-from sim.floating.hydrodynamics import radiated_share, wavenumber_of
+from sim.floating.hydrodynamics import radiated_share
 from sim.floating.response import linear_forces
 from sim.mooring.moored import moored
 from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves
@@ -108,7 +109,7 @@ def test_a_dataset_of_one_heading_is_used_at_that_heading_only(tmp_path, depths)
     w = [0.3, 0.349]  # below the dataset, where the damping goes on
     B = linear_forces(one, [*w, 0.35], heading).damping[:, 2, 2]
     assert B[1] == pytest.approx(B[2], rel=0.01)
-    shares = [radiated_share(float(wavenumber_of(np.array(v / math.sqrt(9.81)), 20.0)), 20.0) for v in w]
+    shares = [radiated_share(float(wavenumber(np.array(v / math.sqrt(9.81)), 1.0, 20.0)), 20.0) for v in w]
     assert B[0] / B[1] == pytest.approx(shares[0] / shares[1])
 
 
@@ -116,7 +117,7 @@ def test_in_long_waves_of_shallow_water_the_body_moves_with_the_water():
     """Surge a coth(kd), heave a, below the dataset; and no step at its first frequency."""
     body = box("fore", (0.0, 0.0), FOLDER / "depths.nc", depth=20.0)
     for w in (0.05, 0.02):
-        k = float(wavenumber_of(np.array(w / math.sqrt(9.81)), 20.0))
+        k = float(wavenumber(np.array(w / math.sqrt(9.81)), 1.0, 20.0))
         found = response_amplitude(body, [w], 0.0)[0]
         assert found[2] == pytest.approx(1.0, abs=0.02)
         assert found[0] == pytest.approx(1j / math.tanh(k * 20.0), rel=0.02)

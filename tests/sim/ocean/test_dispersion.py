@@ -17,8 +17,12 @@ from sim.ocean.dispersion import (
     viscous_root,
     viscous_two_layer,
 )
+from sim.ocean.dispersion import wavenumber as wavenumber_at
 from sim.ocean.fluids import fluids
+from sim.ocean.spectra import SPECTRA
+from sim.water import Water
 from tests.naive_ocean import film_roots, layer_roots, two_layer_determinant, viscous_roots
+from tests.refusals import assert_refused
 
 INF = math.inf
 WATER = {"tension": 0.0728, "density": 998.2}
@@ -230,3 +234,31 @@ def test_thin_and_thick_layers_have_their_limits():
     thick = viscous_two_layer(k, oil.density, oil.viscosity, 1e3, *arguments)[1]
     assert thick == pytest.approx(viscous_root(k, oil.kinematic_viscosity)[1], rel=1e-9)
     assert viscous_two_layer(0.0, oil.density, oil.viscosity, 1.0, *arguments) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 1e-3, 0.3, 20.0, 1e4])
+@pytest.mark.parametrize("tension", [0.0, 1e-6, 0.073, 50.0])
+def test_the_wavenumber_of_a_frequency_is_the_one_that_has_it(depth, tension):
+    """Over 14 decades: from shallow water over deep water to ripples."""
+    k = np.geomspace(1e-8, 1e6, 999)
+    assert wavenumber_at(omega(k, 9.81, depth, tension), 9.81, depth, tension) == pytest.approx(k, rel=2e-15)
+
+
+def test_a_wavenumber_has_the_shape_of_its_frequency_and_stays_0_for_still_water():
+    assert wavenumber_at(0.0, depth=5.0) == 0.0
+    assert wavenumber_at([[0.0, 1.0]], depth=5.0).shape == (1, 2)
+    assert isinstance(float(wavenumber_at(2.0)), float)
+    assert wavenumber_at(2.0) == pytest.approx(4.0 / 9.81, rel=1e-15)
+    for bad in (-1.0, math.nan, math.inf, "1"):
+        assert_refused("omega", lambda bad=bad: wavenumber_at(bad))
+
+
+def test_water_and_conditions_have_the_same_dispersion():
+    water, conditions = Water(depth=7.0), SPECTRA["jonswap"].conditions(depth=7.0)
+    k = np.geomspace(1e-3, 10.0, 50)
+    for found in (water.omega(k), conditions.omega(k)):
+        assert np.array_equal(found, omega(k, depth=7.0))
+    for found in (water.group_speed(k), conditions.group_speed(k)):
+        assert np.array_equal(found, group_speed(k, depth=7.0))
+    for found in (water.wavenumber(water.omega(k)), conditions.wavenumber(water.omega(k))):
+        assert found == pytest.approx(k, rel=2e-15)

@@ -61,7 +61,7 @@ def test_the_mean_level_of_the_mesh_is_that_of_still_water_also_where_it_is_lowe
     assert mean > 0.01
     for share in (1.0, 0.5):
         vertices = np.empty((x.size, 3), np.float32)
-        sample_mesh(x, y, np.full(x.size, share, np.float32), 0.0, 0.0, 2.0, mean, h, D[..., 0], D[..., 1],
+        sample_mesh(x, y, np.full(x.size, share, np.float32), 0.0, 0.0, 2.0, 2.0, mean, h, D[..., 0], D[..., 1],
                     D[..., 0], D[..., 1], vertices, slopes, jacobian)  # fmt: skip
         # Between grid points the waves of a few cells are too flat, and gather less.
         assert float((vertices[:, 2] * jacobian).mean()) == pytest.approx(0.0, abs=0.08 * share**2 * mean)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from sim.ocean import Sea
 from sim.ocean.nonlinear import NonlinearSea, stokes_wave
 from sim.ocean.nonlinear.padded_transforms import padded_size
 
@@ -98,3 +99,50 @@ def test_products_have_the_fewest_cells_that_transform_quickly(order):
     for size in range(8, 400, 2):
         wanted = size * (order + 1) / 2
         assert padded_size(size, order) == next(n for n in range(8, 2000, 8) if n >= wanted and is_quick(n))
+
+
+def test_in_a_trough_the_water_above_the_surface_is_that_on_it():
+    wave = stokes_wave(4.0, 100.0)
+    x = np.arange(64) * 100.0 / 64
+    sea = NonlinearSea(length=100.0, order=5, start=(wave.elevation(x), wave.potential(x)))
+    trough = float(sea.height[32, 0])
+    assert trough < -1.8
+    on, below_still, still, above = sea.kinematics([[50.0, 0.0, z] for z in (trough, -0.01, 0.0, 1.0)]).velocity
+    for velocity in (below_still, still, above):
+        assert velocity == pytest.approx(on, rel=1e-9)
+    pressure = sea.kinematics([[50.0, 0.0, -0.01]]).pressure
+    assert pressure == pytest.approx(DENSITY * 9.81 * trough, rel=1e-3)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 15.0])
+def test_the_sums_over_a_rectangle_are_those_of_single_waves(depth):
+    """Elevation, potential flow and its change, wave by wave; rows and columns of different lengths."""
+    linear = Sea(16, 80.0, "sea_state", hs=1.0, tp=5.0, depth=depth, choppiness=0.0, precision="double")
+    sea = NonlinearSea((32, 16), 80.0, 3, start=linear, fade=0.0)
+    sea.advance(0.7)
+    random = np.random.default_rng(8)
+    points = np.column_stack([random.uniform(-200.0, 200.0, (40, 2)), random.uniform(-20.0, 2.0, 40)])
+    modes, flow = sea._equations.modes, sea._now.flow
+    phase = np.exp(1j * (modes.kx * points[:, :1, None] + modes.ky[:, None] * points[:, 1:2, None]))
+    eta = (phase * modes.weight * sea._now.u[0]).real.sum(axis=(1, 2))
+    assert sea.height_at(points[:, :2], 0.7, exact=True)[0] == pytest.approx(eta, abs=1e-12)
+    z = np.maximum(np.minimum(points[:, 2], eta), -depth)[:, None, None]
+    expected = np.zeros((40, 2, 4))
+    for f in range(2):
+        terms = (flow.parts[:, f, 0] + 1j * flow.parts[:, f, 1])[:, None]
+        up = np.exp(modes.k * np.minimum(z, 0.0))
+        down = 0.0 if math.isinf(depth) else np.exp(-modes.k * (np.minimum(z, 0.0) + 2.0 * depth))
+        scale = 1.0 if math.isinf(depth) else 1.0 + np.exp(-2.0 * modes.k * depth)
+        value, slope = terms[0] * (up + down) / scale, terms[0] * modes.k * (up - down) / scale
+        crest_value = sum(terms[n] * (modes.k * z) ** n / math.factorial(n) * (modes.tanh if n % 2 else 1.0)
+                          for n in range(3))  # fmt: skip
+        crest_slope = sum(terms[n] * modes.k * (modes.k * z) ** n / math.factorial(n) * (1.0 if n % 2 else modes.tanh)
+                          for n in range(3))  # fmt: skip
+        value, slope = np.where(z > 0.0, crest_value, value), np.where(z > 0.0, crest_slope, slope)
+        each = value, 1j * modes.kx * value, 1j * modes.ky[:, None] * value, slope
+        expected[:, f] = np.stack([(phase * one).real.sum(axis=(1, 2)) for one in each], axis=-1)
+    found = sea.kinematics(points)
+    assert found.velocity == pytest.approx(expected[:, 0, 1:], abs=1e-11)
+    assert found.acceleration == pytest.approx(expected[:, 1, 1:], abs=1e-11)
+    pressure = -DENSITY * (expected[:, 1, 0] + 0.5 * np.square(expected[:, 0, 1:]).sum(1))
+    assert found.pressure == pytest.approx(pressure, abs=1e-8)

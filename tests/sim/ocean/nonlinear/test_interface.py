@@ -10,8 +10,8 @@ import pytest
 from sim.floating import Body, Hull
 from sim.floating.float_in import float_in
 from sim.ocean import Sea
+from sim.ocean.any_sea import SurfaceAt
 from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves
-from sim.ocean.radial import SurfaceAt
 
 LINEAR: dict[str, Any] = {
     "size": 32, "length": 160.0, "spectrum": "sea_state", "hs": 1.0, "tp": 6.0, "choppiness": 0.0,

@@ -2,8 +2,8 @@
 
 A stiff line that turns by a step of the size of a link is stretched by the second order of it, and with the tension of
 that stretch the next step would be tiny. So the matrix has the tensions that the last correction solved for, as if both
-positions and tensions were unknown. Links that pull or not, nodes on the bed or not and nodes in, on or above the water
-follow piecewise linear laws, and the start is near enough to tell on which piece each of them is.
+positions and tensions were unknown. Links that pull or not, nodes on the bed or not and volumes in, at or above the
+surface follow piecewise linear laws, and the start is near enough to tell on which piece each of them is.
 """
 
 from typing import NamedTuple
@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.mooring.buoyancy import Volumes
 from sim.mooring.chains import Chains
 from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import declared_stiffness, forces_on_free, links_at, moved, moves_on_free, six_of
@@ -37,35 +38,38 @@ class BalanceResult(NamedTuple):
 
 
 class Pieces(NamedTuple):
-    """The pieces of the laws on which the parts are."""
+    """The pieces of the laws on which parts and volumes are."""
 
     lies: NDArray[np.bool_]  # (parts,) on the bed
-    wet: NDArray[np.bool_]  # (parts,) with some buoyancy
-    in_surface: NDArray[np.bool_]  # (parts,) with a part of it
-
-
-def pieces_at(x: Array, p: LineArrays) -> Pieces:
-    """Those of positions x (3, n)."""
-    z, top = x[2, p.places[:, 0]], 0.5 * p.parts["height"]
-    return Pieces(z <= p.bed, z < top, np.abs(z) < top)
+    wet: NDArray[np.bool_]  # (volumes,) with some buoyancy
+    in_surface: NDArray[np.bool_]  # (volumes,) cut by the surface
 
 
 class Laws:
     """The piecewise linear laws of links, bed and buoyancy."""
 
     def __init__(self, p: LineArrays) -> None:
-        self.p, self.elastic = p, Elastic(p)
-        self.node, self.height = p.places[:, 0], p.parts["height"]
-        self.bed, self.lift = p.parts["bed_area"] * p.bed_stiffness, p.parts["displaced"] * -p.gz
+        self.p, self.elastic, self.volumes = p, Elastic(p), Volumes(p)
+        self.node, self.bed = p.places[:, 0], p.parts["bed_area"] * p.bed_stiffness
 
-    def upward(self, z: Array, on: Pieces) -> Array:
-        """Forces (parts,) [N] of bed and buoyancy at heights z, each on its piece wherever that ends."""
-        share = np.where(on.in_surface, 0.5 - z / self.height, 1.0)
-        return np.where(on.lies, self.bed * (self.p.bed - z), 0.0) + np.where(on.wet, self.lift * share, 0.0)
+    def pieces_at(self, x: Array) -> Pieces:
+        """The pieces at positions x (3, n)."""
+        z, top = self.volumes.middles(x[2]), 0.5 * self.volumes.height
+        return Pieces(x[2, self.node] <= self.p.bed, z < top, np.abs(z) < top)
 
-    def slope(self, on: Pieces) -> Array:
-        """Stiffness (parts,) [N/m]."""
-        return np.where(on.lies, self.bed, 0.0) + np.where(on.in_surface, self.lift / self.height, 0.0)
+    def upward(self, x: Array, on: Pieces) -> Array:
+        """Forces (nodes,) [N] of bed and buoyancy at positions x (3, n), each on its piece wherever that ends."""
+        found, volumes = np.zeros(self.p.nodes), self.volumes
+        np.add.at(found, self.node, np.where(on.lies, self.bed * (self.p.bed - x[2, self.node]), 0.0))
+        share = np.where(on.in_surface, 0.5 - volumes.middles(x[2]) / volumes.height, 1.0)
+        volumes.add_forces(np.where(on.wet, volumes.whole * share, 0.0), found)
+        return found
+
+    def with_stiffness(self, on: Pieces, blocks: Array, upright: Array) -> Array:
+        """As `Volumes.with_stiffness`, of bed and buoyancy."""
+        np.add.at(upright[:, 2, 2], self.node, np.where(on.lies, self.bed, 0.0))
+        stiffness = np.where(on.in_surface, self.volumes.whole / self.volumes.height, 0.0)
+        return self.volumes.with_stiffness(stiffness, blocks, upright)
 
 
 def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) -> tuple[Array, Array]:
@@ -86,9 +90,8 @@ def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) 
     np.add.at(more, b, -pushes)
     outer = unit[:, :, None] * unit[:, None]
     blocks = across[:, None, None] * np.eye(3) + (along - across)[:, None, None] * outer
-    z = x[2, laws.node]
-    np.add.at(upright[:, 2, 2], laws.node, laws.slope(on))
-    np.add.at(more[:, 2], laws.node, laws.upward(z, on) - laws.upward(z, pieces_at(x, p)))
+    blocks = laws.with_stiffness(on, blocks, upright)
+    more[:, 2] += laws.upward(x, on) - laws.upward(x, laws.pieces_at(x))
     force = pull(x, p)[0] + moves_on_free(np.ascontiguousarray(more.T), p)
     step = chains.solve(blocks, upright, force)
     d = moved(np.zeros_like(x), step, p)  # with no round-off of the places
@@ -104,12 +107,12 @@ def pull(x: Array, p: LineArrays) -> tuple[Array, float]:
     return forces_on_free(forces, x, p), float(np.abs(forces).max())
 
 
-def balanced(p: LineArrays, chains: Chains, x: Array, tension: Array, on: Pieces, corrections: int) -> BalanceResult:
+def balanced(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces, corrections: int) -> BalanceResult:
     """The state of rest near positions x (3, n) and tensions (links,) [N], after `corrections` at most.
 
     on: pieces of the laws there, for the first correction.
     """
-    laws = Laws(p)
+    p = laws.p
     left, is_settled = what_is_left(x, p)
     most = RISE * left  # a stiff line may be stretched by the first correction, which the second takes back
     for done in range(corrections):
@@ -117,7 +120,7 @@ def balanced(p: LineArrays, chains: Chains, x: Array, tension: Array, on: Pieces
             return BalanceResult(x, left, is_settled, done)
         most = 0.5 * left if done else most
         x, tension = corrected(laws, chains, x, tension, on)
-        on = pieces_at(x, p)
+        on = laws.pieces_at(x)
         left, is_settled = what_is_left(x, p)
     return BalanceResult(x, left, is_settled, corrections)
 

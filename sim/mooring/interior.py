@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from sim.mooring.balance import Pieces
 from sim.mooring.bending import bending_forces
+from sim.mooring.buoyancy import Volumes
 from sim.mooring.chains import Chains, Eliminated
 from sim.mooring.cones import (
     MIRROR,
@@ -50,7 +51,7 @@ class InteriorState(NamedTuple):
     pull: Array  # (links, 4) [N]: tension, and force on the link's end
     press: Array  # (m,) [N] of the bed on each part with a bed area
     gap: Array  # (m,) [m] to the bed, as far as it yields
-    lift: Array  # (k,) [N] buoyancy of each part with a volume
+    lift: Array  # (k,) [N] buoyancy of each of `Volumes`
     spare: Array  # (k,) [N] buoyancy that is missing to that of the whole volume
     above: Array  # (k,) [m] beyond the height at which buoyancy ends
     below: Array  # (k,) [m] beyond the depth at which it is whole
@@ -88,11 +89,12 @@ class Pairs:
         self.start, self.end = p.ends.T
         self.rest, self.stiffness = p.links[:, 0], p.links[:, 1]
         node, self.weight = p.places[:, 0], p.parts["mass"] * -p.gz
-        bed, lift = p.parts["bed_area"] * p.bed_stiffness, p.parts["displaced"] * -p.gz
-        self.has_bed, self.has_lift = bed > 0.0, lift > 0.0
-        self.node, self.on_bed, self.afloat = node, node[bed > 0.0], node[lift > 0.0]
-        self.bed, self.whole, self.height = bed[bed > 0.0], lift[lift > 0.0], p.parts["height"][lift > 0.0]
+        bed, self.volumes = p.parts["bed_area"] * p.bed_stiffness, Volumes(p)
+        self.has_bed = bed > 0.0
+        self.node, self.on_bed, self.bed = node, node[self.has_bed], bed[self.has_bed]
+        self.whole, self.height = self.volumes.whole, self.volumes.height
         self.count = len(self.rest) + len(self.bed) + 2 * len(self.whole)
+        lift = p.parts["displaced"] * -p.gz
         self.load = float(np.abs(lift - self.weight).sum() + np.abs(p.loads).sum())  # [N]
         self.elastic, self.others = Elastic(p), others(p)
 
@@ -137,20 +139,18 @@ class Pairs:
         np.add.at(found, self.end, pull)
         np.add.at(found, self.start, -pull)
         np.add.at(found[:, 2], self.on_bed, press)
-        np.add.at(found[:, 2], self.afloat, lift)
+        self.volumes.add_forces(lift, found[:, 2])
         return found
 
     def pieces(self, state: InteriorState) -> Pieces:
-        """The pieces on which parts seem to be: forces against lengths, over the stiffness of the lines there."""
+        """The pieces on which all seem to be: forces against lengths, over the stiffness of the lines there."""
         stiffness = np.full(self.p.nodes, self.load / self.count / float(self.rest.mean()))
         for ends in (self.start, self.end):
             np.maximum.at(stiffness, ends, state.pull[:, 0] / state.slack[:, 0])
-        lies, wet, in_surface = (np.zeros(len(self.node), dtype=bool) for _ in range(3))
+        lies, firmness = np.zeros(len(self.node), dtype=bool), self.volumes.middles(stiffness)
         lies[self.has_bed] = state.press > stiffness[self.on_bed] * state.gap
-        is_wet = state.lift > stiffness[self.afloat] * state.above
-        wet[self.has_lift] = is_wet
-        in_surface[self.has_lift] = is_wet & (state.spare > stiffness[self.afloat] * state.below)
-        return Pieces(lies, wet, in_surface)
+        wet = state.lift > firmness * state.above
+        return Pieces(lies, wet, wet & (state.spare > firmness * state.below))
 
     def mean(self, state: InteriorState) -> float:
         """Mean product [J] of the pairs of a state."""
@@ -167,7 +167,9 @@ class Pairs:
         length, _ = self.elastic.length(state.pull[:, 0])
         slack = np.concatenate((length[:, None], self.span(x)), axis=1) - state.slack
         gap = x[2, self.on_bed] - self.p.bed + state.press / self.bed - state.gap
-        height = x[2, self.afloat] + self.height * (state.lift / self.whole - 0.5) - (state.above - state.below)
+        height = (
+            self.volumes.middles(x[2]) + self.height * (state.lift / self.whole - 0.5) - (state.above - state.below)
+        )
         return slack, gap, height
 
 
@@ -194,8 +196,8 @@ class Tangent:
         self.rises = pairs.height / pairs.whole + state.above / state.lift + state.below / state.spare
         upright = np.zeros((p.nodes, 3, 3))
         np.add.at(upright[:, 2, 2], pairs.on_bed, state.press / self.yields)
-        np.add.at(upright[:, 2, 2], pairs.afloat, 1.0 / self.rises)
-        self.matrix = Eliminated(chains, self.blocks, upright)
+        blocks = pairs.volumes.with_stiffness(1.0 / self.rises, self.blocks, upright)
+        self.matrix = Eliminated(chains, blocks, upright)
 
     def solve(self, change: Products) -> tuple[Array, InteriorState]:
         """The step of the free coordinates, and of the state, that balances forces and changes the products."""
@@ -210,7 +212,7 @@ class Tangent:
         more = np.ascontiguousarray(pairs.forces_of(pull, press, lift).T)
         step = self.matrix.solve(self.force + moves_on_free(more, p))
         dx = moved(np.zeros_like(self.x), step, p)  # with no round-off of the places
-        span, down, up = pairs.span(dx), dx[2, pairs.on_bed], dx[2, pairs.afloat]
+        span, down, up = pairs.span(dx), dx[2, pairs.on_bed], pairs.volumes.middles(dx[2])
         pull = pull - np.einsum("ijk,ik->ij", self.blocks, span)
         stretch = ((2.0 * first**2 - 1.0) * one + 2.0 * first * dot(rest, three - span)) / self.divisor
         press = press - state.press / self.yields * down

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.mooring.balance import balanced, pieces_at
+from sim.mooring.balance import Laws, balanced
 from sim.mooring.chains import Chains
 from sim.mooring.interior import along_central_path
 from sim.mooring.tangent import six_of
@@ -53,15 +53,15 @@ def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = No
     Raises ConvergenceError if no state of rest is found.
     """
     p = system.kernel_view(1.0)._replace(waves=np.zeros((9, 0)))
-    chains, x = Chains(system, p), straight(system, placed)
+    laws, chains, x = Laws(p), Chains(system, p), straight(system, placed)
     done, left, aim = 0, math.inf, NEAR
     for near in along_central_path(p, chains, x):
         done += 1
         if not (near.gap <= aim or near.is_last or done >= MAX_CORRECTIONS - LEAST_FINISHING):
             continue
         aim = NEARER * near.gap
-        for tension, on in near.guesses(pieces_at(near.x, p)):
-            found = balanced(p, chains, near.x, tension, on, min(FINISHING, MAX_CORRECTIONS - done))
+        for tension, on in near.guesses(laws.pieces_at(near.x)):
+            found = balanced(laws, chains, near.x, tension, on, min(FINISHING, MAX_CORRECTIONS - done))
             if found.is_settled:
                 return rest_of(system, found.x, p)
             done, left = done + found.corrections, min(left, found.left)

@@ -8,7 +8,11 @@ r_{i+1} - r_{i-1}, u and du/dt the water's velocity and acceleration, and w = u 
   D_n = rho/2 C_dn d l, D_t = rho/2 C_dt pi d l
 
 The added mass is in the masses of `sim.springs.line_points`. Of a part at the surface the water pushes the submerged
-fraction of its volume: from 1 to 0 over its HEIGHT about the elevation. Its added mass stays.
+fraction of its volume. A segment is straight from node to node, in PIECES of equal length. The submerged fraction of a
+piece falls from 1 to 0 over the HEIGHT of the line's volume about the elevation at the node. A node takes the mean over
+the pieces with the weight 1 - s, s the fraction of the way to the other node, and the other node takes the rest. So
+buoyancy is the gradient of a convex energy of the heights of the nodes, and a line that hangs from a fairlead in the
+surface is wet up to there. The added mass stays.
 
 Buoyancy stores energy about still water. What waves, current and the elevation give or take is work, and so is the
 inertia of the water that moves with the lines: kinetic energy is that of lines and bodies alone.
@@ -24,23 +28,82 @@ from sim.springs.line_points import kick, mobility, tangent_at
 from sim.springs.order import in_turn
 from sim.waves import AMPLITUDE, sums_at
 
+PIECES = 8  # of a segment at the surface
+
 
 @kernel(inline=True)
 def water_at(x, t, p, j):
-    """Velocity [m/s] and acceleration [m/s^2] of the water at node j, and the node's height [m] over its surface."""
-    u, v, w, du, dv, dw, z = p.current[0], p.current[1], p.current[2], 0.0, 0.0, 0.0, x[2 * p.cols + j]
+    """Velocity [m/s] and acceleration [m/s^2] of the water at node j, and the elevation [m] of its surface there."""
+    u, v, w, du, dv, dw, elevation = p.current[0], p.current[1], p.current[2], 0.0, 0.0, 0.0, 0.0
     if p.waves.shape[1] > 0:
         n = p.cols
-        sums = sums_at(x[j], x[n + j], z, t, p.waves, p.waves, AMPLITUDE, None, 0, p.depth)
+        sums = sums_at(x[j], x[n + j], x[2 * n + j], t, p.waves, p.waves, AMPLITUDE, None, 0, p.depth)
         (wu, wv, ww), (du, dv, dw) = sums.velocity, sums.acceleration
-        u, v, w, z = u + wu, v + wv, w + ww, z - sums.elevation
-    return u, v, w, du, dv, dw, z
+        u, v, w, elevation = u + wu, v + wv, w + ww, sums.elevation
+    return u, v, w, du, dv, dw, elevation
 
 
 @kernel(inline=True)
-def submerged(p, i, z):
-    """Submerged fraction of part i, of which the middle is z [m] over the water's surface."""
-    return min(max(0.5 - z / p.parts[i].height, 0.0), 1.0)
+def fraction(z, height):
+    """Submerged fraction of a volume with its middle z [m] over the water's surface."""
+    return min(max(0.5 - z / height, 0.0), 1.0)
+
+
+@kernel(inline=True)
+def wet_share(a, b, height):
+    """Mean submerged fraction along a segment from a to b [m] over the surface, with the weight 2 (1 - s)."""
+    if max(a, b) <= -0.5 * height:
+        return 1.0
+    if min(a, b) >= 0.5 * height:
+        return 0.0
+    total = 0.0
+    for i in range(PIECES):
+        s = (i + 0.5) / PIECES
+        total += 2.0 / PIECES * (1.0 - s) * fraction(a + s * (b - a), height)
+    return total
+
+
+@kernel(inline=True)
+def wet_slopes(a, b, height):
+    """Derivatives [1/m] of -`wet_share` with respect to a and b."""
+    own = other = 0.0
+    if max(a, b) > -0.5 * height and min(a, b) < 0.5 * height:
+        for i in range(PIECES):
+            s = (i + 0.5) / PIECES
+            if abs(a + s * (b - a)) < 0.5 * height:
+                own += 2.0 / PIECES * (1.0 - s) * (1.0 - s) / height
+                other += 2.0 / PIECES * (1.0 - s) * s / height
+    return own, other
+
+
+@kernel(inline=True)
+def wet_potential(a, b, height):
+    """Mean along a segment from a to b [m] of the potential of buoyancy in still water over minus its force [m]."""
+    if max(a, b) <= -0.5 * height:
+        return 0.5 * (a + b)
+    total = 0.0
+    for i in range(PIECES if min(a, b) < 0.5 * height else 0):
+        z = a + (i + 0.5) / PIECES * (b - a)
+        wet = fraction(z, height)
+        total += (z if wet == 1.0 else -0.5 * height * wet * wet) / PIECES
+    return total
+
+
+@kernel(inline=True)
+def neighbour(p, i, side):
+    """The node next to that of part i on a side, 0 or 1; at the end of a line there is one; of a point it is itself."""
+    j = p.places[i, 1 + side]
+    return p.places[i, 2 - side] if j == p.places[i, 0] else j
+
+
+@kernel(inline=True)
+def submerged(x, p, i, elevation):
+    """Submerged fraction of part i under a surface at this elevation [m]."""
+    up, height, total = 2 * p.cols, p.parts[i].height, 0.0
+    z = x[up + p.places[i, 0]] - elevation
+    for side in range(2):
+        total += 0.5 * wet_share(z, x[up + neighbour(p, i, side)] - elevation, height)
+    return total
 
 
 @kernel(inline=True)
@@ -48,8 +111,8 @@ def push_of(x, v, t, p, i, j, with_damping):
     """Force (3) [N] of the water on part i at node j, and the power [W] that its drag takes."""
     n = p.cols
     qx, qy, qz = tangent_at(x, p, i)
-    u, w, s, du, dw, ds, z = water_at(x, t, p, j)
-    wet, lost = submerged(p, i, z), 0.0
+    u, w, s, du, dw, ds, elevation = water_at(x, t, p, j)
+    wet, lost = submerged(x, p, i, elevation), 0.0
     m = wet * p.parts[i].displaced
     along = du * qx + dw * qy + ds * qz
     c, d = m * (1.0 + p.parts[i].added_across), m * (p.parts[i].added_along - p.parts[i].added_across) * along
@@ -90,8 +153,8 @@ def damp_part(x, v, t, s, p, i, reverse):
     """Drag across and along part i."""
     n, j = p.cols, p.places[i, 0]
     qx, qy, qz = tangent_at(x, p, i)
-    u, w, c, _, _, _, z = water_at(x, t, p, j)
-    wet = submerged(p, i, z)
+    u, w, c, _, _, _, elevation = water_at(x, t, p, j)
+    wet = submerged(x, p, i, elevation)
     for turn in range(2):
         rx, ry, rz = u - v[j], w - v[n + j], c - v[2 * n + j]
         along = rx * qx + ry * qy + rz * qz
@@ -111,28 +174,28 @@ def damp(x, v, t, s, p, reverse):
 
 @kernel(allocates=False)
 def energy(x, t, p):
-    """Of buoyancy in still water [J]: its force times the integral of the submerged fraction over the height."""
-    total = 0.0
+    """Of buoyancy in still water [J], that of prescribed nodes too: it depends on the free ones beside them."""
+    up, total = 2 * p.cols, 0.0
     for i in range(p.places.shape[0]):
-        j = p.places[i, 0]
-        if is_moving(p, j):
-            z = x[2 * p.cols + j]
-            wet = submerged(p, i, z)
-            total += p.gz * p.parts[i].displaced * (z if wet == 1.0 else -0.5 * p.parts[i].height * wet * wet)
+        z = x[up + p.places[i, 0]]
+        for side in range(2):
+            mean = wet_potential(z, x[up + neighbour(p, i, side)], p.parts[i].height)
+            total += 0.5 * p.gz * p.parts[i].displaced * mean
     return total
 
 
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
-    """The drag takes, and the water puts in what it does beyond buoyancy in still water."""
+    """The drag takes; the water puts in what it does beyond buoyancy in still water, prescribed nodes against that."""
     n, lost, work = p.cols, 0.0, 0.0
     for i in range(p.places.shape[0]):
         j = p.places[i, 0]
         fx, fy, fz, taken = push_of(x, v, t, p, i, j, with_damping)
         lost += taken
-        if is_moving(p, j):
-            fz += submerged(p, i, x[2 * n + j]) * p.parts[i].displaced * p.gz
-            work += fx * v[j] + fy * v[n + j] + fz * v[2 * n + j]
+        if not is_moving(p, j):
+            fx = fy = fz = 0.0
+        fz += submerged(x, p, i, 0.0) * p.parts[i].displaced * p.gz
+        work += fx * v[j] + fy * v[n + j] + fz * v[2 * n + j]
     return lost, lost + work
 
 
@@ -155,11 +218,13 @@ def inertia_power(x, v, a, p):
 @kernel(noalias=True, allocates=False)
 def tangent(x, u, t, p, part, longest, out):
     """K of buoyancy at the surface of still water, upright; no drag acts at rest."""
-    n = p.cols
+    up = 2 * p.cols
     for i in range(p.places.shape[0] if part in (STIFFNESS, STIFFEST) else 0):
-        j, height = p.places[i, 0], p.parts[i].height
-        if abs(x[2 * n + j]) < 0.5 * height:
-            out[2 * n + j] -= p.gz * p.parts[i].displaced / height * u[2 * n + j]
+        j = p.places[i, 0]
+        for side in range(2):
+            k = neighbour(p, i, side)
+            own, other = wet_slopes(x[up + j], x[up + k], p.parts[i].height)
+            out[up + j] -= 0.5 * p.gz * p.parts[i].displaced * (own * u[up + j] + other * u[up + k])
 
 
 FORCE = Force(

@@ -34,7 +34,7 @@ def test_a_fairlead_is_pulled_by_its_last_segment():
     system = chain_on_bed(20)
     rest = system.at_rest()
     force = point_forces(system, State.still(rest.nodes))[2]
-    half = 9.81 * 0.5 * 8.0 * (CHAIN.mass - 0.5 * 1025.0 * CHAIN.volume)  # at the surface, half of it is wet
+    half = 9.81 * 0.5 * 8.0 * (CHAIN.mass - 1025.0 * CHAIN.volume)  # the fairlead is in the surface
     along = rest.x[1][-2] - rest.x[1][-1]
     assert force + (0.0, 0.0, half) == pytest.approx(rest.tension[1][-1] * along / np.linalg.norm(along), rel=1e-9)
 

@@ -14,13 +14,15 @@ from typing import Any
 
 import numpy as np
 
+from app.lab.call_limit import MAX_WAIT
 from app.lab.checking import Wrong, number_text
 from app.lab.diagnosis.edits import explain_edit
+from app.lab.diagnosis.effects import EFFECTS
 from app.lab.diagnosis.explanation import Equation, Explanation
 from app.lab.diagnosis.steps import explain_step
 from app.lab.diagnosis.terms import WHOLE, Term, explain_terms
 from app.lab.rope_march import entries
-from app.lab.runner import BUSY, MAX_WAIT, RunError, Runner
+from app.lab.runner import BUSY, RunError, Runner
 from app.lab.source import read_source
 from app.lab.task import Task
 from app.lab.wire import Foreign
@@ -28,6 +30,7 @@ from app.lab.wire import Foreign
 MAX_TRIES = 3  # of a check, on a machine that is too busy to start a process
 RETRY_INTERVAL = 0.5  # [s] between two of them
 SAMPLES = 12  # random inputs
+TWICE = 3  # of them are tried twice
 TERM_SAMPLES = 16  # random inputs at which terms are compared
 MAX_DRAWS = 200  # of inputs, to find so many
 TOLERANCE = 1e-4  # of the largest value of a result: single precision is right too
@@ -83,19 +86,25 @@ class Points:
 class StudentFunction:
     """A student's function, called with the types of the reference solution."""
 
-    def __init__(self, runner: Runner, task: Task) -> None:
+    def __init__(self, runner: Runner, task: Task, *, is_watched: bool = True) -> None:
+        """is_watched: a call fails where the function does something besides its result."""
         self.runner = runner
         self.task = task
+        self.is_watched = is_watched
+        self.twice = False  # each call is compared with a second one
         self.started, self.effort = time.monotonic(), runner.effort
         self.like: Any = None  # a result of the reference solution
 
     def __call__(self, *arguments: Any) -> Any:
         """The result, in the form of the reference's. Raises RunError or Wrong."""
-        # A machine that is busy with other processes may take longer.
-        is_late = time.monotonic() - self.started > MAX_WAIT * TASK_LIMIT
-        if is_late or self.runner.effort - self.effort > TASK_LIMIT:
+        if self.runner.effort - self.effort > TASK_LIMIT:
             raise RunError("endless", f"{self.task.name} is too slow: {TASK_LIMIT:g} s are over", self.task.file)
-        value = self.runner.call(self.task.file, self.task.name, *arguments)
+        if time.monotonic() - self.started > MAX_WAIT * TASK_LIMIT:
+            raise RunError(BUSY, f"the machine is busy: {MAX_WAIT * TASK_LIMIT:g} s are over", self.task.file)
+        if self.is_watched:
+            value = self.runner.watch(self.task.file, self.task.name, *arguments, twice=self.twice)
+        else:
+            value = self.runner.call(self.task.file, self.task.name, *arguments)
         if self.like is None:
             self.like = self.reference(*arguments)
         found = conform(value, self.like)
@@ -226,6 +235,8 @@ def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
         place = place_of(error.file, error.line)
         if error.kind == BUSY:
             return not_checked(error.text)
+        if error.kind in EFFECTS:
+            return Verdict("wrong", error.text, error.kind, place)
         return Verdict("failed", error.text, error.kind, place, task.file if error.loading else "")
     except Wrong as error:
         return Verdict("wrong", str(error), error.mistake, place_of(task.file, line), equations=error.equations)
@@ -245,7 +256,7 @@ def draw(runner: Runner, task: Task) -> Points | None:
     x = np.asarray(curve.x, np.float64)
     reference = np.asarray(curve.values(task.function, x), np.float64)
     try:
-        found = np.asarray(curve.values(StudentFunction(runner, task), x), np.float64)
+        found = np.asarray(curve.values(StudentFunction(runner, task, is_watched=False), x), np.float64)
     except (RunError, Wrong, ValueError, IndexError):  # its message stands above the curve
         found = None
     if found is not None and found.shape != x.shape:
@@ -274,8 +285,8 @@ def compare(student: StudentFunction) -> None:
     normalise = getattr(task.check, "normalise", lambda value: value)
     expected = [normalise(student.reference(*sample)) for sample in samples]
     found = []
-    for sample in samples:
-        student.like = student.reference(*sample)
+    for i, sample in enumerate(samples):
+        student.like, student.twice = student.reference(*sample), i < TWICE
         found.append(normalise(student(*sample)))
     if all(same(a, b) for a, b in zip(found, expected, strict=True)):
         return
@@ -358,7 +369,7 @@ def ignores(student: StudentFunction, samples: list[Any], found: list[Any], i: i
         other = (*first[:i], second[i], *first[i + 1 :])
         if np.shape(first[i]) != np.shape(second[i]) or same(student.reference(*first), student.reference(*other)):
             continue
-        if time.monotonic() - student.started > TASK_LIMIT / 2.0:
+        if student.runner.effort - student.effort > TASK_LIMIT / 2.0:
             return False
         changed_reference = True
         student.like = student.reference(*other)

@@ -1,9 +1,9 @@
 """Runs a student's functions in a separate process: nothing that they do harms the lab.
 
-A call that takes more than 2 s, without the time in which other processes had the processor, is ended with its process,
-and the next call gets a new one. What went wrong is a `RunError`, which says what and where in words for the student.
-A process that cannot be started, or that ends because the one that forked it has ended, is no fault of the functions:
-the call is made again, and after some tries it fails with the kind `BUSY`.
+A call that takes more than 2 s of processor time is ended with its process, and the next call gets a new one. What went
+wrong is a `RunError`, which says what and where in words for the student. A process that does not get the processor
+(`call_limit.py`), that cannot be started, or that ends because the one that forked it has ended, is no fault of the
+functions: the error has the kind `BUSY`, for a lost process after some tries.
 """
 
 import ast
@@ -24,6 +24,8 @@ from typing import IO, Any, TypeAlias
 
 import numpy as np
 
+from app.lab.call_limit import ASLEEP, COMPUTING, CallLimit
+from app.lab.call_limit import BUSY as BUSY_MACHINE
 from app.lab.cloth_march import FILE as CLOTH_FILE
 from app.lab.job import end_with_this_program, kill_with_children
 from app.lab.process import COMPILES, FORKS, TRACE_SIGNAL
@@ -41,7 +43,6 @@ MAX_TRIES = 3  # of a call whose process is lost
 BUSY = "busy"  # kind of an error that is no fault of the student's functions
 COMPILE_LIMIT = 60.0  # [s] for compiling
 TABLE_ROWS = 512  # of a table that are computed in one call
-MAX_WAIT = 10.0  # ratio of the longest wait to the time limit, on a machine that is busy with other processes
 TRACE_TIME = 0.2  # [s] for which a process that does not answer may take to say where it is
 MAX_TRACE = 2**16  # [bytes] of what it says
 FRAME = re.compile(r'File "(.+)", line (\d+) in (.+)')  # as faulthandler writes it
@@ -86,7 +87,7 @@ class Runner:
         self.time_limit = time_limit
         self.compiles = compiles
         self.starts = 0  # processes started
-        self.effort = 0.0  # [s] of processor time that calls have taken; of time, where the system does not tell it
+        self.effort = 0.0  # [s] of processor time that calls have taken
         self.is_fresh = False  # its process runs, and does not know the folder yet: another may be set
         self._parsed: set[str] = set()  # files without an error of syntax
         self._loaded: set[str] = set()  # files that the process has run
@@ -94,7 +95,6 @@ class Runner:
         self._load_limit = LOAD_LIMIT
         self._process: Process | None = None
         self._aborted = False
-        self._used = 0.0  # [s] of processor time that the process had taken at the start of the call
         self._trace: IO[bytes] | None = None  # where the process writes, when it is asked, where it is
         self._place: tuple[str, int, str] | None = None  # file, line and function, of a process that tells it unasked
         self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
@@ -111,6 +111,13 @@ class Runner:
         Functions among the arguments are computed here when the student's function calls them. Raises RunError.
         """
         return self._ask("call", file, function, list(arguments))
+
+    def watch(self, file: str, function: str, *arguments: Any, twice: bool) -> Any:
+        """As `call`, of a function that does nothing besides its result. twice: two equal calls are compared.
+
+        Raises RunError with a kind of `effects.EFFECTS` too.
+        """
+        return self._ask("watch", file, function, [twice, list(arguments)])
 
     def march(
         self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
@@ -210,22 +217,21 @@ class Runner:
         if self.is_fresh:
             self._say(process, ["folder", str(self.folder)])
             self.is_fresh = False
-        start = time.monotonic()
-        self._used, self._place = processor_time(process.pid)[1], None
+        limit, self._place = CallLimit(process.pid, time_limit), None
         self._say(process, [kind, file, function, pack(arguments, refer)])
         while True:
-            answer = self._next(start + time_limit, time_limit, file, function)
+            answer = self._next(limit, file, function)
             try:
                 if answer[0] == "result":
-                    used = processor_time(process.pid)[1]
-                    self.effort += used - self._used if sys.platform == "linux" else time.monotonic() - start
+                    self.effort += float(answer[2])
                     return unpack(answer[1], lambda _: None)
                 if answer[0] == "loaded":
                     self._loaded.add(file)
                     continue
                 if answer[0] == "at":
-                    _, where, line, inner = answer
-                    self._place = str(where), int(line), str(inner)
+                    _, where, line, inner, used = answer
+                    self._place = (str(where), int(line), str(inner)) if line else None
+                    limit.note(float(used))
                     continue
                 if answer[0] == "failed":
                     _, kind, text, where, line, loading = answer
@@ -275,11 +281,11 @@ class Runner:
             raise RunError(BUSY, f"the machine is busy: no process can be started: {why}", "Python") from error
         if self._aborted:
             process.kill()
-        self._used = 0.0
         self._answers = queue.SimpleQueue()
         threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
         try:
-            self._next(time.monotonic() + self._load_limit, self._load_limit, "Python", "the start of a process")
+            limit = CallLimit(process.pid, self._load_limit, wall=self._load_limit)
+            self._next(limit, "Python", "the start of a process")
         except (LostError, RunError) as error:
             if self._aborted:
                 raise
@@ -314,23 +320,6 @@ class Runner:
             return self._place
         return traced(self._process, self._trace, self.folder)
 
-    def _wait(self, deadline: float, time_limit: float) -> list[Any] | None:
-        """The next message, or None at the end of the process. Raises queue.Empty if none comes in time.
-
-        A process that others keep from the processor has until it has taken `time_limit` of processor time.
-        """
-        last = deadline + (MAX_WAIT - 1.0) * time_limit
-        while True:
-            now = time.monotonic()
-            try:
-                return self._answers.get(timeout=max(min(deadline, last) - now, 0.0))
-            except queue.Empty:
-                waits, used = (False, 0.0) if self._process is None else processor_time(self._process.pid)
-                left = time_limit - (used - self._used)
-                if not waits or left <= 0.0 or now > last:
-                    raise
-                deadline = time.monotonic() + left
-
     def _is_loading(self, file: str) -> bool:
         """True if the process has not yet run a file to its end."""
         return file not in self._loaded and (self.folder / file).is_file()
@@ -341,22 +330,26 @@ class Runner:
         with contextlib.suppress(OSError):
             send(process.stdin, message)
 
-    def _next(self, deadline: float, time_limit: float, file: str, function: str) -> list[Any]:
+    def _next(self, limit: CallLimit, file: str, function: str) -> list[Any]:
         """The next message of the process. Raises RunError where none comes in time, or the process has ended.
 
         Raises LostError where it has ended with its template.
-
-        deadline: [s] of the monotonic clock. time_limit: [s] that led to it, which the error tells.
         """
-        try:
-            answer = self._wait(deadline, time_limit)
-        except queue.Empty:
+        while (state := limit.look()) == COMPUTING:
+            with contextlib.suppress(queue.Empty):
+                answer = self._answers.get(timeout=limit.patience)
+                break
+        else:
             place, loading = self._where(), self._is_loading(file)
             self.close()
             where, line, inner = place or (file, None, file if loading else function)
             inner = where if inner == "<module>" else inner
-            text = f"{inner} does not come to an end within {time_limit:g} s: is there an endless loop?"
-            raise RunError("endless", text, where, line, loading=loading) from None
+            if state == BUSY_MACHINE:
+                text = f"{inner} got {limit.taken:.2g} s of the processor within {limit.wall:g} s"
+                raise RunError(BUSY, f"the machine is busy: {text}", where, line)
+            why = "it waits, and does not compute" if state == ASLEEP else "is there an endless loop?"
+            text = f"{inner} does not come to an end within {limit.seconds:g} s: {why}"
+            raise RunError("endless", text, where, line, loading=loading)
         if answer is None:
             process, loading = self._process, self._is_loading(file)
             if process is not None:
@@ -437,20 +430,6 @@ def dispose(process: Process, trace: IO[bytes] | None) -> None:
             if stream is not None:
                 stream.close()
     process.wait()
-
-
-def processor_time(pid: int) -> tuple[bool, float]:
-    """Return whether a process runs or waits for the processor, and the processor time [s] that it has taken.
-
-    (False, 0.0) on all systems but Linux.
-    """
-    if sys.platform != "linux":
-        return False, 0.0
-    try:
-        fields = Path(f"/proc/{pid}/stat").read_text("ascii", "replace").rpartition(")")[2].split()
-        return fields[0] == "R", sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
-    except (OSError, IndexError, ValueError):
-        return False, 0.0
 
 
 def has_ended(process: Process, *, block: bool = False) -> bool:

@@ -1,13 +1,15 @@
 """The process that runs a student's functions. `runner.py` starts it and speaks to it by pipes.
 
 It says `["ready"]` once, and gets `["folder", path]` once. It takes `["call", file, function, arguments]` and answers
-with `["result", value]`, `["callback", number, arguments]` (a function among the arguments is called: the other side
-computes it), or `["failed", kind, text, file, line, loading]` (loading: the file itself does not run). It says
-`["loaded", file]` once it has run a file. With `["march", file, function, arguments]` it advances a rope or
+with `["result", value, processor time]`, `["callback", number, arguments]` (a function among the arguments is called:
+the other side computes it), or `["failed", kind, text, file, line, loading]` (loading: the file itself does not run).
+It says `["loaded", file]` once it has run a file. With `["march", file, function, arguments]` it advances a rope or
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
-at many arguments (`tabulate.py`). During a long call it says `["at", file, line, function]` again and again on systems
-without a signal by which the lab could ask. What a student prints is counted and dropped: the pipes are the lab's own.
+at many arguments (`tabulate.py`). `["watch", file, function, [twice, arguments]]` is a call that fails where the
+function does something besides its result (`diagnosis/effects.py`). During a long call it says `["at", file, line,
+function, processor time]` again and again on systems that do not tell the lab (`call_limit.py`). What a student prints
+is counted and dropped: the pipes are the lab's own.
 """
 
 import contextlib
@@ -27,6 +29,7 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from app.lab.cloth_march import ClothFunctions
+from app.lab.diagnosis.effects import Effect, state_of, watched
 from app.lab.process import BACKGROUND_NICENESS, COMPILES, FORKS, ROPE_NICENESS, TRACE_SIGNAL, lower_priority
 from app.lab.rope_march import ClothData, Functions, Unfit, march, unpacked
 from app.lab.tabulate import Interval, tabulate
@@ -36,7 +39,7 @@ from app.lab.wire import pack, receive, send, unpack
 MAX_LINES = 10_000  # printed in one call or march
 MEMORY = 768 * 2**20  # [bytes] that a call may ask for, where the system can limit it
 LOOK_AT_PARENT = 1.0  # [s] between two looks whether the lab still runs
-PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on where it is
+PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on where it is, and the time that it has taken
 
 
 class PrintedTooMuchError(BaseException):
@@ -76,9 +79,11 @@ class Worker:
         sys.stdin = io.StringIO()
         sys.stdout = sys.stderr = self.output
         self.modules: dict[str, ModuleType] = {}
+        self.states: dict[str, Any] = {}  # of the modules, before any watched call
         self.compiled: dict[str, Callable[..., Any]] = {}
         self.was_tried = was_tried
         self.in_call = threading.Event()
+        self.began = 0.0  # [s] of processor time, at the start of the call
         self.sending = threading.Lock()  # for one message
 
     def enter(self, folder: Path) -> None:
@@ -97,8 +102,11 @@ class Worker:
         while (message := receive(self.incoming)) is not None:
             kind, file, function, arguments = message
             self.output.lines = 0
+            self.began = time.process_time()
             self.in_call.set()
             answer = self.answer(kind, file, function, arguments)
+            if answer[0] == "result":
+                answer.append(time.process_time() - self.began)
             self.in_call.clear()
             try:
                 self.say(answer)
@@ -125,9 +133,9 @@ class Worker:
             codes = [(frame.f_code, line) for frame, line in frames]
             own = [(code, line) for code, line in codes if Path(code.co_filename).parent == self.folder]
             with self.sending, contextlib.suppress(OSError):  # the lab has gone
-                if own and self.in_call.is_set():  # no place comes after the result
-                    code, line = own[0]
-                    send(self.outgoing, ["at", Path(code.co_filename).name, line, code.co_name])
+                if self.in_call.is_set():  # no place comes after the result
+                    at = [(Path(code.co_filename).name, line, code.co_name) for code, line in own] or [("", 0, "")]
+                    send(self.outgoing, ["at", *at[0], time.process_time() - self.began])
 
     def answer(self, kind: str, file: str, function: str, arguments: Any) -> list[Any]:
         """The message with the result of a call or a march."""
@@ -157,8 +165,14 @@ class Worker:
             if kind == "table":
                 columns, shape, allowed = unpack(arguments, self.remote)
                 return ["result", pack(tabulate(target, function, columns, shape, Interval(*allowed)), lambda _: 0)]
-            value = target(*unpack(arguments, self.remote))
+            if kind == "watch":
+                twice, arguments = arguments
+                value = self.watch(file, function, unpack(arguments, self.remote), twice=twice)
+            else:
+                value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
+        except Effect as error:
+            return ["failed", error.kind, error.text, error.file or file, error.line, False]
         except Unfit as error:
             return ["failed", error.kind, error.text, file, error.line, False]
         except PrintedTooMuchError:
@@ -175,6 +189,22 @@ class Worker:
             text = "".join(traceback.format_exception_only(error)).strip().splitlines()
             return ["failed", "raised", text[-1] if text else type(error).__name__, *self.place(file), loading]
 
+    def watch(self, file: str, function: str, arguments: list[Any], *, twice: bool) -> Any:
+        """The result of a function that does nothing besides. Raises Effect."""
+        module = self.modules[file]
+        if file not in self.states:
+            self.states[file] = state_of([module])
+        others = modules_below(module, self.folder)
+
+        def anew() -> tuple[Callable[..., Any], list[ModuleType]]:
+            module = self.run(file)
+            return getattr(module, function), [module, *others]
+
+        target, modules = getattr(module, function), [module, *others]
+        if state_of([module]) != self.states[file]:  # an earlier call has changed something
+            target, modules = anew()
+        return watched(target, modules, arguments, self.folder, anew, twice=twice)
+
     def place(self, file: str) -> tuple[str, int | None]:
         """File and line of the student's code where the present exception arose."""
         _, error, _ = sys.exc_info()
@@ -185,15 +215,23 @@ class Worker:
     def load(self, file: str) -> ModuleType:
         """The student's module, run once."""
         if file not in self.modules:
-            name = Path(file).stem
-            spec = importlib.util.spec_from_file_location(name, self.folder / file)
-            if spec is None or spec.loader is None:
-                raise ImportError(f"{file} is not Python")
-            module = importlib.util.module_from_spec(spec)
-            sys.modules[name] = module
-            spec.loader.exec_module(module)
-            self.modules[file] = module
+            self.modules[file] = self.run(file)
         return self.modules[file]
+
+    def run(self, file: str) -> ModuleType:
+        """Run a file as a new module."""
+        name = Path(file).stem
+        spec = importlib.util.spec_from_file_location(name, self.folder / file)
+        if spec is None or spec.loader is None:
+            raise ImportError(f"{file} is not Python")
+        module = importlib.util.module_from_spec(spec)
+        known, sys.modules[name] = sys.modules.get(name), module
+        try:
+            spec.loader.exec_module(module)
+        finally:
+            if known is not None:  # other files hold on to the first one
+                sys.modules[name] = known
+        return module
 
     def remote(self, number: int) -> Any:
         """A function of the lab as the student's function calls it."""
@@ -208,6 +246,20 @@ class Worker:
             return unpack(message[1], self.remote)
 
         return function
+
+
+def modules_below(module: ModuleType, folder: Path) -> list[ModuleType]:
+    """The modules of a folder that a module of it uses, directly or by others."""
+    found = [module]
+    for user in found:
+        for value in vars(user).values():
+            name = None if isinstance(value, ModuleType) else getattr(value, "__module__", None)
+            other = value if name is None else sys.modules.get(name)
+            if isinstance(other, ModuleType) and all(other is not known for known in found):
+                file = getattr(other, "__file__", None) or ""
+                if os.path.dirname(file) == str(folder) and file != module.__file__:
+                    found.append(other)
+    return found[1:]
 
 
 def limit_memory() -> None:
@@ -248,7 +300,7 @@ def main() -> None:
     if TRACE_SIGNAL is not None:
         faulthandler.register(TRACE_SIGNAL, file=trace, all_threads=False)
     worker = Worker(was_tried=compiles)
-    if TRACE_SIGNAL is None:
+    if sys.platform != "linux":
         threading.Thread(target=worker.say_where, daemon=True).start()
     lower_priority(BACKGROUND_NICENESS if compiles else 0)
     if compiles:

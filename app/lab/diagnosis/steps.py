@@ -9,14 +9,6 @@ from app.lab.diagnosis.explanation import Explanation
 from app.lab.diagnosis.tableau import NoTableau, StepTableau, merged, order_of, pruned, read_tableau
 
 PARTS = {f"{NEW} x": "The new position is", f"{NEW} v": "The new velocity is"}
-ALTERNATES = (
-    "Two calls with the same arguments give different results, and the third gives the first again: x and v take turns "
-    "from call to call. The scheme of section 2.3 has them half a step apart; one call must advance both by h."
-)
-KEEPS_STATE = (
-    "Two calls with the same arguments give different results: something is kept from one call to the next. Compute "
-    "everything from x, v and h."
-)
 
 
 def explain_step(
@@ -29,11 +21,7 @@ def explain_step(
     """
     try:
         found = read_tableau(student, with_velocity=with_velocity)
-    except NoTableau as error:
-        if not error.keeps_state:
-            return None
-        return Explanation("state kept between calls", ALTERNATES if error.alternates else KEEPS_STATE)
-    except (ValueError, IndexError, TypeError):  # results of another shape
+    except (NoTableau, ValueError, IndexError, TypeError):  # the last three: results of another shape
         return None
     references = [right_method(method, with_velocity=with_velocity) for method in methods]
     best: tuple[list[ComparedRow], RightMethod] | None = None

@@ -17,8 +17,8 @@ RIGHT: dict[str, str] = {
         return a""",
     "step_euler": """
         a = acceleration(x, v)
-        x += h * v
-        v += h * a
+        x = x + h * v
+        v = v + h * a
         return x, v""",
     "step_rk4": """
         f = lambda y: np.array([y[1], acceleration(y[0], y[1])])

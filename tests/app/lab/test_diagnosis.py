@@ -103,7 +103,7 @@ def right_steps(rng: random.Random) -> Iterator[tuple[str, str]]:
         yield "step_euler", rng.choice((
             "a = acceleration(x, v)\nx = x + h * v\nreturn x, v + h * a",
             "new = v + h * acceleration(x, v)\nreturn new * h - h * (new - v) + x, new",
-            "x += h * v - 0 * x\nreturn x, v + h * acceleration(x - h * v, v)",
+            "x = x + h * v - 0 * x\nreturn x, v + h * acceleration(x - h * v, v)",
         ))  # fmt: skip
         yield "step_leapfrog", rng.choice((
             f"w = v + {half()} * acceleration(x, v)\nx = x + h * w\nreturn x, w + {half()} * acceleration(x, w)",
@@ -146,7 +146,7 @@ def test_none_of_200_right_steps_in_other_notation_is_called_wrong() -> None:
     for i in range(200):
         name, body = next(drawn)
         step = compiled(name, "x, v, h, acceleration", body)
-        step = single_precision(step) if i % 4 == 0 and "+=" not in body else step
+        step = single_precision(step) if i % 4 == 0 else step
         assert explain(name, step) is None, (name, body)
 
 

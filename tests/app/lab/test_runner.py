@@ -2,13 +2,13 @@
 
 import contextlib
 import os
-import queue
 import signal
 import socket
 import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,10 +17,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.lab import runner
+from app.lab import call_limit, runner
+from app.lab.call_limit import ASLEEP, COMPUTING, ENDLESS, CallLimit
 from app.lab.process import FORKS
-from app.lab.runner import RunError, Runner, has_ended
+from app.lab.runner import START, RunError, Runner, has_ended
 from app.lab.template import Template
+from app.lab.wire import receive, send
 from tests.waiting import wait_for
 
 ROOT = Path(__file__).parents[3]
@@ -99,7 +101,7 @@ BUSY = "import os, time\n    os.sched_setaffinity(0, {x})\n    while time.proces
 def test_a_call_that_waits_for_the_processor_is_no_endless_loop(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.lab.runner.MAX_WAIT", 200.0)  # a low priority can get a hundredth of a busy processor
+    monkeypatch.setattr("app.lab.call_limit.MAX_WAIT", 200.0)  # a low priority can get a hundredth of a busy processor
     write(tmp_path, BUSY)
     core = min(os.sched_getaffinity(0))
     endless = f"import os; os.sched_setaffinity(0, {{{core}}})\nwhile 1: pass"
@@ -115,22 +117,97 @@ def test_a_call_that_waits_for_the_processor_is_no_endless_loop(
             loop.wait()
 
 
-def test_a_call_on_a_busy_machine_waits_ten_times_its_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def over_after(
+    monkeypatch: pytest.MonkeyPatch, used: Callable[[float], tuple[bool, float]], *, told: bool = False
+) -> tuple[float, str]:
+    """Time [s] after which a call with a limit of 0.5 s is over, and why.
+
+    used: whether the process sleeps and the processor time [s] it has, of time [s]. told: the process tells that.
+    """
     clock = [100.0]
+    monkeypatch.setattr(call_limit, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr(call_limit, "processor_time", lambda _: used(clock[0] - 100.0))
+    monkeypatch.setattr(call_limit, "sys", SimpleNamespace(platform="darwin" if told else "linux"))
+    limit = CallLimit(0, 0.5)
+    while (state := limit.look()) == COMPUTING:
+        clock[0] += limit.patience + 1e-3
+        if told:
+            limit.note(used(clock[0] - 100.0)[1])
+    return clock[0] - 100.0, state
 
-    class Silent:
-        def get(self, timeout: float) -> None:
-            clock[0] += timeout + 1e-3
-            raise queue.Empty
 
-    monkeypatch.setattr(runner, "time", SimpleNamespace(monotonic=lambda: clock[0]))
-    monkeypatch.setattr(runner, "processor_time", lambda _: (True, 0.0))  # it waits, and has not run
-    one = Runner(tmp_path)
-    monkeypatch.setattr(one, "_answers", Silent())
-    monkeypatch.setattr(one, "_process", SimpleNamespace(pid=0))
-    with pytest.raises(queue.Empty):
-        one._wait(clock[0] + 0.5, 0.5)
-    assert clock[0] - 100.0 == pytest.approx(5.0, abs=0.1)
+@pytest.mark.parametrize("told", [False, True])
+def test_a_limit_is_one_of_processor_time_and_on_a_busy_machine_ten_times_as_long(
+    monkeypatch: pytest.MonkeyPatch, told: bool
+) -> None:
+    seconds, state = over_after(monkeypatch, lambda t: (False, t), told=told)
+    assert (round(seconds, 1), state) == (0.5, ENDLESS)
+    seconds, state = over_after(monkeypatch, lambda t: (False, t / 4.0), told=told)
+    assert (round(seconds, 1), state) == (2.0, ENDLESS)
+    seconds, state = over_after(monkeypatch, lambda t: (True, 0.0), told=told)
+    assert (round(seconds, 1), state) == (0.6 if seconds > 0.55 else 0.5, ASLEEP)
+    if not told:  # it waits for the processor, which only Linux tells
+        seconds, state = over_after(monkeypatch, lambda t: (False, t / 50.0))
+        assert (round(seconds, 1), state) == (5.0, call_limit.BUSY)
+    # It computes, then sleeps: the sleep counts from its beginning.
+    seconds, state = over_after(monkeypatch, lambda t: (t > 0.3, min(t, 0.3)), told=told)
+    assert (0.75 < seconds < 0.95, state) == (True, ASLEEP)
+
+
+def test_a_process_that_tells_nothing_is_no_endless_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a busy machine neither the function nor the thread that tells its time gets the processor."""
+    clock = [100.0]
+    monkeypatch.setattr(call_limit, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr(call_limit, "sys", SimpleNamespace(platform="win32"))
+    limit = CallLimit(0, 0.5)
+    while (state := limit.look()) == COMPUTING:
+        clock[0] += limit.patience + 1e-3
+    assert (round(clock[0] - 100.0, 1), state) == (5.0, call_limit.BUSY)
+
+
+def test_a_call_that_gets_no_processor_says_that_the_machine_is_busy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, "import time; time.sleep(60)")
+    monkeypatch.setattr(call_limit, "MAX_WAIT", 1.0)
+    monkeypatch.setattr(call_limit, "processor_time", lambda _: (False, 0.0))  # it waits, and has not run
+    with Runner(tmp_path, time_limit=0.3) as one:
+        with pytest.raises(RunError, match=r"the machine is busy: f got 0 s of the processor within 0\.3 s") as caught:
+            one.call("mine.py", "f", 1.0)
+        assert caught.value.kind == runner.BUSY
+        monkeypatch.undo()
+        assert one.call("mine.py", "right", 3.0) == 6.0
+
+
+def test_a_worker_tells_its_place_and_time_where_the_system_does_not(tmp_path: Path) -> None:
+    """As on Windows and macOS, by a thread; here the thread runs on Linux too."""
+    write(tmp_path, "import time; end = time.process_time() + 0.5\n    while time.process_time() < end: pass")
+    start = START.replace("main()", "sys.platform = 'darwin'; main()").replace(
+        "from app", "import app.lab.process\nfrom app"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-P", "-c", start, str(ROOT), "2", ""], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    assert receive(process.stdout) == ["ready"]
+    send(process.stdin, ["folder", str(tmp_path)])
+    send(process.stdin, ["call", "mine.py", "f", [1.0]])
+    told = []
+    while (message := receive(process.stdout)) is not None:
+        told.append(message)
+        if message[0] == "result":
+            break
+    process.stdin.close()
+    process.wait()
+    process.stdout.close()
+    places = [message[1:] for message in told if message[0] == "at" and message[2]]
+    assert places
+    assert {(file, line, name) for file, line, name, _ in places} <= {("mine.py", 4, "f"), ("mine.py", 5, "f")}
+    used = [message[4] for message in told if message[0] == "at"]
+    assert used == sorted(used)
+    assert used[-1] <= told[-1][2]
+    assert 0.5 <= told[-1][2] < 5.0
 
 
 PRIORITIES = """import os

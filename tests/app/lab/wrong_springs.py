@@ -152,9 +152,10 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
         ("results swapped", "return v + h * acceleration(x, v), x + h * v"),
         ("the new position is h v", "return h * v, h * acceleration(x, v)"),
         ("position before velocity", """
+            x = x.copy()
             for i in range(len(x)):
                 x[i] += h * v[i]
-            v += h * acceleration(x, v)
+            v = v + h * acceleration(x, v)
             return x, v"""),
         ("wrong shape", "return x + h * v"),
     ),

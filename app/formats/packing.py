@@ -9,7 +9,7 @@ WIDTH_BITS bits for this width.
 
 The result is an array (rows, 3) of single precision, as the vertices of a mesh are: count, columns and fields; then
 step, offset and 0 of each field; then the bits, WORD_BITS in each number, lowest first. Words of 30 bits are numbers
-from 0 to below 2, so that none is a NaN in transport. `unpack` and `app/render/js/packed.js` read it.
+from 0 to below 2, so that none is a NaN in transport. `unpack` and `app/render/js/shading/packed.js` read it.
 """
 
 from collections.abc import Sequence

@@ -23,7 +23,7 @@ UNDO = "Undo this change"
 class Change(NamedTuple):
     """A change of the whole lab."""
 
-    page: str  # word that the page which made it knows itself by (app/render/js/share.js)
+    page: str  # word that the page which made it knows itself by (app/render/js/panel/share.js)
     scene: str  # that is shown after it
     subject: Setup | str  # that was opened: a set-up, or the name of a comparison
     before: Setup  # what was shown

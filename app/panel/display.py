@@ -44,7 +44,7 @@ def add_theme_buttons(gui: viser.GuiApi, view: AnyView) -> None:
 
 
 def add_switches(gui: viser.GuiApi) -> None:
-    """The choices of each browser; the page does the rest (`js/display.js`, `js/quality.js`)."""
+    """The choices of each browser; the page does the rest (`js/panel/display.js`, `js/shading/quality.js`)."""
     gui.add_html(
         '<div class="springtide-switches"><button type="button" data-springtide-switch="dark">Dark</button>'
         '<button type="button" data-springtide-switch="large">Large text</button></div>'

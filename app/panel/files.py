@@ -35,7 +35,7 @@ PLOTS, CHARTS, FILM = "Plots as CSV", "Plots as SVG", "Film pictures"
 MAX_PICTURES = 900  # of a film: half a minute of a recording
 MAX_FILM = 400e6  # [bytes] of all pictures of a film
 BARRIER_SIZE = (16, 16)  # [pixels] of a picture that is asked for only to know that what was sent before it has come
-# Buttons with a choice. The page makes clips and PNG files of plots, and has the others made (app/render/js/share.js).
+# Buttons with a choice. The page makes clips and PNG files of plots, and has the others made (js/panel/share.js).
 PAGE_BUTTONS = (
     '<div class="springtide-switches" data-springtide-makers="{}"><label>Plots <select data-springtide-plots>'
     "<option>CSV</option><option>SVG</option><option>PNG</option></select></label>"

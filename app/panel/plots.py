@@ -308,7 +308,7 @@ def kept_line(line: ChartLine) -> ChartLine:
 
 
 def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None) -> tuple[uplot.Axis, ...]:
-    """The two axes of a chart, the second with words at its ticks; `js/charts.js` writes the name of the first.
+    """The two axes of a chart, the second with words at its ticks; `js/panel/charts.js` writes the name of the first.
 
     width: [pixels] for the words.
     """
@@ -325,7 +325,7 @@ def series_of(first: str, lines: Sequence[ChartLine]) -> tuple[uplot.Series, ...
             look["dash"] = line.dash
         if line.fill:
             look["fill"] = line.fill
-        if line.cross:  # drawn by `js/charts.js`
+        if line.cross:  # drawn by `js/panel/charts.js`
             look.update({"label": f"× {line.label}", "class": CROSS_CLASS, "width": 0.0, "points": {"show": False}})
         series.append(look)
     return tuple(series)

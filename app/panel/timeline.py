@@ -1,4 +1,4 @@
-"""The time line of the recording, which the page draws along the foot of the scene (`app/render/js/timeline.js`).
+"""The time line of the recording, which the page draws along the foot of the scene (`app/render/js/panel/timeline.js`).
 
 Actions of pages come on viser's event loop; `update` runs on the viewer's thread.
 """

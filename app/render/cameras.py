@@ -115,7 +115,7 @@ def is_waiting(camera: viser.CameraHandle) -> bool:
 def has_taken(wanted: NDArray[np.float64], reported: NDArray[np.float64]) -> bool:
     """True if a page that reports a place (2, 3) [m] has taken the wanted one; its user may be turning it already."""
     off = reported - wanted
-    # The page lifts a camera that would be under the floor or the water (js/camera.js).
+    # The page lifts a camera that would be under the floor or the water (js/page/camera.js).
     if np.abs(off[:, :2]).max() <= SAME_PLACE and off[:, 2].min() >= -SAME_PLACE:
         return True
     change = np.linalg.norm(reported[0] - reported[1]) - np.linalg.norm(wanted[0] - wanted[1])

@@ -1,8 +1,8 @@
 """A mesh with vertices that move and change colour in every frame, which stock viser does not have.
 
-Vertices and colours travel packed in a hidden mesh. `js/injection.js` gives them to the drawn mesh and to its shader
-(see `app/render/injection.py`). A browser without that shader is sent the vertices themselves, and draws them in one
-colour.
+Vertices and colours travel packed in a hidden mesh. `js/scene/vertex_colors.js` gives them to the drawn mesh and to its
+shader (see `app/render/injection.py`). A browser without that shader is sent the vertices themselves, and draws them in
+one colour.
 """
 
 from typing import Any
@@ -84,5 +84,5 @@ class ColouredMesh:
         return np.ascontiguousarray(self._fields[:3].T)
 
     def _packed(self) -> np.ndarray:
-        """Vertices and colours as `js/injection.js` reads them."""
+        """Vertices and colours as `js/scene/vertex_colors.js` reads them."""
         return pack(self._fields, (*[self._step] * 3, *[COLOUR_STEP] * 3), self._columns)

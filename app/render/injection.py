@@ -1,8 +1,8 @@
-"""Shaders that stock viser does not have: a short script, sent once per server, replaces them in the browser.
+"""Shaders that stock viser does not have: scripts of the page replace them in the browser.
 
-viser 1.1 draws an ordinary mesh in one colour with one rough material. Its public API has no call that sends a script:
-`app.render.viser_inside.run_script` does. In the page the scripts in `js/` use `window.__viserMutable`
-(`nodeRefFromName`, `scene`, `requestRender`, `sendMessage`); `tests/browser/test_water.py` fails when these change.
+viser 1.1 draws an ordinary mesh in one colour with one rough material. The scripts in `js/scene` and `js/sea` use
+`window.__viserMutable` (`nodeRefFromName`, `scene`, `requestRender`, `sendMessage`); `tests/browser/test_water.py`
+fails when these change.
 
 Everything that changes travels as vertices of hidden meshes (`add_data_mesh`), because viser keeps only the newest
 vertices of a mesh. Displacements of a drawn mesh travel packed (`app/formats/packing.py`), in a fifth of the bytes;
@@ -13,27 +13,18 @@ Each page reports whether that worked: the script sends the names of the nodes t
 through a hidden field, whenever they change.
 """
 
-import json
 import time
 import weakref
-from importlib import resources
 
 import numpy as np
 import viser
 
-from app.render.colormap import DARK_LIFT, LUMA
 from app.render.html import fill
-from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
-from app.render.viser_inside import run_script, uuid_of
+from app.render.viser_inside import uuid_of
 from app.render.viser_types import GuiHandle, ViserEvent
 
 LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
-SCRIPTS = (
-    "quality.js", "frames.js", "injection.js", "packed.js", "underwater.js", "open_water.js", "contact.js",
-    "water_shader.js", "photograph.js", "sky_table.js", "polar_grid.js", "lit_sea.js", "half.js", "water.js", "rain.js",
-    "smoke.js", "sun.js", "ambient.js", "dark.js", "labels.js",
-)  # fmt: skip
 CONTACT_SHADOW = "contact_shadow"
 
 _injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
@@ -52,22 +43,8 @@ class ShaderInjector:
         self._seen: dict[int, float] = {}  # client id -> when it was first looked for [s]
         self._drawn: dict[int, frozenset[str]] = {}  # client id -> nodes that it draws with their shader
         self.is_recorded = False  # whether what is drawn is only recorded, for pages that have the script
-        run_script(server, self.script())
         server.on_client_disconnect(self._forget)
         self.restart(server)
-
-    def script(self) -> str:
-        """The script as it is sent: one function scope, the constants shared with Python first, the hook last."""
-        constants = {
-            "WATER_UNIFORMS": WATER_UNIFORMS,
-            "RAIN_UNIFORMS": RAIN_UNIFORMS,
-            "MAX_WATERLINES": MAX_WATERLINES,
-            "DARK_LIFT": DARK_LIFT,
-            "LUMA": LUMA,
-        }
-        shared = [f"const {name} = {json.dumps(value)};" for name, value in constants.items()]
-        files = [(resources.files("app.render") / "js" / name).read_text("utf-8") for name in SCRIPTS]
-        return "\n".join(['(() => { "use strict";', *shared, *files, "install(); })();"])
 
     def restart(self, server: viser.ViserServer) -> None:
         """Begin a scene: a new hidden field through which pages report, so nothing is left of an earlier one."""
@@ -153,6 +130,6 @@ def add_data_mesh(server: viser.ViserServer, name: str, values: np.ndarray) -> v
 
 
 def add_contact_shadow(server: viser.ViserServer, name: str) -> None:
-    """Darken the floor where the mesh `name` is near to it (`js/contact.js`), in browsers with shaders."""
+    """Darken the floor where the mesh `name` is near to it (`js/scene/contact.js`), in browsers with shaders."""
     if injector_of(server) is not None:
         add_data_mesh(server, f"{name}/{CONTACT_SHADOW}", np.zeros((1, 3)))

@@ -16,7 +16,7 @@ HAZE_DISTANCE = 3000.0  # [m]
 RAIN_HEIGHT = 350.0  # [m] of the clouds from which rain falls
 
 # Uniforms of the water shader, three numbers each, in the order in which they travel. The script takes the names from
-# here; `js/water_shader.js` declares each of them with its meaning.
+# here; `js/sea/water_shader.js` declares each of them with its meaning.
 WATER_UNIFORMS = (
     "deepColor", "scatterColor", "foamColor", "sunDirection", "sunLight", "optics", "lens", "ripple", "skyline",
     "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "ringLaw", "gridMiddle", "shown", "wireColor", "slick",
@@ -24,7 +24,7 @@ WATER_UNIFORMS = (
     "firePlace", "fireLight", "gaugePlace",
 )  # fmt: skip
 MAX_WATERLINES = 13  # that the shader of the water mirrors, and draws foam and shade around
-# The same for the shader of the rain, `js/rain.js`.
+# The same for the shader of the rain, `js/sea/rain.js`.
 RAIN_UNIFORMS = ("rain", "streak", "dropSizes", "dropMotion")
 
 

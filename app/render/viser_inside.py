@@ -65,18 +65,6 @@ def send_to_all(server: viser.ViserServer, message: ViserMessage) -> None:
     connection_of(server).queue_message(message)
 
 
-def run_script(server: viser.ViserServer, source: str) -> None:
-    """Run a script in each page of a server, in those that connect later, and in replays.
-
-    viser keeps each script for good: one per server, and none per frame.
-    """
-    attempt(
-        lambda: send_to_all(server, messages.RunJavascriptMessage(source=source)),
-        None,
-        "plain water, and a page without its own script",
-    )
-
-
 def update_node(client: viser.ClientHandle, node: str, **properties: Any) -> None:
     """Give a node of the server other properties for one browser."""
     attempt(

@@ -1,9 +1,9 @@
 """The mesh of a sea: with shaders in browsers that take them, and as stock viser draws it in the others.
 
 The surface travels as packed displacements, slopes and foam (`app/formats/packing.py`), its material as a few numbers,
-both as the vertices of hidden meshes. `js/water.js` (see `app/render/injection.py`) makes water of them. A browser that
-does not take the shader is sent the vertices themselves and draws them in one colour, with further meshes for foam,
-slick and grid.
+both as the vertices of hidden meshes. `js/sea/water.js` (see `app/render/injection.py`) makes water of them. A browser
+that does not take the shader is sent the vertices themselves and draws them in one colour, with further meshes for
+foam, slick and grid.
 """
 
 import math
@@ -154,7 +154,7 @@ class DrawnWater:
         return set_surface_fields(self._fields, vertices, slopes, foam, self._rest)
 
     def _packed(self, surface: SurfaceNumbers) -> np.ndarray:
-        """Displacement, slopes and foam of all vertices, as `js/water.js` reads them.
+        """Displacement, slopes and foam of all vertices, as `js/sea/water.js` reads them.
 
         Displacements are finer the nearer a camera can be to the water: no drawn point moves by half a pixel.
         """
@@ -198,7 +198,7 @@ class DrawnWater:
             self._set_plain_mesh("plain_sea", corners, np.array([[0, 1, 2], [0, 2, 3]]), color=self.mesh.color)
 
     def _set_plain_mesh(self, suffix: str, vertices: np.ndarray, faces: np.ndarray, **mesh: Any) -> viser.MeshHandle:
-        """Make or move a mesh for browsers without shaders; the others hide it (`js/water.js`)."""
+        """Make or move a mesh for browsers without shaders; the others hide it (`js/sea/water.js`)."""
         vertices = vertices.astype(np.float32)
         if suffix in self._plain_meshes:
             set_arrays(self._plain_meshes[suffix], vertices=vertices)

@@ -1,24 +1,27 @@
-"""The page that a browser is given: viser's, with a title, a cover for while nothing is drawn, and our own script.
+"""The page that a browser is given: viser's, with a title, a cover for while nothing is drawn, and our own scripts.
 
 viser serves one HTML file. The cover stands at the top of its body, so that it is seen before the client behind it has
-been read; the scripts below it are those of `SCRIPTS` in `app/render/js`. `FIRST_SCRIPTS` run before all others.
+been read; below it stand our modules (`app/render/scripts.py`). Where viser's page is not as expected, it is sent as it
+is: the lab works by viser's client alone.
 """
 
 import functools
 import gzip
+import secrets
+import sys
 from http import HTTPStatus
 from importlib import resources
 
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
+from app.render.scripts import PAGE, before_tags, tags
+
 ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
+SERVER_NAME = secrets.token_hex(
+    8
+)  # the answer to that: another name is another server, which knows nothing of the page
 TITLE = "<title>Springtide</title>"
-FIRST_SCRIPTS = ("address.js", "leaving.js")
-SCRIPTS = (
-    "page.js", "fields.js", "camera.js", "reach.js", "charts.js", "timeline.js", "share.js", "display.js", "access.js",
-    "beside.js",
-)  # fmt: skip
 PANES_PATH = "/beside"  # of the page that shows several labs side by side
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
 
@@ -32,19 +35,18 @@ def own_answer(request: Request, *, shared: bool) -> Response | None:
         return Response(HTTPStatus.OK, "OK", headers, body)
     if path != ALIVE_PATH:
         return None
-    headers = Headers({"Content-Type": "text/plain", "Content-Length": "0"})
+    headers = Headers({"Content-Type": "text/plain", "Content-Length": str(len(SERVER_NAME))})
     if shared:
         headers["Access-Control-Allow-Origin"] = "*"
-    return Response(HTTPStatus.OK, "OK", headers, b"")
+    return Response(HTTPStatus.OK, "OK", headers, SERVER_NAME.encode())
 
 
 def with_cover(request: Request, response: Response | None) -> Response | None:
-    """viser's answer; where it is the page, with our title, cover and script."""
+    """viser's answer; where it is the page, with our title, cover and scripts."""
     path = request.path.partition("?")[0]
     if response is None or response.status_code != HTTPStatus.OK or path not in ("/", "/index.html"):
         return response
-    body = bytes(response.body or b"")
-    page = covered(body, response.headers.get("Content-Encoding") == "gzip")
+    page = covered(bytes(response.body or b""), response.headers.get("Content-Encoding") == "gzip")
     headers = Headers(response.headers)
     del headers["Content-Length"]
     headers["Content-Length"] = str(len(page))
@@ -53,19 +55,19 @@ def with_cover(request: Request, response: Response | None) -> Response | None:
 
 @functools.cache
 def covered(sent: bytes, zipped: bool) -> bytes:
-    """viser's page with ours around it, compressed again where it was."""
-    page = gzip.decompress(sent) if zipped else sent
-    folder = resources.files("app.render") / "js"
-    style = (folder / "page.css").read_text("utf-8")
-    first, script = (
-        "".join((folder / name).read_text("utf-8") for name in names) for names in (FIRST_SCRIPTS, SCRIPTS)
-    )
-    first = f"<script>{first}</script><style>{style}</style>"
-    head, _, body = page.decode("utf-8").rpartition("<body>")
+    """viser's page with ours around it, compressed again where it was; as it was sent where it is not as expected."""
+    page = (gzip.decompress(sent) if zipped else sent).decode("utf-8")
+    head, found, body = page.rpartition("<body>")
     # viser's client is one long script in the head: below the cover it does not delay it.
-    start = head.index("<script")
-    client, end = head[start : head.rindex("</script>") + len("</script>")], head.rindex("</script>") + len("</script>")
+    start, last = head.find("<script"), head.rfind("</script>")
+    if not found or not 0 <= start < last or "</body>" not in body:
+        print("springtide: the page of viser has changed: it is shown without cover and scripts", file=sys.stderr)
+        return sent
+    end = last + len("</script>")
+    style = (resources.files("app.render") / "js" / "page.css").read_text("utf-8")
+    first = f"{before_tags()}<style>{style}</style>"
+    client = head[start:end]
     head = head[:start].replace("<title>Viser</title>", TITLE, 1) + first + head[end:]
-    body = body.replace("</body>", f"{client}<script>{script}</script></body>", 1)
-    found = f"{head}<body>{COVER}{body}".encode()
-    return gzip.compress(found) if zipped else found
+    body = body.replace("</body>", f"{client}{tags(PAGE)}</body>", 1)
+    made = f"{head}<body>{COVER}{body}".encode()
+    return gzip.compress(made) if zipped else made

@@ -16,7 +16,7 @@ PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled
 
 
 def progress_line(words: str) -> str:
-    """A line as HTML that covers the page (`js/page.js`)."""
+    """A line as HTML that covers the page (`js/page/cover.js`)."""
     return note(fill('<span class="springtide-progress">{}</span>', words))
 
 

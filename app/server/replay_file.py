@@ -20,6 +20,7 @@ from app.panel.recording_files import Plotted, plot_charts
 from app.render.cameras import place_cameras
 from app.render.html import Html, fill, join
 from app.render.injection import record_shaders
+from app.render.scripts import SCENE, tags
 from app.render.surroundings import LIGHT_SKY
 from app.render.viser_inside import change_buffers
 from app.scenes import view_named
@@ -98,7 +99,7 @@ def replay_html(kind: AnyKind, frames: Sequence[Kept], plotted: Plotted) -> str:
             server.stop()
     about = about_html(kind, params, plotted, chosen[0].time, chosen[-1].time)
     return page.replace("<title>Viser</title>", str(fill("<title>Springtide: {}</title>", kind.title)), 1).replace(
-        "</body>", f"{about}{setup_block(kind, params)}</body>", 1
+        "</body>", f"{tags(SCENE)}{about}{setup_block(kind, params)}</body>", 1
     )
 
 

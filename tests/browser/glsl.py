@@ -1,22 +1,19 @@
 """Runs functions of the water's shader on a table of inputs, in a program of their own, and reads the numbers back."""
 
 import base64
-import json
-from importlib import resources
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.render.material import MAX_WATERLINES
+from app.render.scripts import import_map, modules
 
-SHADER = (resources.files("app.render") / "js" / "water_shader.js").read_text("utf-8")
 # A picture of float numbers, a point for each input. What three would insert is left out: no function here uses it.
 # Numbers travel as the bytes of single-precision numbers in base 64: a list of them takes seconds.
-RUN = """([constants, shader, expression, table, uniforms, tileSide, tile, details, functions]) => {
+RUN = """async ([expression, table, uniforms, tileSide, tile, details, functions]) => {
     const decode = (text) => new Float32Array(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
     const points = decode(table);
-    const GLSL = new Function(`${constants}; ${shader}; return WATER_GLSL;`)();
+    const { WATER_GLSL: GLSL } = await import("springtide/sea/water_shader.js");
     const gl = document.createElement("canvas").getContext("webgl2");
     if (!gl.getExtension("EXT_color_buffer_float")) throw new Error("no float targets");
     const make = (kind, source) => {
@@ -82,6 +79,13 @@ RUN = """([constants, shader, expression, table, uniforms, tileSide, tile, detai
 }"""
 
 
+def page_with_modules(chromium: Any) -> Any:
+    """An empty page that can import the modules of the lab."""
+    page = chromium.new_page()
+    page.set_content(f"<!doctype html>{import_map(modules())}")
+    return page
+
+
 def evaluate(
     page: Any,
     expression: str,
@@ -100,8 +104,7 @@ def evaluate(
     inputs[:, : points.shape[1]] = points
     values = {name: [float(v) for v in value] for name, value in (uniforms or {}).items()}
     side, texels = (0, "") if tile is None else (len(tile), in_base_64(tile))
-    constants = f"const MAX_WATERLINES = {json.dumps(MAX_WATERLINES)}"
-    given = [constants, SHADER, expression, in_base_64(inputs), values, side, texels, details, functions]
+    given = [expression, in_base_64(inputs), values, side, texels, details, functions]
     found = page.evaluate(RUN, given)
     return np.frombuffer(base64.b64decode(found), np.float32).astype(float).reshape(-1, 4)
 

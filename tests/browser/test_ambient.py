@@ -1,15 +1,13 @@
 """The light of the sky on rough surfaces: the shader's polynomial against the light from which its terms are made."""
 
 from collections.abc import Iterator
-from importlib import resources
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.browser.glsl import evaluate
+from tests.browser.glsl import evaluate, page_with_modules
 
-AMBIENT = (resources.files("app.render") / "js" / "ambient.js").read_text("utf-8")
 # What the file needs of three's vectors, its directions, its GLSL, and its terms of a light in these directions.
 START = """const vector = (x = 0, y = 0, z = 0) => ({ x, y, z,
         clone() { return vector(this.x, this.y, this.z); },
@@ -18,7 +16,8 @@ START = """const vector = (x = 0, y = 0, z = 0) => ({ x, y, z,
         addScaledVector(v, s) { return this.set(this.x + s * v.x, this.y + s * v.y, this.z + s * v.z); },
         min(v) { return this.set(Math.min(this.x, v.x), Math.min(this.y, v.y), Math.min(this.z, v.z)); },
         max(v) { return this.set(Math.max(this.x, v.x), Math.max(this.y, v.y), Math.max(this.z, v.z)); } });"""
-FIND = f"""(lights) => {{ {START} {AMBIENT}
+FIND = f"""async (lights) => {{ {START}
+    const {{ AMBIENT_GLSL, skyTerms, setTerms }} = await import("springtide/scene/ambient.js");
     skyTerms.value = Array.from({{ length: 10 }}, () => vector());
     setTerms(lights);
     return [AMBIENT_GLSL, skyTerms.value.map(({{ x, y, z }}) => [x, y, z])]; }}"""
@@ -27,7 +26,7 @@ COUNT = 256  # directions of the file
 
 @pytest.fixture(scope="module")
 def page(chromium: Any) -> Iterator[Any]:
-    page = chromium.new_page()
+    page = page_with_modules(chromium)
     yield page
     page.close()
 

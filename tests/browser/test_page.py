@@ -6,7 +6,9 @@ from typing import Any
 
 import pytest
 
+from app.render import scripts
 from app.server.access import Access
+from app.server.page import covered
 from app.server.viewer import Viewer
 from tests.browser.conftest import new_page
 
@@ -59,18 +61,88 @@ def test_a_page_behind_a_proxy_names_no_command(chromium: Any, path: str, words:
     page.close()
 
 
-def test_without_webgl_the_page_says_so(chromium: Any) -> None:
+NO_WEBGL = "HTMLCanvasElement.prototype.getContext = () => null;"
+OLD = "delete Element.prototype.checkVisibility;"
+REFUSED = """for (const name of ["localStorage", "sessionStorage"])
+    Object.defineProperty(window, name, { get() { throw new DOMException("blocked", "SecurityError"); } });"""
+BAD_LANGUAGE = "Object.defineProperty(navigator, 'language', { value: 'C', configurable: true });"
+
+
+@pytest.mark.parametrize(
+    ("script", "words"),
+    [
+        (NO_WEBGL, "WebGL 2 is missing or switched off. Switch on hardware acceleration"),
+        (OLD, "This browser is too old for the lab. The oldest that work are Chrome or Edge 120, Firefox 121"),
+    ],
+)
+def test_a_page_that_cannot_start_says_why(chromium: Any, script: str, words: str) -> None:
     viewer = Viewer("127.0.0.1", 0)
     page = new_page(chromium, 640, 400, drawn=False)
-    page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null;")
+    page.add_init_script(script)
     try:
-        viewer.open("rope")
         page.goto(f"http://127.0.0.1:{viewer.port}/", wait_until="commit")
-        page.wait_for_selector("#springtide-notice")
-        assert "no WebGL 2" in page.inner_text("#springtide-notice")
+        wait_for(page, lambda said: words in said, 10.0)
     finally:
         viewer.shut()
         page.close()
+
+
+def test_the_cover_names_the_error_of_a_client_that_ends(chromium: Any) -> None:
+    """viser's client runs in the page, and anything in it may fail in a browser that nobody has tried."""
+    viewer = Viewer("127.0.0.1", 0)
+    page = new_page(chromium, 640, 400, drawn=False)
+    page.add_init_script("WebAssembly.Module = WebAssembly.instantiate = () => { throw new RangeError('no wasm'); };")
+    try:
+        page.goto(f"http://127.0.0.1:{viewer.port}/", wait_until="commit")
+        wait_for(page, lambda said: "The page could not start: no wasm. Load it again" in said, 15.0)
+    finally:
+        viewer.shut()
+        page.close()
+
+
+def test_one_file_with_an_error_is_named_and_the_others_work(chromium: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = {**scripts.modules(), "panel/charts.js": "this is no JavaScript"}
+    monkeypatch.setattr(scripts, "modules", lambda: broken)
+    covered.cache_clear()
+    viewer = Viewer("127.0.0.1", 0)
+    page = new_page(chromium, 640, 400, drawn=False)
+    try:
+        viewer.open("rope")
+        page.goto(f"http://127.0.0.1:{viewer.port}/", wait_until="commit")
+        page.wait_for_selector("#springtide-notice", timeout=10_000)
+        notice = page.inner_text("#springtide-notice")
+        assert "A part of this page did not start: charts, share. The rest works." in notice
+        wait_for(page, lambda words: words == "")
+        page.get_by_role("button", name="Close", exact=True).click()
+        page.wait_for_selector("[data-springtide-icon=Pause]")  # fields.js has dressed the buttons
+    finally:
+        covered.cache_clear()
+        viewer.shut()
+        page.close()
+
+
+@pytest.mark.parametrize("script", [REFUSED, BAD_LANGUAGE])
+def test_without_storage_or_language_the_page_works(chromium: Any, script: str) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("rope")
+    page, errors = new_page(chromium, 640, 400, False), []
+    page.add_init_script(script)
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    try:
+        page.goto(f"http://127.0.0.1:{viewer.port}/")
+        page.get_by_role("tab", name="View", exact=True).click(timeout=60_000)
+        dark = page.get_by_role("button", name="Dark", exact=True)
+        for pressed in ("true", "false"):
+            dark.click()
+            page.wait_for_function(
+                "is => document.querySelector('[data-springtide-switch=dark]').ariaPressed === is", arg=pressed
+            )
+        assert page.locator("[role=slider][tabindex='0']").count() > 0  # access.js has described them
+        assert page.evaluate("Object.keys(window).filter(name => /springtide/i.test(name))") == ["__springtide"]
+        assert errors == []
+    finally:
+        page.close()
+        viewer.shut()
 
 
 def test_no_link_leads_the_page_to_another_server(chromium: Any) -> None:

@@ -1,19 +1,17 @@
 """The mesh of a sea holds all of the water in view, from every camera, and has few triangles."""
 
-from importlib import resources
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tests.browser.glsl import in_base_64
+from tests.browser.glsl import in_base_64, page_with_modules
 
-SOURCE = (resources.files("app.render") / "js" / "polar_grid.js").read_text("utf-8")
 TRIANGLES = {2: 40_000, 1: 21_000, 0: 7_000}  # at most, by fineness
 PIXELS = 200  # of each camera that are tried
 # What `aimPolar` needs of three: vectors and 4 x 4 matrices, column by column. Its frame is that of the sea.
-AIM = """([source, fineness, cameras, widest, highest, cell]) => {
+AIM = """async ([fineness, cameras, widest, highest, cell]) => {
     const numbers = new Float32Array(Uint8Array.from(atob(cameras), (c) => c.charCodeAt(0)).buffer);
     class Vector {
         set(x, y, z) { Object.assign(this, { x, y, z }); return this; }
@@ -33,7 +31,7 @@ AIM = """([source, fineness, cameras, widest, highest, cell]) => {
         }
         setFromMatrixPosition({ elements }) { return this.set(elements[12], elements[13], elements[14]); }
     }
-    const { aimPolar, POLAR, DOUBLED } = new Function(`${source}; return { aimPolar, POLAR, DOUBLED };`)();
+    const { aimPolar, POLAR, DOUBLED } = await import("springtide/sea/polar_grid.js");
     const found = [], still = { elements: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] };
     for (let k = 0; k < numbers.length; k += 32) {
         const polar = { userData: { fineness }, geometry: { setDrawRange: (from, count) => (polar.count = count) } };
@@ -95,9 +93,9 @@ def seen(world: NDArray[np.float64], inverse: NDArray[np.float64], height: float
 def test_the_fan_holds_all_that_is_seen_moved_by_waves(chromium: Any, fineness: int) -> None:
     widest, highest, cell = 1.5, 1.0, 2.0  # [m]
     worlds, inverses = cameras(300)
-    page = chromium.new_page()
+    page = page_with_modules(chromium)
     table = in_base_64(np.hstack([worlds, inverses]))
-    fans = page.evaluate(AIM, [SOURCE, fineness, table, widest, highest, cell])
+    fans = page.evaluate(AIM, [fineness, table, widest, highest, cell])
     page.close()
     counts = []
     for world, inverse, fan in zip(worlds, inverses, fans, strict=True):

@@ -1,4 +1,4 @@
-"""How finely a browser draws: by the length of its frames, or as its user has chosen."""
+"""How finely a browser draws: by the length of its frames (tests/js/judge.test.js), or as its user has chosen."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -13,11 +13,6 @@ STATE = """() => ({ ...window.__springtide?.quality?.now(), width: document.quer
     now: document.querySelector("[data-springtide-quality-now]")?.innerText ?? null,
     detail: (window.__viserMutable?.nodeRefFromName?.["/sea"]?.children
         ?.find(c => c.isMesh && c.visible && c.layers.mask)?.material.userData.springtide ?? "") })"""
-# What the automatic choice makes of frames of these lengths [ms]: its step after each list of [length, number].
-JUDGED = """lists => { const judge = window.__springtide.quality.makeJudge();
-    return lists.map(list => { for (const [length, n] of list) for (let k = 0; k < n; k++) judge.take(length);
-                               return judge.step(); }); }"""
-
 # As if drawing took so long in each frame [ms], whatever this machine can do. The page waits, as a loop that runs so
 # long takes a core.
 SLOW_FRAMES = """const next = window.requestAnimationFrame.bind(window);
@@ -43,21 +38,6 @@ def wait_for(page: Any, condition: str) -> dict[str, Any]:
     """The state of the page once the condition on its state holds."""
     page.wait_for_function(f"() => {{ const s = ({STATE})(); return {condition}; }}", timeout=120_000)
     return page.evaluate(STATE)
-
-
-def test_frames_decide_and_quality_never_flickers(page: Any) -> None:
-    fast, middling, slow, very_slow = 16.7, 30.0, 60.0, 300.0
-    assert page.evaluate(JUDGED, [[[fast, 3000]], [[middling, 500]]]) == [0, 0]
-    # A frame after a change compiles programs, and one slow window may be something else.
-    one_window = [[[2000.0, 1]], [[fast, 500]], [[slow, 34], [fast, 200]], [[slow, 80]]]
-    assert page.evaluate(JUDGED, one_window) == [0, 0, 0, 1]
-    assert page.evaluate(JUDGED, [[[very_slow, 12]], [[very_slow, 12]], [[very_slow, 99]]]) == [2, 4, 4]
-    # One frame of more than 500 ms is enough.
-    assert page.evaluate(JUDGED, [[[600.0, 1]], [[600.0, 1]], [[600.0, 99]]]) == [0, 4, 4]
-    assert page.evaluate(JUDGED, [[[fast, 500]], [[490.0, 1], [fast, 500]], [[510.0, 1]]]) == [0, 0, 4]
-    # Up again after 20 s of fast frames; where that was too much, four times as long passes before the next try.
-    down_and_up = [[[slow, 80]], [[fast, 1100]], [[fast, 200]], [[slow, 110]], [[fast, 4000]], [[fast, 1200]]]
-    assert page.evaluate(JUDGED, down_and_up) == [1, 1, 0, 1, 1, 0]
 
 
 def test_without_a_graphics_card_a_page_starts_at_low(chromium: Any) -> None:

@@ -4,7 +4,6 @@ import itertools
 import json
 import re
 from collections.abc import Iterator
-from importlib import resources
 from typing import Any
 from unittest.mock import MagicMock
 
@@ -13,11 +12,12 @@ import pytest
 from numpy.typing import NDArray
 
 from app.render.material import WATER_UNIFORMS, Grid, Waterline, uniform_table, waterline_table
+from app.render.scripts import modules
 from app.render.skies import set_sky
 from sim.ocean.oil_film import APPEARANCES, EXTINCTION, light_through, mirrored_light
 from sim.ocean.radial_grid import RadialGrid
 from sim.particles.rain_rings import ring_wave
-from tests.browser.glsl import SHADER, evaluate
+from tests.browser.glsl import evaluate, page_with_modules
 
 POINTS = np.random.default_rng(1).uniform(-300.0, 300.0, (40_000, 2))
 FOOTPRINT = 0.65 / 1080 / np.sqrt(0.3)  # over the distance, seen from 0.3 of it above the water, 1080 rows in 0.65 rad
@@ -25,7 +25,7 @@ FOOTPRINT = 0.65 / 1080 / np.sqrt(0.3)  # over the distance, seen from 0.3 of it
 
 def constant(name: str) -> float:
     """The value of `const float name` or `const int name` in the shader."""
-    (value,) = re.findall(rf"const (?:float|int) {name} = ([-0-9.e]+);", SHADER)
+    (value,) = re.findall(rf"const (?:float|int) {name} = ([-0-9.e]+);", modules()["sea/water_shader.js"])
     return float(value)
 
 
@@ -38,7 +38,7 @@ def fresnel(c: NDArray[np.float64], n: float) -> NDArray[np.float64]:
 
 @pytest.fixture(scope="module")
 def page(chromium: Any) -> Iterator[Any]:
-    page = chromium.new_page()
+    page = page_with_modules(chromium)
     yield page
     page.close()
 
@@ -265,11 +265,10 @@ def test_numbers_become_the_next_half_precision_numbers(page: Any) -> None:
     ties = (halves[:-1] + halves[1:]) / 2.0  # exact in single precision
     numbers = np.concatenate([sizes, halves, ties, [0.0, 65504.0, 65519.0, 2.0**-14, 2.0**-24, 2.0**-25]])
     numbers = numbers.astype(np.float32)
-    run = "([code, text]) => new Function(`${code}; return text => JSON.parse(text).map(toHalf);`)()(text)"
-    code = (resources.files("app.render") / "js" / "half.js").read_text("utf-8")
+    run = "async text => JSON.parse(text).map((await import('springtide/sea/half.js')).toHalf)"
 
     def halves_of(values: NDArray[np.float32]) -> NDArray[np.uint16]:
-        return np.array(page.evaluate(run, [code, json.dumps(values.astype(float).tolist())]), np.uint16)
+        return np.array(page.evaluate(run, json.dumps(values.astype(float).tolist())), np.uint16)
 
     with np.errstate(over="ignore"):
         expected = np.minimum(np.maximum(numbers.astype(np.float16), np.float16(-65504)), np.float16(65504))

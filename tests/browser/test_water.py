@@ -13,20 +13,23 @@ import pytest
 import viser
 from PIL import Image
 
-from app.render.injection import disable_shaders, injector_of
+from app.render.scripts import SCENE, tags
 from app.render.skies import set_sky
 from app.render.water import DrawnWater, Tile
+from app.server.guard import open_server
+from app.server.page import covered
+from app.server.viewer import Viewer
 from sim.ocean.radial_grid import RadialGrid
 from tests.browser.conftest import NO_NOTES, new_page, vertices_of
 
 SIZE = 32
 LENGTH = 64.0  # [m]
-PANEL_HIDDEN = ".mantine-Paper-root { display: none !important }"
+PANEL_HIDDEN = ".mantine-Paper-root, #springtide-cover { display: none !important }"
 
 
 @pytest.fixture
 def server() -> Iterator[viser.ViserServer]:
-    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    server = open_server("127.0.0.1", 0).server
     server.initial_camera.position = (-20.0, 32.0, 25.0)
     server.initial_camera.look_at = (32.0, 32.0, 0.0)
     yield server
@@ -190,10 +193,13 @@ def test_a_sea_of_rings_is_water_too(chromium, server):
 
 
 @pytest.fixture
-def no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As with a viser of other inner names."""
+def no_answer(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """As with a viser of another page."""
     monkeypatch.setattr("app.render.injection.MAX_ANSWER_TIME", 1.0)
-    monkeypatch.setattr("app.render.injection.ShaderInjector.script", lambda self: "/* a script that does nothing */")
+    monkeypatch.setattr("app.server.page.tags", lambda entry: "")
+    covered.cache_clear()
+    yield
+    covered.cache_clear()
 
 
 def test_without_an_answer_the_page_has_the_plain_foam(chromium, server, no_answer):
@@ -228,23 +234,24 @@ def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, no_answer):
     page.close()
 
 
-def test_plain_water_sends_no_script(chromium, server):
-    disable_shaders(server)
-    water = make_water(server)
-    page, errors = visit(chromium, server, drawn=False)
-    # A script would come before it, and act with the next frames.
+def test_plain_water_is_drawn_by_viser_alone(chromium):
+    viewer = Viewer("127.0.0.1", 0, plain=True)
+    viewer.open("square_sea")
+    page, errors = visit(chromium, viewer.server, drawn=False)
+    assert wait(page, lambda: page.locator(".springtide-panel[data-state]").count())
     assert wait(page, lambda: len(vertices_of(page, "/sea")) > 0)
     page.wait_for_timeout(500)
-    assert water.has_shader is False
     assert materials(page) == {}
     assert errors == []
     page.close()
+    viewer.shut()
 
 
 def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_path):
     make_water(server)
     file = tmp_path / "sea.html"
-    file.write_text(server.get_scene_serializer().as_html(), encoding="utf-8")
+    page_of_viser = server.get_scene_serializer().as_html()
+    file.write_text(page_of_viser.replace("</body>", f"{tags(SCENE)}</body>", 1), encoding="utf-8")
     page = new_page(chromium, 320, 200, drawn=False)
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
@@ -252,16 +259,3 @@ def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_
     assert wait(page, lambda: materials(page) == {"/sea": "springtide-water/sea lit"})
     assert errors == []
     page.close()
-
-
-def test_the_script_is_sent_once_however_many_nodes_ask(server):
-    first = injector_of(server)
-    make_water(server)
-    make_water(server)
-    scripts = [
-        message
-        for message in server._websock_server._broadcast_buffer.message_from_id.values()
-        if type(message).__name__ == "RunJavascriptMessage"
-    ]
-    assert injector_of(server) is first
-    assert len(scripts) == 1

@@ -72,7 +72,7 @@ class DrawnBed:
         behind = -0.35 * far, 0.65 * far, -depth  # as first seen
         self.label = server.scene.add_label("/depth", f"{depth:g} m deep", position=behind, anchor="bottom-center")
         if injector_of(server) is not None:
-            webs = np.array([[1.0, min(WEB_SIZE * depth, MAX_WEB_SIZE), 0.0]])  # as `js/underwater.js` reads it
+            webs = np.array([[1.0, min(WEB_SIZE * depth, MAX_WEB_SIZE), 0.0]])  # as `js/sea/underwater.js` reads it
             add_data_mesh(server, f"{self.sand.name}/underwater", webs)
 
     def show(self, frame: MooringFrame) -> None:

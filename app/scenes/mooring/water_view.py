@@ -18,7 +18,7 @@ WATER_STEP = 2.0**-7  # [m] to which points of the water are rounded for the pag
 
 
 def outline_of(params: MooringParams) -> tuple[float, float, float]:
-    """The body from above, as `js/open_water.js` reads it: half sides of a box [m], or the radius of a round one."""
+    """The body from above, for `js/sea/open_water.js`: half sides of a box [m], or the radius of a round one."""
     if is_round(params):
         return 0.0, 0.0, 0.5 * width_of(params)
     x, y = hull_of(params).extents[:2, 1].tolist()
@@ -45,7 +45,7 @@ class SeenWater:
         return np.column_stack([self.places, frame.surface.ravel()]).astype(np.float32)
 
     def opening(self, frame: MooringFrame) -> NDArray[np.float64]:
-        """Rows for `js/open_water.js`: the water (3,) [m], and the body seen from above (2, 3)."""
+        """Rows for `js/sea/open_water.js`: the water (3,) [m], and the body seen from above (2, 3)."""
         place = (*frame.body[:2].tolist(), heading_angle(frame.rotation))
         return np.array([(0.5 * frame.side, depth_of(frame.params), extent(frame.params)), place, self.outline])
 

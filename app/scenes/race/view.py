@@ -41,7 +41,7 @@ SHOWN_SWING = 1.0  # share of the length of a rope to either side that the first
 PULL_OF_FALL = 3.0  # of a rope that falls and swings, over its weight: stretches it by as much as the first view shows
 MAX_STRETCH = 3.0  # [m] that the first view shows
 BELOW_FLOOR = 0.15  # [m] below a floor that the first view shows: a rope sinks into it, and has a radius
-SHOWN_ASPECT = 1.25  # width over height of what the first view shows at least (`js/camera.js`)
+SHOWN_ASPECT = 1.25  # width over height of what the first view shows at least (`js/page/camera.js`)
 
 RaceSnapshot: TypeAlias = Snapshot[RaceParams, RaceFrame, RaceReadings]
 
@@ -197,7 +197,7 @@ class RaceView(RopesView[RaceParams, RaceFrame, RaceReadings]):
 
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         super().__init__(server, post, NEAR)
-        injector_of(server)  # its script draws labels dark where a browser asks for it (`js/dark.js`)
+        injector_of(server)  # so that the page may draw labels by scripts of its own (`js/scene/labels.js`)
         self.references = Translucent(server, "/race/references", color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY)
         self.params: RaceParams | None = None  # that the height of a row of labels [m] is of
         self.label_row = 0.0

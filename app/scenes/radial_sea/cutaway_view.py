@@ -21,7 +21,7 @@ BRIGHT_WATER: RGB = (0.13, 0.50, 0.60)  # of the water under its surface, as if 
 DEEP_WATER: RGB = (0.03, 0.16, 0.27)  # of the water at the floor
 OIL_AGAINST_LIGHT: RGB = (0.70, 0.42, 0.12)  # what a few centimetres of oil let through
 OIL_LIGHT_SHARES = 1.0, 0.3  # of that colour in the drawn one, at the oil's surface and where the water begins
-WEB_SIZE = 0.7  # [m] at size 1 of the meshes of light that waves focus (`js/underwater.js`)
+WEB_SIZE = 0.7  # [m] at size 1 of the meshes of light that waves focus (`js/sea/underwater.js`)
 SURFACE_LINE, INTERFACE_LINE = (235, 246, 250), (255, 196, 64)
 LINE_OFFSET = 0.02  # [m] that lines stand before the wall
 
@@ -60,7 +60,7 @@ class Walls:
             server, name, self.vertices(cutaway), np.concatenate([*quads, floor]).astype(np.uint32), self.colours,
             columns=n, step=WALL_STEP, color=(40, 110, 130), cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
-        self.underwater = np.zeros((1, 3), np.float32)  # as `js/underwater.js` reads it
+        self.underwater = np.zeros((1, 3), np.float32)  # as `js/sea/underwater.js` reads it
         self.underwater_mesh = None
         if injector_of(server) is not None:
             self.underwater_mesh = add_data_mesh(server, f"{name}/underwater", self.underwater)

@@ -1,7 +1,7 @@
 """Fire, smoke and the jet's oil as soft blobs: viser's Gaussian splats. One buffer is sent for each frame.
 
 A splat is eight words: centre (3 x float32), one of the renderer's own, covariance (6 x float16), colour (4 x uint8).
-`js/smoke.js` gives splats of smoke rough edges and rounds them by the sun's light.
+`js/scene/smoke.js` gives splats of smoke rough edges and rounds them by the sun's light.
 """
 
 import math

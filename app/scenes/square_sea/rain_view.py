@@ -1,7 +1,7 @@
 """Rain as it is drawn: a streak for each drop and a crown of streaks for each splash, in buffers of fixed size.
 
 Streaks are a mesh, because viser replaces lines at each update but moves a mesh of fixed faces in place. The shader
-in `app/render/js/rain.js` fades streaks near the camera, keeps distant ones a pixel wide, and lights them by the sky.
+in `js/sea/rain.js` fades streaks near the camera, keeps distant ones a pixel wide, and lights them by the sky.
 Where there is a shader, it draws thousands of further drops around the camera, with the same sizes, speeds and wind;
 they are sent once and hit nothing.
 """

@@ -89,6 +89,6 @@ def test_values_that_are_not_finite_are_refused() -> None:
 
 
 def test_the_page_reads_blocks_and_widths_of_the_same_bits() -> None:
-    source = (Path(packing.__file__).parents[1] / "render" / "js" / "packed.js").read_text("utf-8")
+    source = (Path(packing.__file__).parents[1] / "render" / "js" / "shading" / "packed.js").read_text("utf-8")
     for name in ("BLOCK", "WIDTH_BITS", "WORD_BITS"):
         assert re.findall(rf"\b{name} = (\d+)", source) == [str(getattr(packing, name))]

@@ -48,7 +48,7 @@ def are_in_order(low: str, high: str) -> bool:
     return True
 
 
-@pytest.mark.parametrize("path", sorted(JS.glob("*.js")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sorted(JS.rglob("*.js")), ids=lambda path: path.name)
 def test_every_smoothstep_rises(path):
     """With the first edge at or above the second the result is undefined (GLSL 3.00 ES, 8.3)."""
     for low, high, _ in calls_of("smoothstep", path.read_text(encoding="utf-8")):

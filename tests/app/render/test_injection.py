@@ -2,13 +2,8 @@
 
 import asyncio
 import dataclasses
-import json
 import re
-import shutil
-import subprocess
 from collections.abc import Callable
-from importlib import resources
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,8 +11,9 @@ import numpy as np
 import pytest
 
 from app.render import injection
-from app.render.injection import SCRIPTS, ShaderInjector
+from app.render.injection import ShaderInjector
 from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Grid, Material, Oil, SlickRegion, uniform_table
+from app.render.scripts import SHARED, modules
 from sim.ocean.oil_film import BAND_WIDTH, BANDS
 
 
@@ -27,11 +23,7 @@ class FakeServer:
     def __init__(self) -> None:
         self.clients: dict[int, Any] = {}
         self._websock_server = self.gui = self
-        self.sources: list[str] = []
         self.shown: list[str] = []
-
-    def queue_message(self, message: Any) -> None:
-        self.sources.append(message.source)
 
     def on_client_disconnect(self, callback: Callable[[Any], Any]) -> None:
         self.left = callback
@@ -133,46 +125,37 @@ def test_of_several_browsers_without_reports_the_first_to_come_counts(
     assert injector.is_active("/sea") is False
 
 
-def source_of(name: str) -> str:
-    return (resources.files("app.render") / "js" / name).read_text("utf-8")
-
-
 def test_the_shaders_declare_every_uniform_that_travels_and_no_other() -> None:
     declared = set()
-    for name in SCRIPTS:
-        declared |= set(re.findall(r"uniform vec3 (\w+);", source_of(name)))
+    for source in modules().values():
+        declared |= set(re.findall(r"uniform vec3 (\w+);", source))
     assert declared == {*WATER_UNIFORMS, *RAIN_UNIFORMS, "underwater", "eye"}  # the page sets the last two
     assert len(set(WATER_UNIFORMS)) == len(WATER_UNIFORMS)
 
 
 def test_the_shader_has_the_bands_of_light_of_the_model_of_oil() -> None:
     """The numbers stand in both, since a shader has constants and no table."""
-    source = source_of("water_shader.js")
+    source = modules()["sea/water_shader.js"]
     (bands,) = re.findall(r"turns = .* / vec3\(([^)]*)\)", source)
     assert [float(band) for band in bands.split(",")] == pytest.approx(BANDS)
     (width_squared,) = re.findall(r"exp\(-0\.5 \* \(([0-9.]+) \* phase \* phase", source)
     assert float(width_squared) == pytest.approx(BAND_WIDTH**2)
 
 
-def test_the_script_takes_the_order_of_the_uniforms_from_python(server: FakeServer) -> None:
-    injector = ShaderInjector(server)  # type: ignore[arg-type]
-    (sent,) = server.sources
-    assert sent == injector.script()
-    for name, value in (("WATER_UNIFORMS", WATER_UNIFORMS), ("RAIN_UNIFORMS", RAIN_UNIFORMS)):
-        (found,) = re.findall(rf"const {name} = (.*);", sent)
-        assert tuple(json.loads(found)) == value
-    # No file repeats the order: it would have names of uniforms in quotes. "slick" is also the name of a plain mesh,
-    # and the table of the sky depends on some.
-    for name in SCRIPTS:
-        quoted = set(re.findall(r"[\"'](\w+)[\"']", source_of(name)))
+def test_no_module_repeats_the_order_of_the_uniforms() -> None:
+    """It would have names of uniforms in quotes. "slick" is also the name of a plain mesh, and the table of the sky
+    depends on some."""
+    for path, source in modules().items():
+        quoted = set(re.findall(r"[\"'](\w+)[\"']", source)) if path != "shared.js" else set()
         assert quoted & {*WATER_UNIFORMS, *RAIN_UNIFORMS} <= {"slick", "skyline", "skyFold", "skyTint", "sunDirection"}
+    assert tuple(SHARED["WATER_UNIFORMS"]) == WATER_UNIFORMS
 
 
 def test_each_program_that_depends_on_the_details_has_three_variants() -> None:
     """Those of water, dome and rain; a program whose name does not tell them apart would stay as it is."""
-    variants = {int(n) for n in re.findall(r"details: (\d)[ }]", source_of("quality.js"))}
+    variants = {int(n) for n in re.findall(r"details: (\d)[ }]", modules()["shading/judge.js"])}
     assert variants == {0, 1, 2}
-    scripts = source_of("water.js") + source_of("rain.js")
+    scripts = modules()["sea/water.js"] + modules()["sea/rain.js"]
     sources = re.findall(r"fragmentShader = (.*);", scripts)
     assert sorted(sources) == [
         "isLit === false ? withSky(whole.defines + WATER_FRAGMENT, sea.uniforms) : shape.defines + LIT_FRAGMENT",
@@ -184,20 +167,12 @@ def test_each_program_that_depends_on_the_details_has_three_variants() -> None:
     keys += re.findall(r"const key = (.*);", scripts)
     assert len(keys) == sum("withSky(" in source for source in sources)
     assert all("keyWithDetails(" in key for key in keys)
-    lit = re.findall(r"^ +\[(.+), [\w +]+_VERTEX, (.+_FRAGMENT.*)\],$", source_of("lit_sea.js"), re.MULTILINE)
+    lit = re.findall(r"^ +\[(.+), [\w +]+_VERTEX, (.+_FRAGMENT.*)\],$", modules()["sea/lit_sea.js"], re.MULTILINE)
     assert [("keyWithDetails(" in key, "withSky(" in source) for key, source in lit] == 3 * [(False, False)] + [
         (True, True)
     ]
-    assert "withDetails(" in source_of("sky_table.js")
-    assert "DETAILS" in source_of("water_shader.js")
-
-
-@pytest.mark.skipif(shutil.which("node") is None, reason="no node on the search path")
-def test_the_script_is_javascript(server: FakeServer, tmp_path: Path) -> None:
-    file = tmp_path / "script.js"
-    file.write_text(ShaderInjector(server).script(), "utf-8")  # type: ignore[arg-type]
-    checked = subprocess.run(["node", "--check", str(file)], capture_output=True, text=True, timeout=60)
-    assert checked.returncode == 0, checked.stderr
+    assert "withDetails(" in modules()["sea/sky_table.js"]
+    assert "DETAILS" in modules()["sea/water_shader.js"]
 
 
 def test_every_field_of_a_material_reaches_the_uniforms() -> None:

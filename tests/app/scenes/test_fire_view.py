@@ -96,10 +96,10 @@ def test_smoke_is_dark_at_night_and_flames_are_not(flames: Flames) -> None:
 
 
 def test_viser_draws_splats_by_the_lines_that_the_script_changes() -> None:
-    """Where one is missing, smoke is drawn by viser's own shader, with round edges (`js/smoke.js`)."""
+    """Where one is missing, smoke is drawn by viser's own shader, with round edges (`js/scene/smoke.js`)."""
     source = resources.files("viser") / "client" / "src" / "Splatting" / "GaussianSplatsHelpers.ts"
     client = source.read_text("utf-8")
-    script = (resources.files("app.render") / "js" / "smoke.js").read_text("utf-8")
+    script = (resources.files("app.render") / "js" / "scene" / "smoke.js").read_text("utf-8")
     for text in (
         "float B = exp(A) * vRgba.a;",
         "gl_FragColor = vec4(vRgba.rgb, B);",

@@ -69,7 +69,7 @@ def test_the_staff_of_one_metre_is_in_the_first_picture(name: str) -> None:
     reach = np.tan(0.5 * view.FIELD_OF_VIEW) * (seen @ ahead)
     assert HEIGHT == 1.0
     assert (abs(seen @ np.cross(right, ahead)) < reach).all()
-    assert (abs(seen @ right) < 1.05 * reach).all()  # what js/camera.js shows beside the panel
+    assert (abs(seen @ right) < 1.05 * reach).all()  # what js/page/camera.js shows beside the panel
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -236,7 +236,7 @@ def test_the_bed_is_darker_and_bluer_with_depth_and_is_lost_towards_the_sides():
     np.testing.assert_allclose(shallow[0, 0], deep[0, 0])  # the colour of the water there
     assert (shallow[0, 0] < 0.75 * lit).all()
     assert shallow[middle, middle].std(axis=(0, 1)).min() > 0.01
-    # `js/underwater.js` takes what is redder than blue for oil.
+    # `js/sea/underwater.js` takes what is redder than blue for oil.
     assert (shallow[..., 2] - shallow[..., 0] > 0.02).all()
 
 

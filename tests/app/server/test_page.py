@@ -5,7 +5,7 @@ import http.client
 
 import pytest
 
-from app.server.page import ALIVE_PATH, COVER, TITLE
+from app.server.page import ALIVE_PATH, COVER, SERVER_NAME, TITLE, covered
 from app.server.viewer import Viewer
 
 MAX_START = 30_000  # characters before the end of the cover; viser's client has 800,000
@@ -32,8 +32,15 @@ def test_the_page_has_our_title_and_its_cover_before_anything_long(lab: Viewer, 
 
 
 def test_the_page_can_ask_whether_the_server_is_there(lab: Viewer) -> None:
-    assert get(lab.port, ALIVE_PATH)[:2] == (200, b"")
+    assert get(lab.port, ALIVE_PATH)[:2] == (200, SERVER_NAME.encode())
     assert get(lab.port, "/nothing")[0] == 404
+
+
+@pytest.mark.parametrize("page", [b"<html><body></body></html>", b"<html><script></script></html>", b"<body><script>"])
+def test_a_page_of_viser_that_has_changed_is_sent_as_it_is(page: bytes, capsys: pytest.CaptureFixture[str]) -> None:
+    for sent, zipped in ((page, False), (gzip.compress(page), True)):
+        assert covered(sent, zipped) == sent
+        assert "the page of viser has changed" in capsys.readouterr().err
 
 
 def test_a_foreign_page_may_not_ask(lab: Viewer) -> None:

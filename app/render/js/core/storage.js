@@ -1,0 +1,22 @@
+// The local storage of the browser, which may refuse: cookies are blocked, or another site shows the page in a frame.
+
+const unstored = new Map(); // what was refused, kept for as long as the page
+
+export function stored(key) {
+  try {
+    return localStorage.getItem(key);
+  } catch {
+    return unstored.get(key) ?? null;
+  }
+}
+
+// False where the browser refuses: it holds until the page is left.
+export function store(key, text) {
+  try {
+    localStorage.setItem(key, text);
+    return true;
+  } catch {
+    unstored.set(key, text);
+    return false;
+  }
+}

@@ -1,0 +1,78 @@
+// One observer of the page and one clock for all parts.
+//
+// While a scene runs, viser writes the status line and the state of the time line anew in each frame. Parts that dress
+// controls do not look at the page for that.
+
+import { page } from "./life.js";
+
+const STATUS = ".springtide-panel, [data-springtide-time]"; // written anew in each frame
+const CONTROL = "button, label, [role]"; // what parts read the words of
+const LOOK_INTERVAL = 200; // [ms] between two looks at where things are
+
+const parts = { any: [], controls: [], values: [], frame: [], look: [] };
+
+const isElement = (node) => node.nodeType === Node.ELEMENT_NODE;
+const isStatus = (node) => isElement(node) && node.matches(STATUS);
+
+// Whether a change may be one of controls.
+function isOfControls({ type, target, addedNodes, removedNodes }) {
+  const at = isElement(target) ? target : target.parentElement;
+  if (type === "characterData") return Boolean(at?.closest(CONTROL));
+  if (at?.closest(STATUS)) return false;
+  const replaced = [...addedNodes].filter(isElement), gone = [...removedNodes].filter(isElement);
+  return !(replaced.length && gone.length && replaced.every(isStatus) && gone.every(isStatus));
+}
+
+function call(names, ...given) {
+  for (const name of names) for (const part of parts[name]) part(...given);
+}
+
+const observer = new MutationObserver((changes) => {
+  const structural = changes.filter(({ type }) => type !== "attributes");
+  if (structural.some(isOfControls)) call(["any", "controls"]);
+  else if (structural.length) call(["any"]);
+  if (changes.length > structural.length) call(["values"]);
+});
+observer.observe(document.documentElement, {
+  childList: true, subtree: true, characterData: true, attributes: true,
+  attributeFilter: ["data-mantine-color-scheme", "style", "value"],
+});
+page.own(() => observer.disconnect());
+
+let looked = -Infinity;
+function tick(now) {
+  call(["frame"], now);
+  if (now - looked >= LOOK_INTERVAL) {
+    looked = now;
+    call(["look"]);
+  }
+  if (!page.signal.aborted) requestAnimationFrame(tick);
+}
+requestAnimationFrame(tick);
+page.listen(window, "resize", () => call(["look"]));
+
+function subscribe(name, part) {
+  parts[name].push(part);
+  page.own(() => parts[name].splice(parts[name].indexOf(part), 1));
+}
+
+// Call a function after each change of the page's elements and words, and now.
+export function onChange(part) {
+  subscribe("any", part);
+  part();
+}
+
+// The same after those that may be changes of controls.
+export function onControls(part) {
+  subscribe("controls", part);
+  part();
+}
+
+// The same after changes of values, places of sliders, and the colour scheme.
+export const onValues = (part) => subscribe("values", part);
+
+// Call a function before each frame of a page that is seen, with the time [ms].
+export const onFrame = (part) => subscribe("frame", part);
+
+// Call a function a few times a second, and when the window changes its size.
+export const onLook = (part) => subscribe("look", part);

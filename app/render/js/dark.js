@@ -1,7 +1,0 @@
-// What is drawn otherwise where this browser shows the lab dark (display.js): colours of vertices, and labels (labels.js).
-
-const isDark = () => document.documentElement.classList.contains("springtide-dark");
-
-// The sRGB colour `name` on a dark floor, in GLSL: `lifted` in app/render/colormap.py.
-const glslLifted = (name) =>
-  `mix(${name}, vec3(1.0), ${DARK_LIFT.toFixed(3)} * (1.0 - dot(${name}, vec3(${LUMA.join(", ")}))))`;

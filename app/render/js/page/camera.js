@@ -1,0 +1,155 @@
+// The camera of the page: it stays above floor and water, and the picture stands in the middle of what panels leave free.
+//
+// Of viser this file uses window.__viserMutable: cameraControl (the camera-controls library), camera, scene (its
+// onBeforeRender runs before every frame), nodeRefFromName and requestRender; and the boxes of its panels.
+// three's world has y up; the frame of a node has z up.
+
+import { beforeRender } from "../core/render_hook.js";
+import { viewer } from "../core/viewer.js";
+import { onLook } from "../core/watch.js";
+import { without } from "./free_part.js";
+
+const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor
+const WATER_CLEARANCE = 0.25; // [m] of the camera above the water
+const MAX_WAVE_HEIGHT = 40; // [m] above the mean water, from which on no wave is looked for
+const MIN_ASPECT = 1.05; // width over height of what the field of view shows at least: that of all presets
+const PANELS =
+  "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root), " +
+  ".mantine-Tabs-root:has(> [aria-label=\"Collapse panel Plots\"])";
+
+let free = null; // the free part of the canvas: { x, y, width, height } [pixels] from its top left corner
+
+function measure() {
+  const { canvas: drawn, camera } = viewer() ?? {};
+  if (!drawn) return;
+  const canvas = drawn.getBoundingClientRect();
+  let box = { x: canvas.left, y: canvas.top, width: canvas.width, height: canvas.height };
+  const framed = document.documentElement.classList.contains("springtide-framed"); // beside.js
+  for (const panel of framed ? [] : document.querySelectorAll(PANELS)) box = without(box, panel.getBoundingClientRect());
+  const found = { x: box.x - canvas.left, y: box.y - canvas.top, width: box.width, height: box.height };
+  if (free && Object.keys(found).every((key) => Math.abs(free[key] - found[key]) < 1)) return;
+  free = found;
+  if (camera) centre(camera, drawn); // frames.js compares cameras before it draws
+  viewer().requestRender();
+}
+
+// Shift and scale the picture, so that the field of view spans the free rectangle.
+function centre(camera, canvas) {
+  const width = canvas.clientWidth, height = canvas.clientHeight;
+  if (!free || !width || !height) return;
+  const scale = Math.min(free.height, free.width / MIN_ASPECT) / height;
+  const full = [width * scale, height * scale];
+  const offset = [full[0] / 2 - free.x - free.width / 2, full[1] / 2 - free.y - free.height / 2];
+  const view = camera.view;
+  const wanted = [...full, ...offset, width, height];
+  const shown = view && view.enabled
+    ? [view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height] : [];
+  if (shown.length && shown.every((number, k) => Math.abs(number - wanted[k]) < 0.01)) return;
+  camera.aspect = width / height;
+  camera.setViewOffset(...wanted); // updates the projection
+}
+
+const shownNode = (name) => {
+  const node = viewer().nodeRefFromName[name];
+  for (let parent = node; parent; parent = parent.parent) if (!parent.visible) return null;
+  return node || null;
+};
+
+// Height [m] of the water at a point of its frame, from the vertices of its mesh; a square tile is repeated.
+function waterHeight(mesh, point) {
+  const numbers = mesh.geometry.attributes.position.array;
+  const last = numbers.length - 3;
+  let { x, y } = point;
+  // The last vertex of a square tile is its first one, a side farther along x and y.
+  const side = numbers[last] - numbers[0];
+  if (side > 0 && Math.abs(numbers[last + 1] - numbers[1] - side) < 1e-3 * side) {
+    x -= side * Math.floor(x / side);
+    y -= side * Math.floor(y / side);
+  }
+  let nearest = Infinity;
+  for (let k = 0; k <= last; k += 3) {
+    const d = (numbers[k] - x) ** 2 + (numbers[k + 1] - y) ** 2;
+    if (d < nearest) nearest = d;
+  }
+  let height = -Infinity;
+  for (let k = 0; k <= last; k += 3) {
+    const d = (numbers[k] - x) ** 2 + (numbers[k + 1] - y) ** 2;
+    if (d <= 2.5 * nearest && numbers[k + 2] > height) height = numbers[k + 2];
+  }
+  return height;
+}
+
+// The lowest height that the camera may have: { always, now }, for good and above the wave that is there now.
+function lowest(camera) {
+  const floor = shownNode("/floor"), sea = shownNode("/sea");
+  let always = -Infinity, now = -Infinity;
+  if (floor) always = floor.getWorldPosition(camera.position.clone()).y + FLOOR_CLEARANCE;
+  const mesh = sea && sea.children.find((child) => child.isMesh);
+  if (mesh && mesh.geometry.attributes.position) {
+    const mean = sea.getWorldPosition(camera.position.clone()).y;
+    always = Math.max(always, mean + WATER_CLEARANCE);
+    if (camera.position.y < mean + MAX_WAVE_HEIGHT) {
+      now = mean + waterHeight(mesh, mesh.worldToLocal(camera.position.clone())) + WATER_CLEARANCE;
+    }
+  }
+  return { always, now };
+}
+
+let lastTarget = null;
+
+function keepAbove(camera, controls) {
+  let { always, now } = lowest(camera);
+  const target = controls.getTarget(camera.position.clone());
+  if (camera.position.y < always - 1e-6) {
+    const moved = lastTarget && lastTarget.distanceTo(target) > 1e-6 * controls.distance;
+    const cosine = (always - target.y) / controls.distance;
+    if (!moved && cosine < 1) {
+      // A turn slides along the floor.
+      const polar = Math.acos(Math.max(cosine, -1));
+      const azimuth = controls.azimuthAngle;
+      controls.rotatePolarTo(polar, false);
+      camera.position.set(
+        target.x + controls.distance * Math.sin(polar) * Math.sin(azimuth),
+        target.y + controls.distance * Math.cos(polar),
+        target.z + controls.distance * Math.sin(polar) * Math.cos(azimuth),
+      );
+      camera.lookAt(target);
+    } else {
+      // A shift, which moves the target along, ends at the floor.
+      const lift = always - camera.position.y;
+      controls.moveTo(target.x, target.y + lift, target.z, false);
+      camera.position.y = always;
+      target.y += lift;
+    }
+    now = lowest(camera).now; // of the place that it has now
+  }
+  lastTarget = target;
+  // Above a crest the camera is lifted for this frame only, so that it comes down again behind the crest.
+  if (camera.position.y < now) camera.position.y = now;
+  camera.updateMatrixWorld();
+}
+
+// Before each frame: a canvas or a scene of viser's may be another one than before.
+function placeCamera(camera) {
+  const { cameraControl: controls, camera: own, canvas } = viewer();
+  if (!controls || camera !== own) return; // the camera of a shadow or of an environment map
+  keepAbove(camera, controls);
+  centre(camera, canvas);
+  findSplats();
+  splats?.material.uniforms.projectionMatrixCustom.value.copy(camera.projectionMatrix);
+}
+
+// viser's splats have a projection of their own, which knows nothing of the shift: they get that of the camera.
+let splats = null; // the mesh of all splats
+
+function findSplats() {
+  if (splats?.parent) return;
+  const { scene, camera } = viewer();
+  splats = scene.children.find((child) => child.material?.uniforms?.projectionMatrixCustom) ?? null;
+  // The vertices of splats have two numbers each. three would take a third one, and compute a bounding sphere of NaN.
+  const center = camera.position.clone().set(0, 0, 0);
+  if (splats) splats.geometry.boundingSphere = { center, radius: Infinity };
+}
+
+beforeRender("camera", (renderer, scene, camera) => placeCamera(camera));
+onLook(measure);

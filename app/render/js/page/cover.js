@@ -1,0 +1,67 @@
+// What the page says while nothing is drawn, and after the server has ended.
+//
+// The cover is there from the first bytes of the page. It goes when the panel is drawn; while a scene is compiled it shows
+// what the panel says of that (an element of class "springtide-progress"). It comes back when the server does not answer.
+// Where the page cannot start it says why (before/failures.js).
+
+import { page } from "../core/life.js";
+import { springtide } from "../core/springtide.js";
+import { onChange } from "../core/watch.js";
+
+const ALIVE_INTERVAL = 2000; // [ms] between two questions whether the server is still there
+const RETRY_INTERVAL = 1000; // [ms] the same after a question without an answer
+const ANSWER_TIME = 5000; // [ms] after which a question counts as not answered
+const MAX_UNANSWERED = 3; // questions in a row: a laptop that wakes, or changes its network, misses one
+const cover = document.getElementById("springtide-cover");
+const words = document.getElementById("springtide-cover-words");
+// A path is that of a proxy, such as a JupyterHub, or of a pane of several.
+const path = location.pathname.replace(/(pane\/\d+\/)?(index\.html)?$/, "");
+const restart = path === "/" ? "Start it again with the command: springtide" : "Reload this page to start it again.";
+let unanswered = 0;
+let server = ""; // what the server calls itself: another one has another name
+
+function say(text, hidden) {
+  if (text !== null && words.textContent !== text) words.textContent = text;
+  cover.classList.toggle("springtide-hidden", hidden);
+}
+
+let waiting = "Connecting to the lab …"; // while there is no panel
+function update() {
+  if (unanswered >= MAX_UNANSWERED) return say(`The lab has stopped. ${restart}`, false);
+  const progress = document.querySelector(".springtide-progress");
+  if (progress) {
+    waiting = progress.textContent;
+    return say(waiting, false);
+  }
+  if (document.querySelector(".springtide-panel")) {
+    waiting = "Opening the scene …"; // the page is connected from now on
+    return say(null, true);
+  }
+  return say(springtide.failure || waiting, false);
+}
+
+// What the server calls itself; "" where it does not answer.
+async function askServer() {
+  try {
+    const answer = await fetch("springtide-alive", { cache: "no-store", signal: AbortSignal.timeout(ANSWER_TIME) });
+    return answer.ok ? await answer.text() : "";
+  } catch {
+    return "";
+  }
+}
+
+async function ask() {
+  const name = document.visibilityState === "visible" ? await askServer() : null;
+  if (name !== null) {
+    unanswered = name ? 0 : unanswered + 1;
+    server ||= name;
+    // Another server knows nothing of this page. What is being recorded is lost with a reload.
+    if (name && name !== server && !springtide.isRecording) return void location.reload();
+    update();
+  }
+  timer = setTimeout(ask, unanswered ? RETRY_INTERVAL : ALIVE_INTERVAL);
+}
+
+let timer = setTimeout(ask, 0);
+page.own(() => clearTimeout(timer));
+onChange(update);

@@ -1,0 +1,33 @@
+// Starts the parts of the page. One that does not load, or ends with an error, is named; the others work.
+
+const PARTS = {
+  cover: () => import("./cover.js"),
+  scene: () => import("../scene/main.js"),
+  camera: () => import("./camera.js"),
+  fields: () => import("../panel/fields.js"),
+  charts: () => import("../panel/charts.js"),
+  timeline: () => import("../panel/timeline.js"),
+  share: () => import("../panel/share.js"),
+  display: () => import("../panel/display.js"),
+  access: () => import("../panel/access.js"),
+  reach: () => import("./reach.js"),
+  beside: () => import("./beside.js"),
+};
+
+function say(names) {
+  const notice = document.createElement("div"), close = document.createElement("button");
+  notice.id = "springtide-notice";
+  notice.setAttribute("role", "alert");
+  notice.textContent = `A part of this page did not start: ${names.join(", ")}. The rest works. Load the page again to retry.`;
+  close.type = "button";
+  close.textContent = "Close";
+  close.addEventListener("click", () => notice.remove());
+  notice.append(close);
+  document.body.append(notice);
+}
+
+const names = Object.keys(PARTS);
+const ended = await Promise.allSettled(names.map((name) => PARTS[name]()));
+const missing = names.filter((_, k) => ended[k].status === "rejected");
+for (const { reason } of ended) if (reason) console.error(reason);
+if (missing.length > 0) say(missing);

@@ -1,0 +1,99 @@
+// A press near a rope or a cloth takes it and not the camera: it is thin, and moves while a hand aims at it.
+//
+// viser's client asks each mesh that can be dragged whether the ray of the pointer meets it (three's Mesh.raycast). The
+// meshes named here also say so where a vertex is near the pointer on the screen, or was a moment before. They say that
+// they are far away, so that arrows and beads under the pointer come first. A ring marks what a press would take.
+//
+// Of viser this file uses window.__viserMutable: nodeRefFromName, camera and canvas.
+
+import { page } from "../core/life.js";
+import { viewer } from "../core/viewer.js";
+import { onFrame } from "../core/watch.js";
+
+const NAMES = /^\/(rope|cloth|race\/rope_\d+)$/;
+const REACH = 25, TOUCH_REACH = 50; // [pixels]
+const MEMORY = 200; // [ms] for which a vertex is still taken where it was: a hand is that late
+const INTERVAL = 30; // [ms] between two moments that are remembered
+const FAR = 1e9; // [m]
+const moments = new WeakMap(); // mesh -> [{ until, version, points }], the latest first
+const ring = document.createElement("div");
+ring.id = "springtide-ring";
+document.body.append(ring);
+let pointer = null; // { x, y, reach } [pixels] over the canvas while no button moves it
+
+function meshes() {
+  const nodes = viewer()?.nodeRefFromName ?? {};
+  const found = Object.keys(nodes).filter((name) => NAMES.test(name));
+  const drawn = found.map((name) => nodes[name]?.children.find((child) => child.isMesh));
+  return drawn.filter((mesh) => mesh?.geometry.attributes.position);
+}
+
+function remember(mesh, now) {
+  const { array, version } = mesh.geometry.attributes.position;
+  let kept = moments.get(mesh);
+  if (!kept) {
+    moments.set(mesh, (kept = []));
+    const exact = mesh.raycast;
+    mesh.raycast = (raycaster, hits) => {
+      const before = hits.length;
+      exact.call(mesh, raycaster, hits);
+      const near = hits.length === before && pointer && nearest(mesh);
+      if (near) hits.push({ object: mesh, point: near.place, distance: FAR + near.rank });
+    };
+  }
+  if (kept[0]?.version === version) kept[0].until = now;
+  else if (!kept.length || now - kept[0].until >= INTERVAL) kept.unshift({ until: now, version, points: array.slice() });
+  while (kept[kept.length - 1].until < now - MEMORY) kept.pop();
+}
+
+// The vertex nearest to the pointer, now or else a moment before: { place, rank }, its place in the world [m] and its
+// distance on the screen [pixels], later where it was longer ago; null where none is within reach.
+function nearest(mesh) {
+  const { camera, canvas } = viewer(), now = mesh.geometry.attributes.position.array;
+  const project = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse).multiply(mesh.matrixWorld);
+  const m = project.elements, right = canvas.clientWidth / 2, down = canvas.clientHeight / 2;
+  const shown = [now, ...moments.get(mesh).map(({ points }) => points)].filter((one) => one.length === now.length);
+  for (const [age, points] of shown.entries()) {
+    let found = -1, least = pointer.reach ** 2;
+    for (let k = 0; k < points.length; k += 3) {
+      const x = points[k], y = points[k + 1], z = points[k + 2];
+      const w = m[3] * x + m[7] * y + m[11] * z + m[15];
+      if (w <= 0) continue; // behind the camera
+      const across = right * (1 + (m[0] * x + m[4] * y + m[8] * z + m[12]) / w) - pointer.x;
+      const along = down * (1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) - pointer.y;
+      const square = across * across + along * along;
+      if (square < least) [found, least] = [k, square];
+    }
+    if (found < 0) continue;
+    const place = mesh.localToWorld(camera.position.clone().fromArray(now, found));
+    return { place, rank: Math.sqrt(least) + age * TOUCH_REACH };
+  }
+  return null;
+}
+
+function frame(now) {
+  const all = meshes();
+  for (const mesh of all) remember(mesh, now);
+  const near = pointer ? all.map(nearest).filter(Boolean) : [];
+  ring.hidden = !near.length;
+  if (near.length) {
+    const { camera, canvas } = viewer(), box = canvas.getBoundingClientRect();
+    const { place } = near.reduce((best, one) => (one.rank < best.rank ? one : best));
+    place.project(camera);
+    ring.style.left = `${box.left + (box.width * (1 + place.x)) / 2}px`;
+    ring.style.top = `${box.top + (box.height * (1 - place.y)) / 2}px`;
+  }
+}
+
+// Before viser's client hears of it.
+function follow(event) {
+  const canvas = viewer()?.canvas, moved = event.type === "pointermove" && event.buttons;
+  if (event.target !== canvas || !event.isPrimary || moved) return void (pointer = null);
+  const box = canvas.getBoundingClientRect(), reach = event.pointerType === "touch" ? TOUCH_REACH : REACH;
+  pointer = { x: event.clientX - box.left, y: event.clientY - box.top, reach };
+}
+
+page.listen(window, ["pointermove", "pointerdown"], follow, { capture: true });
+page.listen(window, ["pointerup", "pointercancel"], () => (pointer = null));
+page.listen(document.documentElement, "pointerleave", () => (pointer = null));
+onFrame(frame);

@@ -1,0 +1,159 @@
+// Gaps in the charts: uPlot leaves a gap at null only, and viser sends arrays of numbers, in which NaN means no value.
+// On a logarithmic scale uPlot takes NaN for its lowest value.
+// Crosses at the upper edge, with their words, at the values of the series of the class "springtide-cross".
+// The time axis: viser keeps the part of it that is shown, and on a slow page loses it when a chart is made anew. Here all
+// of it is shown again, unless it was zoomed by hand.
+// The name of the first axis, at its end (page.css). The height of the charts: a whole number of them fills their pane.
+// A line in the charts over time, where the recording is shown: the time line says the time (timeline.js).
+//
+// Of viser this file uses window.__viserTestpoints.uplots, the charts of the page.
+
+import { page } from "../core/life.js";
+import { onControls, onFrame, onLook } from "../core/watch.js";
+
+const BELOW = 4; // [pixels] of a pane below its charts
+const MIN_HEIGHT = 150; // [pixels] of a chart with its title, or as high as its pane
+const MIN_CANVAS = 70; // [pixels] of a chart without its title
+const PANES = ".mantine-ScrollArea-viewport:has(.uplot):not(:has(.springtide-panel))";
+const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = '.mantine-Tabs-root:has(> [aria-label$=" panel Plots"])';
+const PHONE_SHARE = 0.32; // of the window's height, for the plots on a phone (page.css)
+const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
+const CROSS = "springtide-cross", PLACED = "springtide-placed-cross";
+const CROSS_HEIGHT = 14, CROSS_WIDTH = 8; // [pixels] of a cross; its words stand to its right
+const CROSS_STYLE = "position:absolute;white-space:nowrap;font:12px/14px sans-serif;pointer-events:none";
+const LINE_STYLE = "position:absolute;top:0;bottom:0;width:0;border-left:2px solid #e03131;pointer-events:none";
+
+// The charts of the page.
+export const chartsOfPage = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ chart }) => chart);
+
+// Have uPlot see null where a column has NaN, before it makes the path of a line.
+const isWatched = new WeakSet(); // series
+function leaveGaps(chart) {
+  const without = chart.series.filter((series, k) => k > 0 && !isWatched.has(series));
+  for (const series of without) {
+    const { paths } = series;
+    series.paths = (own, k, ...rest) => {
+      if (own.data[k].some(Number.isNaN)) own.data[k] = Array.from(own.data[k], (y) => (Number.isNaN(y) ? null : y));
+      return paths(own, k, ...rest);
+    };
+    isWatched.add(series);
+  }
+  if (without.length) chart.redraw();
+}
+
+function placeCrosses(chart) {
+  const wanted = [];
+  chart.series.forEach(({ class: kind, label, _stroke, show }, k) => {
+    if (kind !== CROSS || !show) return;
+    chart.data[k].forEach((y, row) => {
+      if (y !== null && !Number.isNaN(y)) wanted.push([chart.valToPos(chart.data[0][row], "x"), label, _stroke]);
+    });
+  });
+  const marks = [...chart.over.querySelectorAll(`.${PLACED}`)];
+  while (marks.length > wanted.length) marks.pop().remove();
+  wanted.forEach(([left, label, stroke], n) => {
+    let mark = marks[n];
+    if (!mark) {
+      mark = document.createElement("div");
+      mark.className = PLACED;
+      chart.over.append(mark);
+    }
+    const style = `${CROSS_STYLE};color:${stroke};top:${n * CROSS_HEIGHT - CROSS_HEIGHT / 2}px;left:${left - CROSS_WIDTH / 2}px`;
+    if (mark.dataset.style !== style) {
+      mark.dataset.style = style;
+      mark.style.cssText = style;
+    }
+    if (mark.textContent !== label) mark.textContent = label;
+  });
+}
+
+// A drag across a chart zooms it, a double click ends that.
+let pressed = null; // where in a chart the mouse was pressed
+function watchZoom({ over }) {
+  page.listen(over, "mousedown", (event) => (pressed = { over, x: event.clientX }));
+  page.listen(over, "dblclick", () => delete over.dataset.springtideZoomed);
+  over.dataset.springtideWatched = "";
+}
+page.listen(window, "mouseup", (event) => {
+  if (pressed && Math.abs(event.clientX - pressed.x) > MIN_ZOOM) pressed.over.dataset.springtideZoomed = "";
+  pressed = null;
+});
+
+function showWholeAxis(chart) {
+  const { x } = chart.scales, times = chart.data[0];
+  if (!("springtideWatched" in chart.over.dataset)) watchZoom(chart);
+  if ("springtideZoomed" in chart.over.dataset || !x.auto(chart, false)) return;
+  const min = times[0], max = times[times.length - 1];
+  if (max > min && (x.min !== min || x.max !== max)) chart.setScale("x", { min, max });
+}
+
+// Put the line of a chart where the moment is [s]; NaN, and a moment that the chart does not show, have none.
+function placeMoment(chart, moment) {
+  const { min, max } = chart.scales.x;
+  const shown = chart.series[0].label === "t [s]" && moment >= min && moment <= max;
+  let line = chart.over.querySelector(".springtide-moment");
+  if (!shown) {
+    line?.remove();
+    return;
+  }
+  if (!line) {
+    line = document.createElement("div");
+    line.className = "springtide-moment";
+    line.style.cssText = LINE_STYLE;
+    chart.over.append(line);
+  }
+  const left = `${chart.valToPos(moment, "x")}px`;
+  if (line.style.left !== left) line.style.left = left;
+}
+
+// As many charts as fit share the height of a pane; one more is seen by scrolling.
+function fillPanes(charts) {
+  for (const pane of document.querySelectorAll(PHONE.matches ? PHONE_PANES : PANES)) {
+    const own = charts.filter(({ root }) => pane.contains(root) && root.offsetHeight);
+    own.sort((a, b) => a.root.getBoundingClientRect().top - b.root.getBoundingClientRect().top);
+    if (!own.length) continue;
+    const [first] = own, whole = PHONE.matches ? window.innerHeight * PHONE_SHARE : pane.clientHeight;
+    const top = first.root.getBoundingClientRect().top - pane.getBoundingClientRect().top + pane.scrollTop;
+    const room = whole - top - BELOW, between = gapOf(own);
+    const seen = Math.max(1, Math.min(own.length, Math.floor(room / MIN_HEIGHT)));
+    for (const chart of own) {
+      const around = chart.root.offsetHeight - chart.height; // title and key
+      const height = Math.max(MIN_CANVAS, Math.floor((room + between) / seen - between - around));
+      if (Math.abs(height - chart.height) > 2) chart.setSize({ width: chart.width, height });
+    }
+  }
+}
+
+// [pixels] between two charts of a pane.
+function gapOf([first, second]) {
+  if (!second) return 0;
+  return Math.max(0, second.root.getBoundingClientRect().top - first.root.getBoundingClientRect().bottom);
+}
+
+function nameAxis({ over, series }) {
+  if (over.dataset.springtideAxis !== series[0].label) over.dataset.springtideAxis = series[0].label;
+}
+
+let moment = ""; // [s] of the recording that is shown, as the time line says it
+
+function look() {
+  const charts = chartsOfPage();
+  fillPanes(charts);
+  for (const chart of charts) {
+    nameAxis(chart);
+    showWholeAxis(chart);
+    placeMoment(chart, moment === "" ? NaN : Number(moment));
+    leaveGaps(chart);
+    placeCrosses(chart);
+  }
+}
+
+onFrame(() => {
+  const now = document.getElementById("springtide-time")?.dataset.moment || "";
+  if (now === moment) return;
+  moment = now;
+  look();
+});
+onLook(look);
+// A chart that is made anew is prepared before it is first drawn: viser makes it, and uPlot draws a moment later.
+onControls(look);

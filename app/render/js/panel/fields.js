@@ -1,0 +1,181 @@
+// Fields and lists of the panel, on top of what viser's client does with them.
+//
+// viser sends a text field at each keystroke. Here a text is sent once it is complete: on Enter or when the field is left.
+// Escape brings the value back; the arrows change its second digit. A list or button that was used gives up the focus, so
+// that the keys of the lab (space, N, R, digits) never type into a list or press a button a second time.
+
+import { page } from "../core/life.js";
+import { onControls } from "../core/watch.js";
+import { stepped } from "./numbers.js";
+
+const FIELD = "input.mantine-TextInput-input";
+const NAMED = `${FIELD}, textarea, .mantine-Slider-thumb, .mantine-NumberInput-input`; // what viser gives no name
+const setText = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
+const before = new WeakMap(); // field -> its text when it was entered
+const drafts = new WeakMap(); // field -> what was typed since
+let sending = false;
+
+function fieldOf(event) {
+  return event.target instanceof HTMLInputElement && event.target.matches(FIELD) ? event.target : null;
+}
+
+function send(field, text) {
+  drafts.delete(field);
+  before.set(field, text);
+  sending = true;
+  setText.call(field, text);
+  field.dispatchEvent(new Event("input", { bubbles: true }));
+  sending = false;
+}
+
+function commit(field) {
+  const draft = drafts.get(field);
+  if (draft === undefined) return;
+  // viser sends nothing where the text is what it last showed, so a space is added: it may follow a text that was refused.
+  send(field, draft === before.get(field) ? `${draft} ` : draft);
+}
+
+// viser sends nothing where the preset that is shown is chosen again: the scene begins again by the panel's buttons.
+page.listen(document, "click", ({ target }) => {
+  const option = target instanceof Element && target.closest('[role="option"][aria-selected="true"]');
+  const list = option && option.closest('[role="listbox"]');
+  const field = list && document.querySelector(`[aria-controls="${list.id}"]`);
+  const ofHead = [...document.querySelectorAll(".springtide-head .mantine-Select-input")]; // scene, if any, and preset
+  if (!field || field !== ofHead[ofHead.length - 1]) return;
+  for (const name of ["Reset", "Play"]) document.querySelector(`[data-springtide-icon="${name}"]`)?.click();
+}, { capture: true });
+
+function restore(field) {
+  if (drafts.has(field)) setText.call(field, before.get(field));
+  drafts.delete(field);
+}
+
+page.listen(document, "focusin", (event) => {
+  const field = fieldOf(event);
+  if (!field) return;
+  before.set(field, field.value);
+  field.select();
+});
+page.listen(document, "input", (event) => {
+  const field = fieldOf(event);
+  if (!field || sending) return;
+  drafts.set(field, field.value);
+  event.stopImmediatePropagation();
+}, { capture: true });
+page.listen(document, "focusout", (event) => {
+  const field = fieldOf(event);
+  if (field) commit(field);
+}, { capture: true });
+page.listen(document, "keydown", (event) => {
+  const field = fieldOf(event);
+  if (!field) return;
+  if (event.key === "Enter") {
+    commit(field);
+    field.blur();
+  } else if (event.key === "Escape") {
+    restore(field);
+    field.blur();
+  } else if (event.key === "ArrowUp" || event.key === "ArrowDown") {
+    const text = stepped(drafts.get(field) ?? field.value, event.key === "ArrowUp");
+    event.preventDefault();
+    if (text !== null) send(field, text);
+  }
+}, { capture: true });
+// After viser's client has handled them:
+page.listen(document, "keydown", (event) => {
+  const list = event.target instanceof HTMLElement && event.target.matches("[aria-haspopup=listbox]");
+  if (list && event.key === "Enter") event.target.blur();
+});
+page.listen(document, "click", (event) => {
+  const used = event.target instanceof Element && event.target.closest("[role=option], button, input[type=checkbox]");
+  // A click by keyboard has no detail: the focus stays where Tab has brought it.
+  if (used && event.detail > 0) document.activeElement?.blur();
+});
+
+// Assistive software finds a field by its name: viser's labels refer to an identifier that its text fields lack.
+function nameFields() {
+  for (const label of document.querySelectorAll("label[for]")) {
+    const fields = label.closest(".mantine-Flex-root")?.querySelectorAll(NAMED) ?? [];
+    for (const field of fields) if (!field.getAttribute("aria-label")) field.setAttribute("aria-label", label.textContent);
+  }
+}
+
+// The block that stays in sight: the folder that says whether the lab plays. The tabs stand below it.
+const HINTS = {
+  Play: "Play (space)", Pause: "Pause (space)", Step: "One step (N)", Reset: "Back to the start (R)",
+  Camera: "Reset the camera (V)", Plots: "Open or close the plots (P)", Undo: "Undo the last change (U)",
+};
+const ARROWS = { "◀": "Previous task", "▶": "Next task" };
+function nameArrows() {
+  for (const button of document.querySelectorAll(".mantine-Button-root")) {
+    button.classList.toggle("springtide-quiet", button.textContent === "Remove preset");
+    const name = ARROWS[button.textContent];
+    if (!name || button.title === name) continue;
+    button.title = name;
+    button.setAttribute("aria-label", name);
+  }
+}
+const sizes = new ResizeObserver(([{ target }]) => {
+  const height = Math.floor(target.getBoundingClientRect().height); // rounded up, the text would show in between
+  document.documentElement.style.setProperty("--springtide-head", `${height}px`);
+  const row = target.querySelector("[data-springtide-icon]");
+  const above = row ? row.getBoundingClientRect().top - target.getBoundingClientRect().top : 0;
+  document.documentElement.style.setProperty("--springtide-above", `${Math.floor(above)}px`);
+});
+function markLab() {
+  const status = document.querySelector(".springtide-panel[data-state]"), lab = status?.closest(".mantine-Paper-root");
+  if (!lab) return;
+  if (!lab.classList.contains("springtide-lab")) {
+    lab.classList.add("springtide-lab");
+    sizes.disconnect();
+    sizes.observe(lab);
+  }
+  const head = status.parentElement.parentElement;
+  head.classList.add("springtide-head");
+  for (const button of head.querySelectorAll(".mantine-Button-root")) {
+    const name = button.textContent;
+    if (!(name in HINTS) || button.dataset.springtideIcon === name) continue;
+    button.dataset.springtideIcon = name;
+    button.title = HINTS[name];
+  }
+}
+
+// One stop of Tab for the buttons of the block, and one for the tabs: the arrows go on from there. A tab alone is none.
+function roveStops() {
+  for (const alone of document.querySelectorAll('[role="tab"]:only-child')) if (!alone.tabIndex) alone.tabIndex = -1;
+  const groups = [
+    [...document.querySelectorAll("[data-springtide-icon]")],
+    [...document.querySelectorAll('[data-dock-area^="gui-tabs-"] [role="tab"]')],
+  ];
+  for (const group of groups) {
+    const first = group.find((one) => one === document.activeElement || one.ariaSelected === "true") ?? group[0];
+    for (const one of group) if (one.tabIndex !== (one === first ? 0 : -1)) one.tabIndex = one === first ? 0 : -1;
+  }
+}
+page.listen(document, "keydown", (event) => {
+  const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+  if (!by || !(event.target instanceof HTMLElement) || !event.target.dataset.springtideIcon) return;
+  const row = [...document.querySelectorAll("[data-springtide-icon]")];
+  row[(row.indexOf(event.target) + by + row.length) % row.length].focus();
+  event.preventDefault();
+  event.stopPropagation();
+}, { capture: true });
+
+// C goes to the first control of the tab that is shown.
+const CONTROL = "input, textarea, .mantine-Slider-thumb, button";
+page.listen(document, "keydown", (event) => {
+  const typing = event.target instanceof Element && event.target.matches("input, textarea, select");
+  if (event.key.toLowerCase() !== "c" || typing || event.ctrlKey || event.metaKey || event.altKey) return;
+  const controls = document.querySelectorAll(`[data-dock-area^="gui-tabs-"] :is(${CONTROL}), .mantine-Tabs-panel :is(${CONTROL})`);
+  [...controls].find((one) => one.checkVisibility() && !one.disabled)?.focus();
+  event.preventDefault();
+});
+
+function adorn() {
+  nameFields();
+  markLab();
+  nameArrows();
+  roveStops();
+}
+onControls(adorn);
+page.listen(document, "focusin", roveStops);

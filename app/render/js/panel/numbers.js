@@ -1,0 +1,19 @@
+// Numbers as they are typed into fields: 0.5, 0,5, 1/60.
+
+// The number that a text says; null where it says none.
+export function parse(text) {
+  const [above, below, more] = text.replace(",", ".").split("/");
+  const value = below === undefined ? Number(above) : Number(above) / Number(below);
+  return text.trim() === "" || more !== undefined || !Number.isFinite(value) ? null : value;
+}
+
+// The text of the next number up or down, by one in its second digit; of a whole number by one at least. null where the
+// text says no number.
+export function stepped(text, up) {
+  const value = parse(text);
+  if (value === null) return null;
+  const digit = value === 0 ? 0.1 : 10 ** (Math.floor(Math.log10(Math.abs(value)) + 1e-9) - 1);
+  const step = /^[-+]?\d+$/.test(text.trim()) ? Math.max(1, digit) : digit;
+  const next = (Math.round(value / step) + (up ? 1 : -1)) * step;
+  return String(Number(next.toPrecision(12)));
+}

@@ -1,0 +1,196 @@
+// Links and set-ups: what stands in the address of this page is sent to the lab once, and a file that is chosen is read
+// here and sent as text: of a replay, the set-up file that it holds. The lab checks both. A link that the lab has made
+// is shown with this page's own address. Of a change of a shared lab, the page that made it shows its own sentence.
+// Clips are recorded here from the canvas of the view, and plots are saved as one picture.
+//
+// Of viser this file uses window.__viserMutable.canvas and the charts of the page.
+
+import { page } from "../core/life.js";
+import { springtide } from "../core/springtide.js";
+import { PAGE, send as sendToLab, viewer } from "../core/viewer.js";
+import { onControls } from "../core/watch.js";
+import { chartsOfPage } from "./charts.js";
+
+const MAX_LENGTH = 5000; // [characters] that the lab takes
+const MAX_REPLAY = 2e8; // [bytes] of a replay that is read
+const BLOCK = '<script type="application/json" id="springtide-setup">'; // holds the set-up file in a replay
+const BLOCK_END = "<\/script>"; // this script stands in a page, which would end it at the plain word
+const CLIP_TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/webm"];
+const CLIP_RATE = 30; // [1/s] pictures of a clip
+const CLIP_BITS = 12e6; // [bit/s]
+const MAX_CLIP = 300; // [s] after which a clip ends by itself
+const ASKED = 3000; // [ms] after a press of "Copy link" within which a link is copied to the clipboard
+const VISER_NAMES = new Set([
+  "darkMode", "dummyWindowDimensions", "dummyWindowTitle", "fixedDpr", "forceOrbitOriginTool", "hideViserLogo",
+  "initialCameraLookAt", "initialCameraPosition", "initialCameraUp", "logCamera", "playbackPath", "showStats", "websocket",
+]);
+const asked = new URLSearchParams(location.search);
+let query = ["scene", "task", "compare"].some((name) => asked.has(name)) ? location.search : "";
+let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
+let pressed = -Infinity;
+
+function send(text) {
+  return sendToLab(document.querySelector("[data-springtide-inbox]")?.dataset.springtideInbox, `${PAGE}\n${text}`);
+}
+
+// Have the server make a file, by a hidden button of the panel.
+function make(value) {
+  sendToLab(document.querySelector("[data-springtide-makers]").dataset.springtideMakers, value);
+}
+
+const own = `[data-springtide-changer="${PAGE}"]`, sentences = document.createElement("style");
+sentences.textContent =
+  `${own} .springtide-others, [data-springtide-changer]:not(${own}) .springtide-own { display: none; }`;
+document.head.append(sentences);
+
+// What viser's client itself takes from an address is not for the lab.
+function ofLab(search) {
+  const found = new URLSearchParams(search);
+  for (const name of [...found.keys()]) if (VISER_NAMES.has(name)) found.delete(name);
+  return `?${found}`;
+}
+
+function completeLinks() {
+  for (const link of document.querySelectorAll("[data-springtide-link]:not([data-springtide-done])")) {
+    link.dataset.springtideDone = "";
+    link.href = location.origin + location.pathname.replace(/pane\/\d\/[^/]*$/, "") + link.dataset.springtideLink;
+    link.textContent = link.href;
+    if (performance.now() - pressed < ASKED) navigator.clipboard?.writeText(link.href).catch(() => {});
+  }
+}
+
+function update() {
+  if (query && document.querySelector(".springtide-panel[data-state]") && send(ofLab(query))) query = "";
+  completeLinks();
+  if (showsLab) {
+    const found = [...document.querySelectorAll('[role="tab"]')].find((one) => one.textContent.trim() === "Lab");
+    const press = (kind) => found.dispatchEvent(new PointerEvent(kind, { bubbles: true, isPrimary: true, pointerId: 1 }));
+    if (found && found.ariaSelected !== "true") ["pointerdown", "pointerup"].forEach(press); // viser hears no click
+  }
+}
+
+function download(content, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(content);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+let clip = null; // the recorder of the clip that is being made
+function toggleClip(button) {
+  if (clip) {
+    clip.stop();
+    return;
+  }
+  const type = CLIP_TYPES.find((one) => window.MediaRecorder?.isTypeSupported(one));
+  if (!type) {
+    button.textContent = "This browser records no clips";
+    return;
+  }
+  const parts = [], started = performance.now();
+  clip = new MediaRecorder(viewer().canvas.captureStream(CLIP_RATE), {
+    mimeType: type, videoBitsPerSecond: CLIP_BITS,
+  });
+  const show = () => {
+    const seconds = (performance.now() - started) / 1000;
+    button.textContent = `Stop clip (${seconds.toFixed(0)} s)`;
+    if (seconds >= MAX_CLIP) clip.stop();
+  };
+  springtide.isRecording = true; // the quality of the picture stays while it is recorded
+  const timer = setInterval(show, 500);
+  clip.ondataavailable = (event) => parts.push(event.data);
+  clip.onstop = () => {
+    clearInterval(timer);
+    for (const track of clip.stream.getTracks()) track.stop();
+    clip = null;
+    springtide.isRecording = false;
+    button.textContent = "Record";
+    download(new Blob(parts, { type }), type.startsWith("video/mp4") ? "springtide.mp4" : "springtide.webm");
+  };
+  clip.start(1000);
+  show();
+}
+
+// All charts below each other, each with its title above and the names of its lines below.
+function saveCharts(button) {
+  const charts = chartsOfPage();
+  if (!charts.length) {
+    button.textContent = "Open a plot first";
+    setTimeout(() => (button.textContent = "Save plots"), 3000);
+    return;
+  }
+  const ratio = devicePixelRatio, line = 26 * ratio;
+  const sheet = document.createElement("canvas"), pen = sheet.getContext("2d");
+  const width = Math.max(...charts.map((chart) => chart.ctx.canvas.width));
+  // The names of a chart's lines, in as many rows as they need: [row, left, name, colour] of each.
+  const keys = charts.map((chart) => {
+    let row = 0, left = 8 * ratio;
+    pen.font = `${11 * ratio}px sans-serif`;
+    return chart.series.slice(1).filter(({ show }) => show).map(({ label, _stroke: stroke }) => {
+      const size = pen.measureText(`— ${label}   `).width;
+      if (left + size > width && left > 8 * ratio) {
+        row += 1;
+        left = 8 * ratio;
+      }
+      left += size;
+      return [row, left - size, `— ${label}`, typeof stroke === "string" ? stroke : "#888888"];
+    });
+  });
+  const rows = keys.map((key) => 1 + Math.max(0, ...key.map(([row]) => row)));
+  sheet.width = width;
+  sheet.height = charts.reduce((sum, chart, i) => sum + chart.ctx.canvas.height + (1 + rows[i]) * line, 0);
+  pen.fillStyle = getComputedStyle(charts[0].root.parentElement).getPropertyValue("--mantine-color-body") || "#ffffff";
+  pen.fillRect(0, 0, sheet.width, sheet.height);
+  pen.textBaseline = "middle";
+  let top = 0;
+  charts.forEach((chart, i) => {
+    const title = chart.root.querySelector(".u-title");
+    pen.fillStyle = getComputedStyle(title || chart.root).color;
+    pen.font = `bold ${13 * ratio}px sans-serif`;
+    pen.fillText(title?.textContent || "", 8 * ratio, top + line / 2);
+    pen.drawImage(chart.ctx.canvas, 0, top + line);
+    const { left, top: under, width: long, height: tall } = chart.bbox; // the name of the axis at its end
+    pen.font = `${11 * ratio}px sans-serif`;
+    pen.textAlign = "right";
+    pen.fillText(chart.series[0].label, left + long - 2 * ratio, top + line + under + tall - 8 * ratio);
+    pen.textAlign = "left";
+    top += line + chart.ctx.canvas.height;
+    pen.font = `${11 * ratio}px sans-serif`;
+    for (const [row, left, name, colour] of keys[i]) {
+      pen.fillStyle = colour;
+      pen.fillText(name, left, top + (row + 0.5) * line);
+    }
+    top += rows[i] * line;
+  });
+  sheet.toBlob((content) => download(content, "springtide-plots.png"));
+}
+
+for (const kind of ["pointerdown", "keydown"])
+  page.listen(document, kind, ({ isTrusted, target }) => {
+    if (isTrusted && target.closest?.('[role="tab"]')) showsLab = false;
+  }, { capture: true });
+page.listen(document, "click", (event) => {
+  const button = event.target instanceof Element && event.target.closest("button");
+  if (!button) return;
+  if (button.textContent === "Copy link") pressed = performance.now();
+  const film = document.querySelector("[data-springtide-film]")?.value;
+  if ("springtideClip" in button.dataset) clip || !film ? toggleClip(button) : make(film);
+  if (!("springtideCharts" in button.dataset)) return;
+  const form = document.querySelector("[data-springtide-plots]").value;
+  form === "PNG" ? saveCharts(button) : make(`Plots as ${form}`);
+}, { capture: true });
+page.listen(document, "change", async (event) => {
+  const field = event.target;
+  if (!(field instanceof HTMLInputElement) || !("springtideLoad" in field.dataset) || !field.files.length) return;
+  const file = field.files[0];
+  let text = await file.slice(0, 4 * MAX_LENGTH).text();
+  if (text.trimStart().startsWith("<") && file.size <= MAX_REPLAY) {
+    const page = await file.text(), start = page.lastIndexOf(BLOCK) + BLOCK.length;
+    if (start >= BLOCK.length) text = page.slice(start, page.indexOf(BLOCK_END, start));
+  }
+  // What is too long is sent as far as the lab reads, so that the lab says what is wrong with it.
+  send(text.slice(0, MAX_LENGTH) || " ");
+  field.value = "";
+});
+onControls(update);

@@ -1,0 +1,120 @@
+// The time line along the foot of the scene: a bar as wide as the scene, with the recording and its moment that is shown.
+//
+// The panel says the state in `data-springtide-time`, and takes actions through the hidden field that is named there. The
+// bar stands beside the panel, or above it where the panel is a sheet at the foot; what else stands at the foot of the
+// scene has its place from `--springtide-left`, `--springtide-right` and `--springtide-foot`, the bar's distances from the edges
+// of the window, and `--springtide-bar`, its height.
+//
+import { PAGE, send as sendToLab } from "../core/viewer.js";
+import { onChange, onLook } from "../core/watch.js";
+
+const SEND_INTERVAL = 40; // [ms] between two moments that are sent while a hand moves along the bar
+const PANELS = "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root)";
+const bar = document.createElement("div");
+bar.id = "springtide-time";
+bar.setAttribute("role", "group");
+bar.setAttribute("aria-label", "Time line");
+bar.innerHTML = `<div class="springtide-past springtide-switches"><output></output>
+    <select aria-label="Speed of playing the recording" title="Speed of playing the recording"></select>
+    <button type="button" data-act="loop" title="Play the recording again and again" aria-label="Loop">↻</button>
+    <button type="button" data-act="live" title="Back to the present">Live</button>
+    <button type="button" data-act="continue"><b>Continue from here</b></button></div>
+  <button type="button" data-act="play"></button><input type="range" step="any" aria-label="Time of the recording"><span></span>`;
+const [back, speed, line, moment] = ["output", "select", "input", "span"].map((name) => bar.querySelector(name));
+const button = (act) => bar.querySelector(`[data-act=${act}]`);
+let state = null, told = "", count = 0, held = false, sentAt = 0, waiting = 0;
+
+function send(act, number) {
+  sendToLab(state.inbox, `${PAGE}${++count} ${act} ${number}`);
+}
+
+function put(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+// Say the moment that the bar shows: under a hand it is the hand's.
+function say(isPast) {
+  const at = Number(line.value);
+  put(moment, isPast ? `t = ${at.toFixed(2)} s` : "Live");
+  put(back, `${(state.high - at).toFixed(1)} s back`);
+  line.setAttribute("aria-valuetext", `${moment.textContent}, ${back.textContent}`);
+}
+
+function update() {
+  const now = document.querySelector("[data-springtide-time]")?.dataset.springtideTime ?? "";
+  if (now === told) return;
+  told = now;
+  bar.hidden = !now;
+  if (!now) return;
+  state = JSON.parse(now);
+  const isPast = state.shown !== null;
+  bar.dataset.moment = state.shown ?? ""; // for the charts
+  bar.classList.toggle("springtide-is-past", isPast);
+  if (speed.options.length !== state.rates.length) speed.replaceChildren(...state.rates.map((rate) => new Option(`×${rate}`, rate)));
+  speed.value = state.rate;
+  button("loop").ariaPressed = String(state.loops);
+  put(button("play"), state.playing ? "❚❚" : "▶");
+  button("play").ariaLabel = button("play").title = state.playing ? "Stop playing the recording" : "Play the recording";
+  button("continue").disabled = isPast && !state.resumable;
+  button("continue").title = state.resumable ? "The run goes on from this moment; what came later is forgotten"
+    : "No state was kept that early: choose a later moment";
+  line.disabled = !(state.high > state.low);
+  line.title = `Recorded: ${(state.high - state.low).toFixed(0)} s, ${state.size}. Drag to look back`;
+  if (held) return;
+  [line.min, line.max] = [state.low, state.high];
+  line.value = state.shown ?? state.high;
+  say(isPast);
+  place();
+}
+
+function sendMoment() {
+  waiting = 0;
+  sentAt = performance.now();
+  send("show", line.value);
+}
+line.addEventListener("input", () => {
+  held = true;
+  say(true);
+  if (!waiting) waiting = setTimeout(sendMoment, Math.max(0, sentAt + SEND_INTERVAL - performance.now()));
+});
+line.addEventListener("change", () => {
+  clearTimeout(waiting);
+  sendMoment();
+  held = false;
+});
+line.addEventListener("pointerup", () => setTimeout(() => line.blur())); // the keys go to the lab again
+speed.addEventListener("change", () => send("rate", speed.value));
+bar.addEventListener("click", (event) => {
+  const act = event.target instanceof Element && event.target.closest("button")?.dataset.act;
+  if (act) send(act, act === "loop" ? Number(!state.loops) : line.value);
+});
+bar.addEventListener("keydown", (event) => {
+  if (!/^(Arrow|Page|Home|End)/.test(event.key)) return;
+  event.stopPropagation(); // they would move the camera
+  const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
+  if (event.target !== line || !by) return;
+  event.preventDefault();
+  send("step", by);
+});
+
+function place() {
+  const canvas = document.querySelector("canvas[data-engine]");
+  if (bar.hidden || !canvas) return;
+  let { left, right, bottom } = canvas.getBoundingClientRect();
+  const middle = (left + right) / 2, high = bar.offsetHeight;
+  for (const panel of document.querySelectorAll(PANELS)) {
+    const box = panel.getBoundingClientRect();
+    if (!box.width || box.bottom < bottom - high - 12 || box.top > bottom) continue;
+    if (box.left < middle && box.right > middle) bottom = Math.min(bottom, box.top);
+    else if (box.left >= middle) right = Math.min(right, box.left);
+    else left = Math.max(left, box.right);
+  }
+  const edges = { left, right: innerWidth - right, foot: innerHeight - bottom, bar: high };
+  for (const [name, value] of Object.entries(edges))
+    document.documentElement.style.setProperty(`--springtide-${name}`, `${Math.round(value)}px`);
+}
+
+bar.hidden = true;
+document.body.append(bar);
+onChange(update);
+onLook(place);

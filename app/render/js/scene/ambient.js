@@ -1,0 +1,142 @@
+// The light of the sky on rough surfaces as a polynomial of second degree in the direction, instead of two lookups a
+// pixel in the photograph of the sky: these are a quarter of the cost of a cloth. Spherical harmonics: R. Ramamoorthi,
+// P. Hanrahan, "An efficient representation for irradiance environment maps", SIGGRAPH 2001.
+//
+// The photograph is read once, beside the page: to wait for it would be to wait for all that is drawn before. Without float
+// targets, or if the program does not link, three's own lookups stay.
+
+import { viewer } from "../core/viewer.js";
+import { drawTable, makeTable, TARGET_VERTEX } from "../sea/sky_table.js";
+import { contextNumber } from "../shading/context.js";
+import { keyWithDetails, QUALITY, withDetails } from "../shading/quality.js";
+import { insertAfter, replaceShader } from "../shading/shaders.js";
+import { FLOAT, NEAREST, RGBA } from "../shading/three.js";
+
+const AMBIENT = "springtide-ambient"; // key of viser's shader with this light
+const ROUGH = 0.9; // roughness, from which on a reflection is as blurred as this light
+const DIRECTIONS = 256, GOLDEN_ANGLE = Math.PI * (3 - Math.sqrt(5)); // evenly over all directions, along a spiral
+const MEAN_SQUARES = [1, 1 / 3, 1 / 3, 1 / 3, 1 / 15, 1 / 15, 1 / 15, 4 / 15, 4 / 5]; // of the terms below
+const SKY_SAMPLES_FRAGMENT = `
+  #define STANDARD
+  #include <common>
+  #include <cube_uv_reflection_fragment>
+  #include <envmap_common_pars_fragment>
+  #include <envmap_physical_pars_fragment>
+  void main() {
+    float k = floor(gl_FragCoord.x), z = 1.0 - (2.0 * k + 1.0) / float(${DIRECTIONS}), a = float(${GOLDEN_ANGLE}) * k;
+    vec3 d = vec3(sqrt(1.0 - z * z) * vec2(cos(a), sin(a)), z);
+    gl_FragColor = vec4(textureCubeUV(envMap, envMapRotation * d, 1.0).rgb, 1.0);
+  }`;
+export const AMBIENT_GLSL = `
+  uniform vec3 skyTerms[10];
+  vec3 skyLight(vec3 normal) {
+    vec3 d = inverseTransformDirection(normal, viewMatrix);
+    vec3 light = skyTerms[0] + skyTerms[1] * d.x + skyTerms[2] * d.y + skyTerms[3] * d.z;
+    #if DETAILS > 0
+      light += skyTerms[4] * d.x * d.y + skyTerms[5] * d.y * d.z + skyTerms[6] * d.z * d.x +
+               skyTerms[7] * (d.x * d.x - d.y * d.y) + skyTerms[8] * (3.0 * d.z * d.z - 1.0);
+    #endif
+    return max(light, skyTerms[9]); // the darkest
+  }
+  #define getIBLIrradiance(normal) (PI * envMapIntensity * skyLight(normal))
+  #define getIBLRadiance(view, normal, roughness) (envMapIntensity * skyLight(normal))`;
+
+// At the lowest quality nothing mirrors: suns and sky light matt surfaces, and of the sky the first four terms do.
+const MATT_GLSL = `
+  #undef STANDARD
+  #define LAMBERT
+  #undef RE_Direct
+  #undef RE_IndirectDiffuse
+  #undef RE_IndirectSpecular
+  #define RE_Direct(light, place, normal, view, coat, material, found) \\
+    found.directDiffuse += saturate(dot(normal, light.direction)) * light.color * BRDF_Lambert(diffuseColor.rgb)
+  #define RE_IndirectDiffuse(irradiance, place, normal, view, coat, material, found) \\
+    found.indirectDiffuse += irradiance * BRDF_Lambert(diffuseColor.rgb)`;
+
+export const skyTerms = { value: null }; // the nine terms, and the least light of all directions
+const LIKELY_SKY = [0.7, 0.75, 0.8]; // until the photograph is read
+export let skiesRead = 0; // frames.js draws when it changes
+let samples = null; // the table with which the photograph is read
+
+export function addAmbient(shader) {
+  Object.assign(shader.uniforms, { skyTerms });
+  insertAfter(shader, "fragmentShader", "envmap_physical_pars_fragment", AMBIENT_GLSL);
+  shader.fragmentShader = withDetails(shader.fragmentShader);
+  if (QUALITY.details() === 0) shader.fragmentShader = shader.fragmentShader.replace("#include <lights_physical_fragment>", MATT_GLSL);
+}
+
+// The terms of the polynomial in a direction.
+function termsOf(x, y, z) {
+  return [1, x, y, z, x * y, y * z, z * x, x * x - y * y, 3 * z * z - 1];
+}
+
+// Read the photograph if it is another one, or is turned.
+function readSky(renderer, scene, mesh) {
+  const photograph = scene.environment, Target = photograph?.renderTarget?.constructor;
+  if (!Target || !renderer.extensions.has("EXT_color_buffer_float")) return;
+  const key = [contextNumber(), photograph.uuid, photograph.version, ...scene.environmentRotation.toArray()].join();
+  if (samples?.key === key) return;
+  const how = { type: FLOAT, format: RGBA, minFilter: NEAREST, magFilter: NEAREST, depthBuffer: false };
+  samples ??= makeTable({ geometry: mesh.geometry, mesh }, new Target(DIRECTIONS, 1, how));
+  const isDrawn = drawTable(renderer, scene, samples, key, "springtide-sky-samples", (shader) => {
+    shader.vertexShader = TARGET_VERTEX;
+    shader.fragmentShader = SKY_SAMPLES_FRAGMENT;
+  });
+  if (!isDrawn) return;
+  skyTerms.value ??= [...MEAN_SQUARES, 0].map((_, i) => mesh.position.clone().fromArray(i === 0 ? LIKELY_SKY : [0, 0, 0]));
+  const numbers = new Float32Array(4 * DIRECTIONS), asked = [samples.target, 0, 0, DIRECTIONS, 1, numbers];
+  const take = () => {
+    if (samples.key !== key) return;
+    setTerms(numbers);
+    skiesRead += 1;
+    viewer().requestRender();
+  };
+  if (QUALITY.isWhole()) {
+    renderer.readRenderTargetPixels(...asked);
+    take();
+  } else renderer.readRenderTargetPixelsAsync(...asked).then(take, () => {}); // it fails where the context is lost
+}
+
+// The terms of a sky with these colours in DIRECTIONS, red, green, blue and one more number each.
+export function setTerms(numbers) {
+  const directions = Array.from({ length: DIRECTIONS }, (_, k) => {
+    const z = 1 - (2 * k + 1) / DIRECTIONS, level = Math.sqrt(1 - z * z), a = GOLDEN_ANGLE * k;
+    return termsOf(level * Math.cos(a), level * Math.sin(a), z);
+  });
+  const terms = skyTerms.value.slice(0, -1), least = skyTerms.value.at(-1), color = least.clone();
+  for (const [i, term] of terms.entries()) {
+    term.set(0, 0, 0);
+    for (const [k, direction] of directions.entries()) {
+      term.addScaledVector(color.fromArray(numbers, 4 * k), direction[i] / (DIRECTIONS * MEAN_SQUARES[i]));
+    }
+  }
+  least.set(Infinity, Infinity, Infinity);
+  for (const direction of directions) {
+    color.set(0, 0, 0);
+    for (const [i, term] of terms.entries()) color.addScaledVector(term, direction[i]);
+    least.min(color);
+  }
+  least.max(color.set(0, 0, 0));
+}
+
+// Whether a material is lit so. At the lowest quality everything is.
+export const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0;
+
+// Light viser's own meshes so; those with a shader of ours ask for it themselves.
+export function lightMeshes(renderer, scene) {
+  const lit = [];
+  let plain = null; // an ordinary mesh, not an instanced one: its class makes the triangle
+  scene.traverseVisible((object) => {
+    if (!object.isMesh || object.layers.mask === 0) return;
+    lit.push(...[object.material].flat().filter((one) => one.isMeshStandardMaterial && !one.isMeshPhysicalMaterial));
+    const isPlain = Object.getPrototypeOf(object.constructor) === Object.getPrototypeOf(scene.constructor);
+    if (isPlain && object.material.isMeshStandardMaterial) plain ??= object;
+  });
+  if (plain) readSky(renderer, scene, plain);
+  for (const one of skyTerms.value ? lit : []) {
+    const { springtide } = one.userData;
+    if (springtide && !springtide.startsWith(AMBIENT)) continue;
+    if (isRough(one)) replaceShader(one, keyWithDetails(AMBIENT), addAmbient);
+    else if (springtide) replaceShader(one, "", () => {});
+  }
+}

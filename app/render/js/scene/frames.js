@@ -1,0 +1,177 @@
+// Draws a frame only if something in it has changed since the last one, and one frame at a time.
+//
+// viser draws once a second in any case, and for a quarter of a second after each request. Here `render` of its renderer
+// compares what the frame is made of with the last one, and returns early if both are equal: the canvas keeps its pixels.
+// Frames for clips and for images that the server asks for are always drawn.
+//
+// Of three this file uses the renderer's render and setSize, the versions of attributes, materials and textures, and the
+// values of materials and uniforms. Anything that it cannot compare counts as changed.
+
+import { springtide } from "../core/springtide.js";
+import { viewer } from "../core/viewer.js";
+import { awaitsSky } from "../sea/sky_table.js";
+import { contextNumber } from "../shading/context.js";
+import { isDark } from "../shading/dark.js";
+import { QUALITY } from "../shading/quality.js";
+import { programsReady } from "../shading/shaders.js";
+import { BOTH_SIDES } from "../shading/three.js";
+import { wrapMethod } from "../shading/wrap.js";
+import { skiesRead } from "./ambient.js";
+
+const SMALL = 16384; // numbers up to which a texture is compared itself: viser counts that of labels on in each frame
+const LONG_FRAME = 100; // [ms] from which on a frame leaves time for the panel
+const FRAMES_LEFT = 2; // to the panel after its user has pressed something in it
+
+function addValue(list, value) {
+  if (value?.isTexture) {
+    const numbers = value.image?.data;
+    list.push(value);
+    if (list.textures.has(value)) return; // labels share one
+    list.textures.add(value);
+    if (numbers?.length <= SMALL) for (const number of numbers) list.push(number);
+    else list.push(value.enqueueUpdate ? {} : value.version, numbers); // of instances: its version does not tell
+  } else if (value?.toArray) for (const number of value.toArray()) list.push(number);
+  else if (Array.isArray(value) || (ArrayBuffer.isView(value) && value.length <= SMALL)) {
+    for (const one of value) addValue(list, one);
+  } else list.push(value);
+}
+
+// An attribute of a geometry. Its own writes (packed.js) follow from data that is in the list.
+function addAttribute(list, attribute) {
+  if (!attribute || attribute.springtide) return;
+  const { array, version, springtideWrites = 0 } = attribute.data ?? attribute;
+  list.push(array, version - springtideWrites);
+}
+
+function addObject(list, object) {
+  if (object.userData.springtideDerived) return; // it follows from the others
+  const { geometry, material } = object;
+  list.push(object, object.visible, object.renderOrder, geometry);
+  if (object.matrixAutoUpdate) for (const part of ["position", "quaternion", "scale"]) addValue(list, object[part]);
+  else addValue(list, object.matrix);
+  if (!object.matrixWorldAutoUpdate) addValue(list, object.matrixWorld);
+  if (object.isSkinnedMesh) list.push({}); // its bones are not in the scene
+  if (object.isLight) {
+    for (const part of ["color", "groundColor", "intensity", "distance", "angle", "penumbra", "decay", "castShadow"]) {
+      addValue(list, object[part]);
+    }
+    addValue(list, object.target?.position);
+  }
+  addValue(list, object.morphTargetInfluences);
+  if (geometry) {
+    const { attributes } = geometry, packed = attributes.position?.springtideWrites; // normals follow from positions
+    for (const name in attributes) if (!packed || name !== "normal") addAttribute(list, attributes[name]);
+    addAttribute(list, geometry.index);
+    list.push(geometry.drawRange.start, geometry.drawRange.count, geometry.instanceCount, object.count);
+    for (const name of ["instanceMatrix", "instanceColor"]) {
+      // viser counts its version on in each frame
+      if (object[name]?.array.length <= SMALL) addValue(list, object[name].array);
+      else addAttribute(list, object[name]);
+    }
+    for (const name of ["matricesTexture", "colorsTexture", "uniformsTexture"]) addValue(list, object[name]);
+  }
+  for (const one of material ? [material].flat() : []) {
+    // three itself counts on the version of a material that it draws in two passes.
+    const unread = one.transparent && one.side === BOTH_SIDES && !one.forceSinglePass ? ["uniforms", "version"] : ["uniforms"];
+    for (const name in one) {
+      if (!unread.includes(name) && typeof one[name] !== "function") addValue(list, one[name]);
+    }
+    list.push(one.userData.springtide);
+    for (const name in one.uniforms) addValue(list, one.uniforms[name].value);
+  }
+}
+
+// All that a frame of the page depends on, as a list of numbers and objects.
+function inputsOf(renderer, scene, camera) {
+  const { domElement: canvas, toneMapping, toneMappingExposure, outputColorSpace, shadowMap } = renderer;
+  const { details, pixels } = QUALITY.now();
+  const list = [
+    isDark(), devicePixelRatio, details, pixels, canvas.width, canvas.height, canvas.clientWidth, canvas.clientHeight,
+    toneMapping, toneMappingExposure, outputColorSpace, shadowMap.enabled, scene.environmentIntensity,
+    scene.backgroundIntensity, scene.backgroundBlurriness, scene.fog, camera, awaitsSky(scene), skiesRead, programsReady, contextNumber(),
+  ];
+  list.textures = new Set();
+  for (const part of ["background", "environment", "environmentRotation", "backgroundRotation", "overrideMaterial"]) {
+    addValue(list, scene[part]);
+  }
+  for (const part of ["position", "quaternion", "projectionMatrix"]) addValue(list, camera[part]);
+  scene.traverse((object) => addObject(list, object));
+  return list;
+}
+
+// life: of the renderer.
+export function paceFrames(renderer, life) {
+  const gl = renderer.getContext(), keepsPixels = gl.getContextAttributes()?.preserveDrawingBuffer;
+  let last = null; // the inputs of the frame that the canvas shows
+  let drawing = null; // of that frame while it is being drawn: its fence, and whether it had a new program
+  let length = 0; // [ms] of it
+  let started = 0, pressed = 0, left = 0; // when it began, when something in the panel was pressed, frames left to the panel
+
+  // Whether the last frame is drawn. Its length is the time until the page gets its next one.
+  function isDrawn() {
+    if (!drawing) return true;
+    const { fence, compiled } = drawing;
+    if (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    gl.deleteSync(fence);
+    drawing = null;
+    length = performance.now() - started;
+    QUALITY.take(length, started, compiled);
+    return true;
+  }
+
+  // The graphics process draws on its own: without waiting for it, the panel would stand behind several frames.
+  function awaitEnd(compiled) {
+    if (drawing) gl.deleteSync(drawing.fence); // a new size is drawn at once
+    const mine = (drawing = { fence: gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0), compiled });
+    gl.flush();
+    const look = () => {
+      if (drawing === mine && !isDrawn()) requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+  }
+
+  // Whether the next frame has to wait: for the last one, or for the panel to show what was pressed in it.
+  function hasToWait() {
+    if (!isDrawn()) return true; // in some frames this comes before `look`
+    if (length < LONG_FRAME || pressed < started || left >= FRAMES_LEFT) return false;
+    left += 1;
+    return true;
+  }
+
+  let knownPrograms = ""; // with the last frame
+  const programs = () => `${renderer.info.programs?.at(-1)?.id} ${programsReady}`;
+
+  wrapMethod(life, renderer, "render", (earlier) => function (scene, camera) {
+    const { scene: own, camera: eye, requestRender } = viewer() ?? {};
+    if (scene !== own || renderer.getRenderTarget()) return void earlier.call(this, scene, camera);
+    makeOpaque(renderer, scene);
+    if (camera !== eye || QUALITY.isCapturing() || springtide.isRecording || !keepsPixels) {
+      last = null;
+      return void earlier.call(this, scene, camera);
+    }
+    if (document.visibilityState === "hidden") return;
+    const inputs = inputsOf(renderer, scene, camera);
+    if (last?.length === inputs.length && inputs.every((input, k) => Object.is(input, last[k]))) return;
+    if (last && hasToWait()) return void requestRender();
+    [started, left] = [performance.now(), 0];
+    earlier.call(this, scene, camera);
+    last = inputs;
+    const known = programs();
+    awaitEnd(known !== knownPrograms);
+    knownPrograms = known;
+  });
+  // It clears the canvas.
+  wrapMethod(life, renderer, "setSize", (earlier) => function (...size) {
+    last = null;
+    earlier.apply(this, size);
+  });
+  const press = ({ target }) => {
+    if (target !== renderer.domElement) pressed = performance.now();
+  };
+  life.listen(document, ["pointerdown", "keydown", "input"], press, { capture: true, passive: true });
+}
+
+// viser fades the canvas in over the first frames after its sky is there: many seconds where frames are slow.
+export function makeOpaque(renderer, scene) {
+  if (scene.environment) renderer.domElement.style.opacity = "1";
+}

@@ -1,0 +1,171 @@
+// Labels on a separate canvas over the picture: at the full resolution of the screen at every quality, without overlaps.
+//
+// A label that would cover another is raised above it, and a line leads down to its place. Pictures and clips
+// contain the labels, and so does the page if this script does not run.
+//
+// Of viser this file uses the meshes of its labels, which stand in one group: those with the uniform uLabelData, a texture
+// of four numbers for each label, its place and whether it is visible; and of the mesh of their backgrounds the attributes
+// aLabelIndex, aRect and aParams, which its vertex shader explains. Labels with a size in the scene stay where they are:
+// they shrink with what they stand at.
+
+import { springtide } from "../core/springtide.js";
+import { viewer } from "../core/viewer.js";
+import { isDark } from "../shading/dark.js";
+import { QUALITY } from "../shading/quality.js";
+import { replaceShader } from "../shading/shaders.js";
+
+const LABEL_GAP = 0.15; // between two labels, in heights of a label
+const MAX_RAISE = 12; // [heights of a label] by which one is raised: one that had to be higher is hidden
+const MAX_LEADERS = 64; // lines from raised labels to their places
+const LEADER_WIDTH = 0.1; // of such a line, in heights of a label
+const LEADER_FRAGMENT = "void main() { gl_FragColor = vec4(0.45, 0.49, 0.54, 1.0); }";
+// The colours of labels on a dark floor. If a new viser has other lines, labels keep their colours.
+const LABEL_COLOURS = [
+  ["gl_FragColor = vec4(0.0, 0.0, 0.0, a);", "gl_FragColor = vec4(0.91, 0.93, 0.95, a);"],
+  ["gl_FragColor = vec4(1.0, 1.0, 1.0, 0.85 * vAlpha);", "gl_FragColor = vec4(0.10, 0.12, 0.15, 0.85 * vAlpha);"],
+];
+
+let labelGroup = null; // of viser's meshes
+let leaders = null; // the mesh of all lines
+let overlay = null; // the renderer of the canvas over the picture; false where the browser gives none
+let raised = new Map(); // index of a raised label -> where viser has it, and where it is drawn, [x, y, z] each
+
+function findLabels(scene) {
+  if (!labelGroup?.parent) {
+    labelGroup = leaders = null;
+    scene.traverse((object) => {
+      if (object.material?.uniforms?.uLabelData) labelGroup ??= object.parent;
+    });
+    labelGroup?.getObjectByName("springtide-leaders")?.removeFromParent(); // of an earlier connection
+  }
+  return labelGroup ? labelGroup.children.filter((mesh) => mesh !== leaders) : [];
+}
+
+function darkenLabels(meshes) {
+  const dark = isDark();
+  for (const { material } of meshes) {
+    replaceShader(material, `springtide-label-${dark ? "dark" : "light"}`, (shader) => {
+      if (!dark) return;
+      for (const [light, other] of LABEL_COLOURS) shader.fragmentShader = shader.fragmentShader.replace(light, other);
+    });
+  }
+}
+
+// The rectangles of the visible labels with a size on the screen, in coordinates from -1 to 1 across the picture.
+function labelBoxes({ geometry, material }, camera) {
+  const { aLabelIndex, aRect, aParams } = geometry.attributes;
+  const { uLabelData, uFovScale, uViewportHeight } = material.uniforms;
+  const numbers = uLabelData.value.image.data, boxes = [];
+  const [across, , , , , upwards] = camera.projectionMatrix.elements;
+  for (let k = 0; k < geometry.instanceCount; k++) {
+    const index = aLabelIndex.getX(k), at = 4 * index, [from, to] = raised.get(index) ?? [];
+    if (!numbers[at + 3] || aParams.getX(k) < 0.5) continue;
+    // Where viser has not written since, the label is still where it was raised to.
+    if (to?.every((number, axis) => number === numbers[at + axis])) numbers.set(from, at);
+    const place = camera.position.clone().fromArray(numbers, at), { x, y } = place.clone().project(camera);
+    const depth = -place.clone().applyMatrix4(camera.matrixWorldInverse).z;
+    if (depth <= 0) continue;
+    // One unit of a rectangle over the depth; viser's letters have the size that they have 10 m away in 800 pixels.
+    const unit = (aParams.getY(k) * uFovScale.value * 80) / uViewportHeight.value;
+    const [left, bottom] = [x + unit * across * aRect.getX(k), y + unit * upwards * aRect.getY(k)];
+    const [width, height] = [unit * across * aRect.getZ(k), unit * upwards * aRect.getW(k)];
+    const rows = aRect.getW(k);
+    boxes.push({ k, index, at, place, y, left, right: left + width, bottom, height, rows, unit: unit * depth });
+  }
+  return boxes;
+}
+
+// Raise labels, the lowest first, until none covers another.
+function arrangeLabels(mesh, camera) {
+  const { value: texture } = mesh.material.uniforms.uLabelData, numbers = texture.image.data;
+  const boxes = labelBoxes(mesh, camera).sort((a, b) => a.y - b.y || a.index - b.index), placed = [], lines = [];
+  const up = camera.position.clone().setFromMatrixColumn(camera.matrixWorld, 1);
+  raised = new Map();
+  for (const box of boxes) {
+    const gap = LABEL_GAP * box.height, start = box.bottom;
+    const covered = (other) => box.left < other.right && box.right > other.left &&
+      box.bottom < other.bottom + other.height + gap && box.bottom + box.height + gap > other.bottom;
+    for (let other = placed.find(covered); other; other = placed.find(covered)) {
+      box.bottom = other.bottom + other.height + 1.01 * gap;
+    }
+    const raise = (box.bottom - start) / box.height; // [heights of the label]
+    if (raise > MAX_RAISE) numbers[box.at + 3] = 0;
+    else placed.push(box);
+    if (raise === 0 || raise > MAX_RAISE) continue;
+    const from = box.place.toArray();
+    box.place.addScaledVector(up, raise * box.rows * box.unit).toArray(numbers, box.at);
+    raised.set(box.index, [from, Array.from(numbers.subarray(box.at, box.at + 3))]);
+    lines.push({ ...box, length: raise * box.rows });
+  }
+  texture.needsUpdate = true;
+  drawLeaders(mesh, lines.slice(0, MAX_LEADERS));
+}
+
+// A line is a narrow rectangle below the place of a label, as viser's vertex shader draws them.
+function drawLeaders({ geometry, material, renderOrder, constructor }, lines) {
+  if (!leaders && !lines.length) return;
+  if (!leaders) {
+    const made = new geometry.constructor(), { vertexShader, uniforms } = material;
+    made.index = geometry.index.clone();
+    made.setAttribute("position", geometry.attributes.position.clone());
+    for (const [name, size] of [["aLabelIndex", 1], ["aParams", 2], ["aRect", 4]]) {
+      made.setAttribute(name, new geometry.attributes[name].constructor(new Float32Array(size * MAX_LEADERS), size));
+    }
+    const how = { vertexShader, uniforms, fragmentShader: LEADER_FRAGMENT, depthTest: false, depthWrite: false };
+    leaders = new constructor(made, new material.constructor({ ...how, transparent: true }));
+    Object.assign(leaders, { name: "springtide-leaders", frustumCulled: false, renderOrder });
+    leaders.userData.springtideDerived = true;
+    labelGroup.add(leaders);
+  }
+  const { aLabelIndex, aParams, aRect } = leaders.geometry.attributes;
+  lines.forEach(({ k, index, rows, length }, line) => {
+    const width = LEADER_WIDTH * rows;
+    aLabelIndex.setX(line, index);
+    aParams.setXY(line, 1, geometry.attributes.aParams.getY(k));
+    aRect.setXYZW(line, -width / 2, -length, width, length);
+  });
+  leaders.geometry.instanceCount = lines.length;
+  for (const attribute of [aLabelIndex, aParams, aRect]) attribute.needsUpdate = true;
+}
+
+// The renderer of the canvas over the picture, of the same size; null where the browser gives none.
+function overlayOf(renderer) {
+  const picture = renderer.domElement, { clientWidth: width, clientHeight: height } = picture;
+  overlay ??= document.getElementById("springtide-labels")?.springtideRenderer ?? makeOverlay(renderer);
+  if (!overlay || !width || !height) return null;
+  const { domElement: canvas } = overlay;
+  if (canvas.previousSibling !== picture) picture.after(canvas);
+  if (overlay.getPixelRatio() !== devicePixelRatio) overlay.setPixelRatio(devicePixelRatio);
+  if (canvas.clientWidth !== width || canvas.clientHeight !== height) overlay.setSize(width, height);
+  return overlay;
+}
+
+function makeOverlay(renderer) {
+  const canvas = document.createElement("canvas");
+  canvas.id = "springtide-labels";
+  canvas.style.cssText = "position:absolute;top:0;left:0;pointer-events:none";
+  try {
+    const reversedDepthBuffer = renderer.state.buffers.depth.getReversed();
+    canvas.springtideRenderer = new renderer.constructor({ canvas, alpha: true, depth: false, reversedDepthBuffer });
+  } catch {
+    return false;
+  }
+  canvas.removeAttribute("data-engine"); // by which one finds the canvas of the picture
+  return canvas.springtideRenderer;
+}
+
+// Called before each frame is drawn.
+export function dressLabels(renderer, scene, camera) {
+  const meshes = findLabels(scene);
+  if (!meshes.length) return;
+  darkenLabels(meshes);
+  const backgrounds = meshes.find(({ material }) => !material.uniforms.uAtlas && !material.depthTest);
+  if (backgrounds?.geometry.attributes.aRect) arrangeLabels(backgrounds, camera);
+  labelGroup.visible = true;
+  if (QUALITY.isCapturing() || camera !== viewer().camera) return;
+  const used = !springtide.isRecording && meshes.some(({ geometry }) => geometry.instanceCount > 0);
+  const over = used ? overlayOf(renderer) : null;
+  over?.render(labelGroup, camera);
+  labelGroup.visible = !over;
+  if (overlay) overlay.domElement.style.visibility = over ? "" : "hidden";
+}

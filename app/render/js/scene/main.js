@@ -1,0 +1,94 @@
+// Draws the scene: replaces the shaders of stock viser's meshes, once per frame, for every node that asks for it.
+//
+// A node asks by a hidden child mesh with the suffix of a shader: "/rope" has a colour at each vertex if there is a
+// "/rope/vertex_colors". Everything that changes travels as vertices, so that new scenes, browsers that connect later
+// and recordings need no further script. A lab that draws by viser's public interface alone has a panel without the field
+// for reports: there nothing is replaced.
+
+import { Life, page } from "../core/life.js";
+import { beforeRender } from "../core/render_hook.js";
+import { springtide } from "../core/springtide.js";
+import { connectionNumber, PAGE, send, viewer } from "../core/viewer.js";
+import { onControls } from "../core/watch.js";
+import { openWater } from "../sea/open_water.js";
+import { rain } from "../sea/rain.js";
+import { skiesDrawn } from "../sea/sky_table.js";
+import { water } from "../sea/water.js";
+import { followContext } from "../shading/context.js";
+import { QUALITY } from "../shading/quality.js";
+import { beginFrame, isLinked, meshOf } from "../shading/shaders.js";
+import { lightMeshes } from "./ambient.js";
+import { contact } from "./contact.js";
+import { makeOpaque, paceFrames } from "./frames.js";
+import { dressLabels } from "./labels.js";
+import { shrinkPhotograph } from "./photograph.js";
+import { dressSmoke } from "./smoke.js";
+import { drawOneLightOfEachSun } from "./sun.js";
+import { vertexColors } from "./vertex_colors.js";
+
+// Each shader: { suffix, unpack(node), update(context), removeUnused() }. `unpack` (optional) brings the vertices up to
+// date before the camera of the frame is placed. `update` is called for each node with that suffix. It
+// returns the material that has the shader, or null. `removeUnused` (optional) disposes of what removed nodes left.
+const SHADERS = [vertexColors, openWater, contact, water, rain];
+
+let drawn = "", reported = "";
+const field = () => document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders;
+const isPlain = () => !field() && document.querySelector(".springtide-panel[data-state]") !== null;
+
+// Report the names of the nodes that are drawn with their shader, once to each field of each connection and whenever they
+// change. Each scene has its own field.
+function report() {
+  const now = `${connectionNumber()} ${field()}\n${drawn}`;
+  if (field() && reported !== now && send(field(), `${PAGE}\n${drawn}`)) reported = now;
+}
+
+// Call a function for each shader and node that asks for it: { base, mesh, data }.
+function forEachShaded(call) {
+  const nodes = viewer().nodeRefFromName;
+  for (const name of Object.keys(nodes)) {
+    for (const shader of SHADERS) {
+      if (!name.endsWith(shader.suffix) || !nodes[name]) continue;
+      const base = name.slice(0, -shader.suffix.length), mesh = meshOf(base), data = meshOf(name);
+      if (mesh && data) call(shader, { base, mesh, data });
+    }
+  }
+}
+
+let current = null; // the renderer, and the life of what is made for it
+
+function follow(renderer, scene) {
+  current?.life.end();
+  current = { renderer, life: new Life() };
+  springtide.quality = QUALITY;
+  springtide.memory = () => ({ ...renderer.info.memory });
+  makeOpaque(renderer, scene);
+  followContext(renderer, current.life);
+  QUALITY.start(renderer, current.life);
+  paceFrames(renderer, current.life);
+}
+
+function dressScene(renderer, scene, camera) {
+  if (isPlain()) return;
+  if (current?.renderer !== renderer) follow(renderer, scene);
+  QUALITY.beforeRender(renderer);
+  beginFrame();
+  shrinkPhotograph(renderer, scene);
+  drawOneLightOfEachSun(scene);
+  const active = [];
+  forEachShaded((shader, node) => {
+    const material = shader.update({ ...node, renderer, scene, camera });
+    if (material && isLinked(renderer, material)) active.push(node.base);
+  });
+  for (const shader of SHADERS) shader.removeUnused?.();
+  lightMeshes(renderer, scene);
+  dressSmoke(scene);
+  dressLabels(renderer, scene, camera);
+  springtide.skiesDrawn = skiesDrawn;
+  drawn = active.sort().join("\n");
+  report();
+}
+
+page.own(() => current?.life.end());
+beforeRender("data", () => forEachShaded((shader, node) => shader.unpack?.(node)));
+beforeRender("materials", dressScene);
+onControls(report);

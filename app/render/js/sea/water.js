@@ -1,0 +1,252 @@
+// The shader of water, for "<name>" where there is a "<name>/water_material".
+//
+// "<name>/water_surface" carries displacement, slope x, slope y and foam of each vertex, packed (packed.js), and
+// "<name>/water_rest" where the vertices rest; "<name>/water_lines" what stands in the water. The vertices of
+// "<name>/water_material" are the uniforms, in the order of WATER_UNIFORMS (app/render/material.py). "Sea" in a name means
+// the frame of the node, z up; three's world is rotated against it. viser's own mesh is not drawn: its vertices fill
+// textures, which the polar grid (polar_grid.js) and the fragment shader read.
+
+import { contextNumber } from "../shading/context.js";
+import { applyPacked } from "../shading/packed.js";
+import { keyWithDetails, QUALITY } from "../shading/quality.js";
+import { disposeMaterials, dress, isLinked, meshOf, refused } from "../shading/shaders.js";
+import { MAX_WATERLINES, WATER_UNIFORMS } from "../shared.js";
+import { makeDome, makeGrid } from "./dome.js";
+import { writeHalves } from "./half.js";
+import { disposeLit, lightSea, LIT_FRAGMENT, PLACED } from "./lit_sea.js";
+import { aimPolar, finenessOf, setFineness } from "./polar_grid.js";
+import { awaitsSky, drawSkyTable, wantSky, withSky } from "./sky_table.js";
+import { DOME_FRAGMENT, DOME_VERTEX, PLAIN_FRAGMENT, WATER_FRAGMENT, WATER_VERTEX } from "./water_shader.js";
+
+export const seas = new Map(); // name of the node -> what this file has made for it
+// Name of the node -> its uniforms. They are kept for good, because viser may keep a material for a new geometry.
+export const uniformsByName = new Map();
+
+// Uniforms of three numbers each. three's classes are not in scope, therefore vectors are copied from the mesh.
+export function makeUniforms(mesh, names) {
+  return Object.fromEntries(names.map((name) => [name, { value: mesh.position.clone() }]));
+}
+
+// Read uniforms from the vertices of a hidden mesh.
+export function readUniforms(uniforms, names, data) {
+  const numbers = data.geometry.attributes.position.array;
+  names.forEach((name, k) => uniforms[name].value.fromArray(numbers, 3 * k));
+}
+
+function uniformsOf(base, mesh) {
+  if (!uniformsByName.has(base)) {
+    const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
+    for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
+    const textures = ["wavePlaces", "waveSlopes", "skyTable", "seaVertices", "seaPlaces", "seaRest", "seaTiles", "seaLight"];
+    for (const name of textures) uniforms[name] = { value: null };
+    uniforms.eye = { value: [0, 0, 0] };
+    for (const name of ["polarPlace", "polarSteps"]) uniforms[name] = { value: [0, 0, 0, 0] };
+    for (const name of ["polarTurn", "farDepth"]) uniforms[name] = { value: 0 };
+    uniforms.waterlines = { value: new Float32Array(12 * MAX_WATERLINES) };
+    uniformsByName.set(base, uniforms);
+  }
+  return uniformsByName.get(base);
+}
+
+function makeSea(mesh, uniforms) {
+  // widest, highest: greatest displacement [m] along the level and upwards; cell: of the simulated grid [m]
+  const made = { polar: null, plain: null, lit: null, dome: null, triangle: null, isReady: false, isUnlit: false }, size = { widest: 0, highest: 0, cell: 1 };
+  return { mesh, geometry: mesh.geometry, uniforms, filled: "", hasOil: false, hasHulls: false, ...made, ...size };
+}
+
+// Fill a texture with width x height x 4 half-precision numbers (half.js), and its smaller copies with their means where
+// it repeats both ways. three binds it but does not fill it: its own class is not in scope, and it takes any object with
+// this version for one whose data needs no upload.
+function filledTexture(renderer, texture, width, height, halves, repeats) {
+  const gl = renderer.getContext(), size = [width, height, repeats].join();
+  texture ??= { isTexture: true, version: 0, size: "" };
+  const kept = renderer.properties.get(texture), isNew = texture.size !== size || !kept.__webglTexture;
+  if (isNew) {
+    gl.deleteTexture(kept.__webglTexture ?? null); // its size is for good
+    kept.__webglTexture = gl.createTexture();
+    texture.size = size;
+  }
+  renderer.state.activeTexture(gl.TEXTURE0);
+  renderer.state.bindTexture(gl.TEXTURE_2D, kept.__webglTexture);
+  if (isNew) {
+    gl.texStorage2D(gl.TEXTURE_2D, repeats ? 1 + Math.floor(Math.log2(Math.max(width, height))) : 1, gl.RGBA16F, width, height);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, repeats ? gl.LINEAR_MIPMAP_LINEAR : gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, repeats ? gl.REPEAT : gl.CLAMP_TO_EDGE);
+  }
+  const flags = { [gl.UNPACK_FLIP_Y_WEBGL]: false, [gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL]: false, [gl.UNPACK_ALIGNMENT]: 4 };
+  const before = Object.keys(flags).map((flag) => [flag, gl.getParameter(flag)]);
+  for (const flag in flags) gl.pixelStorei(flag, flags[flag]);
+  gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGBA, gl.HALF_FLOAT, halves);
+  for (const [flag, value] of before) gl.pixelStorei(flag, value);
+  if (repeats) gl.generateMipmap(gl.TEXTURE_2D);
+  return texture;
+}
+
+// The waves as the textures that the shader reads (WATER_GLSL.waves), where they have changed. The vertices of a tile are
+// rows and columns, of which the last ones close it; those of rings are the rings one after the other, and the middle.
+function fillWaves(sea, renderer, rest) {
+  const { position, slopeAndFoam } = sea.geometry.attributes, { grid, ringLaw, gridMiddle } = sea.uniforms;
+  const [rows, columns, length] = grid.value.toArray(), isRings = ringLaw.value.y > 0;
+  const filled = `${contextNumber()} ${slopeAndFoam.version}`;
+  if (sea.filled === filled) return;
+  sea.filled = filled;
+  const [height, width] = isRings ? [rows, columns] : [rows - 1, columns - 1], middle = gridMiddle.value.toArray();
+  const vertexAt = isRings ? (i, j) => (i === 0 ? rest.length / 3 - 1 : (i - 1) * width + j) : (i, j) => i * columns + j;
+  const [places, slopes] = [new Uint16Array(4 * width * height), new Uint16Array(4 * width * height)];
+  let [widest, highest] = [0, 0];
+  for (let i = 0, to = 0; i < height; i++) {
+    for (let j = 0; j < width; j++, to += 4) {
+      const from = 3 * vertexAt(i, j);
+      const x = position.array[from] - rest[from] - middle[0], y = position.array[from + 1] - rest[from + 1] - middle[1];
+      const z = position.array[from + 2] - rest[from + 2];
+      const a = slopeAndFoam.array[from], b = slopeAndFoam.array[from + 1], foam = slopeAndFoam.array[from + 2];
+      writeHalves(places, to, x, y, z, 0);
+      writeHalves(slopes, to, a, b, foam, a * a + b * b);
+      widest = Math.max(widest, Math.abs(x), Math.abs(y));
+      highest = Math.max(highest, Math.abs(z));
+    }
+  }
+  // Pieces of a tile that are blended with the same variance may be higher than any of them.
+  [sea.widest, sea.highest] = [1.5 * widest, (isRings ? 1 : 1.5) * highest];
+  sea.cell = isRings ? ringLaw.value.y : length / (rows - 1);
+  for (const [name, halves] of [["wavePlaces", places], ["waveSlopes", slopes]]) {
+    const { uniforms } = sea;
+    uniforms[name].value = filledTexture(renderer, uniforms[name].value, width, height, halves, !isRings);
+  }
+}
+
+function readMaterial(sea, data) {
+  readUniforms(sea.uniforms, WATER_UNIFORMS, data);
+  sea.uniforms.fromSea.value.copy(sea.mesh.matrixWorld);
+  sea.uniforms.toSea.value.copy(sea.mesh.matrixWorld).invert();
+}
+
+function disposeSea(sea) {
+  disposeLit(sea);
+  for (const drawn of [sea.polar, sea.plain, sea.dome]) {
+    if (!drawn) continue;
+    drawn.removeFromParent();
+    disposeMaterials(drawn);
+  }
+  sea.polar?.geometry.dispose();
+  sea.triangle?.dispose();
+  sea.polar = sea.plain = sea.dome = sea.triangle = null;
+}
+
+// Give plain water its program: it is drawn while the browser compiles those of the sea. Returns whether it has one.
+function dressPlain(sea, renderer, camera, scene, shape) {
+  sea.plain ??= makeGrid(sea);
+  return dress(renderer, sea.plain, `${shape.key} plain`, (shader) => {
+    Object.assign(shader.uniforms, sea.uniforms);
+    shader.vertexShader = shape.defines + WATER_VERTEX;
+    shader.fragmentShader = shape.defines + PLAIN_FRAGMENT;
+  }, camera, scene);
+}
+
+// Give a sea and its sky their programs. Returns whether they have them.
+function dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole }) {
+  const hasTable = drawSkyTable(base, sea, renderer, scene);
+  const isLit = lightSea(base, sea, renderer, scene, camera, shape, light);
+  const key = isLit === false ? keyWithDetails(whole.key) : `${shape.key} lit`;
+  const hasSurface = dress(renderer, sea.polar, key, (shader) => {
+    Object.assign(shader.uniforms, sea.uniforms);
+    shader.vertexShader = (isLit === false ? shape.defines : PLACED) + WATER_VERTEX;
+    shader.fragmentShader = isLit === false ? withSky(whole.defines + WATER_FRAGMENT, sea.uniforms) : shape.defines + LIT_FRAGMENT;
+  }, camera, scene);
+  if (sea.uniforms.shown.value.x > 0 && !sea.dome) {
+    sea.dome = makeDome(sea);
+    sea.triangle = sea.dome.geometry;
+  }
+  if (!sea.dome) return hasTable && isLit !== null && hasSurface;
+  sea.dome.geometry = isLit ? sea.lit.tiles : sea.triangle;
+  const hasDome = dress(renderer, sea.dome, keyWithDetails(`springtide-dome${isLit === false ? "" : " in tiles"}`), (shader) => {
+    Object.assign(shader.uniforms, sea.uniforms);
+    shader.vertexShader = isLit === false ? DOME_VERTEX : `#define TILES\n${DOME_VERTEX}`;
+    shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
+  }, camera, scene);
+  return hasTable && isLit !== null && hasSurface && hasDome;
+}
+
+// Until a sea's programs are compiled, and where its mesh is made anew, the photograph behind it would show its land. The
+// page's own sky is seen there instead. Without the shader the photograph is the sky.
+function showPhotograph(scene, shown) {
+  if (!shown && scene.background) [scene.userData.photograph, scene.background] = [scene.background, null];
+  if (shown && !scene.background) scene.background = scene.userData.photograph || null;
+}
+
+export const water = {
+  suffix: "/water_material",
+  removeUnused() {
+    for (const [base, sea] of seas) {
+      if (meshOf(base)) continue;
+      disposeSea(sea);
+      seas.delete(base);
+    }
+  },
+  unpack({ base, mesh }) {
+    const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
+    if (!surface || !rest) return false;
+    return applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array);
+  },
+  update({ base, mesh, data, renderer, scene, camera }) {
+    if (refused.has(mesh.material)) {
+      if (seas.has(base)) disposeSea(seas.get(base));
+      mesh.layers.mask = 1;
+      delete mesh.geometry.computeVertexNormals;
+      showPhotograph(scene, true);
+      return null;
+    }
+    showPhotograph(scene, false);
+    const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
+    if (!surface || !rest) return null;
+    let sea = seas.get(base);
+    if (!sea || sea.mesh !== mesh || sea.geometry !== mesh.geometry) {
+      if (sea) disposeSea(sea);
+      seas.set(base, (sea = makeSea(mesh, uniformsOf(base, mesh))));
+      mesh.geometry.computeVertexNormals = () => {}; // the slopes replace them: viser need not compute them each frame
+    }
+    wantSky();
+    mesh.layers.mask = 0; // the polar grid is drawn in its place
+    if (!this.unpack({ base, mesh })) return null;
+    readMaterial(sea, data);
+    fillWaves(sea, renderer, rest.geometry.attributes.position.array);
+    const lines = meshOf(`${base}/water_lines`);
+    if (lines) sea.uniforms.waterlines.value = lines.geometry.attributes.position.array;
+    const { shown, ringLaw, cutout, slick, waterlines } = sea.uniforms, [drawSky, wireframe] = shown.value.toArray();
+    // Compiling takes seconds: a sea keeps the programs for oil and hulls when they have gone.
+    sea.hasOil ||= slick.value.z > 0;
+    sea.hasHulls ||= waterlines.value[6] > 0; // the corner of the first one
+    const parts = { RINGS: ringLaw.value.y, CUTOUT: cutout.value.z, WIRE: wireframe, OIL: sea.hasOil, HULLS: sea.hasHulls };
+    const variantOf = (...names) => {
+      const defined = names.filter((name) => parts[name] > 0);
+      const defines = defined.map((name) => `#define ${name}\n`).join("");
+      return { key: [`springtide-water${base}`, ...defined].join(" "), defines };
+    };
+    const shape = variantOf("RINGS", "CUTOUT", "WIRE"), light = variantOf("RINGS", "OIL", "HULLS");
+    const whole = variantOf(...Object.keys(parts));
+    // viser asks three for a reversed depth buffer; a browser without clip control has none.
+    sea.uniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
+    const fineness = finenessOf(renderer.getContext(), QUALITY.details());
+    sea.polar ??= makeGrid(sea);
+    if (sea.polar.userData.fineness !== fineness) setFineness(sea, fineness);
+    aimPolar(sea, camera);
+    const isInView = sea.polar.visible;
+    // Where only one program is compiled in a frame, that of plain water comes first.
+    const hasPlain = sea.isReady || dressPlain(sea, renderer, camera, scene, shape);
+    sea.isReady = !awaitsSky(scene) && dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole });
+    if (sea.isReady && !isLinked(renderer, sea.polar.material)) {
+      refused.add(mesh.material);
+      return this.update({ base, mesh, data, renderer, scene, camera });
+    }
+    sea.polar.visible = isInView && sea.isReady;
+    Object.assign(sea.plain, { geometry: sea.polar.geometry, visible: isInView && hasPlain && !sea.isReady });
+    if (sea.dome) sea.dome.visible = drawSky > 0 && sea.isReady;
+    // The server may add meshes for browsers without this shader (Water._draw_plain); here they are hidden.
+    for (const part of ["foam", "wire", "sea", "slick"]) {
+      const plain = meshOf(`${base}/plain_${part}`);
+      if (plain) plain.visible = false;
+    }
+    return sea.isReady ? sea.polar.material : null;
+  },
+};

@@ -1,0 +1,60 @@
+// The automatic choice of quality: which step follows from how long frames take.
+
+// From the finest; pixels: share of the screen's; details: of the shaders, 2 all, 1 less, 0 least.
+export const STEPS = [
+  // Pixels first: fewer of them need no other program.
+  { quality: "high", pixels: 1, details: 2 },
+  { quality: "medium", pixels: 0.75, details: 2 },
+  { quality: "medium", pixels: 0.75, details: 1 },
+  { quality: "low", pixels: 0.5, details: 1 },
+  { quality: "low", pixels: 0.5, details: 0 },
+];
+const SLOW = 38, FAST = 22; // [ms] of a frame: below 30 pictures a second, and safely above
+const VERY_SLOW = 100; // [ms] of a frame, from which on one window is enough, and two steps are taken at once
+const WINDOW = 2000; // [ms] of frames of which the median counts
+const LEAST_FRAMES = 3; // of a window
+const SKIPPED = 3; // frames after a change: they compile programs
+const LONG = 300; // [ms] of a frame, from which on one such frame is enough
+const TERRIBLE = 500; // [ms] of a frame, from which on the last step is taken at once
+const PATIENCE = 20_000; // [ms] of fast frames before a step up; four times as long after a step up that was too much
+const TRIAL = 10_000; // [ms] after a step up in which slow frames mean that it was too much
+
+// The step of "automatic", from the lengths of frames [ms] that `take` is given.
+export function makeJudge(step = 0) {
+  let frames = [], spent = 0, skipped = SKIPPED, slowWindows = 0, fast = 0, patience = PATIENCE, trial = 0;
+  const forget = () => {
+    [frames, spent, skipped, slowWindows] = [[], 0, SKIPPED, 0];
+  };
+  const change = (by) => {
+    step = Math.min(Math.max(step + by, 0), STEPS.length - 1);
+    fast = 0;
+    forget();
+  };
+  return {
+    step: () => step,
+    forget,
+    take(length) {
+      if (skipped > 0) return void (skipped = length > LONG ? 0 : skipped - 1);
+      if (length > TERRIBLE && step < STEPS.length - 1) return void change(STEPS.length);
+      frames.push(length);
+      spent += length;
+      if (spent < WINDOW || frames.length < LEAST_FRAMES) return;
+      const median = frames.sort((a, b) => a - b)[frames.length >> 1], window = spent;
+      [frames, spent] = [[], 0];
+      // One slow window may come from something else that the page had to do.
+      slowWindows = median > SLOW ? slowWindows + (median > VERY_SLOW ? 2 : 1) : 0;
+      if (slowWindows >= 2) {
+        if (trial > 0) patience *= 4;
+        trial = 0;
+        change(median > VERY_SLOW ? 2 : 1);
+        return;
+      }
+      trial = Math.max(trial - window, 0);
+      fast = median < FAST ? fast + window : 0;
+      if (step > 0 && fast >= patience) {
+        change(-1);
+        trial = TRIAL;
+      }
+    },
+  };
+}

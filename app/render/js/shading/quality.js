@@ -1,0 +1,182 @@
+// How finely this browser draws: its share of the screen's pixels, and how much detail the shaders of water and rain have.
+//
+// "Automatic" starts at the last step without a graphics card, else where this browser was when it last had the lab open.
+// It measures how long frames take while the picture moves (frames.js), and goes down step by step if they are slow, at
+// once if one is very slow, and up again with care. The choice belongs to the browser: it is kept in its local storage and is part of no link, preset
+// or set-up. A page with viser's "fixedDpr" in its address wants a picture that does not change: it is drawn as it says.
+// Pictures that the server asks for have all pixels and details.
+
+import { page } from "../core/life.js";
+import { springtide } from "../core/springtide.js";
+import { store, stored } from "../core/storage.js";
+import { viewer } from "../core/viewer.js";
+import { onControls } from "../core/watch.js";
+import { makeJudge, STEPS } from "./judge.js";
+import { wrapMethod } from "./wrap.js";
+
+const KEY = "springtide-quality"; // of the local storage
+const STEPS_KEY = "springtide-quality-steps"; // of the local storage: the last step of each renderer, by its name
+// Names of renderers without a graphics card of their own.
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|microsoft basic render|paravirtual/i;
+const FIXED = { high: 0, medium: 2, low: 4 }; // step of each choice but "automatic"
+let judge = makeJudge();
+const isFixed = new URLSearchParams(location.search).has("fixedDpr");
+let current = STEPS[0], dismissed = false, choice = "automatic", line = null;
+let rendererName = "", valid = 0; // since when [ms] lengths of frames count
+
+function readChoice() {
+  const kept = stored(KEY);
+  choice = kept !== null && kept in FIXED ? kept : "automatic";
+}
+
+// The last steps by name of the renderer.
+function readSteps() {
+  try {
+    return JSON.parse(stored(STEPS_KEY) ?? "{}");
+  } catch {
+    return {}; // another program has written it
+  }
+}
+
+function keepStep() {
+  store(STEPS_KEY, JSON.stringify({ ...readSteps(), [rendererName]: judge.step() }));
+}
+
+function nameOf(renderer) {
+  const gl = renderer.getContext(), more = gl.getExtension("WEBGL_debug_renderer_info");
+  return String(gl.getParameter(more ? more.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+}
+
+function forget() {
+  judge.forget();
+  valid = performance.now();
+}
+
+function choose(name) {
+  store(KEY, name);
+  choice = name;
+  dismissed = false;
+  forget();
+  show();
+  viewer().requestRender();
+}
+
+function button(text, press) {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.textContent = text;
+  made.style.cssText =
+    "font:inherit;margin-left:8px;padding:1px 8px;border:1px solid currentColor;border-radius:3px;background:none;" +
+    "color:inherit;cursor:pointer";
+  made.addEventListener("click", press);
+  return made;
+}
+
+function makeLine() {
+  const made = document.createElement("div");
+  made.id = "springtide-slow";
+  made.setAttribute("role", "status");
+  // Written here, because a replay has no style sheet of ours.
+  made.style.cssText =
+    "position:fixed;bottom:calc(8px + var(--springtide-foot, 0px) + var(--springtide-bar, 0px));z-index:8;padding:4px 10px;" +
+    "left:calc(8px + var(--springtide-left, 0px));border-radius:6px;background:rgba(16,30,46,0.85);color:#fff;" +
+    "font:13px/1.5 system-ui,sans-serif;max-width:calc(100vw - 36px - var(--springtide-left, 0px) - var(--springtide-right, 0px))";
+  made.append("Drawing is slow here, so the quality is lower.");
+  made.append(button("Keep high quality", () => choose("high")));
+  made.append(button("OK", () => {
+    dismissed = true;
+    show();
+  }));
+  document.body.append(made);
+  return made;
+}
+
+// Bring the line on the page and the control in the panel up to date.
+function show() {
+  const step = choice === "automatic" ? judge.step() : FIXED[choice];
+  if (STEPS[step] !== current) {
+    if (step === 0) dismissed = false;
+    current = STEPS[step];
+  }
+  const lowered = choice === "automatic" && step > 0 && !isFixed;
+  if (lowered && !dismissed) line ??= makeLine();
+  else if (line) {
+    line.remove();
+    line = null;
+  }
+  for (const select of document.querySelectorAll("[data-springtide-quality]")) {
+    if (select.value !== choice) select.value = choice;
+    const now = select.parentElement.querySelector("[data-springtide-quality-now]");
+    const text = lowered ? `now ${current.quality}` : "";
+    if (now && now.textContent !== text) now.textContent = text;
+  }
+}
+
+function isCapturing() {
+  return viewer().getRenderRequestState === "capture";
+}
+
+// Pixels that are drawn per pixel of the page.
+const ratio = () => devicePixelRatio * (isCapturing() ? 1 : current.pixels);
+
+readChoice();
+page.listen(document, "change", (event) => {
+  if (event.target instanceof HTMLSelectElement && "springtideQuality" in event.target.dataset) choose(event.target.value);
+});
+page.listen(document, "visibilitychange", forget);
+page.listen(window, "storage", (event) => {
+  if (event.key !== KEY) return;
+  readChoice();
+  show();
+  viewer().requestRender();
+});
+export const QUALITY = {
+  choice: () => choice,
+  now: () => ({ ...current, step: STEPS.indexOf(current), steps: STEPS.length }),
+  isCapturing, // a picture that the server asked for
+  isSoftware: () => SOFTWARE.test(rendererName), // whether there is no graphics card, as far as is known
+  // Whether this frame has to be as it says, however long that takes: it does not change afterwards.
+  isWhole: () => isFixed || isCapturing() || springtide.isRecording === true,
+  // How much detail the shaders of this frame have: 2 all, 1 less, 0 least.
+  details: () => (isFixed || isCapturing() ? 2 : current.details),
+  // Begin with a renderer: at the step that it had when the page was last open, and at the last one if it has no
+  // graphics card. The pixels are set here alone: viser's own monitor and its resizing set others.
+  start(renderer, life) {
+    rendererName = nameOf(renderer);
+    const kept = readSteps()[rendererName];
+    judge = makeJudge(kept in Object.keys(STEPS) ? kept : this.isSoftware() ? STEPS.length - 1 : 0);
+    show();
+    if (isFixed) return;
+    wrapMethod(life, renderer, "setPixelRatio", (earlier) => function () {
+      earlier.call(this, ratio());
+    });
+  },
+  // Called before each frame is drawn: sets its pixels.
+  beforeRender(renderer) {
+    if (isFixed) return;
+    if (Math.abs(renderer.getPixelRatio() - ratio()) > 1e-3) renderer.setPixelRatio(ratio());
+  },
+  // A frame took so long [ms] from the time when it began; compiled: whether programs were made for it.
+  take(length, began, compiled) {
+    // A clip whose pictures change their size in the middle cannot be played.
+    const measured = !isFixed && choice === "automatic" && document.visibilityState === "visible" && !springtide.isRecording;
+    if (!measured) judge.forget();
+    if (!measured || began < valid || compiled) return;
+    const before = judge.step();
+    judge.take(length);
+    if (judge.step() === before) return;
+    keepStep();
+    show();
+    viewer().requestRender();
+  },
+};
+// The control comes with each scene.
+onControls(show);
+
+// The text of a fragment shader, and the name of its program, with the details of this frame.
+export function withDetails(source) {
+  return `#define DETAILS ${QUALITY.details()}\n${source}`;
+}
+export function keyWithDetails(key) {
+  return QUALITY.details() === 2 ? key : `${key} with details ${QUALITY.details()}`;
+}

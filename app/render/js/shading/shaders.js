@@ -1,0 +1,101 @@
+// Programs and materials: another shader for a mesh of viser's, once it is compiled.
+//
+// Of three this file uses Material.onBeforeCompile and the renderer's property map, to see whether a program linked.
+
+import { viewer } from "../core/viewer.js";
+import { QUALITY } from "./quality.js";
+
+export const refused = new WeakSet(); // materials with a program that did not link: they keep viser's own shader
+
+// The mesh of a node is the first child of its group; shadow meshes and child nodes come after it.
+export function meshOf(name) {
+  const group = viewer().nodeRefFromName[name];
+  return (group && group.children && group.children.find((child) => child.isMesh)) || null;
+}
+
+// Give a material another shader; false where its program did not link. viser makes a new material when wireframe,
+// opacity, flat shading or side change, so this is done in every frame. key: of the shader; edit(shader): changes it.
+export function replaceShader(material, key, edit) {
+  if (refused.has(material)) return false;
+  if (material.userData.springtide !== key) {
+    material.userData.springtide = key;
+    material.onBeforeCompile = edit;
+    material.customProgramCacheKey = () => key;
+    material.needsUpdate = true;
+  }
+  return true;
+}
+
+// Programs that the browser is still compiling. It does so beside the page where it has KHR_parallel_shader_compile.
+const awaited = new Set();
+const LOOK_INTERVAL = 30; // [ms] between two looks at them
+export let programsReady = 0; // counts on with each of them; frames.js draws when it changes
+let isCompiling = false; // whether this frame has begun to use a program, in a browser that compiles while the page waits
+
+// A new frame: the page may wait for one more program.
+export function beginFrame() {
+  isCompiling = false;
+}
+
+function lookForPrograms() {
+  const before = programsReady;
+  for (const program of awaited) {
+    if (program.program && program.isReady?.() === false) continue; // one that is gone has none
+    awaited.delete(program);
+    programsReady += 1;
+  }
+  if (awaited.size > 0) setTimeout(lookForPrograms, LOOK_INTERVAL);
+  if (programsReady > before) viewer().requestRender();
+}
+
+// Give an object a material with another shader as soon as its program is compiled; until then it keeps the one that it has.
+// Where the page waits for a program, only one is compiled in each frame. key: of the shader; edit(shader): changes it; scene:
+// whose lights it has. Returns whether the object has a material with some shader.
+export function dress(renderer, object, key, edit, camera, scene = object) {
+  const { userData } = object, earlier = object.material;
+  userData.materials ??= new Map([["", earlier]]); // by key of their shader
+  const { materials } = userData, bare = materials.get("");
+  if (!materials.has(key)) {
+    materials.set(key, bare.clone());
+    replaceShader(materials.get(key), key, edit);
+  }
+  const next = materials.get(key);
+  if (next === earlier) return true;
+  object.material = next;
+  renderer.compile(object, camera, scene);
+  const program = renderer.properties.get(next).currentProgram, isBeside = renderer.extensions.has("KHR_parallel_shader_compile");
+  if (QUALITY.isWhole() || (isBeside ? program.isReady?.() !== false : !isCompiling)) {
+    isCompiling = true;
+    return true;
+  }
+  if (awaited.size === 0) setTimeout(lookForPrograms, LOOK_INTERVAL);
+  awaited.add(program);
+  object.material = earlier;
+  return earlier !== bare;
+}
+
+export function disposeMaterials(object) {
+  for (const material of object.userData.materials?.values() ?? [object.material]) material.dispose();
+}
+
+// Whether the program of a material linked. If a driver refuses it, the material gets viser's shader back, so that the
+// mesh is still drawn, and the server is not told that the shader is active.
+export function isLinked(renderer, material) {
+  const program = renderer.properties.get(material).currentProgram;
+  if (!program) return false; // not drawn yet
+  const gl = renderer.getContext();
+  if (program.__springtide === undefined) {
+    program.__springtide = gl.getProgramParameter(program.program, gl.LINK_STATUS);
+  }
+  if (program.__springtide) return true;
+  refused.add(material);
+  material.onBeforeCompile = () => {};
+  material.customProgramCacheKey = () => "";
+  material.needsUpdate = true;
+  return false;
+}
+
+// Insert text after the include of one of three's shader chunks.
+export function insertAfter(shader, stage, chunk, text) {
+  shader[stage] = shader[stage].replace(`#include <${chunk}>`, `#include <${chunk}>\n${text}`);
+}

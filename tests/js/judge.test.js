@@ -1,0 +1,33 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { makeJudge } from "./js/shading/judge.js";
+
+const FAST = 16.7, MIDDLING = 30, SLOW = 60, VERY_SLOW = 300; // [ms]
+
+// The step after each list of [length, number] of frames.
+function judged(...lists) {
+  const judge = makeJudge();
+  return lists.map((list) => {
+    for (const [length, count] of list) for (let k = 0; k < count; k++) judge.take(length);
+    return judge.step();
+  });
+}
+
+test("frames of 30 pictures a second are fast enough", () => {
+  assert.deepEqual(judged([[FAST, 3000]], [[MIDDLING, 500]]), [0, 0]);
+});
+
+test("a frame after a change compiles programs, and one slow window may be something else", () => {
+  assert.deepEqual(judged([[2000, 1]], [[FAST, 500]], [[SLOW, 34], [FAST, 200]], [[SLOW, 80]]), [0, 0, 0, 1]);
+});
+
+test("very slow frames take two steps at once, and one of more than 500 ms all", () => {
+  assert.deepEqual(judged([[VERY_SLOW, 12]], [[VERY_SLOW, 12]], [[VERY_SLOW, 99]]), [2, 4, 4]);
+  assert.deepEqual(judged([[600, 1]], [[600, 1]], [[600, 99]]), [0, 4, 4]);
+  assert.deepEqual(judged([[FAST, 500]], [[490, 1], [FAST, 500]], [[510, 1]]), [0, 0, 4]);
+});
+
+test("quality rises after 20 s of fast frames; where that was too much, after four times as long", () => {
+  const steps = judged([[SLOW, 80]], [[FAST, 1100]], [[FAST, 200]], [[SLOW, 110]], [[FAST, 4000]], [[FAST, 1200]]);
+  assert.deepEqual(steps, [1, 1, 0, 1, 1, 0]);
+});

@@ -113,7 +113,7 @@ def imported_files(path: Path) -> frozenset[Path]:
 
 
 def modules_of(package: str) -> list[ModuleType]:
-    """All modules of a package of ours, whose kernels are to be part of others': whoever imports it imports them."""
+    """Import all modules of a package, so that their kernels can be linked into others."""
     return [
         importlib.import_module(f"{package}.{module.name}")
         for module in pkgutil.iter_modules(sys.modules[package].__path__)

@@ -6,7 +6,7 @@ import numpy as np
 
 from sim.jit import kernel
 
-# sin(2 pi q) on |q| <= 1/4, odd, of least greatest error (3.3e-9; 5e-8 with single coefficients), by Lawson's iteration
+# sin(2 pi q) on |q| <= 1/4, odd, minimax (3.3e-9; 5e-8 with single coefficients), by Lawson's iteration
 S1, S3, S5, S7, S9 = (
     np.float32(c)
     for c in (6.283185160088972, -41.34165503128634, 81.60100406453265, -76.5497820808528, 39.53670436428712)

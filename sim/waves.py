@@ -99,7 +99,7 @@ class Waves:
         return 4.0 * math.sqrt(0.5 * float(np.square(self.amplitude).sum()))
 
     def largest(self, count: int) -> "Waves":
-        """The `count` highest of these waves; the errors then hold what is left out. Raises ValueError for a count
+        """The `count` highest of these waves; the errors then include the omitted waves. Raises ValueError for a count
         that is not whole or below 1."""
         if not is_whole_number(count) or count < 1:
             raise argument_error("count", count, "a whole number from 1")

@@ -190,8 +190,8 @@ class Fleet(NamedTuple):
     rotation: np.ndarray  # (n, 4) quaternion (w, x, y, z)
     velocity: np.ndarray  # (n, 3) [m/s]
     spin: np.ndarray  # (n, 3) [rad/s] in world axes
-    # (n, 6) [kg/m3] density of the fluid times its share that each motion, in the axes of the heading, carried at the
-    # last step; -1 before it
+    # (n, 6) [kg/m3] fluid density times the wet fraction of each motion, in the axes of the heading, at the last step;
+    # -1 before the first
     carried: np.ndarray
     buoyancy: np.ndarray  # (n,) [N] weight of the displaced fluids at the last step
     # (n, 4) [N] upward, mean over the last step: buoyancy, waves, drag, and the reaction to the motion (added mass, the

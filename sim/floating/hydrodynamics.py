@@ -2,14 +2,14 @@
 
 The coefficients come from boundary elements (`boundary_elements.py`), as tables by draft in `tables`. A box, an upright
 cylinder and a sphere are in the tables at every size: to the water a hull is its wet part. A hull from a file may have
-a table of its own (`springtide hydrodynamics`). Any other has, as an approximation, those of the box with its volume
-and the second moments of its waterplane.
+a table of its own (`springtide hydrodynamics`). Other hulls use, as an approximation, the coefficients of a box of
+equal volume and waterplane moments.
 
 **Long waves.** The water about a hull that is short beside the wave moves as one, and its surface is a plane. The force
 is that of the plane on the hull, plus the mass displaced and the added mass times the acceleration of the water (Taylor
-1928, Proc. R. Soc. A 120:260). So a free hull moves with the water: 1 m/m, and the slope of the wave. What is left of X
-is of order k^2, and fades so below the table, or faster. There the added mass is that of the first
-frequency, and the damping is that of the waves that the hull makes, which follows from X (`haskind`).
+1928, Proc. R. Soc. A 120:260). So a free hull moves with the water: 1 m/m, and the slope of the wave. The remainder of
+X is O(k^2), and is extrapolated as k^2 or faster below the table. There the added mass is that of the first frequency,
+and the damping is that of the waves that the hull makes, which follows from X (`haskind`).
 
 Cummins (1962): (M + A_inf) a + int K(t - s) v(s) ds + C x = F. The transform of K is B + i w (A - A_inf); here it is a
 sum over the same few poles for all entries, so that the memory is a small state: s' = p s + v, force -2 Re(R s). The
@@ -100,7 +100,7 @@ class LinearHull(NamedTuple):
     plane: PlaneForce  # of a plane on the hull at this draft
     long: LongWaveForce
     depth: float  # [m] of the water, inf for deep water
-    heading: float  # [rad] the only one that the excitation is known for; nan: all
+    heading: float  # [rad] the only heading with excitation data; nan: all headings
 
     @property
     def directions(self) -> np.ndarray:

@@ -35,7 +35,7 @@ class LinearTable(NamedTuple):
     infinite: np.ndarray  # (a, d, 6, 6) added mass at infinite frequency
     excitation: np.ndarray  # (a, d, n, m, 6) complex
     depth: float = math.inf  # of the water; inf: deep
-    heading: float = math.nan  # [rad] the only one that the excitation is of, at whatever direction it stands; nan: all
+    heading: float = math.nan  # [rad] the only heading with excitation data; nan: all headings
 
 
 def table_from(arrays: Mapping[str, np.ndarray]) -> LinearTable:

@@ -43,10 +43,10 @@ def response_amplitude(
     Complex: surge, sway, heave [m/m], roll, pitch, yaw [rad/m] along and about the body's axes, x = Re(xi e^(-i w t))
     in the wave cos(k.x - w t), x from the centre of gravity. heading [rad]: where the waves go to, from the body's x.
     It solves (C - w^2 (M + A) - i w B) xi = X (Newman 1977, section 6.20), upright, without drag, on deep water, or
-    that of the hull's dataset. C is that of the hull, also where a dataset has one, and A and B are symmetric. Above
-    the table's frequencies A and B are those of its end and X fades. Below them A is that of its first frequency, and X
-    tends to the force of long waves, so that the body moves with the water and leans as the wave is steep. In layers
-    the coefficients have the mean density of what is displaced, and the interface follows the surface.
+    that of the hull's dataset. C is computed from the hull even if the dataset contains one; A and B are symmetrised.
+    Above the table's frequencies A and B are those of its end and X fades. Below them A is that of its first frequency,
+    and X tends to the force of long waves, so that the body moves with the water and leans as the wave is steep. In
+    layers the coefficients have the mean density of what is displaced, and the interface follows the surface.
 
     Raises ValueError for a value that is not allowed, a heading that the hull's dataset does not have, and for a body
     that sinks, has a trim, or is not stable upright.

@@ -1,9 +1,9 @@
 """Newton's method for the balance of a mooring from a state near rest, with the tensions as unknowns of their own.
 
 A stiff line that turns by a step of the size of a link is stretched by the second order of it, and with the tension of
-that stretch the next step would be tiny. So the matrix has the tensions that the last correction solved for, as if both
-positions and tensions were unknown. Links that pull or not, nodes on the bed or not and volumes in, at or above the
-surface follow piecewise linear laws, and the start is near enough to tell on which piece each of them is.
+that stretch the next step would be tiny. The matrix therefore uses the tensions of the last correction, as if positions
+and tensions were both unknowns. Links that pull or not, nodes on the bed or not and volumes in, at or above the surface
+follow piecewise linear laws, and the start is near enough to tell on which piece each of them is.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""A mooring in time, by any explicit integrator of ropes, for `sim.springs.simulate`; and its coupling with a vessel.
+"""Time integration of moorings with the explicit integrators, for `sim.springs.simulate`; coupling with a vessel.
 
 `sim.springs.state.advance` moves a `State` of a mooring, along `paths_to` places of the coupled points, and
 `point_forces` are the forces at them.

@@ -95,7 +95,7 @@ class Line(NamedTuple):
     end: int
     length: float  # [m], unstretched
     segments: int
-    # Direction of the line, from its start to its end, in which a clamp holds it; None: free to turn. Of bending only.
+    # Direction of the line, from start to end, in which a clamp holds it; None: free to turn. Only for lines with EI.
     clamp_at_start: Vector | None = None
     clamp_at_end: Vector | None = None
 

@@ -57,7 +57,7 @@ class RopeArrays(NamedTuple):
 
 
 class WideArrays(NamedTuple):
-    """Additional kernel data of any other net."""
+    """Extra kernel data of nets that are not plain ropes."""
 
     has_air: bool
     wind_x: float  # [m/s]

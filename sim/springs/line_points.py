@@ -1,7 +1,7 @@
 """The points of lines under water: masses in water, and nodes that bodies carry.
 
-Of nets a mass is a number. A node moves the water around it, unlike along and across its line, so that its mass is a
-matrix:
+Of nets a mass is a number. A node moves the water around it, differently along and across its line, so that its mass is
+a matrix:
 
   m + m_w [C_an (1 - q q^T) + C_at q q^T] over the parts of the node, q their unit tangents
 

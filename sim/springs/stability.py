@@ -2,16 +2,17 @@
 
 Explicit integrators blow up from the top of the spectrum, a sawtooth along the links. An integrator declares the
 largest stable step of an oscillator of any frequency and damping rate, so a net's largest stable step is the least of
-these over the modes that can be the first to leave: the stiffest, the most damped, and one across the
-links. Of isotropic damping that is the most damped there, which is as damped as along them and less stiff, so that
-in a soft rope it is the more overdamped; of axial damping it is the stiffest there. Each mode's damping is its
-Rayleigh quotient, exact where D is a combination of K and M, as along a straight rope. Where it is none, as in a
-cloth, two more modes lie between the stiffest and the most damped one, and the step is right to 1 % (`springtide
-stability`). Explicit Euler's limit, which hangs on the least damped of all modes, is a guide only.
+these over the modes that can be the first to leave: the stiffest, the most damped, and one across the links. With
+isotropic damping that is the most damped transverse mode. It is damped as strongly as a longitudinal one, but less
+stiff, so that in a soft rope it is the more overdamped. With axial damping it is the stiffest transverse mode. Each
+mode's damping is its Rayleigh quotient, exact where D is a combination of K and M, as along a straight rope. Where D is
+no such combination, as in a cloth, two more modes lie between the stiffest and the most damped one, and the step is
+right to 1 % (`springtide stability`). Explicit Euler's limit, which hangs on the least damped of all modes, is a guide
+only.
 
-Each link counts as stiff as it or any other could be if it were stretched as the most stretched one now is: a slack
-line is about to be taut, and a wave carries the strain of one link of a stiffening rope to the others. What stretches
-further later needs a shorter step then.
+Each link is given the stiffness it would have at the largest strain now present in the net: a slack line is about to be
+taut, and a wave carries the strain of one link of a stiffening rope to the others. What stretches further later needs a
+shorter step then.
 """
 
 import functools

@@ -15,9 +15,9 @@ Products of series are cut at order M (West et al. 1987, J. Geophys. Res. 92:118
 W_1 + ... + W_M + |grad eta|^2 (W_1 + ... + W_{M-2}), W^2 the sum of W_i W_j with i + j <= M, or <= M - 2. These are
 Hamilton's equations of an energy that is cut at the same order, which is therefore conserved.
 
-Rates are cut off at the waves of the sea. A phi_m keeps all its waves that a later product can bring back among those,
-min(m, M - m + 1) times as many along each side. The terms of W for short waves on a high crest are large and cancel
-only with these waves: cut off before, a wave of k a = 0.3 on 32 cells breaks up within two periods at order 7.
+Rates are truncated to the sea's wavenumbers; phi_m keeps min(m, M - m + 1) times as many along each axis, those that
+later products can fold back. The terms of W for short waves on a high crest are large and cancel only with these
+wavenumbers: without them a wave of k a = 0.3 on 32 cells breaks up within two periods at order 7.
 """
 
 import numpy as np

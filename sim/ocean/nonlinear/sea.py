@@ -5,8 +5,8 @@ time at once. Limits:
 - Potential flow under a surface without overhangs: no overturning, no tension, no viscosity, level bottom.
 - Steepness by order. The speed of a wave of k a = 0.3 is off by 1.4e-3 at order 3, 1e-4 at 5 and 1e-5 at 7; k a = 0.35
   needs order 7, k a = 0.4 breaks up.
-- Short waves on high crests: the series in z diverges where k a of the shortest wave of the grid and the amplitude of
-  the sea is above about 5. `breaking` damps what grows there.
+- Short waves on high crests: the series in z diverges where k_max a exceeds about 5 (k_max: largest wavenumber of the
+  grid; a: amplitude of the sea). `breaking` damps what grows there.
 
     >>> from sim.ocean.nonlinear import stokes_wave
     >>> wave = stokes_wave(height=2.0, wavelength=100.0)
@@ -134,7 +134,7 @@ class NonlinearSea(AnySea):
         return other
 
     def resized(self, size: int | tuple[int, int]) -> "NonlinearSea":
-        """The same sea at its time on another grid, but for waves that only one of the grids has.
+        """The same sea at its time on another grid; waves not representable on both are dropped.
 
         Raises ValueError for a size that is not allowed.
         """

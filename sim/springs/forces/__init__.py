@@ -1,7 +1,7 @@
 """The forces on a net: one file each, found by being here, with all that the program knows of the force.
 
-`each` makes the kernels that go through the list of forces: it writes their source when the program starts, one call a
-force, so that a list costs no more than the calls written by hand.
+`each` generates the kernels that loop over all forces, as source with one call per force, when the program starts. The
+list therefore costs nothing at run time.
 
 To add a force, write a module in this folder with
 

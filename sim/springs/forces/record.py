@@ -49,7 +49,7 @@ class Force(NamedTuple):
     pins_power: Any = None  # (x, v, p) -> what moving pins put in through its damping [W]
     tangent: Any = None  # (x, u, t, p, part, longest, out): adds a matrix times u, see `sim.springs.forces.matrices`
     blocks: Any = None  # (x, v, t, g, p, points): adds g D + g^2 K of each point, see `sim.springs.forces.matrices`
-    # A force between points that no link joins has blocks of its own, so many numbers from index o of `coupled` on.
+    # A force between unlinked points stores its blocks in `coupled`, this many numbers from index o on.
     # They are set, added to the points' blocks, and added times u to q.
     coupled_size: Any = None  # (p)
     set_coupled: Any = None  # (x, v, g, p, coupled, o)

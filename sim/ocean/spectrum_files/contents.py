@@ -18,7 +18,8 @@ from sim.validation import argument_error, unreadable
 MAX_BYTES = 100_000_000  # of a text file, unpacked
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 2.5))  # of spreadings that are made of moments
 NEAREST = datetime.timedelta(hours=1.5)  # between the time that is asked for and a record of a file
-FORMS = "a table (CSV), an NDBC text file, or a file of WAVEWATCH III or SWAN (with `wavespectra`)"
+FORMS = "a table (CSV), a file of NDBC, SWAN, Datawell or AWAC, or one that `wavespectra` reads"
+MAGNETIC = "directions are those of the instrument's compass: from magnetic north, unless it was set otherwise"
 
 
 def read_time(text: str) -> datetime.datetime:

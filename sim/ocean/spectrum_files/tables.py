@@ -1,5 +1,6 @@
 """Tables of spectra: a row a frequency, with columns by name, or densities under a row of directions."""
 
+import datetime
 import math
 import re
 from pathlib import Path
@@ -60,8 +61,8 @@ def from_table(text: str, path: Path) -> Spectrum[Any]:
     return from_columns(table, path)
 
 
-def from_columns(table: ColumnTable, path: Path) -> Spectrum[Any]:
-    """The spectrum of the columns of a table; rows without frequency or density are left out."""
+def from_columns(table: ColumnTable, path: Path, time: datetime.datetime | None = None) -> Spectrum[Any]:
+    """The spectrum of the columns of a table; rows without frequency or density are left out. time: of its record."""
     axis, density = table.columns["frequency"], table.columns["density"]
     f, S = axis.values, density.values
     if density.is_angular is None and axis.is_angular:
@@ -77,7 +78,7 @@ def from_columns(table: ColumnTable, path: Path) -> Spectrum[Any]:
     if direction is None or (spread is None and r1 is None):
         if direction is not None or spread is not None or r1 is not None:
             notes.append("directions left out: they need a column of direction, and one of spread or r1")
-        return made(path, None, f, S, notes=notes)
+        return made(path, time, f, S, notes=notes)
     mean = filled(f, f, direction.values[order])
     if r1 is not None:
         first = shares(filled(f, f, r1.values[order]))
@@ -87,7 +88,7 @@ def from_columns(table: ColumnTable, path: Path) -> Spectrum[Any]:
         first = np.clip(1.0 - 0.5 * filled(f, f, spread.values[order]) ** 2, 0.0, 1.0)
     if not (np.isfinite(mean).all() and np.isfinite(first).all()):
         raise argument_error("path", str(path), "directions with at least one value")
-    return made(path, None, f, S[:, None] * spread_by_mean(DIRECTIONS, mean, first), DIRECTIONS, notes=notes)
+    return made(path, time, f, S[:, None] * spread_by_mean(DIRECTIONS, mean, first), DIRECTIONS, notes=notes)
 
 
 def rows_of(chosen: np.ndarray) -> str:

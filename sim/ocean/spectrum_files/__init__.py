@@ -12,12 +12,12 @@ from typing import Any
 
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import from_buoy, from_summary
-from sim.ocean.spectrum_files.contents import read_text, read_time
+from sim.ocean.spectrum_files.contents import FORMS, read_time
 from sim.ocean.spectrum_files.instruments import from_awac, from_datawell, is_datawell
 from sim.ocean.spectrum_files.swan import from_swan
 from sim.ocean.spectrum_files.tables import from_table
 from sim.ocean.spectrum_files.wave_models import NETCDF, from_wavespectra, text_reader
-from sim.tables import number_of
+from sim.tables import number_of, read_text
 from sim.validation import argument_error, check_kind, is_whole_number
 
 __all__ = ["read_spectrum"]
@@ -39,7 +39,7 @@ def read_spectrum(path: str | Path, time: str | None = None, place: int | None =
     when = None if time is None else read_time(time)
     if path.suffix.lower() in NETCDF:
         return from_wavespectra(path, when, place)
-    text = read_text(path)
+    text = read_text(path, FORMS)
     head = next((line for line in text.splitlines() if line.strip()), "")
     words = head.lstrip("# ").split()
     kind = head.lstrip("'\" ").upper()

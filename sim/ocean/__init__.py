@@ -4,7 +4,8 @@ Conventions: SI units, radians, z up. Directions are where waves and wind go to,
 Re[2 h0 exp(i(k.x - omega t))] with omega >= 0; Hs = 4 sqrt(m0), m0 the variance of the height.
 
 `SPECTRA`, `Sea`, `RadialSea`, `draw_waves`, `measured_spectrum`, `read_record`, `read_spectrum`, `recorded_waves` and
-`zero_crossings` are imported from here. Waves of `draw_waves`, `recorded_waves` and `Sea.waves_at` are `sim.waves.Waves`.
+`zero_crossings` are imported from here. Waves of `draw_waves`, `recorded_waves` and `Sea.waves_at` are
+`sim.waves.Waves`.
 """
 
 import importlib

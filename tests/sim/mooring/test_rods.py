@@ -45,6 +45,10 @@ def test_a_rod_that_is_held_is_the_points_at_its_ends_and_clamps_lines_with_ei()
     assert len(system.points) == 3
     assert line.clamp_at_start == pytest.approx(np.array([2.0, 0.0, 1.0]) / math.sqrt(5.0))
     assert line.clamp_at_end == pytest.approx((0.0, 0.0, 1.0))  # into the end B of a rod that points down
+    # the other ends, where lines leave the rods against their direction
+    (other,) = read_text_of("rod_clamp", ("R1B R2B", "R1A R2A")).lines
+    assert other.clamp_at_start == pytest.approx(np.array([-2.0, 0.0, -1.0]) / math.sqrt(5.0))
+    assert other.clamp_at_end == pytest.approx((0.0, 0.0, -1.0))
     hinged = read_text_of("rod_clamp", ("300000.0", "0.0"))
     assert hinged.lines[0].clamp_at_start is None
 

@@ -35,7 +35,7 @@ HELD = (
 LIGHT = 1e-3  # of the mass of the ends of its lines: that of a free body without its own
 SAME_PLACE = 1e-6  # [m]
 
-LARGEST_TURN = 0.3  # [rad] of a free body from its place in the file, up to which linear theory holds within 5 %
+LARGE_TURN, MOST_TURN = 0.2, 0.6  # [rad] of a free body from its place in the file: beyond, it is said, and refused
 
 T = TypeVar("T")
 
@@ -110,8 +110,17 @@ def turned(system: System, said: list[str]) -> System:
     try:
         rest = system.at_rest()
         for b, body in enumerate(system.bodies):
-            angle = float(np.linalg.norm(rest.nodes[:, system.node_count + 2 * b + 1]))
-            if angle > LARGEST_TURN:
+            turn = rest.nodes[:, system.node_count + 2 * b + 1]
+            arms = [np.subtract(point.position, body.place) for point in system.points if point.body == body.id]
+            # of a turn about its own arm nothing is seen
+            angle = max((float(np.linalg.norm(np.cross(turn, arm)) / np.linalg.norm(arm)) for arm in arms if arm.any()),
+                        default=0.0)  # fmt: skip
+            if angle > MOST_TURN:
+                raise argument_error(
+                    f"body {body.id}", f"{angle:.3g} rad from its place in the file to its rest",
+                    f"a turn of at most {MOST_TURN:g} rad: bodies turn by small angles",
+                )  # fmt: skip
+            if angle > LARGE_TURN:
                 said.append(f"body {body.id} turns by {angle:.2g} rad to its rest: it is computed for small turns")
         return with_turning(system, rest)
     except ConvergenceError as error:

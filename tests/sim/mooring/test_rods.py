@@ -151,3 +151,9 @@ REFUSED = [
 @pytest.mark.parametrize(("name", "change", "words"), REFUSED)
 def test_a_rod_that_is_none_is_refused(name, change, words):
     assert_refused(name, lambda: read_text_of("rod_free", change), words)
+
+
+def test_a_free_body_that_would_turn_far_is_refused():
+    """Two of its three ropes lead to one side of it. A body moves by linear theory, in which that has no meaning."""
+    change = ("3 rope 3 R3B", "3 rope 3 R2B")
+    assert_refused("body 1", lambda: read_text_of("rod_body", change), "bodies turn by small angles")

@@ -17,7 +17,7 @@ WELDS = (1e-6, 1e-5, 1e-4, 1e-3)  # [m] that are tried for advice
 LEVEL = 1e-3  # of the largest extent: how far the edges of a plane of symmetry may lie from it
 TURNS = np.array([[0, 1, 2], [0, 2, 3]])  # corners of the two triangles of a quadrangle
 ON_EDGE = 1e-6  # of the size of a mesh: how far a node may lie from the edge that it divides
-MAX_DIVIDED = 100_000  # open edges, up to which they are looked at one by one
+MAX_DIVIDED = 20_000  # open edges, up to which they are looked at one by one
 SIMPLE_LOOP = "an open loop that does not cross itself, as seen from above"
 SMALLEST_EAR = 1e-12  # of the area of a loop
 

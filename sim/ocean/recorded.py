@@ -56,8 +56,13 @@ def recorded_waves(
     n, step = len(times), float(times[-1] - times[0]) / (len(times) - 1)
     if not step > 0.0 or np.abs(times - times[0] - step * np.arange(n)).max() > UNEVEN * step:
         raise argument_error("t", times, allowed)
-    if heights.shape != times.shape or not np.isfinite(heights).all():
+    if heights.shape != times.shape:
         raise argument_error("height", heights.shape, f"finite heights, one for each of {n} times")
+    bad = ~np.isfinite(heights)
+    if bad.any():
+        i = int(bad.argmax())
+        given = f"{heights[i]:g} at t = {times[i]:g} s, {int(bad.sum())} such heights in all"
+        raise argument_error("height", given, "finite heights")
     direction, error = check_angle("direction", direction), check_within("error", error, 0.0, 0.5)
     x, y = check_vector("place", place, "m", 2)
     check_kind("water", water, FluidColumn | Conditions, "a FluidColumn or Conditions")

@@ -3,6 +3,7 @@
 from sim.tables.columns import Column, ColumnTable, Kind, Meaning, factor_of, read_columns, read_table
 from sim.tables.numbers import is_value, number_of, values_of
 from sim.tables.rows import Row, line_error, split_rows
+from sim.tables.text import read_text
 from sim.tables.units import measure_of
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "number_of",
     "read_columns",
     "read_table",
+    "read_text",
     "split_rows",
     "values_of",
 ]

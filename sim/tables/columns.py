@@ -22,6 +22,7 @@ from sim.validation import argument_error
 TURN = 2.0 * math.pi
 WEIGHT = 1025.0 * 9.81  # [N/m3] of sea water: waves of 1 m2 have this energy in J/m2
 MAX_SHOWN = 60  # characters of a header in a message
+MAX_HEADER = 200  # characters of a header that are read
 MAX_LISTED = 12  # columns that are left out, in a line
 
 
@@ -118,7 +119,7 @@ def read_columns(
     left: list[str] = []
     notes: list[str] = []
     for i, text in enumerate(head.words):
-        header = header_of(text, by_name, path, head.number)
+        header = header_of(text[:MAX_HEADER], by_name, path, head.number)
         meaning = by_name.get(header.name)
         if meaning is None:
             left.append(shown(text) or f"number {i + 1}, without a name")

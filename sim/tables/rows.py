@@ -12,6 +12,7 @@ COMMENTS = ("#", "%", "//", "!")
 MARKS = (";", "\t", ",")  # between words, in the order of trial; spaces otherwise
 MAX_COLUMNS = 1000
 MAX_ROWS = 1_000_000
+MAX_LINE = 100_000  # characters
 SPACED = re.compile(r"\s+(?![^\[(]*[\])])")  # spaces that are not in brackets
 BRACKETED = re.compile(r"[\[(][^\[\]()]*[\])]")
 OPENED = re.compile(r"\s+(?=[\[(])")  # a space between a name and its unit
@@ -54,22 +55,26 @@ def split_rows(text: str, path: Path) -> tuple[list[Row], list[Row]]:
 
 
 def words_of(line: str, path: Path, number: int) -> list[str]:
-    """The words of a line. Raises ValueError that names it where they are too many."""
+    """The words of a line. Raises ValueError that names it where it or they are too many."""
+    if len(line) > MAX_LINE:
+        raise line_error(path, number, f"a line of at most {MAX_LINE} characters")
     outside = BRACKETED.sub("", line)
     mark = next((mark for mark in MARKS if mark in outside), None)
-    if mark is None or (mark == "," and is_decimal(line)):
+    is_spaced = mark is None or (mark == "," and is_decimal(line))
+    count = len(outside.split()) if is_spaced else outside.count(mark or "") + 1
+    if count > MAX_COLUMNS:
+        raise line_error(path, number, f"at most {MAX_COLUMNS} columns; here are {count}")
+    if is_spaced:
         words = SPACED.split(OPENED.sub("", line.strip()))
     elif '"' not in line:
-        words = re.split(rf"{mark}(?![^\[(]*[\])])", line)
+        words = re.split(rf"{mark}(?![^\[(]*[\])])", line) if outside != line else line.split(mark)
     else:
         try:
-            words = next(csv.reader([line], delimiter=mark, skipinitialspace=True), [])
+            words = next(csv.reader([line], delimiter=mark or ",", skipinitialspace=True), [])
         except csv.Error:
             raise line_error(path, number, "words of a table") from None
-    if len(words) > MAX_COLUMNS:
-        raise line_error(path, number, f"at most {MAX_COLUMNS} columns; here are {len(words)}")
     words = [word.strip().strip('"') for word in words]
-    return words if mark == "," and not is_decimal(line) else [with_point(word) for word in words]
+    return words if mark == "," and not is_spaced else [with_point(word) for word in words]
 
 
 def is_decimal(line: str) -> bool:

@@ -5,12 +5,27 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
 from sim.mooring.moordyn.bodies import drag_of, free_body, is_point, least_inertia, merge
 from sim.mooring.moordyn.options import read_options
+from sim.mooring.moordyn.rods import Rod, add_ends, add_lines, read_rod, read_rod_type
 from sim.mooring.moordyn.rows import ends_first, read_body, read_line, read_point, read_type
-from sim.mooring.moordyn.sections import BODIES, LINES, OPTIONS, POINTS, TYPES, Row, Section, read_text, split_sections
+from sim.mooring.moordyn.sections import (
+    BODIES,
+    LINES,
+    OPTIONS,
+    POINTS,
+    ROD_TYPES,
+    RODS,
+    TYPES,
+    Section,
+    read_text,
+    split_sections,
+)
 from sim.mooring.system import Point, System
 from sim.mooring.turning import with_turning
+from sim.tables import Row
 from sim.validation import ConvergenceError, Refusals, argument_error
 
 HELD = (
@@ -20,6 +35,8 @@ HELD = (
 LIGHT = 1e-3  # of the mass of the ends of its lines: that of a free body without its own
 SAME_PLACE = 1e-6  # [m]
 
+LARGE_TURN, MOST_TURN = 0.2, 0.6  # [rad] of a free body from its place in the file: beyond, it is said, and refused
+
 T = TypeVar("T")
 
 
@@ -27,15 +44,16 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> 
     """The System of a MoorDyn file of version 1 or 2.
 
     Coupled bodies become coupled points at their places. A free one becomes a Body, which turns by small angles with
-    the stiffness that its lines at rest give it. A link is damped where it is slack, too, as MoorDyn has it. Steady
-    forces on points are in N.
+    the stiffness that its lines at rest give it. Rods become points or stiff lines: see `rods`. A link is damped where
+    it is slack, too, as MoorDyn has it. Steady forces on points are in N.
 
     say: takes a line on each thing of the file that is left out. None: a UserWarning on what may change forces.
     Raises ValueError with everything that cannot be read, and its sections and lines.
     """
     path, wrong = Path(path), Refusals()
     found = split_sections(read_text(path), wrong)
-    for name in (TYPES, POINTS, LINES):
+    needed = (TYPES, LINES) if RODS in found and found[RODS].rows else (TYPES, POINTS, LINES)
+    for name in needed:
         if name not in found or not found[name].rows:
             with wrong:
                 raise argument_error("file", str(path.name), f"a MoorDyn file with a section {name}")
@@ -44,16 +62,26 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> 
     points: dict[int, Point] = {}
     if len(bodies) == count_of(found.get(BODIES)):  # else their points would be refused, too
         points = read_rows(found.get(POINTS), POINTS, "ID", lambda row: read_point(row, bodies), lambda p: p.id, wrong)
+    rods: dict[int, Rod] = {}
+    if len(bodies) == count_of(found.get(BODIES)):
+        steel = read_rows(found.get(ROD_TYPES), ROD_TYPES, "name", read_rod_type, lambda t: t.name, wrong)
+        rods = read_rows(found.get(RODS), RODS, "ID", lambda row: read_rod(row, steel, bodies), lambda r: r.id, wrong)
+    whole = len(points) == count_of(found.get(POINTS)) and len(rods) == count_of(found.get(RODS))
+    ends = add_ends(rods.values(), points)
     lines: dict[int, Any] = {}
-    if len(kinds) == count_of(found.get(TYPES)) and len(points) == count_of(found.get(POINTS)) and LINES in found:
+    if len(kinds) == count_of(found.get(TYPES)) and whole and LINES in found:
         order = ends_first(found[LINES], points)
-        read = lambda row: read_line(row, order, kinds, points)  # noqa: E731
+        read = lambda row: read_line(row, order, kinds, points, ends)  # noqa: E731
         lines = read_rows(found[LINES], LINES, "ID", read, lambda line: line.id, wrong)
     left = [column_left_out(found[POINTS])] if POINTS in found else []
     options = read_options(found[OPTIONS].rows if OPTIONS in found else [], wrong)
     wrong.check()
     depth = depth_of(options.fields, points.values(), options.warnings)
     fields: dict[str, Any] = {name: value for name, value in options.fields.items() if name != "depth"}
+    left.extend(add_lines(rods.values(), ends, lines))
+    used = {end for line in lines.values() for end in (line.start, line.end)}
+    for one in {end.point for end in ends.values() if points[end.point].kind in ("fixed", "coupled")} - used:
+        del points[one]
     free = [body for body in bodies.values() if body.kind == "free"]
     for body in [body for body in free if is_point(body, points.values())]:
         free.remove(body)
@@ -80,7 +108,21 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> 
 def turned(system: System, said: list[str]) -> System:
     """The system with the stiffness of its bodies by their lines at rest."""
     try:
-        return with_turning(system, system.at_rest())
+        rest = system.at_rest()
+        for b, body in enumerate(system.bodies):
+            turn = rest.nodes[:, system.node_count + 2 * b + 1]
+            arms = [np.subtract(point.position, body.place) for point in system.points if point.body == body.id]
+            # of a turn about its own arm nothing is seen
+            angle = max((float(np.linalg.norm(np.cross(turn, arm)) / np.linalg.norm(arm)) for arm in arms if arm.any()),
+                        default=0.0)  # fmt: skip
+            if angle > MOST_TURN:
+                raise argument_error(
+                    f"body {body.id}", f"{angle:.3g} rad from its place in the file to its rest",
+                    f"a turn of at most {MOST_TURN:g} rad: bodies turn by small angles",
+                )  # fmt: skip
+            if angle > LARGE_TURN:
+                said.append(f"body {body.id} turns by {angle:.2g} rad to its rest: it is computed for small turns")
+        return with_turning(system, rest)
     except ConvergenceError as error:
         said.append(f"free bodies turn without the stiffness that their lines give ({error})")
         return system

@@ -30,6 +30,7 @@ ATTACHMENT = re.compile(r"([A-Za-z]+)(\d*)", re.ASCII)
 FIXED, COUPLED = ("anchor", "fixed", "fix"), ("fairlead", "vessel", "ves", "coupled", "cpld")
 FREE = ("free", "point", "connect", "con")
 PINNED = ("vesselpinned", "vespin", "cpldpin", "coupledpinned")
+ROD_END = re.compile(r"r(?:od)?(\d+[ab])", re.IGNORECASE | re.ASCII)  # R1A
 CURVE_HEADER = 3  # lines of a file of strain and tension before its rows
 MAX_CURVE_ROWS = 1000
 MAX_LISTED = 30  # names in an error
@@ -48,6 +49,13 @@ class FileBody(NamedTuple):
     volume: float  # [m^3]
     drag_area: float  # [m^2] mean of the three directions
     added: NDArray[np.float64]  # (3,) coefficients along the body's axes
+
+
+class RodEnd(NamedTuple):
+    """An end of a rod, as lines see it."""
+
+    point: int  # its ID
+    outward: Vector | None  # direction in which a line with EI leaves it; None for one that is hinged
 
 
 def read_type(row: Row, folder: Path) -> LineType:
@@ -191,16 +199,19 @@ def read_point(row: Row, bodies: Mapping[int, FileBody]) -> Point:
     return Point(whole_in(where, words[0]), kind, (x, y, z), mass, volume, drag_area, added, body, loads)
 
 
-def read_end(where: str, text: str, points: Mapping[int, Point]) -> int:
-    """The ID of the point that an end of a line is attached to."""
-    if re.fullmatch(r"(?i)r(od)?\d+[ab]?", text):
-        raise argument_error(f"{where}: attachment", text, "the ID of a point: rods are not modelled")
+def read_end(where: str, text: str, points: Mapping[int, Point], rod_ends: Mapping[str, RodEnd]) -> RodEnd:
+    """The point that an end of a line is attached to; rod_ends: those of "1a", "1b"."""
+    of_rod = ROD_END.fullmatch(text)
+    if of_rod is not None:
+        if of_rod[1].lower() not in rod_ends:
+            raise argument_error(f"{where}: attachment", text, f"an end of a rod, as R1A: {listed(rod_ends)}")
+        return rod_ends[of_rod[1].lower()]
     if not re.fullmatch(r"(?i)(point|p|con|c)?\d{1,9}", text):
         raise argument_error(f"{where}: attachment", text, "the ID of a point")
     found = int(re.sub(r"\D", "", text))
     if found not in points:
         raise argument_error(f"{where}: attachment", text, f"one of the points {listed(points)}")
-    return found
+    return RodEnd(found, None)
 
 
 def ends_first(section: Section, points: Mapping[int, Point]) -> bool:
@@ -214,7 +225,10 @@ def ends_first(section: Section, points: Mapping[int, Point]) -> bool:
     def fit(first: int) -> bool:
         return all(
             len(row.words) >= first + 2
-            and all(re.fullmatch(r"\d{1,9}", word) and int(word) in points for word in row.words[first : first + 2])
+            and all(
+                ROD_END.fullmatch(word) or (re.fullmatch(r"\d{1,9}", word) and int(word) in points)
+                for word in row.words[first : first + 2]
+            )
             for row in section.rows
         )
 
@@ -222,18 +236,29 @@ def ends_first(section: Section, points: Mapping[int, Point]) -> bool:
     return by_name if fits[0] == fits[1] else fits[0]
 
 
-def read_line(row: Row, ends_first: bool, types: Mapping[str, LineType], points: Mapping[int, Point]) -> Line:
+def read_line(
+    row: Row,
+    ends_first: bool,
+    types: Mapping[str, LineType],
+    points: Mapping[int, Point],
+    rod_ends: Mapping[str, RodEnd],
+) -> Line:
     """ID LineType AttachA AttachB UnstrLen NumSegs [Outputs]; in version 1 the ends stand behind the length and number.
 
-    A negative length is in distances of the ends.
+    A negative length is in distances of the ends. rod_ends: those of "1a", "1b".
     """
     where = f"{LINES}, line {row.number}"
     words = check_columns(where, row.words, 6, 7)
     if words[1] not in types:
         raise argument_error(f"{where}: type", words[1], f"one of {listed(types)}")
     first, numbers = (words[2:4], words[4:6]) if ends_first else (words[4:6], words[2:4])
-    start, end = (read_end(where, text, points) for text in first)
+    start, end = (read_end(where, text, points, rod_ends) for text in first)
     length = number_in(where, numbers[0])
     if length < 0.0:
-        length *= -math.dist(points[start].position, points[end].position)
-    return Line(whole_in(where, words[0]), types[words[1]], start, end, length, whole_in(where, numbers[1]))
+        length *= -math.dist(points[start.point].position, points[end.point].position)
+    kind = types[words[1]]
+    out, into = (one.outward if kind.bending > 0.0 else None for one in (start, end))
+    into = None if into is None else (-into[0], -into[1], -into[2])
+    return Line(
+        whole_in(where, words[0]), kind, start.point, end.point, length, whole_in(where, numbers[1]), out, into
+    )  # fmt: skip

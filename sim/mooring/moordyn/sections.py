@@ -12,19 +12,19 @@ HEADER = re.compile(r"-{3,}\s*(.*?)\s*-*$")
 COUNT = re.compile(r"\d+\s+N[A-Z]\w+", re.ASCII)  # "3 NLines - number of lines", of version 1
 MAX_BYTES = 20_000_000
 TYPES, BODIES, POINTS, LINES, OPTIONS = "LINE TYPES", "BODIES", "POINTS", "LINES", "OPTIONS"
+ROD_TYPES, RODS = "ROD TYPES", "RODS"
 # Sections that are read, and those that are refused if they have rows: what they describe no System holds.
 NAMES = {
     "LINE TYPES": TYPES, "LINE DICTIONARY": TYPES, "BODIES": BODIES, "BODY LIST": BODIES, "BODY PROPERTIES": BODIES,
     "POINTS": POINTS, "POINT LIST": POINTS, "POINT PROPERTIES": POINTS, "CONNECTION PROPERTIES": POINTS,
     "CONNECTIONS": POINTS, "NODE PROPERTIES": POINTS, "LINES": LINES, "LINE LIST": LINES, "LINE PROPERTIES": LINES,
-    "OPTIONS": OPTIONS, "SOLVER OPTIONS": OPTIONS,
+    "OPTIONS": OPTIONS, "SOLVER OPTIONS": OPTIONS, "ROD TYPES": ROD_TYPES, "ROD DICTIONARY": ROD_TYPES, "RODS": RODS,
+    "ROD LIST": RODS, "ROD PROPERTIES": RODS,
 }  # fmt: skip
 REFUSED = {
-    "RODS": "RODS", "ROD LIST": "RODS", "ROD PROPERTIES": "RODS", "FAILURE": "FAILURE", "CONTROL": "CONTROL",
-    "EXTERNAL LOADS": "EXTERNAL LOADS", "SYROPE IC": "SYROPE IC",
+    "FAILURE": "FAILURE", "CONTROL": "CONTROL", "EXTERNAL LOADS": "EXTERNAL LOADS", "SYROPE IC": "SYROPE IC",
 }  # fmt: skip
-# Rod types mean nothing without rods, and outputs are what MoorDyn would write.
-UNREAD = ("ROD TYPES", "ROD DICTIONARY", "OUTPUT", "NEED THIS LINE", "END")
+UNREAD = ("OUTPUT", "NEED THIS LINE", "END")  # outputs are what MoorDyn would write
 
 
 class Section(NamedTuple):
@@ -93,7 +93,7 @@ def split_sections(text: str, wrong: Refusals) -> dict[str, Section]:
             refused.setdefault(current, at)
     for name, number in refused.items():
         with wrong:
-            raise argument_error(f"line {number}: section", name, "a mooring of lines, points and bodies only")
+            raise argument_error(f"line {number}: section", name, "a mooring of lines, points, rods and bodies only")
     return found
 
 

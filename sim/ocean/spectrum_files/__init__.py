@@ -1,4 +1,4 @@
-"""Measured spectra from files: tables (CSV), text files of NDBC's buoys, and those of wave models. One module each.
+"""Measured spectra from files: tables (CSV), files of buoys and other instruments, and of wave models. One module each.
 
     sea = Sea(256, 1500.0, read_spectrum("44013w2020.txt", "2020-01-02 05:00"))
 
@@ -12,11 +12,12 @@ from typing import Any
 
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import from_buoy, from_summary
-from sim.ocean.spectrum_files.contents import read_text, read_time
+from sim.ocean.spectrum_files.contents import FORMS, read_time
+from sim.ocean.spectrum_files.instruments import from_awac, from_datawell, is_datawell
 from sim.ocean.spectrum_files.swan import from_swan
 from sim.ocean.spectrum_files.tables import from_table
-from sim.ocean.spectrum_files.wave_models import NETCDF, from_wavespectra
-from sim.tables import number_of
+from sim.ocean.spectrum_files.wave_models import NETCDF, from_wavespectra, text_reader
+from sim.tables import number_of, read_text
 from sim.validation import argument_error, check_kind, is_whole_number
 
 __all__ = ["read_spectrum"]
@@ -38,7 +39,7 @@ def read_spectrum(path: str | Path, time: str | None = None, place: int | None =
     when = None if time is None else read_time(time)
     if path.suffix.lower() in NETCDF:
         return from_wavespectra(path, when, place)
-    text = read_text(path)
+    text = read_text(path, FORMS)
     head = next((line for line in text.splitlines() if line.strip()), "")
     words = head.lstrip("# ").split()
     kind = head.lstrip("'\" ").upper()
@@ -46,11 +47,14 @@ def read_spectrum(path: str | Path, time: str | None = None, place: int | None =
         return from_swan(text, path, when, place)
     if place is not None:
         raise argument_error("place", place, "a place of a file with several, of SWAN or netCDF")
-    if kind.startswith("WAVEWATCH"):
-        return from_wavespectra(path, when)
+    reader = text_reader(text)
+    if reader:
+        return from_wavespectra(path, when, reader=reader)
+    if kind.startswith("$PNOR"):
+        return from_awac(text, path, when)
     if words[:4] and words[0].strip("#") in ("YY", "YYYY") and words[1:3] == ["MM", "DD"]:
         is_spectrum = all(number_of(word) is not None for word in words[5:]) or "(" in text.partition("\n")[0]
         return from_buoy(text, path, when) if is_spectrum else from_summary(text, path, when)
     if when is not None:
         raise argument_error("time", time, "a time for a file with records of several times; this is a table of one")
-    return from_table(text, path)
+    return from_datawell(text, path) if is_datawell(text) else from_table(text, path)

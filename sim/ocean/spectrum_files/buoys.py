@@ -14,9 +14,9 @@ import numpy as np
 
 from sim.ocean.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import SECOND_EXPONENT, SECOND_PEAK, Spectrum, peaked
-from sim.ocean.spectrum_files.contents import DIRECTIONS, filled, made, nearest, read_text, towards
+from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, filled, made, nearest, towards
 from sim.ocean.spectrum_files.sense import COMPASS
-from sim.tables import line_error, values_of
+from sim.tables import line_error, read_text, values_of
 from sim.validation import argument_error
 
 REALTIME = {".swdir": "alpha1", ".swdir2": "alpha2", ".swr1": "r1", ".swr2": "r2"}  # endings of files beside .data_spec
@@ -109,7 +109,7 @@ def moment_at(path: Path, kind: str, time: datetime.datetime, frequency: np.ndar
     Where one is missing, it is that of the nearest frequency that has one.
     Raises ValueError for values that this kind cannot have: files whose names are exchanged.
     """
-    records = records_of(read_text(path), path)
+    records = records_of(read_text(path, FORMS), path)
     largest = TURN if kind.startswith("alpha") else PERCENT
     if (records.values > largest).any():
         raise argument_error(

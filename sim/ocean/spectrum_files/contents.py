@@ -1,9 +1,6 @@
-"""Common parts of all formats of spectra: the text of a file, times, directions, and the spectrum made of them."""
+"""Common parts of all formats of spectra: times, directions, and the spectrum made of them."""
 
-import codecs
 import datetime
-import gzip
-import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,12 +10,12 @@ import numpy as np
 from sim.ocean.measured import measured_spectrum
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.sense import sense_of
-from sim.validation import argument_error, unreadable
+from sim.validation import argument_error
 
-MAX_BYTES = 100_000_000  # of a text file, unpacked
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 2.5))  # of spreadings that are made of moments
 NEAREST = datetime.timedelta(hours=1.5)  # between the time that is asked for and a record of a file
-FORMS = "a table (CSV), an NDBC text file, or a file of WAVEWATCH III or SWAN (with `wavespectra`)"
+FORMS = "a table (CSV), a file of NDBC, SWAN, Datawell or AWAC, or one that `wavespectra` reads"
+MAGNETIC = "directions are those of the instrument's compass: from magnetic north, unless it was set otherwise"
 
 
 def read_time(text: str) -> datetime.datetime:
@@ -28,31 +25,6 @@ def read_time(text: str) -> datetime.datetime:
     except ValueError:
         raise argument_error("time", text, "a time such as 2020-01-02 05:00") from None
     return found.replace(tzinfo=None) if found.tzinfo is None else found.astimezone(datetime.UTC).replace(tzinfo=None)
-
-
-def read_text(path: Path) -> str:
-    """The text of a file, also of one that gzip has packed. Raises ValueError where it cannot be read."""
-    try:
-        if path.is_file() and path.stat().st_size > MAX_BYTES:
-            raise argument_error("path", str(path), f"{FORMS}, of at most {MAX_BYTES // 1_000_000} MB")
-        with path.open("rb") as file:
-            packed = file.read(2) == b"\x1f\x8b"
-        with gzip.open(path) if packed else path.open("rb") as file:
-            found = file.read(MAX_BYTES + 1)
-    except (EOFError, gzip.BadGzipFile, zlib.error):
-        raise argument_error("path", str(path), f"{FORMS}; what gzip has packed is damaged here") from None
-    except OSError as error:
-        raise unreadable("path", path, error) from None
-    if len(found) > MAX_BYTES:
-        raise argument_error("path", str(path), f"{FORMS}, of at most {MAX_BYTES // 1_000_000} MB unpacked")
-    if found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return found.decode("utf-16", errors="replace")
-    if b"\0" in found:
-        raise argument_error("path", str(path), FORMS)
-    try:
-        return found.decode("utf-8-sig")
-    except UnicodeDecodeError:  # of spreadsheets on Windows: it matters in units only
-        return found.decode("cp1252", errors="replace")
 
 
 def titled(path: Path, time: datetime.datetime | None) -> str:

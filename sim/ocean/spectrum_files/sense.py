@@ -24,16 +24,16 @@ def sense_of(spectrum: Spectrum[Any]) -> tuple[str, ...]:
     return (f"Hs {height:.3g} m, Tp {period:.3g} s, {comes}", *warnings_of(height, period, moments.gravity))
 
 
-def warnings_of(height: float, period: float, gravity: float) -> list[str]:
-    """Warnings for Hs [m] and Tp [s] that are unlikely."""
+def warnings_of(height: float, period: float, gravity: float = Conditions.gravity, name: str = "Tp") -> list[str]:
+    """Warnings for Hs [m] and a period [s] of this name that are unlikely."""
     steepness = 2.0 * math.pi * height / (gravity * period**2)
     found = []
     if height > HIGHEST:
         found.append(f"Warning: Hs {height:.3g} m is above {HIGHEST:g} m: is the unit of the density m2/Hz?")
     if not SHORTEST <= period <= LONGEST:
-        found.append(f"Warning: Tp {period:.3g} s is not within {SHORTEST:g} to {LONGEST:g} s: is the unit Hz?")
+        found.append(f"Warning: {name} {period:.3g} s is not within {SHORTEST:g} to {LONGEST:g} s: is its unit right?")
     if steepness > STEEPEST:
-        found.append(f"Warning: the steepness 2 pi Hs/(g Tp^2) is {steepness:.2g}, above {STEEPEST:g}")
+        found.append(f"Warning: the steepness 2 pi Hs/(g {name}^2) is {steepness:.2g}, above {STEEPEST:g}")
     return found
 
 

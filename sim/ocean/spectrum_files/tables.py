@@ -1,9 +1,10 @@
 """Tables of spectra: a row a frequency, with columns by name, or densities under a row of directions."""
 
+import datetime
 import math
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from sim.ocean.spectrum_files.buoys import shares
 from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, filled, made, unrepeated
 from sim.tables import ColumnTable, Meaning, Row, line_error, number_of, read_columns, split_rows, values_of
 from sim.tables.columns import DENSITY, DIRECTION, FREQUENCY, OMEGA, SHARE, SPREAD, TURN, factor_of, header_of, in_doubt
-from sim.tables.headers import BRACKETS, letters_of
+from sim.tables.headers import BRACKETS, Convention, letters_of
 from sim.tables.units import measure_of
 from sim.validation import argument_error
 
@@ -60,8 +61,8 @@ def from_table(text: str, path: Path) -> Spectrum[Any]:
     return from_columns(table, path)
 
 
-def from_columns(table: ColumnTable, path: Path) -> Spectrum[Any]:
-    """The spectrum of the columns of a table; rows without frequency or density are left out."""
+def from_columns(table: ColumnTable, path: Path, time: datetime.datetime | None = None) -> Spectrum[Any]:
+    """The spectrum of the columns of a table; rows without frequency or density are left out. time: of its record."""
     axis, density = table.columns["frequency"], table.columns["density"]
     f, S = axis.values, density.values
     if density.is_angular is None and axis.is_angular:
@@ -77,7 +78,7 @@ def from_columns(table: ColumnTable, path: Path) -> Spectrum[Any]:
     if direction is None or (spread is None and r1 is None):
         if direction is not None or spread is not None or r1 is not None:
             notes.append("directions left out: they need a column of direction, and one of spread or r1")
-        return made(path, None, f, S, notes=notes)
+        return made(path, time, f, S, notes=notes)
     mean = filled(f, f, direction.values[order])
     if r1 is not None:
         first = shares(filled(f, f, r1.values[order]))
@@ -87,7 +88,7 @@ def from_columns(table: ColumnTable, path: Path) -> Spectrum[Any]:
         first = np.clip(1.0 - 0.5 * filled(f, f, spread.values[order]) ** 2, 0.0, 1.0)
     if not (np.isfinite(mean).all() and np.isfinite(first).all()):
         raise argument_error("path", str(path), "directions with at least one value")
-    return made(path, None, f, S[:, None] * spread_by_mean(DIRECTIONS, mean, first), DIRECTIONS, notes=notes)
+    return made(path, time, f, S[:, None] * spread_by_mean(DIRECTIONS, mean, first), DIRECTIONS, notes=notes)
 
 
 def rows_of(chosen: np.ndarray) -> str:
@@ -96,41 +97,50 @@ def rows_of(chosen: np.ndarray) -> str:
     return "1 row" if count == 1 else f"{count} rows"
 
 
-def from_matrix(rows: list[Row], path: Path) -> Spectrum[Any]:
-    """The spectrum of rows of densities behind a frequency, under a row of directions.
+class Corner(NamedTuple):
+    """Units and convention in the first word of a row of directions."""
 
-    The first word of that row may have units in brackets, and the convention of the directions:
-    "f (Hz), to (deg), S (m2/Hz/deg)". Without them they are Hz, degrees that waves come from, and m2/Hz/degree.
+    frequency: float  # [Hz] of its unit
+    angle: float  # [rad] of the unit of directions
+    is_given: bool  # the unit of directions is there
+    density: float  # [m2/Hz/rad] of the unit of densities
+    convention: Convention
+
+
+def read_corner(text: str, path: Path, number: int) -> Corner:
+    """The parts of a first word such as "f (Hz), to (deg), S (m2/Hz/deg)".
+
+    Without them they are Hz, degrees that waves come from, and densities over both. Raises ValueError for other units.
     """
-    head, rows = rows[0], rows[1:]
-    corner = head.words[0]
-    convention = header_of(corner, {}, path, head.number).convention
-    is_angular = letters_of(re.split(r"[\W_]", corner.strip(), maxsplit=1)[0]) in OMEGA_NAMES
-    per_hertz, per_angle, density = TURN if is_angular else 1.0, math.pi / 180.0, None
-    degree, is_given = math.pi / 180.0, False
-    frequency = 1.0 / TURN if is_angular else 1.0
-    for unit in (header_of(f"x ({part})", {}, path, head.number).unit for part in BRACKETS.findall(corner)):
-        measure = measure_of(unit) if unit else None
-        of_frequency = factor_of(OMEGA if is_angular else FREQUENCY, measure) if measure else (None, None)
-        if measure is not None and of_frequency[0] is not None:
-            frequency, per_hertz = of_frequency[0], TURN if of_frequency[1] else 1.0
+    convention = header_of(text, {}, path, number).convention
+    is_angular = letters_of(re.split(r"[\W_]", text.strip(), maxsplit=1)[0]) in OMEGA_NAMES
+    frequency, per_hertz = (1.0 / TURN, TURN) if is_angular else (1.0, 1.0)
+    angle, density, is_given = math.pi / 180.0, math.nan, False
+    for unit in filter(None, (header_of(f"x ({part})", {}, path, number).unit for part in BRACKETS.findall(text))):
+        measure = measure_of(unit)
+        factor, angular = (None, None) if measure is None else factor_of(OMEGA if is_angular else FREQUENCY, measure)
+        if factor is not None:
+            frequency, per_hertz = factor, TURN if angular else 1.0
         elif measure is not None and not measure.dimensions and measure.angle == 1.0:
-            degree, is_given = measure.factor, True
+            angle, is_given = measure.factor, True
         elif (
             measure is not None
             and measure.dimensions == DENSITY.dimensions
-            and measure.angle in (-1.0, -2.0)
-            and (measure.is_cyclic == (measure.angle == -1.0))
+            and measure.angle == (-1.0 if measure.is_cyclic else -2.0)
         ):
             density = measure.factor * (1.0 if measure.is_cyclic else TURN)
-        elif unit:
-            raise line_error(path, head.number, f"units as in 'f (Hz), direction (deg), S (m2/Hz/deg)', not {unit}")
-    per_angle = degree
+        else:
+            raise line_error(path, number, f"units as in 'f (Hz), direction (deg), S (m2/Hz/deg)', not {unit}")
+    return Corner(frequency, angle, is_given, per_hertz / angle if math.isnan(density) else density, convention)
+
+
+def from_matrix(rows: list[Row], path: Path) -> Spectrum[Any]:
+    """The spectrum of rows of densities behind a frequency, under a row of directions."""
+    head, rows = rows[0], rows[1:]
+    corner = read_corner(head.words[0], path, head.number)
     angles = np.array([number_of(word) for word in head.words[1:]], float)
-    if not is_given and in_doubt(angles, DIRECTION.doubt):
-        raise line_error(
-            path, head.number, "the unit of the directions in its first word, as 'f (Hz), direction (rad)'"
-        )
+    if not corner.is_given and in_doubt(angles, DIRECTION.doubt):
+        raise line_error(path, head.number, "the unit of the directions in its first word, as 'f (Hz), dir (rad)'")
     for row in rows:
         if len(row.words) != len(head.words):
             raise line_error(path, row.number, f"{len(head.words)} columns; here are {len(row.words)}")
@@ -148,6 +158,5 @@ def from_matrix(rows: list[Row], path: Path) -> Spectrum[Any]:
     notes = [f"{rows_of(np.asarray(~whole))} without values left out"] if not whole.all() else []
     values = values[whole]
     values = values[np.argsort(values[:, 0], kind="stable")]
-    scale = density if density is not None else per_hertz / per_angle
-    theta, S = unrepeated(convention.towards(angles * degree), values[:, 1:] * scale)
-    return made(path, None, values[:, 0] * frequency, S, theta, notes=notes)
+    theta, S = unrepeated(corner.convention.towards(angles * corner.angle), values[:, 1:] * corner.density)
+    return made(path, None, values[:, 0] * corner.frequency, S, theta, notes=notes)

@@ -1,42 +1,70 @@
-"""Files of WAVEWATCH III, and those of netCDF, by the library `wavespectra`."""
+"""Files of wave models and of Spotter and Triaxys buoys by the library `wavespectra`, and NDBC's netCDF."""
 
 import datetime
 import importlib
 import math
+import re
 import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from sim.ocean.measured import spread_by_moments
 from sim.ocean.spectra.record import Spectrum
-from sim.ocean.spectrum_files.contents import FORMS, made, nearest, towards, unrepeated
+from sim.ocean.spectrum_files.buoys import shares
+from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, MAGNETIC, made, nearest, towards, unrepeated
 from sim.validation import argument_error, unreadable
 
 NETCDF = (".nc", ".nc4", ".cdf")
-READERS = (({"freq", "efth"}, "read_netcdf"), ({"efth"}, "read_ww3"))  # names in a file of netCDF -> of wavespectra
+# Names in a file of netCDF, and the reader of wavespectra; the last one is SWAN's.
+READERS = (
+    ({"freq", "efth"}, "read_netcdf"), ({"efth"}, "read_ww3"), ({"d2fd"}, "read_era5"), ({"AC", "SPSIG"}, "read_wwm"),
+    (set(), "read_ncswan"),
+)  # fmt: skip
+# Words of the first lines of a text file, in small letters, and the reader.
+TEXT_READERS = (
+    (r"wavewatch", "read_ww3_station"), (r"triaxys (?:buoy data|buoy) report", "read_triaxys"),
+    (r"[^\n]*\n\s*nfreqs?,", "read_octopus"), (r"[^\n]*\bvariancedensity_0\b", "read_spotter"),
+    (r'\{.*"frequencydata"', "read_spotter"), (r"\s*\d+\s+\d+\s*-?\s*numfreq", "read_funwave"),
+)  # fmt: skip
+NDBC_NETCDF = {"spectral_wave_density", "frequency"}
+ALPHA1, ALPHA2, R1, R2 = "mean_wave_dir", "principal_wave_dir", "wave_spectrum_r1", "wave_spectrum_r2"
+MAGNETIC_READERS = ("read_triaxys",)
+HEAD = 100_000  # characters in which these words are
 
 
-def from_wavespectra(path: Path, when: datetime.datetime | None, place: int | None = None) -> Spectrum[Any]:
-    """The spectrum at a place, counted from 1, or the first one with data, at the time asked for, or the last one."""
+def text_reader(text: str) -> str:
+    """The reader of wavespectra for a text file, "" for another."""
+    head = text[:HEAD].lower().lstrip("'\" #\n\r")
+    return next((name for words, name in TEXT_READERS if re.match(words, head, re.DOTALL)), "")
+
+
+def from_wavespectra(
+    path: Path, when: datetime.datetime | None, place: int | None = None, reader: str = ""
+) -> Spectrum[Any]:
+    """The spectrum at a place, counted from 1, or the first one with data, at the time asked for, or the last one.
+
+    reader: of wavespectra, for a text file.
+    """
     if not path.is_file():
         raise unreadable("path", path, FileNotFoundError())
     wavespectra: Any = importlib.import_module("wavespectra")  # optional, and slow to import
     try:
-        data = opened(wavespectra, path)
+        data = opened(wavespectra, path, reader)
         places = [axis for axis in data.dims if axis not in ("time", "freq", "dir")]
-        notes = []
+        notes = [MAGNETIC] if reader in MAGNETIC_READERS else []
         if places:
             data = data.stack(place=places)
             count = data.sizes["place"]
-            there = data.notnull().any([axis for axis in data.dims if axis != "place"]).values
+            there = (data > 0.0).any([axis for axis in data.dims if axis != "place"]).values
             if place is not None and place > count:
                 raise argument_error("place", place, f"1 to {count}, the places of {path.name}")
             number = place or int(there.argmax()) + 1
             if not there[number - 1]:
                 raise argument_error("place", number, f"a place of {path.name} with data")
             data = data.isel(place=number - 1)
-            notes = [f"place {number} of {count}"] if count > 1 else []
+            notes += [f"place {number} of {count}"] if count > 1 else []
         time, i = None, 0
         if "time" in data.dims:
             times = [datetime.datetime.fromisoformat(str(one)[:19]) for one in data["time"].values]
@@ -63,16 +91,40 @@ def refused(path: Path, error: Exception) -> ValueError:
     return argument_error("path", str(path), f"{FORMS} ({reason[:120]})")
 
 
-def opened(wavespectra: Any, path: Path) -> Any:
-    """The densities [m2/Hz/degree] of a file, along freq, dir [degrees that waves come from] and maybe time."""
-    if path.suffix.lower() in NETCDF:
+def opened(wavespectra: Any, path: Path, reader: str) -> Any:
+    """The densities [m2/Hz/degree] of a file, along freq, dir [degrees that waves come from] and maybe time.
+
+    reader: of wavespectra, "" for that which the names in a file of netCDF tell.
+    """
+    if not reader:
         import xarray
 
         with xarray.open_dataset(path) as file:
             names = {*map(str, file.variables), *map(str, file.dims)}
-        own = next((reader for needed, reader in READERS if needed <= names), "read_ncswan")
-    else:
-        own = "read_ww3_station"
+            if names >= NDBC_NETCDF:
+                return of_ndbc(file.load())
+        reader = next(name for needed, name in READERS if needed <= names)
+    more = {"filetype": "json" if path.suffix.lower() == ".json" else "csv"} if reader == "read_spotter" else {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return getattr(wavespectra, own)(str(path))["efth"].load()
+        found = getattr(wavespectra, reader)(str(path), **more)["efth"].load()
+    return found.sortby("freq")
+
+
+def of_ndbc(file: Any) -> Any:
+    """The densities [m2/Hz/degree] of NDBC's netCDF, spread as those of its text files, or [m2/Hz] without directions.
+
+    `wavespectra` takes two terms of Fourier's series, which are negative in places.
+    """
+    S = file["spectral_wave_density"].rename(frequency="freq")
+    if not {ALPHA1, ALPHA2, R1, R2} <= set(file.variables):
+        return S
+    parts = [file[name].rename(frequency="freq").transpose(*S.dims).values for name in (ALPHA1, ALPHA2, R1, R2)]
+    first, second, r1, r2 = (part.reshape(-1) for part in parts)
+    whole = np.isfinite(np.stack(parts)).all(axis=0).reshape(-1)
+    D = np.full((len(whole), len(DIRECTIONS)), 1.0 / (2.0 * math.pi))
+    D[whole] = spread_by_moments(
+        DIRECTIONS, towards(first[whole]), shares(r1[whole]), towards(second[whole]), shares(r2[whole])
+    )
+    bearings = np.mod(270.0 - np.degrees(DIRECTIONS), 360.0)
+    return S.expand_dims(dir=bearings, axis=-1) * (D.reshape(*S.shape, -1) * (math.pi / 180.0))

@@ -227,7 +227,7 @@ def test_what_is_left_out_is_said_and_a_bad_file_ends_the_program_in_one_line(tm
         == "springtide: chain.txt: left out, as they steer MoorDyn only: cfl, ICgenDynamic, dtWave\n"
     )
     bad = tmp_path / "bad.txt"
-    bad.write_text("--- RODS ---\na\nb\n1 r Free\n", encoding="utf-8")
+    bad.write_text("--- FAILURE ---\na\nb\n1 r Free\n", encoding="utf-8")
     for arguments in (
         ["run", "mooring", *out, "--mooring", str(bad)],
         ["--mooring", str(bad), "--no-open", "--port", "0"],
@@ -235,7 +235,7 @@ def test_what_is_left_out_is_said_and_a_bad_file_ends_the_program_in_one_line(tm
         assert main(arguments) == 2
         said = capsys.readouterr()
         assert said.err.count("\n") == 1
-        assert "'RODS'" in said.err
+        assert "'FAILURE'" in said.err
         assert said.out == ""  # nothing is served
     huge = tmp_path / "huge.txt"
     text = (FILES / "chain.txt").read_text(encoding="utf-8")

@@ -113,7 +113,7 @@ BROKEN = [
     ("line type chain: mass", replaced("80.0", "0.0"), "0.0"),
     ("LINE TYPES, line 6", replaced("80.0", "inf"), "inf"),
     ("line type chain: drag_across", replaced("1.6", "-1.6"), "-1.6"),
-    ("line 7: section", replaced("---------------------- POINTS -", "----- RODS -"), "RODS"),
+    ("RODS, line 10", replaced("---------------------- POINTS -", "----- RODS -"), "10 to 11 columns"),
     ("line 7: section", replaced("---------------------- POINTS -", "----- BUOYS -"), "BUOYS"),
     ("line 12: section", replaced("- LINES -", "- POINTS -"), "POINTS"),
     ("file", replaced("---------------------- LINES --", "---------------------- OUTPUTS -"), "LINES"),

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.ocean import measured_spectrum, read_spectrum
-from sim.ocean.spectrum_files.contents import MAX_BYTES
+from sim.ocean import measured_spectrum, read_record, read_spectrum, recorded_waves
 from sim.ocean.spectrum_files.sense import bearing_of
+from sim.tables.text import MAX_BYTES
 from tests.refusals import assert_refused
 
 FIELD = Path(__file__).parent / "field"
@@ -183,7 +183,9 @@ HOSTILE: dict[str, tuple[str | bytes, str]] = {
     "a density over angles": ("f (Hz),S (m2/Hz/deg)\n" + ROWS, "a unit such as m2/Hz"),
     "omega in Hz": ("omega (Hz),S\n" + ROWS, "a unit such as rad/s"),
     "a power of powers": ("f (Hz),S (m^9^9^9^9^9)\n" + ROWS, "a unit such as m2/Hz"),
-    "a long unit": ("f (Hz),S (" + "m*" * 5000 + "m)\n" + ROWS, "a unit such as m2/Hz"),
+    "a long unit": ("f (Hz),S (" + "m*" * 5000 + "m)\n" + ROWS, ""),
+    "a long line": (b"f,S" + b" " * 10 + b"(" * 10_000_000 + b"\n0.1,1\n0.2,1\n0.3,1\n", "at most 100000 characters"),
+    "a million words": (b"0.1 " * 1_000_000, ""),
     "units in a comment": ("# rad/s and m2 s/rad\n" + ROWS, "names of the columns"),
     "north of the magnet": ("f,S,dir (deg magnetic),spread\n0.1,1,2,30\n0.2,1,2,30\n0.3,1,2,30\n", "magnetic north"),
     "directions in doubt": ("f,S,dir,spread\n0.1,1,4.7,30\n0.2,1,4.7,30\n0.3,1,4.7,30\n", "such as deg, rad"),
@@ -351,3 +353,48 @@ def test_a_sea_that_is_unlikely_has_a_warning(tmp_path):
         path.write_text("f,S\n" + "".join(f"{a:.6g},{b:.9g}\n" for a, b in zip(f, s, strict=True)), "utf-8")
         said = [note for note in read_spectrum(path).notes if note.startswith("Warning: ")]
         assert (words in said[0]) if words else not said
+
+
+# --- records of heights ---
+
+T = np.arange(0.0, 60.0, 0.25)
+ETA = 0.8 * np.sin(TURN * T / 8.0 + 0.3) + 0.2 * np.sin(TURN * T / 5.0)
+
+
+@pytest.mark.parametrize(
+    ("head", "times", "heights"),
+    [("time (s),eta (m)", 1.0, 1.0), ("t [ms];height [cm]", 1e3, 100.0), ("Time (min)\tElevation (mm)", 1 / 60, 1e3),
+     ("time,surface elevation (ft),flag", 1.0, 1 / 0.3048), ("", 1.0, 1.0)],
+)  # fmt: skip
+@pytest.mark.parametrize("missing", ["", "999.00", "NaN"])
+def test_a_record_is_read_with_its_units_and_without_missing_ends(head, times, heights, missing, tmp_path):
+    mark = next((one for one in ";\t," if one in head), ",")
+    rows = [[f"{t * times:.9g}", f"{h * heights:.9g}"] for t, h in zip(T, ETA, strict=True)]
+    rows[-1][1] = missing or rows[-1][1]
+    lines = [mark.join([*row, *(["1"] if "flag" in head else [])]) for row in rows]
+    path = tmp_path / "record.csv"
+    path.write_text("\n".join([*([head] if head else []), *lines]) + "\n", encoding="utf-8")
+    record = read_record(path)
+    count = len(T) - bool(missing)
+    assert record.t == pytest.approx(T[:count], abs=1e-6)
+    assert record.height == pytest.approx(ETA[:count], abs=1e-7)
+    assert record.notes[0].startswith(f"Hs {4.0 * ETA.std():.2g}")
+    assert f"in {count} samples" in record.notes[0]
+    assert ("columns left out: flag" in record.notes) == ("flag" in head)
+    assert recorded_waves(record.t, record.height).significant_height == pytest.approx(4.0 * ETA.std(), rel=0.01)
+
+
+def test_a_record_with_a_gap_or_times_that_fall_is_refused(tmp_path):
+    path = tmp_path / "record.csv"
+    rows = [f"{t:g},{h:.6f}" for t, h in zip(T, ETA, strict=True)]
+    for row, words in (("2.5,", "line 12"), ("2.25,0.1", "line 12"), ("2.5,high", "line 12"), ("2.5,1e9", "line 12")):
+        path.write_text("\n".join(["t,eta", *rows[:10], row, *rows[11:]]), "utf-8")
+        assert_refused("path", lambda: read_record(path), "")
+        with pytest.raises(ValueError, match=words):
+            read_record(path)
+    path.write_text("t,f\n0,1\n1,2\n", "utf-8")
+    assert_refused("path", lambda: read_record(path), "t [s] and height [m]")
+    heights = np.where(T == 3.0, np.nan, ETA)
+    assert_refused("height", lambda: recorded_waves(T, heights), "finite")
+    with pytest.raises(ValueError, match=r"nan at t = 3 s, 1 such"):
+        recorded_waves(T, heights)

@@ -41,7 +41,9 @@ def resized(shown: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
     shown[1].page.set_viewport_size(size)
 
 
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize(
+    "size", [SIZES[1], *(pytest.param(size, marks=pytest.mark.long) for size in (SIZES[0], *SIZES[2:]))]
+)
 def test_nothing_covers_a_text_a_control_or_the_picture(resized: tuple[Viewer, Tab], size: tuple[int, int]) -> None:
     lab, tab = resized
     target = np.array(lab.view.first_view(lab.settings.params)[1])
@@ -50,6 +52,7 @@ def test_nothing_covers_a_text_a_control_or_the_picture(resized: tuple[Viewer, T
         tab.wait(lambda: tab.page.evaluate(ON_TOP, tab.pixel(target)) == "CANVAS", 30)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("style", "fault"),
     [

@@ -60,6 +60,7 @@ def test_frames_decide_and_quality_never_flickers(page: Any) -> None:
     assert page.evaluate(JUDGED, down_and_up) == [1, 1, 0, 1, 1, 0]
 
 
+@pytest.mark.long
 def test_without_a_graphics_card_a_page_starts_at_low(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("square_sea")
@@ -78,6 +79,7 @@ def test_without_a_graphics_card_a_page_starts_at_low(chromium: Any) -> None:
         viewer.shut()
 
 
+@pytest.mark.long
 def test_quality_falls_where_drawing_is_slow_and_the_page_says_so(page: Any) -> None:
     drawn = "s.width === Math.round(420 * s.pixels) && s.detail.endsWith(' lit')"
     lowered = wait_for(page, f"s.step >= 2 && {drawn}")

@@ -94,9 +94,12 @@ def commands(blocks: list[Block]) -> list[str]:
     return [line for block in blocks if block.language == "sh" for line in block.text.splitlines()]
 
 
-def run(copy: Path, *arguments: str) -> str:
-    """Run `python` with arguments in a copy; returns what it printed. Fails the test where the exit status is not 0."""
-    environment = {**os.environ, "PYTHONPATH": str(copy)}
+def run(copy: Path, *arguments: str, **variables: str) -> str:
+    """Run `python` with arguments in a copy; returns what it printed. Fails the test where the exit status is not 0.
+
+    variables: of the environment.
+    """
+    environment = {**os.environ, "PYTHONPATH": str(copy), **variables}
     done = subprocess.run(
         [sys.executable, *arguments], cwd=copy, env=environment, capture_output=True, text=True, timeout=SECONDS
     )
@@ -104,8 +107,8 @@ def run(copy: Path, *arguments: str) -> str:
     return done.stdout + done.stderr
 
 
-def run_command(copy: Path, line: str) -> str:
-    """Run a line of a `sh` block, `springtide ...` or `python ...`, in a copy."""
+def run_command(copy: Path, line: str, **variables: str) -> str:
+    """Run a line of a `sh` block, `springtide ...` or `python ...`, in a copy. variables: of the environment."""
     first, *rest = shlex.split(line)
     assert first in ("springtide", "python"), line
-    return run(copy, *(["-m", "app"] if first == "springtide" else []), *rest)
+    return run(copy, *(["-m", "app"] if first == "springtide" else []), *rest, **variables)

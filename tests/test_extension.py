@@ -1,6 +1,7 @@
 """What adding one thing costs: a copy of the sources has each of them, in one file or one folder.
 
-The examples are those of docs/contributing.md, in its order.
+The examples are those of docs/contributing.md, in its order. All but one are long: they compile kernels anew, in
+processes of their own.
 """
 
 import functools
@@ -96,12 +97,13 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[
     return functools.cache(lambda heading: (copy, add(section(heading), copy)))
 
 
-def run_tests(copy: Path, line: str) -> None:
-    said = run_command(copy, line)
+def run_tests(copy: Path, line: str, **variables: str) -> None:
+    said = run_command(copy, line, **variables)
     assert " passed" in said
     assert " failed" not in said
 
 
+@pytest.mark.long
 def test_a_parameter_is_one_line_in_one_file(extended):
     copy, touched = extended("Add a parameter")
     assert len(touched) == 1
@@ -128,6 +130,7 @@ def test_a_body_shape_is_one_file(extended):
     assert draft[4] == pytest.approx(archimedes, abs=1e-4)
 
 
+@pytest.mark.long
 def test_a_task_is_two_files_and_its_solutions(extended):
     copy, touched = extended("Add a task")
     assert len(touched) == 5
@@ -138,6 +141,7 @@ def test_a_task_is_two_files_and_its_solutions(extended):
     run_tests(copy, test)
 
 
+@pytest.mark.long
 def test_a_scene_is_one_folder_and_passes_the_tests_of_all_scenes(extended):
     copy, touched = extended("Add a scene")
     assert {path.rpartition("/")[0] for path in touched} == {"app/scenes/pendulum"}
@@ -149,6 +153,7 @@ def test_a_scene_is_one_folder_and_passes_the_tests_of_all_scenes(extended):
     run_tests(copy, test)
 
 
+@pytest.mark.long
 def test_an_added_scene_and_an_added_body_are_shown(extended):
     extended("Add a body shape")
     run(extended("Add a scene")[0], "-c", SHOWN)
@@ -167,6 +172,7 @@ def test_a_spectrum_with_new_parameters_is_one_file(extended):
     run(copy, "-c", MEASURED)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("heading", "written", "parameter", "value"),
     [("Add an integrator", "rk2.npz", "integrator", "rk2"), ("Add a law of a link", "rubber.npz", "law", "rubber")],
@@ -180,13 +186,17 @@ def test_an_integrator_and_a_law_of_a_link_are_one_file_each(extended, heading, 
     assert parameters_in(copy / written)[parameter] == value
 
 
+@pytest.mark.long
 def test_a_force_with_energy_and_tangent_is_one_file(extended):
+    """Nets are tried in plain Python: all of their kernels hold the forces, and would be compiled again."""
     copy, touched = extended("Add a force")
     assert len(touched) == 1
-    for test in commands(section("Add a force")):
-        run_tests(copy, test)
+    nets, lines = commands(section("Add a force"))
+    run_tests(copy, nets, NUMBA_DISABLE_JIT="1")
+    run_tests(copy, lines)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("pyright") is None, reason="pyright is not installed")
 def test_the_examples_pass_the_type_checker(extended):
     headings = re.findall(r"^## (Add .+)$", PAGE.read_text("utf-8"), re.MULTILINE)

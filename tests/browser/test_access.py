@@ -115,6 +115,7 @@ def check_both_ends(tab: Tab) -> None:
     assert last["pressed"], last
 
 
+@pytest.mark.long
 def test_the_wheel_reaches_the_last_control_with_large_text(one_page: tuple[Viewer, Tab]) -> None:
     viewer, tab = one_page
     size = tab.page.viewport_size
@@ -174,6 +175,7 @@ def low_contrasts(tab: Tab) -> list[Any]:
     return [(text, round(ratio, 2)) for text, ratio in found if ratio is not None and ratio < MIN_CONTRAST]
 
 
+@pytest.mark.long
 def test_every_text_has_enough_contrast_light_and_dark(opened: tuple[Viewer, Tab]) -> None:
     _, tab = opened
     assert low_contrasts(tab) == []

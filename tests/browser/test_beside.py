@@ -25,6 +25,7 @@ def pair() -> Iterator[Viewer]:
     viewer.shut()
 
 
+@pytest.mark.long
 def test_two_ropes_on_one_clock_with_linked_cameras(pair: Viewer, open_tab: Any) -> None:
     tab = open_tab(pair.port, width=900, height=500)
     page = tab.page

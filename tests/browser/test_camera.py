@@ -72,6 +72,7 @@ def drag_at_random(tab: Tab, moves: random.Random, count: int) -> None:
             mouse.wheel(0, moves.choice([-300, 300]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drags", [8, pytest.param(50, marks=pytest.mark.stress)])
 def test_reset_view_after_random_drags_gives_the_first_view(shown: tuple[Viewer, Tab], drags: int) -> None:
     lab, tab = shown
@@ -92,6 +93,7 @@ def test_reset_view_after_random_drags_gives_the_first_view(shown: tuple[Viewer,
     assert not tab.errors
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", ["square_sea", "radial_sea"])
 def test_the_camera_stays_above_the_waves_of_a_storm(shown: tuple[Viewer, Tab], scene: str) -> None:
     lab, tab = shown
@@ -106,6 +108,7 @@ def test_the_camera_stays_above_the_waves_of_a_storm(shown: tuple[Viewer, Tab], 
     assert not tab.errors
 
 
+@pytest.mark.long
 def test_set_this_up_on_a_slow_page_shows_what_the_task_is_about(shown: tuple[Viewer, Tab]) -> None:
     """The page reports the camera of the scene before, long after the server has placed that of the task."""
     lab, tab = shown

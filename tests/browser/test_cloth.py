@@ -3,6 +3,7 @@
 import io
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from app.messages import Pause, Play
@@ -102,6 +103,7 @@ def test_the_sphere_moves_by_its_vertices_like_the_cloth(shown: tuple[Viewer, Ta
     assert np.array_equal(lab.view.sphere.ball.position, (0.0, 0.0, 0.0))
 
 
+@pytest.mark.long
 def test_a_polynomial_lights_the_cloth_as_the_photograph_of_the_sky_does(lab: Viewer, open_tab) -> None:
     def cloth(tab: Tab) -> np.ndarray:
         """The pixels (n, 3) around the middle of the cloth, 0 to 255, as soon as they do not change."""

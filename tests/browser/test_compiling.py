@@ -94,6 +94,7 @@ def test_a_page_never_waits_for_a_program_of_the_sea(chromium: Any) -> None:
         assert not page.evaluate("window.hasWaited === true")
 
 
+@pytest.mark.long
 def test_a_browser_that_waits_for_programs_gets_one_in_a_frame(chromium: Any) -> None:
     with open_sea(chromium, FIRST_USES) as (_, page):
         wait_for(page, ["springtide-dome in tiles with details 0", "springtide-water/sea lit"])
@@ -104,6 +105,7 @@ def test_a_browser_that_waits_for_programs_gets_one_in_a_frame(chromium: Any) ->
         assert page.evaluate("window.isPlainFirst")
 
 
+@pytest.mark.long
 def test_plain_water_does_not_wait_for_the_photograph_of_the_sky(chromium: Any) -> None:
     late = """(() => { let photograph = null;
         window.held = true;
@@ -119,6 +121,7 @@ def test_plain_water_does_not_wait_for_the_photograph_of_the_sky(chromium: Any) 
         wait_for(page, ["springtide-dome in tiles with details 0", "springtide-water/sea lit"])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("script", "width"), [("", 256), (WITH_CARD, 1024)])
 def test_the_photograph_of_the_sky_is_small_without_a_graphics_card(chromium: Any, script: str, width: int) -> None:
     """It is blurred before it is first drawn: in software four seconds for the whole one."""
@@ -127,6 +130,7 @@ def test_the_photograph_of_the_sky_is_small_without_a_graphics_card(chromium: An
         assert page.evaluate("window.__viserMutable.scene.environment.image.width") == width
 
 
+@pytest.mark.long
 def test_an_image_for_the_server_waits_for_the_whole_sea(chromium: Any) -> None:
     with open_sea(chromium, BESIDE) as (lab, page):
         page.wait_for_function("window.__viserMutable?.scene?.environment")
@@ -140,7 +144,10 @@ def test_an_image_for_the_server_waits_for_the_whole_sea(chromium: Any) -> None:
         assert "springtide-water/sea lit" in page.evaluate(DRAWN)
 
 
-@pytest.mark.parametrize("script", [BESIDE.replace("window.held = true;", "window.held = false;"), FIRST_USES])
+@pytest.mark.parametrize(
+    "script",
+    [BESIDE.replace("window.held = true;", "window.held = false;"), pytest.param(FIRST_USES, marks=pytest.mark.long)],
+)
 def test_the_server_learns_that_the_sea_is_drawn_by_its_shader(chromium: Any, script: str) -> None:
     with open_sea(chromium, script) as (lab, page):
         injector = injector_of(lab.server)

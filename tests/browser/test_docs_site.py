@@ -38,6 +38,7 @@ def site(tmp_path: Path) -> Iterator[str]:
         server.shutdown()
 
 
+@pytest.mark.long
 def test_a_replay_moves_while_it_is_in_view(chromium: Any, site: str) -> None:
     page = chromium.new_page(viewport={"width": 600, "height": 400})
     try:

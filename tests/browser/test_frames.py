@@ -31,7 +31,7 @@ TURN = """count => new Promise((done) => { const viewer = window.__viserMutable,
     requestAnimationFrame(turn); })"""
 
 
-@pytest.fixture(params=["rope", "square_sea", "mooring"])
+@pytest.fixture(params=["rope", *(pytest.param(name, marks=pytest.mark.long) for name in ("square_sea", "mooring"))])
 def paused(request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab]) -> tuple[Viewer, Tab]:
     """A scene that runs no longer, and of which the page has drawn the last frame."""
     lab, tab = one_page

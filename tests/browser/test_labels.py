@@ -56,6 +56,7 @@ def area(pixels: np.ndarray) -> int:
     return int((pixels.min(axis=-1) > BRIGHT).sum())
 
 
+@pytest.mark.long
 def test_labels_at_low_quality_are_those_at_high_pixel_for_pixel(race: tuple[Viewer, Any]) -> None:
     _, page = race
     found = {}

@@ -41,7 +41,9 @@ def resized(shown: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
     shown[1].page.set_viewport_size(size)
 
 
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize(
+    "size", [SIZES[1], *(pytest.param(size, marks=pytest.mark.long) for size in (SIZES[0], *SIZES[2:]))]
+)
 def test_nothing_covers_a_text_a_control_or_the_picture(resized: tuple[Viewer, Tab], size: tuple[int, int]) -> None:
     lab, tab = resized
     target = np.array(lab.view.first_view(lab.settings.params)[1])
@@ -50,6 +52,7 @@ def test_nothing_covers_a_text_a_control_or_the_picture(resized: tuple[Viewer, T
         tab.wait(lambda: tab.page.evaluate(ON_TOP, tab.pixel(target)) == "CANVAS", 30)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("style", "fault"),
     [
@@ -68,6 +71,7 @@ def test_the_measure_finds_what_is_wrong(shown: tuple[Viewer, Tab], style: str, 
         planted.evaluate("style => style.remove()")
 
 
+@pytest.mark.long
 def test_viser_s_note_on_software_drawing_does_not_cover_the_picture(
     shown: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
 ) -> None:
@@ -79,6 +83,7 @@ def test_viser_s_note_on_software_drawing_does_not_cover_the_picture(
     tab.wait(lambda: tab.page.evaluate(ON_TOP, (100, 100)) == "CANVAS", 30)  # the cover goes
 
 
+@pytest.mark.long
 def test_a_phone_shows_the_race_first_and_its_plots_when_asked(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
 ) -> None:
@@ -95,7 +100,7 @@ def test_a_phone_shows_the_race_first_and_its_plots_when_asked(
     tab.wait(lambda: tab.page.evaluate(MEASURE)["picture"] < 0.3 and not faults(tab.page), 20)
 
 
-@pytest.mark.parametrize("size", [(390, 844), (560, 340)])
+@pytest.mark.parametrize("size", [(390, 844), pytest.param((560, 340), marks=pytest.mark.long)])
 def test_a_small_window_shows_all_of_the_picture(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], size: tuple[int, int]
 ) -> None:
@@ -137,6 +142,7 @@ def test_the_buttons_of_the_lab_stay_while_a_small_panel_is_scrolled(
     assert {"Step", "Reset", "Undo"} <= set(tab.page.evaluate(ICONS_ON_TOP))
 
 
+@pytest.mark.long
 def test_large_text_fits_the_panel(resized: tuple[Viewer, Tab]) -> None:
     """No field or button lies beyond the lists above and below it, and no chevron over the words of a list."""
     _, tab = resized
@@ -156,6 +162,7 @@ def test_large_text_fits_the_panel(resized: tuple[Viewer, Tab]) -> None:
         tab.wait(lambda: tab.page.locator(".springtide-panel[data-state]").count(), 60)
 
 
+@pytest.mark.long
 def test_the_line_on_slow_drawing_lies_beside_the_panel_and_above_the_time_line(chromium: Any) -> None:
     """In a window of 700 x 450 its buttons would lie behind the panel."""
     lab = Viewer("127.0.0.1", 0, plain=False)

@@ -22,6 +22,7 @@ def caching_browser(chromium: Any) -> Iterator[Any]:
     browser.close()
 
 
+@pytest.mark.long  # a browser of its own
 @pytest.mark.parametrize("links", [2, pytest.param(20, marks=pytest.mark.stress)])
 def test_links_opened_in_one_tab_are_one_visitor_and_no_notice(lab: Viewer, caching_browser: Any, links: int) -> None:
     tab = Tab(caching_browser, lab.port, width=400, height=300)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from app.messages import Pause
@@ -16,6 +17,7 @@ from tests.browser.test_water import PANEL_HIDDEN
 FILES = Path(__file__).parents[1] / "sim/mooring/files"
 
 
+@pytest.mark.long
 def test_open_water_lies_around_the_mooring(open_tab: Callable[..., Tab]) -> None:
     lab = Viewer("127.0.0.1", 0)
     try:
@@ -61,6 +63,7 @@ def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Call
     assert errors == []
 
 
+@pytest.mark.long
 def test_files_without_a_vessel_or_without_anchors_are_drawn(tmp_path: Path, open_tab: Callable[..., Tab]) -> None:
     path = tmp_path / "hanging.txt"
     text = (FILES / "stiff_cable.txt").read_text(encoding="utf-8")

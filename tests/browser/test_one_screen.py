@@ -18,6 +18,7 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
+SAMPLE = ("rope", "square_sea")  # the other scenes are looked at under -m long
 TASKS = load_tasks()
 MIN_SLIDERS = 5
 MAX_HEAD = 150  # [pixels] of the block that always stays
@@ -89,7 +90,7 @@ def pause(lab: Viewer, tab: Tab) -> None:
     tab.wait(lambda: tab.page.locator('.springtide-panel[data-state="paused"]').count(), 20)
 
 
-@pytest.fixture(params=NAMES)
+@pytest.fixture(params=[pytest.param(name, marks=() if name in SAMPLE else pytest.mark.long) for name in NAMES])
 def opened(
     request: pytest.FixtureRequest, one_page: tuple[Viewer, Tab], tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[tuple[Viewer, Tab]]:

@@ -28,6 +28,7 @@ def wait_for(page: Any, condition: Any, seconds: float = 60.0) -> None:
         page.wait_for_timeout(50)
 
 
+@pytest.mark.long
 def test_the_cover_goes_with_the_first_scene_and_comes_back_with_the_end(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     page = new_page(chromium, 640, 400, drawn=False)
@@ -145,6 +146,7 @@ def test_without_storage_or_language_the_page_works(chromium: Any, script: str) 
         viewer.shut()
 
 
+@pytest.mark.long
 def test_no_link_leads_the_page_to_another_server(chromium: Any) -> None:
     """What viser's client gets from there may be JavaScript, which would run as if it were ours."""
     key = "k" * 16

@@ -64,7 +64,13 @@ FILLED = """() => {
     return { left: foot - Math.max(0, ...whole.map(({ bottom }) => bottom)), charts, whole: whole.length }; }"""
 
 
-@pytest.mark.parametrize(("width", "height", "whole"), [(1000, 640, 1), (1000, 420, 1), (1400, 800, 3)])
+@pytest.mark.parametrize(
+    ("width", "height", "whole"),
+    [
+        (1000, 420, 1),
+        *(pytest.param(*sizes, marks=pytest.mark.long) for sizes in ((1000, 640, 1), (1400, 800, 3))),
+    ],
+)
 def test_charts_fill_their_drawer_at_any_height_with_the_key_beside_the_title(
     shown: tuple[Viewer, Tab], width: int, height: int, whole: int
 ) -> None:

@@ -40,6 +40,7 @@ def wait_for(page: Any, condition: str) -> dict[str, Any]:
     return page.evaluate(STATE)
 
 
+@pytest.mark.long
 def test_without_a_graphics_card_a_page_starts_at_low(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("square_sea")
@@ -58,6 +59,7 @@ def test_without_a_graphics_card_a_page_starts_at_low(chromium: Any) -> None:
         viewer.shut()
 
 
+@pytest.mark.long
 def test_quality_falls_where_drawing_is_slow_and_the_page_says_so(page: Any) -> None:
     drawn = "s.width === Math.round(420 * s.pixels) && s.detail.endsWith(' lit')"
     lowered = wait_for(page, f"s.step >= 2 && {drawn}")

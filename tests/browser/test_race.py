@@ -19,6 +19,7 @@ CHARTS = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ch
     rows: chart.data[0].length, log: chart.scales.y.distr === 3}))"""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("presets", [list(PRESETS)[::3], pytest.param(list(PRESETS), marks=pytest.mark.stress)])
 def test_every_race_is_drawn_with_its_charts_and_no_console_errors(
     shown: tuple[Viewer, Tab], presets: list[str]
@@ -82,6 +83,7 @@ def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_labels_are_dark_in_dark_mode_and_light_again(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
 ) -> None:

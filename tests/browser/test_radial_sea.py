@@ -118,6 +118,7 @@ def test_a_buoy_dragged_under_bobs_back(shown: tuple[Viewer, Tab]) -> None:
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_oil_darkens_the_water_and_bodies_settle_to_the_readout(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     load(lab, waves=False, rig=False, rings=32, spokes=32, ripples=False)

@@ -53,6 +53,7 @@ def touch(tab: Tab, place: tuple[float, float]) -> Callable[[], Any]:
     return lambda: screen.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
 
 
+@pytest.mark.long
 def test_a_press_where_the_tip_was_a_moment_before_takes_it(lab: Viewer, open_tab: Callable[..., Tab]) -> None:
     lab.settings.set("show_points", False)
     lab.settings.set("speed", SLOWNESS)

@@ -119,6 +119,7 @@ def test_an_explosion_pauses_with_a_finite_picture_and_says_why(shown: tuple[Vie
     assert not lab.loop.run.running
 
 
+@pytest.mark.long
 def test_reload_and_a_second_tab_show_the_same_rope(shown: tuple[Viewer, Tab], open_tab) -> None:
     lab, first = shown
     first.wait(lambda: lab.scene.time > 1)
@@ -140,6 +141,7 @@ def test_handles_are_assigned_to_and_never_added_again(shown: tuple[Viewer, Tab]
     assert set(lab.server.scene._handle_from_node_name) == before
 
 
+@pytest.mark.long
 def test_without_the_script_the_rope_is_drawn_in_its_plain_colour(open_tab) -> None:
     viewer = Viewer("127.0.0.1", 0, plain=True)
     try:

@@ -91,6 +91,7 @@ def opened(open_tab: Callable[..., Tab], flat: str, scene: str) -> Iterator[Page
         page.lab.shut()
 
 
+@pytest.mark.long
 @pytest.mark.timeout(1500)  # on two busy cores all orders take twelve minutes
 @pytest.mark.parametrize("walk", [SAMPLE, pytest.param(all_orders(), marks=pytest.mark.stress)], ids=["few", "all"])
 def test_a_scene_after_another_looks_as_in_a_fresh_start(open_tab: Callable[..., Tab], walk: list[str]) -> None:

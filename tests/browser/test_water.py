@@ -119,6 +119,7 @@ def test_the_script_answers_and_what_is_drawn_is_where_it_should_be(chromium, se
     page.close()
 
 
+@pytest.mark.long
 def test_a_later_page_and_a_reloaded_one_have_the_shader_too(chromium, server):
     water = make_water(server)
     first, _ = visit(chromium, server, drawn=False)

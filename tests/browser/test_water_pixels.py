@@ -120,6 +120,7 @@ HEIGHTS = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("height", HEIGHTS)
 def test_a_tile_s_border_is_as_any_place_within_it(picture: Picture, height: float) -> None:
     """Borders along x and y cross in the middle of the picture."""

@@ -192,7 +192,9 @@ def docstrings_of(text: str) -> Counter[str]:
     return Counter(filter(None, segments))
 
 
-@pytest.mark.parametrize("folder", ["sim", "app/scenes/springs", "app/scenes/rope"])
+@pytest.mark.parametrize(
+    "folder", [pytest.param("sim", marks=pytest.mark.long), "sim/springs", "app/scenes/springs", "app/scenes/rope"]
+)
 def test_the_code_of_our_sources_has_all_of_their_tokens_but_docstrings(folder):
     for path in (ROOT / folder).rglob("*.py"):
         text = path.read_text("utf-8")

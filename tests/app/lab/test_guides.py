@@ -58,6 +58,7 @@ def test_each_of_the_22_items_has_one_guide() -> None:
     assert len(GUIDED) == 23
 
 
+@pytest.mark.long  # sets up and runs 23 tasks
 @pytest.mark.parametrize("task", GUIDED, ids=lambda task: task.name)
 def test_the_answer_of_each_guide_is_finite_where_it_is_set_up(task: Task, found) -> None:
     assert task.guide is not None

@@ -84,14 +84,30 @@ CHANGES: dict[str, tuple[dict[str, Any], ...]] = {
         {"start": "breather", "dispersion_scale": 0.7}, {"order": 3}, {"spectrum": "regular"}, {"rain": 10.0},
     ),
 }  # fmt: skip
-SETUPS = [*PRESETS, *((name, number) for name, changes in CHANGES.items() for number in range(len(changes)))]
 
 
-@pytest.mark.parametrize(("name", "setup"), SETUPS)
+def setups() -> list[Any]:
+    """Presets and changes; `long` where an earlier one of the scene hides the same parameters."""
+    found, seen = [], set()
+    changes = [(name, number) for name, changes in CHANGES.items() for number in range(len(changes))]
+    for name, setup in [*PRESETS, *changes]:
+        kind = scene_named(name)
+        hidden = name, frozenset(kind.hidden(params_of(name, setup)))
+        found.append(pytest.param(name, setup, marks=pytest.mark.long if hidden in seen else ()))
+        seen.add(hidden)
+    return found
+
+
+def params_of(name: str, setup: str | int) -> Any:
+    """The parameters of a preset, or of a change by its number."""
+    kind = scene_named(name)
+    return check_record(kind.params, kind.presets[setup] if isinstance(setup, str) else CHANGES[name][setup])
+
+
+@pytest.mark.parametrize(("name", "setup"), setups())
 def test_hidden_parameters_change_nothing(name: str, setup: str | int) -> None:
     """All of them at once: what a scene shows and tells after a few steps is the same."""
-    kind = scene_named(name)
-    params = check_record(kind.params, kind.presets[setup] if isinstance(setup, str) else CHANGES[name][setup])
+    kind, params = scene_named(name), params_of(name, setup)
     declared = parameters_of(kind.params)
     changes = {one: another(declared[one], getattr(params, one)) for one in kind.hidden(params)}
     found = []

@@ -54,6 +54,7 @@ for preset in sorted(records, key=lambda preset: len(kind.needs(records[preset])
 )
 
 
+@pytest.mark.long  # compiles or loads all kernels of a scene in a process of its own
 def test_each_preset_of_the_radial_sea_runs_with_what_it_says_it_needs() -> None:
     done = subprocess.run(
         [sys.executable, "-c", PRESETS, "radial_sea"], cwd=ROOT, capture_output=True, text=True, timeout=300
@@ -61,6 +62,7 @@ def test_each_preset_of_the_radial_sea_runs_with_what_it_says_it_needs() -> None
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.long  # compiles or loads all kernels of a scene in a process of its own
 @pytest.mark.parametrize(
     "name", ["cloth", *(pytest.param(name, marks=pytest.mark.stress) for name in ("rope", "race"))]
 )

@@ -21,6 +21,7 @@ def drawn(kind: AnyKind, frame: object) -> np.ndarray:
     return np.array(dict(arrays_of(frame))[name]).reshape(-1, 3)
 
 
+@pytest.mark.long  # half a minute of each scene
 @pytest.mark.parametrize(
     ("name", "duration"),
     [

@@ -241,7 +241,14 @@ def test_the_bed_is_darker_and_bluer_with_depth_and_is_lost_towards_the_sides():
 
 
 @pytest.mark.parametrize(
-    "changed", [{"steady_force": 400.0}, {"density": 900.0}, {"direction": 90.0}, {"length": 99.0}]
+    "changed",
+    [
+        {"steady_force": 400.0},
+        *(
+            pytest.param(one, marks=pytest.mark.long)
+            for one in ({"density": 900.0}, {"direction": 90.0}, {"length": 99.0})
+        ),
+    ],
 )
 def test_the_restoring_curve_is_that_of_the_rest_now(changed):
     scene = MooringScene(MooringParams(plot_restoring=True, segments=12, wave_height=0.0))

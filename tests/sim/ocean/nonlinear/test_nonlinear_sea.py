@@ -79,6 +79,7 @@ def test_a_steep_wave_keeps_its_form_for_20_periods(steepness, depth):
     assert abs(speed) < 1e-3
 
 
+@pytest.mark.long  # a long run
 def test_energy_over_100_periods():
     _, sea, period = steep(0.1, 5, 16, step=LENGTH / 8.9 / 100)
     sea.advance(100.0 * period)

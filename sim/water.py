@@ -9,7 +9,7 @@ from sim import dispersion
 from sim.validation import check_not_negative, check_positive
 
 SEA_DENSITY = 1025.0  # [kg/m3] of the water where none is named
-SAME_WATER = 1e-6  # relative difference of two waters that count as one
+SAME_WATER = 1e-3  # largest relative difference of two waters that count as one
 
 
 @dataclasses.dataclass(frozen=True)
@@ -41,6 +41,6 @@ class Water:
         return dispersion.group_speed(np.asarray(k), self.gravity, self.depth)
 
     def is_same(self, other: "Water") -> bool:
-        """True for the same water but for rounding."""
+        """True for waters that differ by at most `SAME_WATER`."""
         pairs = zip(dataclasses.astuple(self), dataclasses.astuple(other), strict=True)
         return all(math.isclose(a, b, rel_tol=SAME_WATER) for a, b in pairs)

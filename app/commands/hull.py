@@ -15,9 +15,9 @@ from sim.floating.closed_mesh import open_edges
 from sim.floating.hull import MeshReading, open_mesh_from_file
 from sim.floating.mesh_repair import place_of_gaps, remedy
 from sim.validation import check_number
+from sim.water import SEA_DENSITY
 
 HEELS = (5, 10, 15, 20, 30, 40, 50, 60)  # [degrees]
-SEA_DENSITY = 1025.0  # [kg/m3]
 OPEN = 1  # exit status for a mesh that is not closed
 
 

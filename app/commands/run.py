@@ -15,7 +15,7 @@ from app.files import check_out_file
 from app.formats.text_tables import say
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import Scene, SceneKind
-from app.scenes.setups import shared_values
+from app.scenes.setups import described
 from app.scenes.stepping import steps_to
 from sim.files import replacing
 from sim.validation import DivergenceError, argument_error, check_number
@@ -101,8 +101,7 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
                 arrays[key][frame] = array
             count = frame + 1
             progress.update(task, completed=frame)
-    about = {"scene": name, "parameters": shared_values(params), "units": units, "diverged": problem,
-             "notes": list(scene.notes(params))}  # fmt: skip
+    about = {**described(scene, params), "units": units, "diverged": problem, "notes": list(scene.notes(params))}
     kept = {"t": times[:count], **{key: array[:count] for key, array in arrays.items()}}
     write_arrays(out, {**kept, "about": np.array(json.dumps(about))})
     say(f"{count} frames to t = {times[count - 1]:g} s, {', '.join(kept)}", out)

@@ -16,7 +16,7 @@ from app.panel.recorder import Kept
 from app.render.line_chart import WIDTH, Drawing, line_chart
 from app.scenes.charts import Chart, Column, Columns, chart_of, numbers_of, with_numbers
 from app.scenes.contract import AnyKind
-from app.scenes.setups import shared_values
+from app.scenes.setups import described
 
 TIME = "t [s]"  # label of the first column of what is plotted over simulated time
 NOTHING = "nothing has been plotted yet: let the scene run first"
@@ -55,8 +55,7 @@ def recording_npz(kind: AnyKind, frames: Sequence[Kept]) -> bytes:
             if name in columns:
                 columns[name].append(array)
     about = {
-        "scene": kind.name,
-        "parameters": shared_values(chosen[-1].params),
+        **described(kind, chosen[-1].params),
         "units": {"t": "s", **{name: units[name] for name in form}},
         "notes": list(kind.notes(chosen[-1].params)),
     }

@@ -14,7 +14,7 @@ The folder is found by being here: command line, panel, sweeps, benchmarks and t
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -227,6 +227,14 @@ class FramePacking(NamedTuple):
     unpack: Callable[..., object]  # packed form -> a frame that looks the same
 
 
+class FileFacts(NamedTuple):
+    """What a file holds that a scene runs."""
+
+    name: str  # what it is
+    facts: dict[str, Any]  # as JSON holds them, in SI units
+    unused: frozenset[str]  # names of the parameters that mean nothing with it
+
+
 @dataclass(frozen=True)
 class SceneKind(Generic[P, F, R]):
     """All there is to know of a scene without making one."""
@@ -270,6 +278,8 @@ class SceneKind(Generic[P, F, R]):
     # Of parameters: lines on the files that they name, on what was read and what was left out. The command line prints
     # them, the page shows them under "Files", and files of runs and recordings keep them.
     notes: Callable[[P], Sequence[str]] = lambda params: ()
+    # What a file that the parameters name says in their stead; None: they name none.
+    file_facts: Callable[[P], FileFacts | None] = lambda params: None
     warnings: Callable[..., Sequence[str]] | None = None  # of a scene that begins: sentences on its start
     awaited: Awaited | None = None  # event that the panel offers to run on to
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults

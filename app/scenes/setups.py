@@ -85,6 +85,15 @@ def shared_values(params: BaseParams) -> dict[str, Value]:
     return {name: file_name(value) if name in paths else value for name, value in vars(params).items()}
 
 
+def described(kind: AnyKind, params: BaseParams) -> dict[str, Any]:
+    """What a file of a run says of it: the scene, its parameters, and what a file holds that they name."""
+    values, file = shared_values(params), kind.file_facts(params)
+    if file is None:
+        return {"scene": kind.name, "parameters": values}
+    used = {name: value for name, value in values.items() if name not in file.unused}
+    return {"scene": kind.name, "parameters": used, file.name: file.facts}
+
+
 def added_files(params: object) -> dict[str, str]:
     """Names of the files that were added to these parameters, by their options."""
     paths = {option: file_name(getattr(params, field, "")) for option, field in FILES.items()}

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.angles import angle_from, within_turn
+from sim.angles import angle_from
 from sim.dispersion import wavenumber
 from sim.floating.closed_mesh import ClosedMesh, check_hull
 from sim.floating.hull import Hull
@@ -29,7 +29,7 @@ from sim.floating.hydrodynamics import (
     table_length,
     velocity_at,
 )
-from sim.floating.linear_table import LinearTable
+from sim.floating.linear_table import LinearTable, not_finite
 from sim.validation import Refusals, argument_error, check_angle, check_kind, check_positive, check_vector
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ WIDEST_GAP = math.radians(31.0)  # between directions that are interpolated
 SYMMETRY = 1e-3  # share of the greatest force that a hull's own symmetry may miss
 SAME_DEPTH = 1e-3  # by how much a depth that is asked for may differ from one of the dataset
 SAME_HEADING = 1e-3  # [rad] the same of a heading
+ONE_HEADING = 1e-6  # [rad] between directions that are one
 
 
 def with_dataset(
@@ -59,7 +60,8 @@ def with_dataset(
     heading: float | None = None,
     rotation_center: Sequence[float] | None = None,
 ) -> Hull:
-    """The hull with the linear coefficients of a dataset, for bodies of about its draft, in water of its depth.
+    """The hull with the linear coefficients of a dataset, for bodies of about its draft, in water of its depth and
+    density.
 
     draft [m]: that of the dataset, where it does not say. body: name of one of several; the others are held. depth [m],
     or inf: one of several. heading [rad]: one of several, where they are too few to interpolate; a hull with one
@@ -155,8 +157,8 @@ def converted(
     scale, root = np.outer(unit, unit) * length, math.sqrt(length)
     added = matrix("added_mass") / scale
     k = wavenumber(omega[waves] / math.sqrt(g), 1.0, water)
-    X = sum(by_omega[name][waves] for name in FORCES)
-    headings = within_turn(numbers(dataset, "wave_direction", ("wave_direction",), path))
+    headings, places = once_around(numbers(dataset, "wave_direction", ("wave_direction",), path))
+    X = np.sum([by_omega[name][waves][:, places] for name in FORCES], axis=0)
     path_length = mesh.centre[0] * np.cos(headings) + mesh.centre[1] * np.sin(headings)
     phase = np.exp(-1j * k[:, None] * path_length)[:, :, None]
     X = X @ S * phase / (rho * g * unit * length)
@@ -165,7 +167,7 @@ def converted(
         excitation, only = np.repeat(X[:, i : i + 1], len(DIRECTIONS), axis=1), float(headings[i])
     else:
         excitation, only = resampled(X, headings, path), math.nan
-    return LinearTable(
+    table = LinearTable(
         aspect=np.ones(1),
         draft=np.array([draft / length]),
         direction=DIRECTIONS,
@@ -176,7 +178,11 @@ def converted(
         excitation=excitation[None, None],
         depth=water / length,
         heading=only,
+        density=rho,
     )
+    if not_finite(table):
+        raise argument_error("path", path, f"a dataset of finite coefficients; {not_finite(table)} is not")
+    return table
 
 
 def check_asked(
@@ -360,6 +366,15 @@ def numbers(
     return found
 
 
+def once_around(headings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Headings from 0 to a turn (n,) [rad], rising, and their places among the given; of equal ones the first."""
+    turned = np.mod(headings, 2.0 * math.pi)
+    turned[2.0 * math.pi - turned < ONE_HEADING] = 0.0
+    order = np.argsort(turned, kind="stable")
+    keep = np.append(True, np.diff(turned[order]) > ONE_HEADING)[: len(order)]
+    return turned[order][keep], order[keep]
+
+
 def place_of_heading(headings: np.ndarray, path: str, heading: float | None) -> int:
     """Index of the one of headings (n,) [rad] that is asked for. Raises ValueError without it."""
     if heading is None:
@@ -372,12 +387,10 @@ def place_of_heading(headings: np.ndarray, path: str, heading: float | None) -> 
 
 
 def resampled(X: np.ndarray, headings: np.ndarray, path: str) -> np.ndarray:
-    """Forces (n, 36, 6) in DIRECTIONS by cubics through those (n, headings, 6) of a dataset.
+    """Forces (n, 36, 6) in DIRECTIONS by cubics through those (n, headings, 6) of a dataset, at rising headings.
 
     Headings from 0 to 90, or to 180, degrees are mirrored, of a hull that is as symmetric as that needs.
     """
-    headings, order = np.unique(headings, return_index=True)  # some datasets have 0 and a whole turn
-    X = X[:, order]
     for end, factor in ((math.pi / 2, MIRROR_X), (math.pi, MIRROR_Y)):
         if abs(headings[0]) < 1e-6 and abs(headings[-1] - end) < 1e-6:
             mirrored, at = X * factor, headings < end - 1e-6

@@ -28,10 +28,11 @@ from sim.dispersion import group_speed, omega, wavenumber
 from sim.floating.closed_mesh import ClosedMesh, area_vectors
 from sim.floating.equilibrium import SEA_WATER, Layers, equilibrium_draft, upright
 from sim.floating.hull import Hull
-from sim.floating.hydrostatics import Submerged, add_pressure
+from sim.floating.hydrostatics import AT_SURFACE, Submerged, add_pressure, displaced
 from sim.floating.linear_table import LinearTable, table_of
 from sim.interruption import pieces, raise_if_stopped
 from sim.validation import ConvergenceError, argument_error
+from sim.water import SAME_WATER
 
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
 POLES = np.array([-0.362 + 0.419j, -0.408 + 0.850j, -0.311 + 1.274j, -1.344 + 1.128j, -1.127 + 4.227j])
@@ -40,7 +41,6 @@ FIT_WIDTH = 0.12  # share of a hull's own frequency about which the memory is fi
 FIT_FLOOR = 0.06  # weight of the other frequencies
 STEADY_WEIGHT = 30.0  # of the condition that a steady motion meets no force
 DEEPEST = 0.98  # of the height of a hull: the draft at which one that is wholly under water has its coefficients
-ONE_DEPTH = 0.01  # by how much water may be deeper or shallower than that of a table
 ONE_DRAFT = 0.01  # by how much a body's draft may differ from the only one of its table
 MAX_TURNS = 60  # of the search for a natural frequency
 PIECE = 64  # waves at a time: the solve yields in between
@@ -50,7 +50,6 @@ LONG_POWERS = np.array([1.0, 1.0, 1.0, 1.0, 1.0, 2.0])  # of k, by which what is
 # Of k, by which what is left at the first frequency fades below it; but for yaw faster than by its law, since it is
 # small, and wrong where a hull has the coefficients of a box.
 FADING_POWERS = np.array([3.0, 3.0, 3.0, 3.0, 3.0, 2.0])
-NUDGE = 1e-4  # share of the draft by which a plane is moved or tilted to find its force
 LEVEL_MOTIONS = [0, 1, 5]  # surge, sway, yaw: water that is higher, and level, does not push along them
 # Signs of the motions under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
@@ -211,12 +210,18 @@ def place_in_table(hull: Hull, draft: float) -> TablePlace:
     return TablePlace(table_of("box"), max(x / y, y / x), draft / length, length, x < y, False)
 
 
+def is_sunken(hull: ClosedMesh, draft: float) -> bool:
+    """True for a hull that is wholly under water at a draft [m], deeper than with its deck in the surface."""
+    return draft > (1.0 + AT_SURFACE) * float(hull.size[2])
+
+
 def outside_table(hull: Hull, draft: float) -> str:
     """The words for a hull that floats upright at a draft [m] outside its table of coefficients; "" for one inside.
 
-    A hull that is wholly under water makes no waves at the surface, and is never outside.
+    A hull that is wholly under water makes no waves at the surface, and is never outside. Nor is one without a table of
+    its own that nearly is.
     """
-    if draft >= DEEPEST * float(hull.size[2]):
+    if is_sunken(hull, draft) or (hull.shape.table is None and draft >= DEEPEST * float(hull.size[2])):
         return ""
     place, beyond = place_in_table(hull, draft), []
     for name, value, nodes in (
@@ -236,9 +241,20 @@ def check_water_depth(name: str, hull: Hull, depth: float) -> None:
     if table is None or math.isinf(table.depth):
         return
     own = table.depth * table_length(hull)
-    if not abs(depth - own) <= ONE_DEPTH * own:
-        given = f"a hull with a dataset of water {own:.4g} m deep, in water of {depth:.4g} m"
+    if not abs(depth - own) <= SAME_WATER * own:
+        given = f"a hull with a dataset of water {own:.6g} m deep, in water of {depth:.6g} m"
         raise argument_error(name, given, "water of the dataset's depth, or a dataset of the water's")
+
+
+def check_water_density(hull: Hull, layers: Layers) -> None:
+    """Raises ValueError for a hull with a dataset of water of one density in water of another one.
+
+    The water is the lowest of the layers.
+    """
+    own, given = hull.shape.table.density if hull.shape.table is not None else math.nan, float(layers[-1][0])
+    if abs(given - own) > SAME_WATER * own:  # False for nan: any
+        words = f"a hull with a dataset of water of {own:.6g} kg/m3, in water of {given:.6g} kg/m3"
+        raise argument_error("layers", words, "water of the dataset's density, or a dataset of the water's")
 
 
 def linear_hull(hull: Hull, draft: float) -> LinearHull:
@@ -253,7 +269,8 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
         words = f"{hull.shape.name}: {beyond} is outside; added mass, damping and wave forces are those of the border"
         warnings.warn(f"{words}; {advice}", UserWarning, stacklevel=2)
     low = float(hull.extents[2, 0])
-    draft = min(draft, DEEPEST * float(hull.size[2]))
+    if is_sunken(hull, draft):
+        draft = DEEPEST * float(hull.size[2])
     table, aspect, depth, length, turned, is_round = place_in_table(hull, draft)
     found = interpolated(table, aspect, depth)
     excitation = around(found.excitation, table.direction)
@@ -451,7 +468,8 @@ def afloat(hull: Hull, density: float, layers: Layers = SEA_WATER) -> Afloat:
 
     One that sinks has those of the deepest draft.
     """
-    draft = min(equilibrium_draft(hull, density, layers), float(hull.size[2]))
+    check_water_density(hull, layers)
+    draft = equilibrium_draft(hull, density, layers)
     linear = linear_hull(hull, draft)
     cut = upright(hull, draft)
     own = np.zeros(6)
@@ -463,31 +481,26 @@ def afloat(hull: Hull, density: float, layers: Layers = SEA_WATER) -> Afloat:
     memory = memory_of(linear, own)
     # with the added mass that `step` has, or a long wave would not carry the body as far as the water
     linear = linear._replace(long=long_wave_force(linear.plane, cut, linear.infinite + memory.slow_added_mass()))
-    return Afloat(linear, memory, wet_pressure(hull, draft, 0.0, (0.0, 0.0))[6:9])
+    return Afloat(linear, memory, wet_area(hull, min(draft, float(hull.size[2]))))
 
 
 def plane_force(hull: Hull, draft: float) -> PlaneForce:
-    """The force of a plane on a hull at a draft [m], by differences."""
-    nudge = NUDGE * draft
-    tilt = nudge / float(np.abs(hull.extents[:2]).max())
+    """The force of a plane on a hull at a draft [m], by the integrals over its waterplane and its wet part.
 
-    def force(rise: float, x: float, y: float) -> np.ndarray:
-        return -wet_pressure(hull, draft, rise, (x, y))[:6]
-
-    def change(rise: float, x: float, y: float, size: float) -> np.ndarray:
-        return (force(rise, x, y) - force(-rise, -x, -y)) / (2 * size)
-
-    slopes = np.stack([change(0.0, tilt, 0.0, tilt), change(0.0, 0.0, tilt, tilt)])
-    rise = change(nudge, 0.0, 0.0, nudge)
-    rise[LEVEL_MOTIONS] = 0.0  # but for round-off, by which a long wave would push a body that little holds there
-    return PlaneForce(rise, slopes)
+    By Gauss's theorem on the wet surface and the waterplane, from -int d' n dA and -int d' x cross n dA of the change
+    d' of the depth, which is 1, x or y (Newman 1977, section 6.16).
+    """
+    x, nz = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(area_vectors(hull.vertices, hull.faces)[:, 2])
+    found = displaced(x, np.ascontiguousarray(hull.faces.T), nz, hull.extents[2, 0] + draft - x[2])
+    V, Vx, Vy, Vz, A, Ax, Ay, Axx, Ayy, Axy = found.tolist()
+    along_x = [-V, 0.0, Ax, Axy, -Axx - Vz, Vy]
+    along_y = [0.0, -V, Ay, Ayy + Vz, -Axy, -Vx]
+    return PlaneForce(np.array([0.0, 0.0, A, Ay, -Ax, 0.0]), np.array([along_x, along_y]))
 
 
-def wet_pressure(hull: Hull, draft: float, rise: float, slope: tuple[float, float]) -> np.ndarray:
-    """Integrals (9,) of `add_pressure` over an upright hull at a draft [m], in water `rise` [m] higher with a slope."""
+def wet_area(hull: Hull, draft: float) -> np.ndarray:
+    """Area (3,) [m2] of an upright hull that is wet at a draft [m], across each axis: int |n_i| dA."""
     x, faces = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.faces.T)
-    area = np.ascontiguousarray(area_vectors(hull.vertices, hull.faces).T)
-    depth = hull.extents[2, 0] + draft + rise + slope[0] * x[0] + slope[1] * x[1] - x[2]
-    out = np.zeros(9)
-    add_pressure(x, faces, area, 0, len(hull.faces), depth, 1.0, out)
-    return out
+    area, out = np.ascontiguousarray(area_vectors(hull.vertices, hull.faces).T), np.zeros(9)
+    add_pressure(x, faces, area, 0, len(hull.faces), hull.extents[2, 0] + draft - x[2], 1.0, out)
+    return out[6:9]

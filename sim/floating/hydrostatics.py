@@ -24,6 +24,8 @@ from sim.jit import kernel
 from sim.validation import argument_error, as_array, check_not_negative
 from sim.water import SEA_DENSITY
 
+AT_SURFACE = 1e-9  # share of the height of a hull within which a vertex lies in the surface
+
 
 @kernel(noalias=True)
 def add_pressure(x, faces, area, first, last, depth, weight, out):
@@ -144,6 +146,16 @@ def add_displaced(x, faces, nz, depth, out):
             add_displaced_triangle(p1, q1, r1, 0.0, x2, y2, z2, c, p2, q2, r2, 0.0, n * t1 * (1.0 - t2), out)
 
 
+def displaced(x: np.ndarray, faces: np.ndarray, nz: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """The integrals (10,) of `add_displaced`, with its arguments.
+
+    A level face at the surface, within `AT_SURFACE`, is dry: the waterplane is the one just below it.
+    """
+    out, near = np.zeros(10), AT_SURFACE * float(np.ptp(x[2]))
+    add_displaced(x, faces, nz, np.where(np.abs(depth) <= near, 0.0, depth), out)
+    return out
+
+
 class Submerged(NamedTuple):
     """The part of a hull below a surface. The waterplane is the surface inside the hull, seen from above."""
 
@@ -188,8 +200,7 @@ def submerged(
     place, turn, heights = check_pose(hull, position, rotation, surface)
     x = np.ascontiguousarray(turn @ hull.vertices.T)
     nz = np.ascontiguousarray(area_vectors(x.T, hull.faces)[:, 2])
-    out = np.zeros(10)
-    add_displaced(x, np.ascontiguousarray(hull.faces.T), nz, heights - place[2] - x[2], out)
+    out = displaced(x, np.ascontiguousarray(hull.faces.T), nz, heights - place[2] - x[2])
     volume = max(float(out[0]), 0.0)
     centre = place + out[1:4] / volume if volume > 0 else np.full(3, np.nan)
     return Submerged(volume, centre, float(out[4]), out[7:10].copy())

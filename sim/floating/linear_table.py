@@ -36,13 +36,23 @@ class LinearTable(NamedTuple):
     excitation: np.ndarray  # (a, d, n, m, 6) complex
     depth: float = math.inf  # of the water; inf: deep
     heading: float = math.nan  # [rad] the only heading with excitation data; nan: all headings
+    density: float = math.nan  # [kg/m3] of the water of a dataset; nan: any
 
 
 def table_from(arrays: Mapping[str, np.ndarray]) -> LinearTable:
     """The table in the arrays of a file. Raises KeyError, TypeError or ValueError for other arrays."""
     given = {field: arrays[field] for field in LinearTable._fields if field in arrays}
     numbers = {field: float(given[field]) for field in LinearTable._field_defaults if field in given}
-    return LinearTable(**{**given, **numbers})
+    table = LinearTable(**{**given, **numbers})
+    if not_finite(table):
+        raise ValueError(f"{not_finite(table)} is not finite")
+    return table
+
+
+def not_finite(table: LinearTable) -> str:
+    """The name of an array of a table with numbers that are not finite; "" without one."""
+    arrays = (name for name in LinearTable._fields if name not in LinearTable._field_defaults)
+    return next((name for name in arrays if not np.isfinite(getattr(table, name)).all()), "")
 
 
 @functools.cache

@@ -4,7 +4,7 @@ import math
 
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft, upright
 from sim.floating.hull import Hull
-from sim.floating.hydrodynamics import linear_hull, natural_frequency
+from sim.floating.hydrodynamics import check_water_density, linear_hull, natural_frequency
 from sim.validation import argument_error, check_not_negative, is_whole_number
 
 
@@ -32,6 +32,7 @@ def heave_period_at(
     """`heave_period` of a hull with a known equilibrium draft [m]."""
     if math.isinf(draft):
         return math.inf
+    check_water_density(hull, layers)
     cuts = [(change, upright(hull, draft - top)) for change, top in density_steps(layers)]
     fluid = density * hull.volume / cuts[0][1].volume  # [kg/m3] mean density of the displaced fluids
     stiffness = sum(change * cut.area for change, cut in cuts) / fluid
@@ -59,6 +60,7 @@ def roll_period(
     draft = equilibrium_draft(hull, density, layers, gravity)
     if math.isinf(draft):
         return math.inf
+    check_water_density(hull, layers)
     stiffness = 0.0
     for change, top in density_steps(layers):
         cut = upright(hull, draft - top)

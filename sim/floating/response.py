@@ -16,7 +16,14 @@ from numpy.typing import ArrayLike
 from sim.angles import angle_from
 from sim.floating.body import Body, check_body, check_pose
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
-from sim.floating.hydrodynamics import DIRECTIONS, LEVEL_MOTIONS, lagrange, linear_hull, plane_force
+from sim.floating.hydrodynamics import (
+    DIRECTIONS,
+    LEVEL_MOTIONS,
+    check_water_density,
+    lagrange,
+    linear_hull,
+    plane_force,
+)
 from sim.floating.stability import about_rest, is_stable
 from sim.validation import argument_error, as_array, check_angle, check_positive
 
@@ -48,8 +55,8 @@ def response_amplitude(
     and X tends to the force of long waves, so that the body moves with the water and leans as the wave is steep. In
     layers the coefficients have the mean density of what is displaced, and the interface follows the surface.
 
-    Raises ValueError for a value that is not allowed, a heading that the hull's dataset does not have, and for a body
-    that sinks, has a trim, or is not stable upright.
+    Raises ValueError for a value that is not allowed, a heading or a density of the water that the hull's dataset does
+    not have, and for a body that sinks, has a trim, or is not stable upright.
     """
     f = linear_forces(body, frequency, heading, layers, gravity)
     w = np.asarray(frequency, dtype=float)[:, None, None]
@@ -73,6 +80,7 @@ def linear_forces(
     heading, gravity = check_angle("heading", heading), check_positive("gravity", gravity, "m/s2")
     layers = check_layers(layers)
     hull, density = body.loaded()
+    check_water_density(hull, layers)
     draft = body.draft(layers)
     _, rest = about_rest(body, layers)
     if not is_stable(hull, rest):

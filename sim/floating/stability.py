@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from sim.floating.closed_mesh import area_vectors
 from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.hull import Hull
-from sim.floating.hydrostatics import add_displaced
+from sim.floating.hydrostatics import displaced
 from sim.floating.rotation import heading_angle, product, quaternion_by_vector, rotation_matrix
 from sim.validation import ConvergenceError, argument_error, as_array, is_whole_number
 
@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 Quaternion = tuple[float, float, float, float]
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 MAX_TILT = math.radians(60.0)  # of a body at rest
-TILT = 1e-6  # [rad] of the differences
 LEVEL = 1e-9  # share of the size of a hull: an arm below it is none
 NEUTRAL = 1e-3  # share of the size of a hull: a GM is none if it is nearer to 0, as that of a ball of 500 triangles
 FIRST_LEAN = 0.05  # [rad] from an unstable rest, where the search for a stable one begins
@@ -73,8 +72,8 @@ def metacentric_height(body: "Body", layers: Layers = SEA_WATER, axis: int = 0) 
     """
     if not is_whole_number(axis) or axis not in (0, 1):
         raise argument_error("axis", axis, "0 (heel) or 1 (trim)")
-    arms = arms_of(*about_rest(body, layers), np.array([-TILT, TILT]), axis)
-    return float(arms[1] - arms[0]) / (2.0 * TILT)
+    _, rest = about_rest(body, layers)
+    return float(rest.restoring[axis, axis])
 
 
 def righting_arm(body: "Body", heel: ArrayLike, layers: Layers = SEA_WATER) -> np.ndarray:
@@ -115,35 +114,31 @@ def about_rest(body: "Body", layers: Layers) -> tuple[Loaded, Balance]:
 
 def arms_of(loaded: Loaded, rest: Balance, angles: np.ndarray, axis: int) -> np.ndarray:
     """Righting arms (n,) [m] at angles (n,) [rad] about the world's x, or y, from rest without its heading."""
-    found = []
-    for angle in angles:
-        x, y, _ = displaced_arm(*loaded, product(tilted(angle * np.eye(2)[axis]), rest.rotation))
-        found.append(0.0 - y if axis == 0 else x)
-    return np.array(found)
+    return np.array(
+        [balance_at(loaded, product(tilted(angle * np.eye(2)[axis]), rest.rotation)).arm[axis] for angle in angles]
+    )
 
 
-def displaced_arm(hull: Hull, density: float, layers: Layers, rotation: Quaternion) -> tuple[float, float, float]:
-    """x, y [m] of the centre of buoyancy from that of gravity in this pose, and its height over the surface [m].
+def balance_at(loaded: Loaded, rotation: Quaternion) -> Balance:
+    """The balance of a body in a pose.
 
-    The height, by Newton's method within a bracket, is the one at which the displaced fluids weigh as much as the body.
+    The level, by Newton's method within a bracket, is the one at which the displaced fluids weigh as much as the body.
+    A tilt moves the centre of buoyancy with the body, and by the wedges at the waterplanes, which it turns about their
+    common centre of flotation (Newman 1977, section 6.16).
     """
+    hull, density, layers = loaded
     steps, weight = density_steps(layers), density * hull.volume
     x = np.ascontiguousarray(rotation_matrix(np.array(rotation)) @ hull.vertices.T)
     faces, vertical = np.ascontiguousarray(hull.faces.T), np.ascontiguousarray(area_vectors(x.T, hull.faces)[:, 2])
 
-    def displaced(level: float) -> np.ndarray:
+    def under(level: float) -> np.ndarray:
         """The integrals (10,) of `add_displaced`, times density, under a surface at this level."""
-        total = np.zeros(10)
-        for change, top in steps:
-            part = np.zeros(10)
-            add_displaced(x, faces, vertical, level - top - x[2], part)
-            total += change * part
-        return total
+        return sum((change * displaced(x, faces, vertical, level - top - x[2]) for change, top in steps), np.zeros(10))
 
     low, high = float(x[2].min()), float(x[2].max()) + steps[-1][1]
     level, resolved = (low + high) / 2.0, ROUND_OFF * (high - low)
     while True:
-        found = displaced(level)
+        found = under(level)
         missing, area = weight - float(found[0]), float(found[4])
         low, high = (level, high) if missing > 0.0 else (low, level)
         after = level + missing / area if area > 0.0 else math.nan
@@ -152,18 +147,11 @@ def displaced_arm(hull: Hull, density: float, layers: Layers, rotation: Quaterni
         if not low < after < high or abs(after - level) <= resolved:
             break
         level = after
-    return float(found[1]) / weight, float(found[2]) / weight, -level
-
-
-def balance_at(loaded: Loaded, rotation: Quaternion) -> Balance:
-    """The balance of a body in a pose."""
-    x, y, height = displaced_arm(*loaded, rotation)
-    restoring = np.empty((2, 2))
-    for i in range(2):
-        nudge = TILT * np.eye(2)[i]
-        ends = [displaced_arm(*loaded, product(tilted(turn), rotation)) for turn in (nudge, -nudge)]
-        restoring[:, i] = (ends[1][1] - ends[0][1]) / (2.0 * TILT), (ends[0][0] - ends[1][0]) / (2.0 * TILT)
-    return Balance(rotation, height, np.array([-y, x]), (restoring + restoring.T) / 2.0)
+    _, Mx, My, Mz, A, Ax, Ay, Axx, Ayy, Axy = found.tolist()
+    if A > 0.0:
+        Axx, Ayy, Axy = Axx - Ax * Ax / A, Ayy - Ay * Ay / A, Axy - Ax * Ay / A
+    restoring = np.array([[Mz + Ayy, -Axy], [-Axy, Mz + Axx]]) / weight
+    return Balance(rotation, -level, np.array([-My, Mx]) / weight, restoring)
 
 
 def is_stable(hull: Hull, rest: Balance) -> bool:

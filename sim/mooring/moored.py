@@ -10,7 +10,7 @@ from sim.floating.hydrodynamics import check_water_depth, not_negative
 from sim.floating.response import linear_forces
 from sim.mooring.system import MooredBody
 from sim.validation import argument_error
-from sim.water import SAME_WATER
+from sim.water import Water
 
 if TYPE_CHECKING:
     from sim.waves import Waves
@@ -19,37 +19,42 @@ HELD = 1e-6  # of the stiffness of heave, for surge and sway, and of roll, for y
 
 
 def moored(
-    id: int, body: floating.Body, frequency: float, waves: "Waves | None" = None, gravity: float = 9.81
+    id: int, body: floating.Body, frequency: float, waves: "Waves | None" = None, water: Water | None = None
 ) -> MooredBody:
-    """The body at its place of rest without lines, upright in sea water, its axes along x and y.
+    """The body at its place of rest without lines, upright in water, its axes along x and y.
 
     frequency: [rad/s] of the added mass and the radiation damping, which are taken as constant; that of the highest
     waves is a good one. waves: those of the system, which push it by `sim.floating.response.linear_forces` [N, N m].
-    Coefficients are those of deep water, or of the depth of the hull's dataset, which is then that of the waves.
+    water: that of the waves by default, else sea water of the depth of the hull's dataset. Coefficients are those of
+    deep water, or of the dataset's.
 
-    Raises ValueError as `response_amplitude` does, and for waves on water of another depth than the dataset's or under
-    another gravity.
+    Raises ValueError as `response_amplitude` does, for a hull with a dataset of another water, and for other waves.
     """
+    if water is not None:
+        check_water_depth("water", body.hull, water.depth)
     if waves is not None:
         check_water_depth("waves", body.hull, waves.water.depth)
-        if not math.isclose(gravity, waves.water.gravity, rel_tol=SAME_WATER):
-            raise argument_error("gravity", gravity, f"that of the waves' {waves.water}")
+        if water is not None and not waves.water.is_same(water):
+            raise argument_error("waves", f"waves on {waves.water}", f"those on the body's {water}")
+    water = water or (Water() if waves is None else waves.water)
+    layers, gravity = ((water.density, math.inf),), water.gravity
     table = body.hull.shape.table
     heading = 0.0 if table is None or math.isnan(table.heading) else table.heading  # whichever: only X depends on it
-    own = linear_forces(body, [frequency], heading, gravity=gravity)
+    own = linear_forces(body, [frequency], heading, layers, gravity)
     C = own.stiffness.copy()
     for e, of in ((0, 2), (1, 2), (5, 3)):
         C[e, e] += HELD * C[of, of]
-    X = None if waves is None else excitation(body, waves, gravity)
+    X = None if waves is None else excitation(body, waves)
     A, B = 0.5 * (own.added[0] + own.added[0].T), not_negative(own.damping)[0]
     return MooredBody(id, own.centre, own.mass + A, 0.5 * (C + C.T), B, X)
 
 
-def excitation(body: floating.Body, waves: "Waves", gravity: float) -> np.ndarray:
+def excitation(body: floating.Body, waves: "Waves") -> np.ndarray:
     """Force and moment (waves, 6) by each wave of amplitude 1 m, a Re(X exp(i theta)) at the body."""
     found = np.zeros((len(waves.omega), 6), complex)
-    headings = np.arctan2(waves.ky, waves.kx)
+    headings, layers = np.arctan2(waves.ky, waves.kx), ((waves.water.density, math.inf),)
     for heading in np.unique(headings):
         some = headings == heading
-        found[some] = linear_forces(body, waves.omega[some], float(heading), gravity=gravity).excitation
+        own = linear_forces(body, waves.omega[some], float(heading), layers, waves.water.gravity)
+        found[some] = own.excitation
     return found

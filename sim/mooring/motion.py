@@ -159,6 +159,7 @@ class MooringFrames:
         self.x = np.full((len(t), *start.x.shape), np.nan)
         self.v, self.force = np.full_like(self.x, np.nan), np.full_like(self.x, np.nan)
         self.tension = np.full((len(t), len(self.p.ends)), np.nan)
+        self.end_tension = np.full((len(t), 2 * len(system.lines)), np.nan)
         self.ledger = np.full((len(t), 6), np.nan)
 
     def advance(self, frame: int) -> None:
@@ -182,6 +183,7 @@ class MooringFrames:
         x, v = state.x.reshape(-1), velocities(self.system, state).reshape(-1)
         self.x[frame], self.v[frame] = state.x, v.reshape(state.x.shape)
         set_line_tensions(x, v, self.p, self.tension[frame])
+        self.end_tension[frame] = self.system.line_ends.tensions(state.x, v, state.t, self.p)
         set_node_forces(x, v, state.t, self.p, self.force[frame].reshape(-1))
         self.ledger[frame] = *energies(x, v, state.t, self.p), state.dissipated, state.work
 
@@ -201,12 +203,14 @@ class MooringFrames:
     def run(self, diverged_at: float | None) -> MooringRun:
         """All frames."""
         tension = {one: self.tension[:, links] for one, links in self.system.links_of.items()}
+        ends = {line.id: self.end_tension[:, 2 * i : 2 * i + 2].copy() for i, line in enumerate(self.system.lines)}
         held = {point.id: self.force[:, :, i].copy() for i, point in enumerate(self.system.points) if is_held(point)}
         return MooringRun(
             self.t,
             self.by_line(self.x),
             self.by_line(self.v),
             tension,
+            ends,
             held,
             self.by_body(self.x),
             self.by_body(self.v),

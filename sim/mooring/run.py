@@ -17,6 +17,7 @@ class MooringRun(NamedTuple):
     x: dict[int, Array]  # by line: (frames, segments + 1, 3) [m]
     v: dict[int, Array]  # by line: (frames, segments + 1, 3) [m/s]
     tension: dict[int, Array]  # by line: (frames, segments) [N], internal damping included
+    end_tension: dict[int, Array]  # by line: (frames, 2) [N] at its start and end, see `sim.mooring.end_forces`
     force: dict[int, Array]  # by fixed or coupled point: (frames, 3) [N] on what holds it, see `point_forces`
     bodies: dict[int, Array]  # by body: (frames, 6) [m, rad] from its place
     bodies_v: dict[int, Array]  # by body: (frames, 6) [m/s, rad/s]

@@ -21,7 +21,7 @@ from sim.validation import ConvergenceError
 if TYPE_CHECKING:
     from sim.mooring.system import System
 
-MAX_CORRECTIONS = 40  # of both methods together
+MAX_CORRECTIONS = 60  # of both methods together
 FINISHING, LEAST_FINISHING = 6, 2  # of them at the end, at most, and before they run out
 NEAR, NEARER = 1e-9, 1e-4  # gap at which the end is tried first, and over the last one again
 
@@ -31,6 +31,7 @@ class Rest(NamedTuple):
 
     x: dict[int, NDArray[np.float64]]  # by line: (segments + 1, 3) [m]
     tension: dict[int, NDArray[np.float64]]  # by line: (segments,) [N], from its start to its end
+    end_tension: dict[int, NDArray[np.float64]]  # by line: (2,) [N] at its start and end, see `sim.mooring.end_forces`
     bodies: dict[int, NDArray[np.float64]]  # by body: (6,) [m, rad] from its place
     nodes: NDArray[np.float64]  # (3, n) of all nodes and bodies, as kernels have them
 
@@ -76,4 +77,6 @@ def rest_of(system: "System", x: NDArray[np.float64], p: LineArrays) -> Rest:
     set_line_tensions(flat, np.zeros_like(flat), p, tension)
     xs = {one: np.ascontiguousarray(x[:, nodes].T) for one, nodes in system.nodes_of.items()}
     tensions = {one: tension[links] for one, links in system.links_of.items()}
-    return Rest(xs, tensions, {body.id: six_of(x, p, b) for b, body in enumerate(system.bodies)}, x)
+    at_ends = system.line_ends.tensions(x, np.zeros_like(x), 0.0, p).reshape(-1, 2)
+    ends = {line.id: one for line, one in zip(system.lines, at_ends, strict=True)}
+    return Rest(xs, tensions, ends, {body.id: six_of(x, p, b) for b, body in enumerate(system.bodies)}, x)

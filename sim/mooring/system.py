@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from sim.interruption import stop_request
 from sim.mooring.bending import bends_of
 from sim.mooring.elastic import Curves
+from sim.mooring.end_forces import LineEnds
 from sim.mooring.run import MooringRun
 from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
@@ -36,7 +37,7 @@ from sim.springs.line_arrays import (
 )
 from sim.springs.point_system import PointSystem
 from sim.validation import argument_error, check_choice, check_kind, check_number, check_vector, is_whole_number
-from sim.water import Water
+from sim.water import SEA_DENSITY, Water
 from sim.waves import Waves
 
 Vector = tuple[float, float, float]
@@ -125,11 +126,11 @@ class System(PointSystem[MooringRun]):
     depth: float  # [m]
     bodies: tuple[MooredBody, ...] = ()
     gravity: float = 9.81  # [m/s^2]
-    density: float = 1025.0  # [kg/m^3]; 0: no water
+    density: float = SEA_DENSITY  # [kg/m^3]; 0: no water
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
     bed_damping: float = 3e5  # [Pa s/m]
     friction: float = 0.0  # Coulomb coefficient
-    slack_damping: bool = False  # internal damping acts in slack links too, as in MoorDyn
+    slack_damping: bool = False  # internal damping acts in slack links that lengthen, too; in MoorDyn in all
     current: Vector = (0.0, 0.0, 0.0)  # [m/s]; it pushes lines and points, but no body
     waves: Waves | None = None  # on the same water; None: still water
     forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces that have any, one of each
@@ -277,6 +278,13 @@ class System(PointSystem[MooringRun]):
         """Places of each line's links among all, by its id."""
         ends = np.cumsum([line.segments for line in self.lines]).tolist()
         return {line.id: slice(end - line.segments, end) for line, end in zip(self.lines, ends, strict=True)}
+
+    @functools.cached_property
+    def line_ends(self) -> LineEnds:
+        """The start and the end of each line in turn."""
+        nodes = np.concatenate([self.nodes_of[line.id][[0, -1]] for line in self.lines])
+        links = np.concatenate([[self.links_of[line.id].start, self.links_of[line.id].stop - 1] for line in self.lines])
+        return LineEnds.of(self._unit_step_view, nodes, links)
 
     @functools.cached_property
     def node_count(self) -> int:

@@ -19,7 +19,7 @@ from sim.ocean.spectra import SPECTRA
 from sim.water import Water
 from sim.waves import Waves
 
-GRAVITY, DENSITY = 9.81, 1025.0  # [m/s2], [kg/m3]
+GRAVITY, DENSITY = Water.gravity, Water.density  # [m/s2], [kg/m3]
 WAVE_COUNT = 16  # of an irregular sea: each node feels each of them
 BODY = 1
 BODY_DRAG = 1.0  # coefficient of drag on the wet side of the body
@@ -178,7 +178,7 @@ def sections(params: MooringParams) -> tuple[tuple[LineType, float, int], ...]:
 def body_of(params: MooringParams, sea: Waves | None) -> MooredBody:
     """The body, with the forces of waves and the steady force."""
     body = floating.Body(hull_of(params), density=params.density)
-    found = moored(BODY, body, 2.0 * math.pi / params.wave_period, sea, GRAVITY)
+    found = moored(BODY, body, 2.0 * math.pi / params.wave_period, sea)
     c, s = math.cos(math.radians(params.direction)), math.sin(math.radians(params.direction))
     force = 1e3 * params.steady_force
     return found._replace(steady=(force * c, force * s, 0.0, 0.0, 0.0, 0.0))

@@ -138,6 +138,7 @@ class MooringScene(LineScene):
         return {
             "x": (self.points.copy(), "m"),
             "tension": (self.tension.copy(), "N"),
+            "end_tension": (self.end_tension(), "N"),
             "body": (self.body_place(), "m"),
             "rotation": (place[:, 1].copy(), "rad"),
         }

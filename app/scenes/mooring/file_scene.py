@@ -170,6 +170,7 @@ class FileScene(LineScene):
         for line in self.system.lines:
             found[f"x_{line.id}"] = (self.state.x[:, self.system.nodes_of[line.id]].T.copy(), "m")
             found[f"tension_{line.id}"] = (tension[self.system.links_of[line.id]], "N")
+        found["end_tension"] = (self.end_tension(), "N")
         return found
 
 

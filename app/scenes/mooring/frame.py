@@ -51,7 +51,7 @@ class LineReading(NamedTuple):
     uplift: float  # [N] upward force on the anchor
     most_uplift: float  # [N] since the statistics began
     lying: float  # [m] of unstretched length on the bed
-    slack_since: float  # [s] of simulated time; NaN: the line is taut at the fairlead
+    slack_since: float  # [s] of simulated time; NaN: the whole line is taut
     slack_fraction: float  # of the time of the statistics
 
 

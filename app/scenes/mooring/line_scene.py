@@ -88,6 +88,7 @@ class LineScene(abc.ABC):
         self.start = MooringStart.of(rest, stretch, self.fault_of(stretch, failure), failure)
         self.assess_stability()
         self.tensions = Tensions(len(self.rows.lengths))
+        self.ends = self.rows.ends(self.system)
         self.measure()
         self.plot_rows.restart()
         self.last_moments.clear()
@@ -171,6 +172,10 @@ class LineScene(abc.ABC):
         """Level force (2,) [N] of the lines on the body or vessel now."""
         return self.rows.level_force(self.points, self.tension)
 
+    def end_tension(self) -> NDArray[np.float64]:
+        """(lines, 2) [N] at the anchor and the fairlead of each line now."""
+        return np.column_stack((self.tensions.anchor, self.tensions.fairlead))
+
     def assess_stability(self) -> None:
         """Find the modes about the state, and with them the longest stable step."""
         self.step_modes: list[Mode] = top_modes(self.system, self.state.x)
@@ -219,14 +224,15 @@ class LineScene(abc.ABC):
 
     def measure(self) -> None:
         """Take tensions, offset and path of the state."""
-        p, state = self.system.kernel_view(self.step), self.state
+        p, state = self.system.kernel_view(self.step)._replace(**self.driven()), self.state
         tension = np.empty(len(p.ends))
-        v = velocities(self.system, state).reshape(-1)
-        set_line_tensions(state.x.reshape(-1), v, p, tension)
+        v = velocities(self.system, state)
+        set_line_tensions(state.x.reshape(-1), v.reshape(-1), p, tension)
         self.tension, self.points = tension[self.rows.links], self.rows.points(state.x)
+        self.end_forces = self.ends.forces(state.x, v, state.t, p).reshape(2, -1, 3)
         if self.is_dragged:
             self.tensions.leave_out(state.t, self.params.wave_period)
-        self.tensions.measure(state.t, self.tension, self.points)
+        self.tensions.measure(state.t, self.tension, *self.end_forces)
         self.excursion.measure(state.t, self.body_place(), counts=self.tensions.counts)
 
     def add_plot_row(self) -> None:

@@ -100,7 +100,7 @@ def offset_text(snapshot: Snapshot) -> Html:
 
 def notes_of(snapshot: Snapshot) -> dict[str, str]:
     """Heading -> HTML of the folders below the controls."""
-    said = faint("Slack: the fraction of time, or since when, in which the last segment is not stretched.")
+    said = faint("Slack: the fraction of time, or since when, in which a segment of the line is not stretched.")
     notes: dict[str, str] = {
         TENSIONS: join((offset_text(snapshot), tension_tables(snapshot), statistics_text(snapshot))),
         "Bed and slack": join((bed_table(snapshot), said)),

@@ -5,6 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.mooring import System
+from sim.mooring.end_forces import LineEnds
+
 
 class LineRows(NamedTuple):
     """The drawn points and pieces of all lines, each line from its anchor to its fairlead."""
@@ -15,6 +18,11 @@ class LineRows(NamedTuple):
     links: NDArray[np.int64]  # (lines, n) link of each piece
     lengths: NDArray[np.float64]  # (lines,) [m] unstretched
     held: tuple[tuple[int, int], ...]  # (line, 0 or -1) of each end at the body or vessel
+
+    def ends(self, system: System) -> LineEnds:
+        """The anchors of all lines, then their fairleads."""
+        nodes = np.concatenate((self.before[:, 0], self.after[:, -1]))
+        return LineEnds.of(system.kernel_view(1.0), nodes, np.concatenate((self.links[:, 0], self.links[:, -1])))
 
     def points(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points (lines, n + 1, 3) [m] of nodes x (3, nodes)."""

@@ -3,13 +3,13 @@
 from typing import Any
 
 from app.scenes.charts import CurveAxes, PlotAxes
-from app.scenes.contract import Advice, Pieces, SceneKind
+from app.scenes.contract import Advice, FileFacts, Pieces, SceneKind
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.file_scene import FileScene
 from app.scenes.mooring.frame import MooringReadings
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, SERIES, LineScene
-from app.scenes.mooring.parameters import ABOUT, EXPLICIT, PRESETS, MooringParams, hidden
+from app.scenes.mooring.parameters import ABOUT, EXPLICIT, OF_NO_FILE, PRESETS, MooringParams, hidden
 from app.scenes.mooring.quantities import QUANTITIES
 from app.scenes.mooring.start_check import raised_points
 from app.scenes.springs.divergence import holding_step
@@ -76,6 +76,21 @@ def notes(params: MooringParams) -> tuple[str, ...]:
     return mooring_of(params.moordyn_file).notes if params.moordyn_file else ()
 
 
+def file_facts(params: MooringParams) -> FileFacts | None:
+    """What a MoorDyn file holds, and the parameters that it replaces."""
+    if not params.moordyn_file:
+        return None
+    system = mooring_of(params.moordyn_file).system
+    facts = {
+        "depth": system.depth, "density": system.density, "gravity": system.gravity,
+        "bed_stiffness": system.bed_stiffness, "bed_damping": system.bed_damping, "friction": system.friction,
+        "types": [kind._asdict() for kind in {line.type.name: line.type for line in system.lines}.values()],
+        "points": [point._asdict() for point in system.points],
+        "lines": [{**line._asdict(), "type": line.type.name} for line in system.lines],
+    }  # fmt: skip
+    return FileFacts("mooring", facts, frozenset(OF_NO_FILE))
+
+
 SCENE = SceneKind(
     name="mooring",
     title="Mooring",
@@ -98,5 +113,6 @@ SCENE = SceneKind(
     advice=advice,
     notes=notes,
     warnings=warnings,
+    file_facts=file_facts,
     quantities=QUANTITIES,
 )  # fmt: skip

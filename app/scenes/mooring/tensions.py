@@ -66,13 +66,12 @@ class Tensions:
         """False while the time is left out."""
         return self.time >= self.counted_from
 
-    def measure(self, t: float, tension: Array, points: Array) -> None:
-        """Take the tensions (lines, segments) [N] at time t [s], of nodes at points (lines, segments + 1, 3) [m]."""
+    def measure(self, t: float, tension: Array, at_anchor: Array, at_fairlead: Array) -> None:
+        """Take tensions at time t [s]: (lines, segments) [N], and forces (lines, 3) [N] on what holds both ends."""
         duration, self.time = t - self.time, t
-        self.fairlead, self.anchor = tension[:, -1].copy(), tension[:, 0].copy()
-        first = points[:, 1] - points[:, 0]
-        self.uplift = np.maximum(self.anchor * first[:, 2] / np.maximum(np.linalg.norm(first, axis=1), 1e-12), 0.0)
-        is_slack = self.fairlead <= 0.0
+        self.anchor, self.fairlead = (np.linalg.norm(force, axis=1) for force in (at_anchor, at_fairlead))
+        self.uplift = np.maximum(at_anchor[:, 2], 0.0)
+        is_slack = tension.min(axis=1) <= 0.0
         self.slack_since = np.where(is_slack, np.where(np.isnan(self.slack_since), t, self.slack_since), math.nan)
         if not self.counts:
             self.dragged = float(np.fmax(self.dragged, self.fairlead.max()))

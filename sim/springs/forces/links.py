@@ -13,6 +13,8 @@ from sim.springs.laws import damps, force_density, stiffness, tension
 from sim.springs.laws import energy as link_energy
 from sim.springs.line_points import kick, mobility
 
+MOST_OF_PULL = 1.0 - 1e-15  # what damping may take of a line's pull, so that round-off does not make it push
+
 
 @kernel(noalias=True, inline=True)
 def link_forces(x, v, f, ia, ib, of, n, N, M, law, k, b, rest, axial):
@@ -70,16 +72,34 @@ def scale_ends(f, of, n, M, s):
 
 
 @kernel(inline=True)
+def unlimited(p, damping, rate, pull):
+    return damping
+
+
+@kernel(inline=True)
+def without_push(p, damping, rate, pull):
+    """Damping [N s/m] of a link of lines that pulls by `pull` [N] and grows by `rate` [m/s].
+
+    A line does not push: one that shortens is damped by no more than what it pulls.
+    """
+    return min(damping, -MOST_OF_PULL * pull / rate) if rate < 0.0 else damping
+
+
+limited_damping = by_net(rope=unlimited, grid=unlimited, lines=without_push)
+
+
+@kernel(inline=True)
 def lengthening(x, v, p, link):
     """Length [m] of a link, the rate [m/s] at which it grows, and its damping [N s/m] if it acts."""
     rx, ry, rz, length = stretch(x, p, link)
     du, dv, dw = span(v, p.rows * p.cols, link.a, link.b)
-    return length, (du * rx + dv * ry + dw * rz) / length, acting_damping(link, length)
+    rate, pull = (du * rx + dv * ry + dw * rz) / length, tension(link.law, link.stiffness, link.rest, length)
+    return length, rate, limited_damping(p, acting_damping(link, length), rate, pull)
 
 
 @each_link()
 def set_tensions(link, x, v, p, out):
-    """Set the tension (links,) [N] of every link, negative where it is pressed, with its damping along it."""
+    """Set the tension (links,) [N] of every link, with its damping along it; negative in a net where it is pressed."""
     length, rate, damping = lengthening(x, v, p, link)
     out[link.number] = tension(link.law, link.stiffness, link.rest, length) + damping * rate
 
@@ -134,7 +154,8 @@ def holders_power(link, x, v, p, elastic, damping):
         return 0.0
     rx, ry, rz, length = stretch(x, p, link)
     s = force_density(link.law, elastic * link.stiffness, link.rest, length)
-    fx, fy, fz = damping_force(v, p, n, link.a, link.b, damping * acting_damping(link, length), rx, ry, rz)
+    _, _, acting = lengthening(x, v, p, link)
+    fx, fy, fz = damping_force(v, p, n, link.a, link.b, damping * acting, rx, ry, rz)
     fx, fy, fz, work = fx + s * rx, fy + s * ry, fz + s * rz, 0.0
     if not a_moves:
         work -= fx * v[link.a] + fy * v[n + link.a] + fz * v[2 * n + link.a]

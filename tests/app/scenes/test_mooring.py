@@ -85,8 +85,7 @@ def test_the_rest_is_that_of_the_catenary():
         float(fairlead[2] + p.depth),
     )  # fmt: skip
     reading = scene.readings().lines[0]
-    middle = np.array([p.length - 0.5 * p.length / p.segments])  # of the last segment
-    assert reading.fairlead == pytest.approx(found.tension(middle)[0], rel=5e-3)
+    assert reading.fairlead == pytest.approx(found.tension(np.array([p.length]))[0], rel=3e-3)
     assert reading.anchor == pytest.approx(found.horizontal, rel=0.01)
     assert reading.lying == pytest.approx(found.lying, abs=2.0 * p.length / p.segments)
     assert reading.uplift == 0.0
@@ -123,10 +122,14 @@ def test_the_drawn_water_is_the_water_that_moves_the_lines():
 
 
 def test_slack_is_counted_and_dated():
-    tensions, points = Tensions(2), np.zeros((2, 3, 3))
-    points[:, 1, 2] = 1.0
+    """Wherever along a line a segment is slack: here the middle one of the first line."""
+    tensions = Tensions(2)
     for t, one in ((0.5, 5.0), (1.0, 0.0), (1.5, 0.0), (2.0, 8.0)):
-        tensions.measure(t, np.array([[1.0, one], [2.0, 3.0]]), points)
+        at_anchor, at_fairlead = (
+            np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]]),
+            np.array([[one, 0.0, 0.0], [3.0, 0.0, 0.0]]),
+        )
+        tensions.measure(t, np.array([[1.0, one, 1.0], [2.0, 3.0, 3.0]]), at_anchor, at_fairlead)
         if t == 1.5:
             assert tensions.slack_since[0] == 1.0
     assert math.isnan(tensions.slack_since[0])
@@ -359,7 +362,7 @@ def corrections_of(params: MooringParams) -> int:
 @pytest.mark.parametrize("count", [100, pytest.param(2000, marks=pytest.mark.stress)])
 def test_random_moorings_rest(count):
     rng = random.Random(4)
-    assert max(corrections_of(random_params(rng)) for _ in range(count)) <= 40
+    assert max(corrections_of(random_params(rng)) for _ in range(count)) <= 60
 
 
 @pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.stress)])
@@ -368,7 +371,7 @@ def test_moorings_at_the_ends_of_the_sliders_rest_or_their_load_is_refused(count
     for _ in range(count):
         params = random_params(rng, an_end)
         try:
-            assert corrections_of(params) <= 40
+            assert corrections_of(params) <= 60
         except ConvergenceError:
             fault = MooringScene(params).start.fault
             assert fault is not None
@@ -394,7 +397,7 @@ ENDS: dict[str, Any] = {
     ],
 )  # fmt: skip
 def test_light_lines_rest(ends):
-    assert corrections_of(MooringParams(**{**ENDS, **ends})) <= 40
+    assert corrections_of(MooringParams(**{**ENDS, **ends})) <= 60
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from app.__main__ import main
+from app.commands.run import run_to_file
 from app.messages import GrabTo, Release
 from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted, recording_npz
@@ -18,7 +19,7 @@ from app.scenes.mooring.parameters import MooringParams, hidden
 from app.scenes.mooring.report import notes_of
 from app.scenes.mooring.scene import SCENE
 from app.scenes.quantities import measured
-from app.scenes.setups import missing_files, read_file, read_setup_text, write_file
+from app.scenes.setups import described, missing_files, read_file, read_setup_text, write_file
 from app.server.loop import SimLoop
 from app.server.replay_file import replay_html
 from sim.mooring import read_moordyn
@@ -40,11 +41,11 @@ def run_for(scene: FileScene, seconds: float) -> None:
 def test_a_file_is_at_rest_as_the_library_has_it():
     scene, rest = scene_of("shared_line", wave_height=0.0), read_moordyn(SHARED).at_rest()
     lines = scene.readings().lines
-    assert [line.anchor for line in lines] == pytest.approx([rest.tension[i][0] for i in (1, 2, 3)], rel=1e-9)
-    assert [line.fairlead for line in lines] == pytest.approx([rest.tension[i][-1] for i in (1, 2, 3)], rel=1e-9)
+    assert [line.anchor for line in lines] == pytest.approx([rest.end_tension[i][0] for i in (1, 2, 3)], rel=1e-9)
+    assert [line.fairlead for line in lines] == pytest.approx([rest.end_tension[i][1] for i in (1, 2, 3)], rel=1e-9)
     run_for(scene, 2.0)
     assert scene.readings().most_offset == 0.0
-    assert scene.readings().lines[0].fairlead == pytest.approx(rest.tension[1][-1], rel=1e-3)
+    assert scene.readings().lines[0].fairlead == pytest.approx(rest.end_tension[1][1], rel=1e-3)
 
 
 def test_lines_of_unlike_segments_are_shown_from_their_anchors_on():
@@ -144,7 +145,12 @@ def test_water_numbers_and_texts_are_those_of_the_file():
     assert extent(p) == pytest.approx(260.0)
     run_for(scene, 0.1)
     assert measured(SCENE, scene)["largest_tension"].value > 7e4
-    assert set(scene.arrays()) == {"vessel", *(f"{name}_{i}" for i in range(1, 5) for name in ("x", "tension"))}
+    lines = {f"{name}_{i}" for i in range(1, 5) for name in ("x", "tension")}
+    assert set(scene.arrays()) == {"vessel", "end_tension", *lines}
+    at_anchor, at_fairlead = scene.arrays()["end_tension"][0][0]
+    line = scene.system.at_rest().end_tension[1]
+    assert sorted((at_anchor, at_fairlead)) == pytest.approx(sorted(line), rel=0.05)
+    assert at_fairlead == scene.readings().lines[0].fairlead
     assert scene.arrays()["x_1"][0].shape == (16, 3)
     assert {"lines", "depth", "axial_stiffness", "size", "handles"} <= hidden(p)
     assert "follow" not in hidden(p)
@@ -249,3 +255,27 @@ def test_what_is_left_out_is_said_and_a_bad_file_ends_the_program_in_one_line(tm
 
 def test_a_file_is_read_once():
     assert mooring_of(SHARED) is mooring_of(SHARED)
+
+
+def test_files_of_a_run_say_what_the_mooring_s_file_holds(tmp_path):
+    """Not the lengths, depths and diameters of the parameters, which have no effect."""
+    path = FILES / "version1.txt"
+    system, params = read_moordyn(path), MooringParams(moordyn_file=str(path), time_step=4e-3)
+    out = tmp_path / "run.npz"
+    assert run_to_file("mooring", SCENE, params, 0.1, 10.0, out) == 0
+    with np.load(out) as arrays:
+        about = json.loads(str(arrays["about"]))
+        assert arrays["end_tension"].shape == (2, 4, 2)
+    assert about["parameters"]["moordyn_file"] == "version1.txt"
+    assert not {"length", "depth", "diameter", "line_mass", "segments", "reach"} & set(about["parameters"])
+    assert about["units"]["end_tension"] == "N"
+    found = about["mooring"]
+    assert (found["depth"], found["density"], found["gravity"]) == (80.0, 1025.0, 9.81)
+    assert [(line["length"], line["segments"]) for line in found["lines"]] == [
+        (line.length, line.segments) for line in system.lines
+    ]
+    assert found["types"][0]["diameter"] == system.lines[0].type.diameter
+    assert [tuple(point["position"]) for point in found["points"]] == [point.position for point in system.points]
+    plain = described(SCENE, MooringParams())
+    assert set(plain) == {"scene", "parameters"}
+    assert set(plain["parameters"]) == set(vars(MooringParams()))

@@ -37,8 +37,8 @@ def snapshot_of(scene: MooringScene) -> Any:
 def test_tensions_of_both_ends_of_each_line_are_those_of_the_library(scene):
     rest = dataclasses.replace(scene.system, current=(0.0, 0.0, 0.0)).at_rest()
     for i, reading in enumerate(scene.readings().lines):
-        tension = rest.tension[10 * (i + 1)]
-        assert (reading.anchor, reading.fairlead) == pytest.approx((tension[0], tension[-1]), rel=1e-6)
+        tension, ends = rest.tension[10 * (i + 1)], rest.end_tension[10 * (i + 1)]
+        assert (reading.anchor, reading.fairlead) == pytest.approx(tuple(ends), rel=1e-6)
         assert (reading.at_anchor.largest, reading.at_fairlead.largest) == (reading.anchor, reading.fairlead)
         assert scene.frame().points[i, 0] == pytest.approx(scene.attached.places.anchors[i], abs=1e-4)
         assert scene.frame().tension[i] == pytest.approx(tension, rel=1e-5)
@@ -56,11 +56,11 @@ def test_level_forces_of_the_lines_balance_the_steady_force(scene):
 
 def test_an_anchor_that_is_pulled_upwards_is_flagged_and_one_pushed_down_is_not():
     tensions = Tensions(2)
-    points = np.zeros((2, 3, 3))
-    points[0, 1], points[0, 2] = (3.0, 0.0, 4.0), (6.0, 0.0, 8.0)
-    points[1, 1], points[1, 2] = (4.0, 0.0, -3.0), (8.0, 0.0, 0.0)
-    tensions.measure(1.0, np.array([[10.0, 20.0], [30.0, 5.0]]), points)
-    tensions.measure(3.0, np.array([[8.0, 25.0], [31.0, 0.0]]), points)
+    up, down = np.array([0.6, 0.0, 0.8]), np.array([0.8, 0.0, -0.6])
+    for t, first, second in ((1.0, (10.0, 20.0), (30.0, 5.0)), (3.0, (8.0, 25.0), (31.0, 0.0))):
+        at_anchor = np.stack([first[0] * up, second[0] * down])
+        at_fairlead = np.stack([-first[1] * up, -second[1] * down])
+        tensions.measure(t, np.array([first, second]), at_anchor, at_fairlead)
     first, second = tensions.readings(np.array([7.0, 9.0]))
     assert first[:2] + first[4:7] == pytest.approx((25.0, 8.0, 6.4, 8.0, 7.0))
     assert (first.at_fairlead.largest, first.at_anchor.largest) == (25.0, 10.0)

@@ -45,10 +45,10 @@ def test_running_statistics_are_those_of_all_numbers_by_their_times():
 
 def test_the_scene_has_the_statistics_of_both_ends_of_each_line():
     scene = MooringScene(MooringParams(**FEW))
-    samples = [scene.tension[:, [-1, 0]]]
+    samples = [scene.end_tension()[:, ::-1]]
     for _ in range(360):
         scene.advance(1)
-        samples.append(scene.tension[:, [-1, 0]])
+        samples.append(scene.end_tension()[:, ::-1])
     all_of = np.array(samples)
     for i, line in enumerate(scene.readings().lines):
         for j, end in enumerate((line.at_fairlead, line.at_anchor)):
@@ -67,14 +67,14 @@ def test_the_scene_has_the_statistics_of_both_ends_of_each_line():
 
 
 def test_a_drag_and_three_periods_after_it_are_left_out_and_said_apart():
-    tensions, points = Tensions(1), np.zeros((1, 3, 3))
-    points[:, 1, 2] = 1.0
+    tensions, up = Tensions(1), np.array([[0.0, 0.0, 1.0]])
     for step in range(1, 101):
         t = 0.1 * step
         if 20 < step <= 40:
             tensions.leave_out(t, PERIOD)
         dragged = 20 < step < 40 + 10 * SETTLING_PERIODS * PERIOD
-        tensions.measure(t, np.array([[5.0, 1000.0 if dragged else 10.0 + 0.1 * (step % 2)]]), points)
+        pull = 1000.0 if dragged else 10.0 + 0.1 * (step % 2)
+        tensions.measure(t, np.array([[5.0, pull]]), 5.0 * up, pull * up)
     (line,) = tensions.readings(np.zeros(1))
     assert line.at_fairlead.largest == pytest.approx(10.1)
     assert line.at_fairlead.mean == pytest.approx(10.05, abs=5e-3)
@@ -125,7 +125,7 @@ def test_the_statistics_begin_again_at_once():
     scene.handle(RestartStatistics())
     found = scene.readings()
     assert (found.since, found.duration) == (pytest.approx(1.0), 0.0)
-    for line, now in zip(found.lines, scene.tension[:, -1], strict=True):
+    for line, now in zip(found.lines, scene.end_tension()[:, 1], strict=True):
         assert line.at_fairlead == (now, now, now, 0.0)
     assert found.most_offset == found.offset
     scene.advance(240)

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from sim.dispersion import wavenumber
-from sim.floating import Body, Hull, float_in, response_amplitude, with_dataset
+from sim.floating import Body, Hull, float_in, heave_period, make_fleet, response_amplitude, roll_period, with_dataset
 from sim.floating.hydrodynamics import radiated_share
+from sim.floating.linear_table import read_table, write_table
 from sim.floating.response import linear_forces
 from sim.mooring.moored import moored
 from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves
@@ -144,6 +145,76 @@ def test_of_several_speeds_the_part_without_speed_is_read(tmp_path, depths):
 
     path = written(depths.sel(water_depth=20.0), tmp_path, moving)
     assert_is_capytaines(box("fore", (0.0, 0.0), path), depths.sel(water_depth=20.0), "", math.pi / 2)
+
+
+@pytest.mark.parametrize("first", [0.0, -180.0, 90.0, -360.0])
+def test_directions_of_a_full_turn_have_one_at_both_ends_once(tmp_path, first):
+    """0 to 360 degrees, or -180 to 180, as without the double one."""
+    turn = np.arange(13) * 30.0
+    values = np.random.default_rng(1).uniform(0.5, 1.5, 12)[np.arange(13) % 12]  # no symmetry helps
+
+    def around(count: int) -> Body:
+        headings = np.radians(turn[:count] + first)
+        factor = xarray.DataArray(
+            np.roll(values[:12], int(first // 30))[np.arange(13) % 12][:count], dims="wave_direction"
+        )
+
+        def change(d):
+            d = d.isel(wave_direction=[0] * count).assign_coords(wave_direction=headings)
+            return d.assign({name: d[name] * factor for name in ("diffraction_force", "Froude_Krylov_force")})
+
+        path = tmp_path / f"{count}.nc"
+        with xarray.open_dataset(FOLDER / "depths.nc") as found:
+            change(found.load().sel(water_depth=20.0)).to_netcdf(path)
+        return box("fore", (0.0, 0.0), path)
+
+    omega = [0.5, 0.8, 1.2]
+    for heading in (0.0, 0.3, 3.1, 6.0):
+        full, once = (response_amplitude(around(count), omega, heading) for count in (13, 12))
+        assert np.abs(full - once).max() <= 1e-12 * np.abs(once).max()
+
+
+def test_coefficients_that_are_not_finite_are_refused(tmp_path):
+    hull = Hull.box(20.0, 10.0, 4.0)
+    table = with_dataset(hull, FOLDER / "depths.nc", depth=20.0).shape.table
+    assert table is not None
+    excitation = table.excitation.copy()
+    excitation[0, 0, 2, 3, 1] = math.nan
+    path = tmp_path / "hull.hydrodynamics.npz"
+    write_table(path, table._replace(excitation=excitation), hull)
+    assert_refused("path", lambda: read_table(path, hull), "excitation is not finite")
+    write_table(path, table, hull)
+    assert read_table(path, hull).density == 1025.0
+
+
+def fresh(d):
+    return d.assign(rho=1000.0)
+
+
+def test_a_hull_of_a_dataset_floats_in_the_dataset_s_water_alone(tmp_path, depths):
+    """Its own response in fresh water, and both densities in the refusal of sea water."""
+    known = depths.sel(water_depth=20.0)
+    salt = box("fore", (0.0, 0.0), FOLDER / "depths.nc", depth=20.0)
+    body = box("fore", (0.0, 0.0), written(known, tmp_path, fresh))
+    omega, both = [0.5, 1.0], r"a hull with a dataset of water of 1000 kg/m3, in water of 1025 kg/m3"
+    for use in (
+        lambda: response_amplitude(body, omega),
+        lambda: heave_period(*body.loaded()),
+        lambda: roll_period(*body.loaded()),
+        lambda: make_fleet([body]),
+        lambda: moored(1, body, 1.0),
+    ):
+        assert_refused("layers", use, both)
+    # In fresh water the coefficients are the dataset's own: those over density are 2.5 % larger.
+    layers = ((1000.0, math.inf),)
+    lighter = body._replace(mass=body.mass / 1.025, inertia=body.inertia / 1.025)
+    given, other = linear_forces(lighter, omega, layers=layers), linear_forces(salt, omega)
+    for name in ("added", "damping", "excitation"):
+        assert getattr(given, name) == pytest.approx(getattr(other, name), rel=1e-12), name
+    assert given.stiffness[2, 2] == pytest.approx(other.stiffness[2, 2] / 1.025, rel=1e-9)
+    nearly = ((1000.9, math.inf),)
+    assert np.isfinite(response_amplitude(lighter, omega, layers=nearly)).all()
+    assert_refused("layers", lambda: response_amplitude(lighter, omega, layers=((1001.1, math.inf),)), "1001.1 kg/m3")
 
 
 def test_a_sea_or_mooring_of_another_depth_or_heading_is_refused():

@@ -103,4 +103,18 @@ def test_waves_in_another_water_are_refused(name, waves):
     with pytest.raises(ValueError, match=both):
         dataclasses.replace(still, waves=wave(0.0), gravity=1.62)
     box = floating.Body(floating.Hull.box(12.0, 8.0, 4.0), density=450.0)
-    assert_refused("gravity", lambda: moored(1, box, RATE, wave(0.0), gravity=1.62), "9.81 m/s2")
+    both = r"waves on water 300 m deep of 1025 .* under a gravity of 9.81 .*the body's water .* of 1.62 m/s2"
+    with pytest.raises(ValueError, match=both):
+        moored(1, box, RATE, wave(0.0), water=Water(300.0, 1.62))
+
+
+def test_a_body_and_its_waves_have_one_water():
+    """Fresh water pushes less: the coefficients are those of its density, at the deeper draft."""
+    box, waves = floating.Body(floating.Hull.box(12.0, 8.0, 4.0), density=450.0), wave(0.0)
+    fresh = dataclasses.replace(waves.water, density=1000.0)
+    found = moored(1, box, RATE, dataclasses.replace(waves, water=fresh))
+    assert found.stiffness[2, 2] == pytest.approx(1000.0 * 9.81 * 12.0 * 8.0, rel=1e-9)
+    assert found.place[2] == pytest.approx(2.0 - 0.45 * 4.0, rel=1e-9)
+    alone = moored(1, box, RATE, water=fresh)
+    assert (alone.stiffness == found.stiffness).all()
+    assert (alone.mass == found.mass).all()

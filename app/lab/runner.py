@@ -119,6 +119,18 @@ class Runner:
         """
         return self._ask("watch", file, function, [twice, list(arguments)])
 
+    def edits(self, file: str, function: str, *arguments: Any) -> list[Any]:
+        """Functions that differ from one by one edit: number, before, after, line, condition and result of each.
+
+        Raises RunError.
+        """
+        found = self._ask("edits", file, function, list(arguments))
+        return found if isinstance(found, list) else []
+
+    def edited(self, file: str, function: str, number: int, *arguments: Any) -> Any:
+        """As `call`, of one of the last `edits`."""
+        return self._ask("edited", file, function, [number, list(arguments)])
+
     def march(
         self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
     ) -> MarchResult:

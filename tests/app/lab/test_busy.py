@@ -33,6 +33,7 @@ def states_of(folder: Path) -> dict[str, str]:
 
 
 @pytest.mark.stress  # minutes
+@pytest.mark.timeout(3600)
 def test_thirty_checks_at_once_on_two_busy_cores_call_nobody_wrong(tmp_path: Path) -> None:
     folders = [tmp_path / f"student{i}" for i in range(STUDENTS)]
     for folder in folders:

@@ -30,6 +30,7 @@ FRESH = 12  # inputs that are not used to find an explanation
 TERM_SAMPLES = 16  # random inputs at which terms are compared
 MAX_DRAWS = 200  # of inputs, to find so many
 MAX_REPAIRS = 20  # that are right at one input, and are tried at the others
+UNFIT = ("NaN", "infinite", "wrong shape", "wrong type", "returns nothing")  # results that no behaviour is tested with
 OTHER_SHAPE = "for other numbers of points its results do not have the shape that they must have"
 STEP_PARTS = ("new position", "new velocity")
 UNIT = re.compile(r"\[([A-Za-z]+)\]")  # the first in a docstring is that of the result
@@ -143,16 +144,16 @@ def repair(student: StudentFunction, trials: Sequence[Trial], of: str = "") -> E
     def results(number: int) -> Iterator[tuple[Any, Trial]]:
         return ((runner.edited(task.file, task.name, number, *trial.sample), trial) for trial in others)
 
-    try:
-        edits = runner.edits(task.file, task.name, *first.sample)
-    except RunError:  # one does not end
-        return None
-    edits = [edit for edit in edits if not of or (of in edit[1] and of not in edit[2])]
-    near = [edit for edit in edits if is_right(edit[-1], first)]
-    for number, *edit, _ in sorted(near, key=length_of_change)[:MAX_REPAIRS]:
-        with contextlib.suppress(RunError):
-            if all(is_right(value, trial) for value, trial in results(number)):
-                return explain_repair(edit)
+    for far in (False,) if of else (False, True):
+        try:
+            edits = runner.edits(task.file, task.name, *first.sample, far=far)
+        except RunError:  # one does not end
+            continue
+        near = [e for e in edits if (not of or (of in e[1] and of not in e[2])) and is_right(e[-1], first)]
+        for number, *edit, _ in sorted(near, key=length_of_change)[:MAX_REPAIRS]:
+            with contextlib.suppress(RunError):
+                if all(is_right(value, trial) for value, trial in results(number)):
+                    return explain_repair(edit)
     return None
 
 
@@ -218,7 +219,8 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
     try:
         behave(student)
     except Wrong as error:
-        if (said := str(error)) != OTHER_SHAPE:
+        if error.mistake not in UNFIT:
+            said = str(error)
             return Explanation(error.mistake, f"{said[0].upper()}{said[1:].rstrip('.')}. {found.text}")
     return found
 

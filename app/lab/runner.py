@@ -119,12 +119,12 @@ class Runner:
         """
         return self._ask("watch", file, function, [twice, list(arguments)])
 
-    def edits(self, file: str, function: str, *arguments: Any) -> list[Any]:
+    def edits(self, file: str, function: str, *arguments: Any, far: bool) -> list[Any]:
         """Functions that differ from one by one edit: number, before, after, line, condition and result of each.
 
-        Raises RunError.
+        far: the less likely edits. Raises RunError.
         """
-        found = self._ask("edits", file, function, list(arguments))
+        found = self._ask("edits", file, function, [far, list(arguments)])
         return found if isinstance(found, list) else []
 
     def edited(self, file: str, function: str, number: int, *arguments: Any) -> Any:

@@ -7,9 +7,9 @@ It says `["loaded", file]` once it has run a file. With `["march", file, functio
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
 at many arguments (`tabulate.py`). `["watch", file, function, [twice, arguments]]` is a call that fails where the
-function does something besides its result (`diagnosis/effects.py`), `["edits", file, function, arguments]` calls its
-edits, and `["edited", file, function, [number, arguments]]` one of them (`diagnosis/edits.py`). During a long call it
-says `["at", file, line, function, processor time]` again and again on systems that do not tell the lab
+function does something besides its result (`diagnosis/effects.py`). `["edits", file, function, [far, arguments]]` calls
+its edits, and `["edited", file, function, [number, arguments]]` one of them (`diagnosis/edits.py`). During a long call
+it says `["at", file, line, function, processor time]` again and again on systems that do not tell the lab
 (`call_limit.py`). What a student prints is counted and dropped: the pipes are the lab's own.
 """
 
@@ -173,7 +173,8 @@ class Worker:
                 twice, arguments = arguments
                 value = self.watch(file, function, unpack(arguments, self.remote), twice=twice)
             elif kind == "edits":
-                value = self.try_edits(file, function, unpack(arguments, self.remote))
+                far, arguments = arguments
+                value = self.try_edits(file, function, unpack(arguments, self.remote), far=far)
             elif kind == "edited":
                 number, arguments = arguments
                 module, target = self.modules[file], self.edits[number].function
@@ -216,11 +217,11 @@ class Worker:
             target, modules = anew()
         return watched(target, modules, arguments, self.folder, anew, twice=twice)
 
-    def try_edits(self, file: str, function: str, arguments: list[Any]) -> list[Any]:
+    def try_edits(self, file: str, function: str, arguments: list[Any], *, far: bool) -> list[Any]:
         """The results of the edits of a function: number, before, after, line, condition and result of each."""
         self.edits, found = [], []
         end = time.process_time() + EDIT_TIME
-        for edit in own_edits((self.folder / file).read_bytes(), function, vars(self.modules[file])):
+        for edit in own_edits((self.folder / file).read_bytes(), function, vars(self.modules[file]), far=far):
             if time.process_time() > end:
                 break
             try:

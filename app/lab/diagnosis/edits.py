@@ -9,7 +9,6 @@ it) are compared with the right results.
 import ast
 import copy
 import inspect
-import itertools
 import re
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -63,16 +62,21 @@ def edits_of(function: Callable[..., Any]) -> Iterator[Edit]:
     yield from edits_of_tree(tree, function.__name__, function.__globals__, is_own=False)  # type: ignore[attr-defined]
 
 
-def own_edits(source: bytes, name: str, known: Mapping[str, Any]) -> Iterator[Edit]:
-    """The functions that differ by one edit from that of a student. source: of the file. known: names of its module."""
+def own_edits(source: bytes, name: str, known: Mapping[str, Any], *, far: bool) -> Iterator[Edit]:
+    """The functions that differ by one edit from that of a student.
+
+    source: of the file. known: names of its module. far: the less likely edits, without the others.
+    """
     for definition in reversed(ast.parse(source).body):
         if isinstance(definition, ast.FunctionDef) and definition.name == name:
-            yield from edits_of_tree(ast.Module([definition], []), name, known, is_own=True)
+            yield from edits_of_tree(ast.Module([definition], []), name, known, is_own=True, far=far)
             return
 
 
-def edits_of_tree(tree: ast.Module, name: str, known: Mapping[str, Any], *, is_own: bool) -> Iterator[Edit]:
-    """The edits of a function. is_own: of a student's, in which more can be wrong."""
+def edits_of_tree(
+    tree: ast.Module, name: str, known: Mapping[str, Any], *, is_own: bool, far: bool = False
+) -> Iterator[Edit]:
+    """The edits of a function. is_own: of a student's, whose own names count too. far: as of `own_edits`."""
     definition = tree.body[0]
     if not isinstance(definition, ast.FunctionDef) or any(isinstance(node, ast.While) for node in ast.walk(tree)):
         return
@@ -89,15 +93,13 @@ def edits_of_tree(tree: ast.Module, name: str, known: Mapping[str, Any], *, is_o
         for i, child in enumerate(value if isinstance(value, list) else [value])
         if isinstance(child, ast.AST)
     }
-    makers: list[Callable[..., Iterator[Change]]] = [lambda node: changes_of(node, places[node][0], names)]
-    if is_own:
-        makers.append(lambda node: more_changes(node, places[node][0], names))
-    for changes, node in itertools.product(makers, nodes[1:]):
+    changes = more_changes if far else changes_of
+    for node in nodes[1:]:
         shown: ast.AST = node
         while len(source_of(shown)) < (SHORT_IN_LINE if is_own else SHORT) and isinstance(places[shown][0], ast.expr):
             shown = places[shown][0]
         before, line = source_of(shown), getattr(node, "lineno", 0)
-        for change in changes(node):
+        for change in changes(node, places[node][0], names):
             try:
                 new = change(copy.deepcopy(node))
             except SyntaxError:  # of a formula around something that is no value

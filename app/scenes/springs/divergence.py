@@ -19,6 +19,7 @@ MOMENTS = 60  # that are kept: a second at 60 frames a second
 MARGIN = 0.9  # of the largest stable step: the fastest motion of a run grows with its pulls
 FIRST_RATE = 60  # [1/s] steps a second; others are this times a power of two
 SHORTEST_STEP = 1e-5  # [s] that the parameter allows
+SYMBOLS = "; h: the step, ω: the highest frequency of the springs"
 MAX_OVERSHOOT = 3.0  # of the bounds, up to which a moment beyond them is kept too
 
 
@@ -64,9 +65,9 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
         holds = f"a time step up to {longest_step(gauge.critical_step)}" if gauge.critical_step > 0 else ""
         proposals = " or ".join(words for words in (holds, alternative) if words)
         over = f"{percent(gauge.share)} of the largest stable one" if gauge.critical_step > 0 else "too long"
-        return f"{start} {over} for {method} ({limit}). Use {proposals or 'another method'}."
+        return f"{start} {over} for {method} ({limit}{SYMBOLS}). Use {proposals or 'another method'}."
     return (
-        f"{start} within the limit of {method} ({limit}), so an impact or a pull was too sudden for it. "
+        f"{start} within the limit of {method} ({limit}{SYMBOLS}), so an impact or a pull was too sudden for it. "
         f"Try a time step of {longest_step(step / 4)}."
     )
 

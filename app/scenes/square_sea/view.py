@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import viser
 
-from app.formats.formatting import number, percent
+from app.formats.formatting import metres, number, percent
 from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, PointAlong, Snapshot, Vector, finite_vector
@@ -244,7 +244,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         waves, theory, p = measured.measured, measured.theory, snapshot.frame.params
         highest = snapshot.frame.highest
         text = fill(
-            "Waves: {} m high, {} s apart", bold(number(waves.significant_height)), bold(number(waves.peak_period))
+            "Waves: {} high, {} s apart", bold(metres(waves.significant_height)), bold(number(waves.peak_period))
         )
         if highest is not None:
             return fill("{}<br>{}", text, report.highest_text(highest))
@@ -260,7 +260,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
-        return {"Waves, foam and rain": report.readout(snapshot)}
+        return {"Measured on this sea": report.readout(snapshot)}
 
     def close(self) -> None:
         """Remove the click callback, which viser keeps when it removes the nodes of a scene."""

@@ -60,14 +60,14 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
     """The sentences for the panel. t [s]; step [s]; alternative: another setting that would hold, or ""."""
     method = method_name(integrator.name)
     start = f"The run became unstable at t = {t:.2f} s: its time step was"
-    limit = limit_text(gauge)
+    limit = limit_text(gauge) + (SYMBOLS if gauge.omega else "")
     if gauge.share > 1.0:
         holds = f"a time step up to {longest_step(gauge.critical_step)}" if gauge.critical_step > 0 else ""
         proposals = " or ".join(words for words in (holds, alternative) if words)
         over = f"{percent(gauge.share)} of the largest stable one" if gauge.critical_step > 0 else "too long"
-        return f"{start} {over} for {method} ({limit}{SYMBOLS}). Use {proposals or 'another method'}."
+        return f"{start} {over} for {method} ({limit}). Use {proposals or 'another method'}."
     return (
-        f"{start} within the limit of {method} ({limit}{SYMBOLS}), so an impact or a pull was too sudden for it. "
+        f"{start} within the limit of {method} ({limit}), so an impact or a pull was too sudden for it. "
         f"Try a time step of {longest_step(step / 4)}."
     )
 

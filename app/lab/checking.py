@@ -55,16 +55,18 @@ class Wrong(Exception):  # noqa: N818 - a judgement on a solution, not an error 
     """The student's function does not behave as it must.
 
     mistake: its name where it is a known one. equations: what the function does, beside the right ones. form: the
-    function that the text says there is, or None.
+    function that the text says there is, or None. line: in the student's file; 0: that of the function.
     """
 
     def __init__(
-        self, text: str, mistake: str = "", equations: tuple[Equation, ...] = (), form: Callable[..., Any] | None = None
-    ) -> None:
+        self, text: str, mistake: str = "", equations: tuple[Equation, ...] = (),
+        form: Callable[..., Any] | None = None, line: int = 0,
+    ) -> None:  # fmt: skip
         super().__init__(text)
         self.mistake = mistake
         self.equations = equations
         self.form = form
+        self.line = line
 
 
 class Counted:

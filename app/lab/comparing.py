@@ -11,7 +11,8 @@ from app.lab.rope_march import entries
 from app.lab.wire import Foreign
 
 TOLERANCE = 1e-4  # of the largest value of a result: single precision is right too
-FORM_TOLERANCE = 2e-5  # of the largest value of a student's result, within which a form of it is the same
+FORM_TOLERANCE = 1e-7  # of the largest value of a student's result, within which a form of it is the same
+SINGLE_TOLERANCE = 2e-5  # the same, of results in single precision
 
 
 def call(function: Any, arguments: tuple[Any, ...]) -> Any:
@@ -96,8 +97,10 @@ def reproduces(form: Any, found: Any, right: Any) -> bool:
         finite = np.isfinite(b)
         if not np.array_equal(a[~finite], b[~finite], equal_nan=True):
             return False
+        is_single = np.array_equal(b[finite].astype(np.float32), b[finite])
+        tolerance = SINGLE_TOLERANCE if is_single else FORM_TOLERANCE
         rounding = 1e-12 * np.abs(c[np.isfinite(c)]).max(initial=0.0)
-        scale = FORM_TOLERANCE * np.abs(b[finite]).max(initial=0.0) + rounding
+        scale = tolerance * np.abs(b[finite]).max(initial=0.0) + rounding
         if not (np.abs(a[finite] - b[finite]) <= scale).all():
             return False
     return True

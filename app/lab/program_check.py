@@ -107,7 +107,8 @@ def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
             return Verdict("wrong", error.text, error.kind, place)
         return Verdict("failed", error.text, error.kind, place, task.file if error.loading else "")
     except Wrong as error:
-        return Verdict("wrong", str(error), error.mistake, place_of(task.file, line), equations=error.equations)
+        place = place_of(task.file, error.line or line)
+        return Verdict("wrong", str(error), error.mistake, place, equations=error.equations)
     return Verdict("right")
 
 

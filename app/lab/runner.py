@@ -41,6 +41,7 @@ LOAD_LIMIT = 10.0  # [s] until a new process is ready, which imports numpy; long
 MAX_LOAD_LIMIT = 90.0  # [s]
 MAX_TRIES = 3  # of a call whose process is lost
 BUSY = "busy"  # kind of an error that is no fault of the student's functions
+EDITS_LIMIT = 2.0  # [s] for the edits of a function
 COMPILE_LIMIT = 60.0  # [s] for compiling
 TABLE_ROWS = 512  # of a table that are computed in one call
 TRACE_TIME = 0.2  # [s] for which a process that does not answer may take to say where it is
@@ -124,7 +125,7 @@ class Runner:
 
         far: the less likely edits. Raises RunError.
         """
-        found = self._ask("edits", file, function, [far, list(arguments)])
+        found = self._ask("edits", file, function, [far, list(arguments)], EDITS_LIMIT)
         return found if isinstance(found, list) else []
 
     def edited(self, file: str, function: str, number: int, *arguments: Any) -> Any:

@@ -171,7 +171,9 @@ def is_range(node: ast.AST) -> bool:
 def more_changes(node: ast.AST, parent: ast.AST, names: Sequence[str]) -> Iterator[Change]:
     """Further changes: something around an expression, other indices, parts that change places, a line less."""
     is_value = isinstance(node, ast.expr) and isinstance(getattr(node, "ctx", ast.Load()), ast.Load)
-    is_value = is_value and not isinstance(node, ast.Tuple | ast.Slice | ast.Constant | ast.Lambda | ast.Starred)
+    is_value = is_value and not isinstance(
+        node, ast.Tuple | ast.Slice | ast.Constant | ast.Lambda | ast.Starred | ast.List | ast.ListComp
+    )
     is_side = isinstance(parent, ast.Assign | ast.AugAssign | ast.Return) and node is parent.value
     is_part = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Add | ast.Sub)
     is_called = isinstance(parent, ast.Call) and node is parent.func
@@ -342,10 +344,10 @@ def explain_repair(edit: Sequence[Any]) -> Explanation:
     before, after, line, condition = edit
     if condition:
         text = f"It is right if the condition {before} in line {line} {condition} holds."
-        return Explanation("", text)
+        return Explanation("", text, line=line)
     if not after:
-        return Explanation("", f"Without {before} in line {line} it is right.")
-    return Explanation("", f"With {after} in place of {before} in line {line} it is right.")
+        return Explanation("", f"Without {before} in line {line} it is right.", line=line)
+    return Explanation("", f"With {after} in place of {before} in line {line} it is right.", line=line)
 
 
 def agrees_somehow(function: Callable[..., Any], agrees: Callable[[Callable[..., Any]], bool]) -> bool:

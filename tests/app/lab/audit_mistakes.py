@@ -208,7 +208,7 @@ MISTAKES: tuple[tuple[str, str, str], ...] = (
     ("dispersion", "floor, not round", changed(WAVE, "np.floor", "np.round")),
     (
         "reflectance",
-        "degrees",
+        "np.radians(angle)",
         changed(FRESNEL, "c = np.cos(angle)", "angle = np.radians(angle)\n            c = np.cos(angle)"),
     ),
     (

@@ -9,6 +9,10 @@ Beside the reference solution, such a file has
 - `METHOD`, a `Method`: the function is a step, and what it does is compared with right ones, equation by equation.
 - `TERMS` and `GROUPS`, tuples of `Term` and `Group` (`diagnosis/terms.py`): what the result adds up.
 - `adds_up(student, *arguments)`: whether it does so for these arguments; without it, for all.
+- `within(form)`: the functions that a form of what the result adds up may be part of.
+- `contrast(found, right, *arguments)`: a sentence on the difference of two results, or "".
+- `CONSTANT`: a sentence for a result that is right but for a constant that is slightly off.
+- `CASES`, a tuple of `Case` (`diagnosis/where.py`): special cases, in which alone a function may be wrong.
 - `normalise(result)`: brings results that mean the same to one form, for example a list in any order.
 """
 
@@ -50,13 +54,19 @@ class Curve(NamedTuple):
 class Wrong(Exception):  # noqa: N818 - a judgement on a solution, not an error of the program
     """The student's function does not behave as it must.
 
-    mistake: its name where it is a known one. equations: what the function does, beside the right ones.
+    mistake: its name where it is a known one. equations: what the function does, beside the right ones. form: the
+    function that the text says there is, or None. line: in the student's file; 0: that of the function.
     """
 
-    def __init__(self, text: str, mistake: str = "", equations: tuple[Equation, ...] = ()) -> None:
+    def __init__(
+        self, text: str, mistake: str = "", equations: tuple[Equation, ...] = (),
+        form: Callable[..., Any] | None = None, line: int = 0,
+    ) -> None:  # fmt: skip
         super().__init__(text)
         self.mistake = mistake
         self.equations = equations
+        self.form = form
+        self.line = line
 
 
 class Counted:
@@ -76,14 +86,3 @@ def require(condition: object, text: str, mistake: str = "") -> None:
     """Raises `Wrong` unless the condition holds."""
     if not condition:
         raise Wrong(text, mistake)
-
-
-def number_text(value: Any) -> str:
-    """A result in a few figures, for messages."""
-    if isinstance(value, tuple):
-        return "(" + ", ".join(number_text(part) for part in value) + ")"
-    array = np.asarray(value)
-    if array.size > 12:
-        return f"an array of shape {array.shape}"
-    text = np.array2string(array, precision=4, suppress_small=True, separator=", ", max_line_width=10_000)
-    return " ".join(text.split())

@@ -41,6 +41,7 @@ LOAD_LIMIT = 10.0  # [s] until a new process is ready, which imports numpy; long
 MAX_LOAD_LIMIT = 90.0  # [s]
 MAX_TRIES = 3  # of a call whose process is lost
 BUSY = "busy"  # kind of an error that is no fault of the student's functions
+EDITS_LIMIT = 2.0  # [s] for the edits of a function
 COMPILE_LIMIT = 60.0  # [s] for compiling
 TABLE_ROWS = 512  # of a table that are computed in one call
 TRACE_TIME = 0.2  # [s] for which a process that does not answer may take to say where it is
@@ -118,6 +119,18 @@ class Runner:
         Raises RunError with a kind of `effects.EFFECTS` too.
         """
         return self._ask("watch", file, function, [twice, list(arguments)])
+
+    def edits(self, file: str, function: str, *arguments: Any, far: bool) -> list[Any]:
+        """Functions that differ from one by one edit: number, before, after, line, condition and result of each.
+
+        far: the less likely edits. Raises RunError.
+        """
+        found = self._ask("edits", file, function, [far, list(arguments)], EDITS_LIMIT)
+        return found if isinstance(found, list) else []
+
+    def edited(self, file: str, function: str, number: int, *arguments: Any) -> Any:
+        """As `call`, of one of the last `edits`."""
+        return self._ask("edited", file, function, [number, list(arguments)])
 
     def march(
         self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]

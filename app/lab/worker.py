@@ -7,9 +7,10 @@ It says `["loaded", file]` once it has run a file. With `["march", file, functio
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
 at many arguments (`tabulate.py`). `["watch", file, function, [twice, arguments]]` is a call that fails where the
-function does something besides its result (`diagnosis/effects.py`). During a long call it says `["at", file, line,
-function, processor time]` again and again on systems that do not tell the lab (`call_limit.py`). What a student prints
-is counted and dropped: the pipes are the lab's own.
+function does something besides its result (`diagnosis/effects.py`). `["edits", file, function, [far, arguments]]` calls
+its edits, and `["edited", file, function, [number, arguments]]` one of them (`diagnosis/edits.py`). During a long call
+it says `["at", file, line, function, processor time]` again and again on systems that do not tell the lab
+(`call_limit.py`). What a student prints is counted and dropped: the pipes are the lab's own.
 """
 
 import contextlib
@@ -29,7 +30,8 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from app.lab.cloth_march import ClothFunctions
-from app.lab.diagnosis.effects import Effect, state_of, watched
+from app.lab.diagnosis.edits import Edit, own_edits
+from app.lab.diagnosis.effects import Effect, copied, state_of, watched
 from app.lab.process import BACKGROUND_NICENESS, COMPILES, FORKS, ROPE_NICENESS, TRACE_SIGNAL, lower_priority
 from app.lab.rope_march import ClothData, Functions, Unfit, march, unpacked
 from app.lab.tabulate import Interval, tabulate
@@ -38,6 +40,7 @@ from app.lab.wire import pack, receive, send, unpack
 
 MAX_LINES = 10_000  # printed in one call or march
 MEMORY = 768 * 2**20  # [bytes] that a call may ask for, where the system can limit it
+EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
 LOOK_AT_PARENT = 1.0  # [s] between two looks whether the lab still runs
 PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on where it is, and the time that it has taken
 
@@ -80,6 +83,7 @@ class Worker:
         sys.stdout = sys.stderr = self.output
         self.modules: dict[str, ModuleType] = {}
         self.states: dict[str, Any] = {}  # of the modules, before any watched call
+        self.edits: list[Edit] = []  # of the last function that was asked for
         self.compiled: dict[str, Callable[..., Any]] = {}
         self.was_tried = was_tried
         self.in_call = threading.Event()
@@ -168,6 +172,14 @@ class Worker:
             if kind == "watch":
                 twice, arguments = arguments
                 value = self.watch(file, function, unpack(arguments, self.remote), twice=twice)
+            elif kind == "edits":
+                far, arguments = arguments
+                value = self.try_edits(file, function, unpack(arguments, self.remote), far=far)
+            elif kind == "edited":
+                number, arguments = arguments
+                module, target = self.modules[file], self.edits[number].function
+                given = unpack(arguments, self.remote)
+                value = watched(target, [module], given, self.folder, lambda: (target, [module]), twice=False)
             else:
                 value = target(*unpack(arguments, self.remote))
             return ["result", pack(value, lambda _: 0)]
@@ -204,6 +216,21 @@ class Worker:
         if state_of([module]) != self.states[file]:  # an earlier call has changed something
             target, modules = anew()
         return watched(target, modules, arguments, self.folder, anew, twice=twice)
+
+    def try_edits(self, file: str, function: str, arguments: list[Any], *, far: bool) -> list[Any]:
+        """The results of the edits of a function: number, before, after, line, condition and result of each."""
+        self.edits, found = [], []
+        end = time.process_time() + EDIT_TIME
+        for edit in own_edits((self.folder / file).read_bytes(), function, vars(self.modules[file]), far=far):
+            if time.process_time() > end:
+                break
+            try:
+                value = edit.function(*copied(arguments))
+            except Exception:
+                continue
+            found.append([len(self.edits), edit.before, edit.after, edit.line, edit.condition, value])
+            self.edits.append(edit)
+        return found
 
     def place(self, file: str) -> tuple[str, int | None]:
         """File and line of the student's code where the present exception arose."""

@@ -33,6 +33,7 @@ TICKS = 4  # about so many intervals between two ends of a scale
 MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
 MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
 KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a hexadecimal byte, [pixels]
+DOT_SIZE = 11  # [pixels] of a dot
 CROSS_CLASS = "springtide-cross"  # of lines that are crosses
 EMPTY = np.array([0.0, 1.0])  # the times of a chart without rows
 
@@ -325,6 +326,8 @@ def series_of(first: str, lines: Sequence[ChartLine]) -> tuple[uplot.Series, ...
             look["dash"] = line.dash
         if line.fill:
             look["fill"] = line.fill
+        if line.dots:
+            look.update({"width": 0.0, "points": {"show": True, "size": DOT_SIZE, "fill": line.colour}})
         if line.cross:  # drawn by `js/panel/charts.js`
             look.update({"label": f"× {line.label}", "class": CROSS_CLASS, "width": 0.0, "points": {"show": False}})
         series.append(look)

@@ -1,6 +1,7 @@
 """An explanation of a wrong function: words, and its equations beside the right ones."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 
 class Piece(NamedTuple):
@@ -28,8 +29,14 @@ class Equation(NamedTuple):
 
 
 class Explanation(NamedTuple):
-    """mistake: its name in a few words. text: the sentence for the student."""
+    """mistake: its name in a few words. text: the sentence for the student. form: the function that it states.
+
+    line: in the student's file, 0 where it is not known.
+    """
 
     mistake: str
     text: str
     equations: tuple[Equation, ...] = ()
+    form: Callable[..., Any] | None = None
+    is_vague: bool = False  # it says little of what to change
+    line: int = 0

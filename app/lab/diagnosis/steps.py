@@ -40,7 +40,7 @@ def explain_step(
     first = next(row for row in rows if row.is_wrong)
     name, text = mistake_of(first)
     order = order_sentence(found, method.tableau)
-    return Explanation(name, f"{text} {order}".strip(), tuple(row.equation for row in rows))
+    return Explanation(name, f"{text} {order}".strip(), tuple(row.equation for row in rows), found.step)
 
 
 @functools.cache
@@ -59,7 +59,7 @@ def explain_stages(found: StepTableau, reference: StepTableau) -> Explanation:
     number = "1 state" if found.stages == 1 else f"{found.stages} states"
     text = f"It uses the acceleration at {number}; the method uses it at {many}."
     order = order_sentence(found, reference)
-    return Explanation(f"too {few} stages", f"{text} {order}".strip(), tuple(equations_of(found)))
+    return Explanation(f"too {few} stages", f"{text} {order}".strip(), tuple(equations_of(found)), found.step)
 
 
 def order_sentence(found: StepTableau, reference: StepTableau) -> str:

@@ -41,6 +41,11 @@ class StepTableau(NamedTuple):
     def stages(self) -> int:
         return len(self.positions) - 1
 
+    def step(self, x: Any, v: Any, h: float, acceleration: Step) -> tuple[np.ndarray, np.ndarray]:
+        """One step as a task has it, with the arguments of `apply`."""
+        x, v = np.asarray(x, np.float64), np.asarray(v, np.float64)
+        return self.apply(x, v, h, lambda x, v: np.asarray(acceleration(x, v), np.float64))
+
     def apply(self, x: np.ndarray, v: np.ndarray, h: float, acceleration: Step) -> tuple[np.ndarray, np.ndarray]:
         """One step of the method."""
         known = np.zeros((FIRST_ACCELERATION + self.stages, *x.shape))

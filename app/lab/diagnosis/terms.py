@@ -13,16 +13,21 @@ import numpy as np
 
 from app.lab.diagnosis.effects import copied
 from app.lab.diagnosis.explanation import Equation, Explanation, Piece
+from app.lab.diagnosis.factors import factor_text, is_simple
 
-TOLERANCE = 2e-5  # of the largest part of the right result at an input: single precision is right too
+TOLERANCE = 2e-5  # of the largest part of a result at an input: single precision is right too
+SMALL_CHANGE = 0.02  # of a constant, which is told in per cent
 EXPONENTS = (1.0, -1.0, 2.0, -2.0, 0.5, -0.5)
 FACTORS = {2.0: "twice {}", 0.5: "half of {}", -1.0: "-{}"}
+FAR_FETCHED = 3.0  # cost of a change of the whole result, from which an edit of the student's function is likelier
 AXES = "xyz"
 UNUSED = "does not use "
+IGNORED = "The result does not change with "
 WHOLE = "the result"  # name of all terms together
 
 Function = Callable[..., Any]
 Rearrangement = Callable[[tuple[Any, ...]], tuple[Any, ...]]  # of the arguments
+Apply = Callable[[np.ndarray, tuple[Any, ...]], np.ndarray]  # a changed value, from the right one and the arguments
 
 
 class Form(NamedTuple):
@@ -61,16 +66,23 @@ class ChangedForm(NamedTuple):
     text: str
     vector: np.ndarray  # values at all inputs, one after the other
     cost: float
+    apply: Apply
     form: Form | None = None  # where it is one of a list
 
 
 class Unit(NamedTuple):
-    """One or more terms that are looked at together."""
+    """One or more terms that are looked at together. members: those that it stands for; none of a further term."""
 
     name: str
     formula: str
     members: tuple[int, ...]
     forms: tuple[Form, ...]
+    like: tuple[int, ...] = ()  # terms of which a further term is a form
+
+    @property
+    def terms(self) -> tuple[int, ...]:
+        """The terms of which it has forms."""
+        return self.members or self.like
 
 
 class Finding(NamedTuple):
@@ -85,12 +97,15 @@ class Finding(NamedTuple):
 class Inputs:
     """The inputs at which terms are compared. names: of the arguments."""
 
-    def __init__(self, names: Sequence[str], samples: Sequence[tuple[Any, ...]], results: Sequence[np.ndarray]) -> None:
-        """results: the right ones, which set the scale at each input."""
+    def __init__(
+        self, names: Sequence[str], samples: Sequence[tuple[Any, ...]], results: Sequence[np.ndarray],
+        found: Sequence[np.ndarray],
+    ) -> None:  # fmt: skip
+        """results, found: the right ones and the student's, the larger of which set the scale at each input."""
         self.names, self.samples = tuple(names), samples
         self.shapes = [result.shape for result in results]
         self.lengths = np.array([result.size for result in results])
-        self.scales = [float(np.abs(result).max(initial=0.0)) or 1.0 for result in results]
+        self.scales = [float(np.abs(pair).max(initial=0.0)) or 1.0 for pair in zip(results, found, strict=True)]
         self.kinds = [kind_of(argument) for argument in samples[0]]
 
     def joined(self, values: Sequence[np.ndarray]) -> np.ndarray:
@@ -144,11 +159,13 @@ def explain_terms(
         return None
     if any(a.shape != b.shape or not np.isfinite([a, b]).all() for a, b in zip(found, results, strict=True)):
         return None
-    inputs = Inputs(names, samples, results)
+    inputs = Inputs(names, samples, results, found)
     y = inputs.joined(found)
     values = values_of(terms, inputs)
+    if np.abs(y - values.right.sum(axis=0)).max() <= TOLERANCE:  # it differs elsewhere
+        return None
     units = units_of(terms, groups)
-    changes = [changes_of(unit, values, inputs) for unit in units]
+    changes = [changes_of(unit, terms, values, inputs) for unit in units]
     findings = one_change(y, values.right, units, changes) or two_changes(y, values.right, units, changes)
     if not findings:
         return None
@@ -160,7 +177,28 @@ def explain_terms(
             ]
     mistake, text = mistake_of(findings[0])
     others = [f"{name[0].upper()}{name[1:]}. {why}" for name, why in map(mistake_of, findings[1:])]
-    return Explanation(mistake, " ".join([text, *others]), tuple(lines))
+    is_plain = findings[0].unit.name == WHOLE and (not findings[0].change.text or text.startswith(IGNORED))
+    is_vague = any(finding.factor == 0.0 for finding in findings) or (
+        findings[0].unit.name == WHOLE and not is_plain and findings[0].cost >= FAR_FETCHED
+    )
+    return Explanation(mistake, " ".join([text, *others]), tuple(lines), stated(findings, terms), is_vague)
+
+
+def stated(findings: Sequence[Finding], terms: Sequence[Term]) -> Function:
+    """The function that findings say the student has written."""
+    changed = {i for finding in findings for i in finding.unit.members}
+
+    def value(i: int, arguments: tuple[Any, ...]) -> np.ndarray:
+        return np.asarray(terms[i].function(*copied(arguments)), np.float64)
+
+    def function(*arguments: Any) -> Any:
+        total: Any = sum(value(i, arguments) for i in range(len(terms)) if i not in changed)
+        for finding in findings:
+            right = np.sum([value(i, arguments) for i in finding.unit.terms], axis=0)
+            total = total + finding.factor * finding.change.apply(right, copied(arguments))
+        return total
+
+    return function
 
 
 def right_result(terms: Sequence[Term], sample: tuple[Any, ...]) -> np.ndarray:
@@ -216,16 +254,20 @@ def values_of(terms: Sequence[Term], inputs: Inputs) -> TermValues:
     return TermValues(right, changes, changed)
 
 
-def changes_of(unit: Unit, values: TermValues, inputs: Inputs) -> list[ChangedForm]:
+def changes_of(unit: Unit, terms: Sequence[Term], values: TermValues, inputs: Inputs) -> list[ChangedForm]:
     """All forms of a unit that are finite and not 0."""
     members = list(unit.members)
     with np.errstate(all="ignore"):
         same, totals = values.right[members].sum(axis=0), values.changed[members].sum(axis=0)
-    found = [ChangedForm("", same, 0.0)]
-    found += [ChangedForm(f"is {form.formula}", inputs.vector(form.function), 1.0, form) for form in unit.forms]
+    found = [ChangedForm("", same, 0.0, lambda right, _: right)]
+    found += [
+        ChangedForm(f"is {form.formula}", inputs.vector(form.function), 1.0, form_apply(form), form)
+        for form in unit.forms
+    ]
     for other, total in zip(values.changes, totals, strict=True):
         if unit.name != WHOLE or other.text.startswith(UNUSED):  # the rest are edits of the reference solution
-            found.append(ChangedForm(other.text, total, other.cost))
+            apply = rearranged([terms[i].function for i in members], other.change)
+            found.append(ChangedForm(other.text, total, other.cost, apply))
         if (i := other.doubles) is not None:
             has = exponent_in(same, total)
             for exponent in EXPONENTS:
@@ -233,9 +275,34 @@ def changes_of(unit: Unit, values: TermValues, inputs: Inputs) -> list[ChangedFo
                     vector = same * inputs.argument(i) ** exponent
                 text = power_text(inputs.names[i], has, exponent, whole=unit.name == WHOLE)
                 likely = abs(exponent) == 1.0 or has == -exponent
-                found.append(ChangedForm(text, vector, 2.0 if likely else 3.5))
-    found += [ChangedForm(text, vector, cost) for text, cost, vector in value_changes(same, inputs)]
+                found.append(ChangedForm(text, vector, 2.0 if likely else 3.5, times_power(i, exponent)))
+    found += [
+        ChangedForm(
+            text, np.concatenate([change(block).ravel() for block in inputs.blocks(same)]), cost, of_value(change)
+        )
+        for text, cost, change in value_changes(same, inputs)
+    ]
     return [change for change in found if np.isfinite(change.vector).all() and np.abs(change.vector).max() > TOLERANCE]
+
+
+def form_apply(form: Form) -> Apply:
+    """A form as a change of a value."""
+    return lambda _, arguments: np.asarray(form.function(*arguments), np.float64)
+
+
+def rearranged(functions: Sequence[Function], change: Rearrangement) -> Apply:
+    """Terms at changed arguments as a change of a value."""
+    return lambda _, arguments: np.sum([np.asarray(f(*change(copied(arguments))), float) for f in functions], axis=0)
+
+
+def times_power(i: int, exponent: float) -> Apply:
+    """A further power of an argument as a change of a value."""
+    return lambda right, arguments: right * float(arguments[i]) ** exponent
+
+
+def of_value(change: Callable[[np.ndarray], np.ndarray]) -> Apply:
+    """A change that needs no arguments."""
+    return lambda right, _: change(right)
 
 
 def exponent_in(values: np.ndarray, doubled: np.ndarray) -> float | None:
@@ -311,13 +378,12 @@ def swapped(arguments: tuple[Any, ...], i: int, j: int) -> tuple[Any, ...]:
     return tuple(found)
 
 
-def value_changes(same: np.ndarray, inputs: Inputs) -> Iterator[tuple[str, float, np.ndarray]]:
-    """Changes of the value of a term: words, cost, values."""
-    yield "has only absolute values", 3.0, np.abs(same)
-    yield "is cut at 0 from below", 3.0, np.maximum(same, 0.0)
-    yield "is cut at 0 from above", 3.0, np.minimum(same, 0.0)
+def value_changes(same: np.ndarray, inputs: Inputs) -> Iterator[tuple[str, float, Callable[[np.ndarray], np.ndarray]]]:
+    """Changes of the value of a term: words, cost, function of the value at one input."""
+    yield "has only absolute values", 3.0, np.abs
+    yield "is cut at 0 from below", 3.0, lambda y: np.maximum(y, 0.0)
+    yield "is cut at 0 from above", 3.0, lambda y: np.minimum(y, 0.0)
     blocks = inputs.blocks(same)
-    join = lambda parts: np.concatenate([part.ravel() for part in parts])  # noqa: E731
     if all(shape and shape[-1] == 3 for shape in inputs.shapes):
         sizes = np.abs(np.concatenate([block.reshape(-1, 3) for block in blocks])).max(axis=0)
         own = np.flatnonzero(sizes > 0.0)
@@ -325,14 +391,13 @@ def value_changes(same: np.ndarray, inputs: Inputs) -> Iterator[tuple[str, float
             text = "has its components in another order"
             if len(own) == 1:
                 text = f"acts along {AXES[(own[0] + shift) % 3]} instead of {AXES[own[0]]}"
-            yield text, 2.0, join(np.roll(block, shift, axis=-1) for block in blocks)
+            yield text, 2.0, lambda y, shift=shift: np.roll(y, shift, axis=-1)
     if all(len(shape) == 2 for shape in inputs.shapes):
-        points = np.repeat([float(len(block)) for block in blocks], inputs.lengths)
-        for what, number in (("points", points), ("links", points - 1.0)):
-            yield f"is multiplied by the number of {what}", 3.0, same * number
-            yield f"is divided by the number of {what}", 3.0, same / number
+        for what, less in (("points", 0), ("links", 1)):
+            yield f"is multiplied by the number of {what}", 3.0, lambda y, less=less: y * (len(y) - less)
+            yield f"is divided by the number of {what}", 3.0, lambda y, less=less: y / (len(y) - less)
         for which, row in (("first", 0), ("second", 1), ("last", -1)):
-            yield f"leaves out the {which} point", 2.5, join(without_row(block, row) for block in blocks)
+            yield f"leaves out the {which} point", 2.5, lambda y, row=row: without_row(y, row)
 
 
 def without_row(block: np.ndarray, row: int) -> np.ndarray:
@@ -353,8 +418,7 @@ def one_change(
             best = cheaper(best, Finding(unit, forms[0], 0.0, size_cost(unit)))
             continue
         for form in forms:
-            factor = float(left @ form.vector / (form.vector @ form.vector))
-            if factor and np.abs(left - factor * form.vector).max() <= TOLERANCE * max(1.0, abs(factor)):
+            if (factor := factor_between(left, form)) and may_be_told(unit, form, factor):
                 best = cheaper(
                     best, Finding(unit, form, rounded(factor), form.cost + size_cost(unit) + factor_cost(factor))
                 )
@@ -370,9 +434,8 @@ def one_more(
     left, best = y - total_of(right, set(range(len(right)))), None
     for unit, forms in zip(units, changes, strict=True):
         for form in forms:
-            factor = float(left @ form.vector / (form.vector @ form.vector))
-            if factor and np.abs(left - factor * form.vector).max() <= TOLERANCE * max(1.0, abs(factor)):
-                extra = Unit(f"a further term, as {unit.name},", "", (), ())
+            if (factor := factor_between(left, form)) and is_simple(factor):
+                extra = Unit(f"a further term, as {unit.name},", "", (), (), unit.members)
                 best = cheaper(
                     best, Finding(extra, form, rounded(factor), form.cost + size_cost(unit) + factor_cost(factor))
                 )
@@ -397,7 +460,10 @@ def two_changes(
             rest = left @ left - p * ya - q * yb
         fits = (determinant > 1e-9 * aa * bb) & (rest <= len(y) * TOLERANCE**2 + 1e-9 * (left @ left))
         for i, j in np.argwhere(fits):
-            if np.abs(left - p[i, j] * a[i] - q[i, j] * b[j]).max() > TOLERANCE * max(1.0, abs(p[i, j]), abs(q[i, j])):
+            factors = float(p[i, j]), float(q[i, j])
+            if np.abs(left - factors[0] * a[i] - factors[1] * b[j]).max() > TOLERANCE or not all(
+                map(is_simple, factors)
+            ):
                 continue
             found = [
                 Finding(unit, form, rounded(float(factor)), form.cost + size_cost(unit) + factor_cost(factor))
@@ -407,6 +473,17 @@ def two_changes(
             if best is None or cost < best[0]:
                 best = cost, found
     return [] if best is None else [finding for finding in best[1] if not is_right(finding)]
+
+
+def factor_between(left: np.ndarray, form: ChangedForm) -> float:
+    """The factor of a form that leaves nothing of values; 0 if there is none."""
+    factor = float(left @ form.vector / (form.vector @ form.vector))
+    return factor if np.abs(left - factor * form.vector).max() <= TOLERANCE else 0.0
+
+
+def may_be_told(unit: Unit, form: ChangedForm, factor: float) -> bool:
+    """True for a factor that tells what is wrong: a simple one, or a constant that is slightly off."""
+    return is_simple(factor) or (unit.name == WHOLE and not form.text and abs(factor - 1.0) <= SMALL_CHANGE)
 
 
 def is_right(finding: Finding) -> bool:
@@ -452,10 +529,13 @@ def mistake_of(finding: Finding) -> tuple[str, str]:
     if unit.name == WHOLE and not change.text and factor:
         if factor == -1.0:
             return "sign reversed", "Every result has the right size and the wrong sign."
-        return "constant factor", f"Every result is {factor:.6g} times what it must be."
+        if not is_simple(factor):
+            size = f"{100.0 * abs(factor - 1.0):.2g} % too {'large' if factor > 1.0 else 'small'}"
+            return "another constant", f"The law is right. Every result is {size}: a constant in it is another one."
+        return "constant factor", f"Every result is {factor_text(factor)} times what it must be."
     if unit.name == WHOLE and change.text.startswith(UNUSED):
         name = change.text.removeprefix(UNUSED)
-        return f"{name} not used", f"The result does not change with {name}."
+        return f"{name} not used", f"{IGNORED}{name}."
     why = [change.form.why] if change.form else []
     must = f"It must be {unit.formula}." if unit.formula else "So it is at all inputs that were tried."
     return f"{unit.name} {words(finding)}", " ".join([*why, must])
@@ -467,10 +547,10 @@ def words(finding: Finding) -> str:
     if factor == 0.0:
         return "is 0" if finding.unit.name == WHOLE else "is missing"
     if not text:
-        return "has the wrong sign" if factor == -1.0 else f"is {factor:.6g} times what it must be"
+        return "has the wrong sign" if factor == -1.0 else f"is {factor_text(factor)} times what it must be"
     if factor == 1.0:
         return text
-    return text + (", with the wrong sign" if factor == -1.0 else f", times {factor:.6g}")
+    return text + (", with the wrong sign" if factor == -1.0 else f", times {factor_text(factor)}")
 
 
 def line_name(term: Term) -> str:
@@ -487,5 +567,5 @@ def changed_line(line: Equation, finding: Finding, term: Term) -> Equation:
     elif factor in (0.0, 1.0):
         own = formula if factor else "0"
     else:
-        own = f"-[{formula}]" if factor == -1.0 else f"{factor:.6g} [{formula}]"
+        own = f"-[{formula}]" if factor == -1.0 else f"{factor_text(factor)} [{formula}]"
     return Equation(line.name, (Piece(own, wrong=True),), term.formula)

@@ -92,6 +92,35 @@ MISTAKES = (
     ),
 )
 
+
+def contrast(found, right, rows, cols):
+    """The kinds of links that are missing, and those that are too many."""
+    if found.ndim != 2 or found.shape[1] != 2:
+        return ""
+    has, needs = ({tuple(pair) for pair in links.tolist()} for links in (found, right))
+    missing, extra = kinds(needs - has, cols), kinds(has - needs, cols)
+    parts = [f"missing are {missing}"] if missing else []
+    parts += [f"too many are {extra}"] if extra else []
+    twice = len(found) - len(has)
+    parts += [f"{twice} {'link is' if twice == 1 else 'links are'} there twice"] if twice > 0 else []
+    return f"For {rows} x {cols} points: {'; '.join(parts)}." if parts else ""
+
+
+def kinds(links, cols):
+    """Links by their kinds, in words."""
+    numbers = {}
+    for a, b in ((int(a), int(b)) for a, b in links):
+        down, across = b // cols - a // cols, b % cols - a % cols
+        numbers[down, across] = numbers.get((down, across), 0) + 1
+    return ", ".join(f"{count} of (i, j)-{end('i', i)}{end('j', j)}" for (i, j), count in sorted(numbers.items()))
+
+
+def end(letter, offset):
+    """One index of the second point of a link."""
+    shifted = letter if offset == 0 else f"{letter}{offset:+d}"
+    return f"({shifted}, " if letter == "i" else f"{shifted})"
+
+
 CURVE = Curve(
     "points along each side",
     "links",

@@ -56,6 +56,11 @@ MISTAKES = (
         lambda k, c, T, g: dispersion(c * k, 1.0, T, g),
     ),
     Mistake(
+        "wavelength for wavenumber",
+        "2 pi/k, the wavelength, stands where the wavenumber k belongs: omega^2 = g k.",
+        lambda k, c, T, g: dispersion(2 * np.pi / k, c, T, g),
+    ),
+    Mistake(
         "number of turns",
         "This counts the multiples of w0: multiply by w0 again.",
         lambda k, c, T, g: c * np.floor(np.sqrt(g * k) * T / (2 * np.pi)),

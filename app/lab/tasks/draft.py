@@ -3,6 +3,7 @@
 import numpy as np
 
 from app.lab.checking import Curve, Mistake, require
+from app.lab.diagnosis.where import Case
 
 
 def draft(body_density, height, oil_density, oil_thickness, water_density):
@@ -64,6 +65,10 @@ MISTAKES = (
     ),
 )
 
+CASES = (
+    Case("where the oil alone carries the box", lambda b, H, o, d, w: b * H <= o * d),
+    Case("where the box reaches into the water", lambda b, H, o, d, w: b * H > o * d),
+)
 CURVE = Curve(
     "thickness of the oil [m]",
     "draft [m]",

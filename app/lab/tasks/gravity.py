@@ -43,6 +43,8 @@ MISTAKES = (
     Mistake("upside down", "The heavier planet has the lower gravity here.", lambda m: 9.81 * m ** (-1 / 3)),
 )
 
+CONSTANT = "The lab sets g = 9.81 m/s2 on the Earth: G, M and R of tables give a little more or less."
+
 CURVE = Curve("mass [Earth masses]", "gravity [m/s2]", np.linspace(0.1, 10.0, 25), lambda f, x: [f(m) for m in x])
 
 

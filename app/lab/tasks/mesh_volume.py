@@ -17,7 +17,12 @@ def mesh_volume(vertices, faces):
 
 
 def inputs(rng):
-    """A crooked box, away from the origin."""
+    """A crooked box or a pyramid on a square, away from the origin."""
+    if rng.random() < 0.4:
+        corners = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.3, 0.6, 1)], dtype=float)
+        corners += 0.1 * rng.uniform(-1.0, 1.0, corners.shape)
+        faces = [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+        return corners * rng.uniform(0.5, 2.0) + rng.uniform(1.0, 3.0, 3), np.array(faces)
     corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
     faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
              (0, 6, 4), (1, 5, 7), (1, 7, 3)]  # fmt: skip
@@ -52,6 +57,11 @@ MISTAKES = (
         "sign reversed",
         "The volume is negative: the order of the corners is reversed.",
         lambda v, f: -triple(v, f).sum() / 6,
+    ),
+    Mistake(
+        "corners counted from 1",
+        "The numbers of the corners are taken as if they were counted from 1. In Python the first vertex has number 0.",
+        lambda v, f: triple(v, f - 1).sum() / 6,
     ),
     Mistake("area instead of volume", "This is the area of the surface.", area),
     Mistake("bounding box", "This is the volume of the box around the mesh.", lambda v, f: np.ptp(v, axis=0).prod()),

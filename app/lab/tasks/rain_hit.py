@@ -41,6 +41,11 @@ def levels(first, last):
     return function
 
 
+def still_way(z0, z1, level0, level1):
+    start, end = z0 - level0, z1 - level1
+    return np.where((start > 0) & (end <= 0), start / (z0 - z1), np.inf)
+
+
 def with_start_and_end(function):
     """A function of the heights above the surface at start and end."""
     return lambda z0, z1, level0, level1: function(z0 - level0, z1 - level1)
@@ -52,6 +57,12 @@ MISTAKES = (
     ),
     Mistake(
         "surface taken as still", "The surface is taken where it is at the end. It comes from level0.", levels(1, 1)
+    ),
+    Mistake(
+        "motion of the surface forgotten",
+        "The share is that of the way of the drop, z0 - z1. The surface moves too: divide by what the height above it "
+        "falls, (z0 - level0) - (z1 - level1).",
+        still_way,
     ),
     Mistake(
         "only the end is tested",

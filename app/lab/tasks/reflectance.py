@@ -71,6 +71,11 @@ MISTAKES = (
         "The square is that of the mean. Take the mean of the squares.",
         lambda a, n: (sum(polarised(a, n)) / 2) ** 2,
     ),
+    Mistake(
+        "angle from the surface",
+        "The angle is taken from the surface. It is the angle from the normal: sine and cosine change places.",
+        lambda a, n: reflectance(np.pi / 2 - a, n),
+    ),
     Mistake("light that passes", "This is the share that passes into the fluid.", lambda a, n: 1 - reflectance(a, n)),
 )
 

@@ -129,6 +129,14 @@ def overwritten(x, v, mass, stiffness, damping, drag, rest_length, gravity):
     return a
 
 
+def ring(x, v, mass, stiffness, damping, drag, rest_length, gravity):
+    closed = of_law(links.both)(x, v, mass, stiffness, damping, drag, rest_length, gravity)
+    r = x[0] - x[-1]
+    pull = links.both(r, links.size(r), v[-1] - v[0], stiffness, damping, rest_length) / mass
+    closed[-1] += pull
+    return closed
+
+
 def air_drag(x, v, mass, stiffness, damping, drag, rest_length, gravity):
     a = -drag * v / mass
     a[0] = 0.0
@@ -152,7 +160,16 @@ TERMS = (
     Term("the air drag", "-c v / m", air_drag, (Form("-c |v| v / m", "The speed is squared.", squared_drag),)),
     Term("gravity", "-g in z", weight),
 )
-GROUPS = links.groups_of_net(of_law, " / m", (Form("that of one link at each point", "Add with +=.", overwritten),))
+GROUPS = links.groups_of_net(
+    of_law, " / m",
+    (
+        Form("that of one link at each point", "Add with +=.", overwritten),
+        Form(
+            "that of a ring", "A force acts between the first point and the last, which are no neighbours: x[i - 1] is "
+            "the last point for i = 0.", ring,
+        ),
+    ),
+)  # fmt: skip
 
 CURVE = Curve(
     "length of the last link, 0.2 m at rest [m]",

@@ -3,6 +3,7 @@
 import numpy as np
 
 from app.lab.checking import Curve, Mistake, require
+from app.lab.diagnosis.where import Case
 
 
 def spectrum(k, wind, amplitude, gravity):
@@ -59,6 +60,16 @@ MISTAKES = (
         "no longest wave", "The factor exp(-1/(k L)^2) is missing: the longest waves have no bound.", variant(cut=False)
     ),
     Mistake(
+        "wavelength for wavenumber",
+        "2 pi/|k|, the wavelength, stands where the wavenumber |k| belongs, also below k . w.",
+        lambda k, w, A, g: spectrum(k * 2 * np.pi / (k @ k), w, A, g) * ((k @ k) / 2 / np.pi) ** 2 if k.any() else 0.0,
+    ),
+    Mistake(
+        "wavelength for wavenumber",
+        "2 pi/|k|, the wavelength, stands where the wavenumber |k| belongs.",
+        lambda k, w, A, g: spectrum(k * 2 * np.pi / (k @ k), w, A, g) if k.any() else 0.0,
+    ),
+    Mistake(
         "k L not squared",
         "The exponent is -1/(k L). It is -1/(k L)^2.",
         lambda k, w, A, g: (
@@ -67,6 +78,7 @@ MISTAKES = (
     ),
 )
 
+CASES = (Case("at k = 0", lambda k, wind, A, g: not k.any()),)
 CURVE = Curve(
     "wavenumber along the wind [rad/m]",
     "power [m4]",

@@ -1,9 +1,13 @@
 """The reference solution and the check of a task."""
 
+import functools
+import itertools
+
 import numpy as np
 
 from app.lab.checking import Curve, Mistake, require
 from app.lab.diagnosis.terms import Form, Term
+from app.lab.diagnosis.where import Case
 
 
 def sphere_force(x, v, centre, radius, stiffness, damping):
@@ -121,11 +125,31 @@ TERMS = (
 )  # fmt: skip
 
 
+def within(form):
+    """The whole force from a form of its terms: with and without the two cases in which it must be 0."""
+
+    def function(is_clipped, is_inside, x, v, centre, radius, stiffness, damping):
+        r = x - centre
+        force = form(x, v, centre, radius, stiffness, damping)
+        is_zero = (is_clipped and force @ r <= 0.0) or (is_inside and np.linalg.norm(r) >= radius)
+        return np.zeros(3) if is_zero else force
+
+    return tuple(functools.partial(function, *cases) for cases in itertools.product((True, False), repeat=2))
+
+
 def adds_up(student, *arguments):
     """True where the force is the sum of its terms: the sphere pushes."""
     return np.any(sphere_force(*arguments)) and np.any(student(*arguments))
 
 
+CASES = (
+    Case("outside the sphere", lambda x, v, centre, radius, k, b: np.linalg.norm(x - centre) >= radius),
+    Case(
+        "where the damping would pull", lambda x, v, centre, radius, k, b: (
+            np.linalg.norm(x - centre) < radius and not sphere_force(x, v, centre, radius, k, b).any()
+        ),
+    ),
+)  # fmt: skip
 CURVE = Curve(
     "distance from the centre [m]",
     "force outwards [N]",

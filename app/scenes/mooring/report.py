@@ -19,9 +19,17 @@ TENSIONS = "Tensions"  # heading
 COLOURS = "Brown parts of a line lie on the bed. A red anchor is pulled upwards."
 
 
+NOISE = 1e-4  # of a line's tension, below which a part of it is shown as 0
+
+
 def kilonewtons(force: float) -> str:
     """A force [N] in kN."""
     return number(1e-3 * force)
+
+
+def part_of_tension(force: float, tension: float) -> str:
+    """A part [N] of a tension [N] in kN; rounding is no force."""
+    return "0" if abs(force) < NOISE * abs(tension) else kilonewtons(force)
 
 
 def figures_of(snapshot: Snapshot) -> str:
@@ -33,7 +41,7 @@ def figures_of(snapshot: Snapshot) -> str:
         read(QUANTITIES, name, snapshot)
         for name in ("largest_tension_line", "largest_tension_time", "largest_tension", "breaking_load_use")
     )
-    use = "" if math.isnan(used) else fill(" ({})", percent(used))
+    use = "" if math.isnan(used) else fill(" ({} of the breaking load)", percent(used))
     return fill("Largest tension: {} kN{}, line {:.0f} at {}", bold(kilonewtons(most)), use, line, seconds(t))
 
 
@@ -72,7 +80,7 @@ def statistics_text(snapshot: Snapshot) -> Html:
     duration, start, dragged = (
         read(QUANTITIES, name, snapshot) for name in ("statistics_duration", "statistics_start", "dragged_tension")
     )
-    words = fill("Over {} since t = {}", seconds(duration), seconds(start))
+    words = fill("Over {} s since t = {} s", number(duration), number(start))
     if not math.isnan(dragged):
         pause = "" if snapshot.readings.counts else ", which are left out until three wave periods have gone by"
         words = fill("{}, without drags{}; while dragged: {} kN", words, pause, bold(kilonewtons(dragged)))
@@ -85,8 +93,8 @@ def bed_table(snapshot: Snapshot) -> Html:
     found: MooringReadings = snapshot.readings
     columns = (("Line", ""), ("Uplift", "kN"), ("largest", "kN"), ("On the bed", "m"), ("Slack", ""))
     rows = [
-        (i + 1, kilonewtons(one.uplift), kilonewtons(one.most_uplift), number(one.lying),
-         slack_text(one, snapshot.frame.time))
+        (i + 1, part_of_tension(one.uplift, one.fairlead), part_of_tension(one.most_uplift, one.at_fairlead.largest),
+         number(one.lying), slack_text(one, snapshot.frame.time))
         for i, one in enumerate(found.lines)
     ]  # fmt: skip
     return table(columns, rows)

@@ -21,7 +21,7 @@ POINTS = 41  # of the drawn curve
 REACH = 0.9  # of the way to where the first line is straight, which the curve goes to either side
 LEAST_REACH = 0.03  # of the distance of the anchors, of lines that are straight at rest
 
-STATIC_LINE, NOW_LINE = ChartLine("static", PALETTE[0], 2.0), ChartLine("now", PALETTE[1], 5.0)
+STATIC_LINE, NOW_LINE = ChartLine("static", PALETTE[0], 2.0), ChartLine("now", PALETTE[1], dots=True)
 
 
 class CurveInputs(Protocol):
@@ -79,10 +79,9 @@ class RestoringCurve:
         wave = direction_of(scene)
         now = float((scene.body_place() - scene.excursion.rest)[:2] @ wave)
         pull = -float(scene.force_of_lines() @ wave)
-        # A bar from the lowest force of the curve to the force now, at the offset now.
-        x = np.concatenate((offset, [now, now]))
-        static = np.concatenate((force, np.interp([now, now], offset, force)))
-        mark = np.concatenate((np.full(len(offset), math.nan), [min(force[0], pull), pull]))
+        x = np.append(offset, now)
+        static = np.append(force, np.interp(now, offset, force, math.nan, math.nan))
+        mark = np.append(np.full(len(offset), math.nan), pull)
         order = np.argsort(x, kind="stable")
         columns = x[order], 1e-3 * static[order], 1e-3 * mark[order]
         return Chart("Offset along the waves [m]", (STATIC_LINE, NOW_LINE), columns)

@@ -14,14 +14,15 @@ from app.scenes.springs.net_motion import rope_lengths
 
 MAX_ROWS = 600  # a longer race keeps every second row, then every fourth, and so on
 ERROR_TICKS = (  # [m] from end to end of the error's scale
-    (1e-10, "0.1 nm"), (1e-8, "10 nm"), (1e-6, "1 µm"), (1e-4, "0.1 mm"), (1e-2, "1 cm"), (1.0, "1 m"), (10.0, ""),
+    (1e-10, "≤ 0.1 nm"), (1e-8, "10 nm"), (1e-6, "1 µm"), (1e-4, "0.1 mm"), (1e-2, "1 cm"), (1.0, "1 m"), (10.0, ""),
 )  # fmt: skip
 CURVES = {
     "plot_errors": CurveAxes("Distance from the reference", "m", "t [s]", ("rope 1",), ERROR_TICKS),
     "plot_energies": CurveAxes("Energy error", "J", "t [s]", ("rope 1",)),
 }
 FLOOR_LINE = ChartLine("below what the reference can tell", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
-MAX_ENERGY_RATIO = 0.7  # drawn energy error over the potential energy of the rope's whole fall, at most
+MAX_ENERGY_RATIO = 0.7  # energy error over the potential energy of the rope's whole fall that a rope can have at most
+MIN_GROWTH = 1.1  # from row to row, of the energy error of a rope that diverges
 FLOOR_WITHOUT_REFERENCE = 1e3  # [m], above the scale
 
 
@@ -77,29 +78,48 @@ class RaceCharts:
                 for i, entrant in enumerate(race.entrants)
             )
             floor = np.where(np.isnan(table[1]), FLOOR_WITHOUT_REFERENCE, table[1])
-            drawn = np.maximum(table[2::2], ERROR_TICKS[0][0])  # NaN stays
+            drawn = np.maximum(table[2::2], ERROR_TICKS[0][0])  # NaN stays; the lowest tick says so
             drawn[:, table[0] == 0.0] = math.nan  # the start has no error, and so no place on this scale
-            errors = table[0], floor, *drawn
-            energies = table[0], *np.clip(table[3::2], -self.max_energy, self.max_energy)
-            end, (marks, places) = round_up(race.t), self.ends(table)
-            none = (None,) * len(marks)  # no numbers of marks
+            drawn[drawn > ERROR_TICKS[-1][0]] = math.nan
+            energies = self.without_divergence(table[3::2])
+            end = round_up(race.t)
             self.drawn = {
-                "plot_errors": Chart(
-                    "t [s]", (FLOOR_LINE, *lines, *marks), (*errors, *places), end, (table[1], *table[2::2], *none)
-                ),
-                "plot_energies": Chart("t [s]", (*lines, *marks), (*energies, *places), end, (*table[3::2], *none)),
-            }
+                name: Chart(
+                    "t [s]", (*below, *lines, *marks), (table[0], *areas, *columns, *places), end,
+                    (*areas_numbers, *numbers, *(None for _ in marks)),  # no numbers of marks
+                )
+                for name, below, areas, areas_numbers, columns, numbers in (
+                    ("plot_errors", (FLOOR_LINE,), (floor,), (table[1],), drawn, table[2::2]),
+                    ("plot_energies", (), (), (), energies, table[3::2]),
+                )
+                for marks, places in [self.ends(table, columns)]
+            }  # fmt: skip
         return self.drawn
 
-    def ends(self, table: NDArray[np.float64]) -> tuple[list[ChartLine], list[NDArray[np.float64]]]:
-        """A cross where each rope has diverged, and its column: a number at that row, NaN at the others."""
+    def without_divergence(self, energies: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Energy errors [J] of each rope without the last ones of those that have diverged, which grow without end."""
+        kept = energies.copy()
+        for i, entrant in enumerate(self.race.entrants):
+            last = np.flatnonzero(np.isfinite(kept[i]))
+            row = last[-1] if entrant.failure and len(last) else 0
+            while row > 0 and abs(kept[i, row]) > max(self.max_energy, MIN_GROWTH * abs(kept[i, row - 1])):
+                kept[i, row] = math.nan
+                row -= 1
+        return kept
+
+    def ends(
+        self, table: NDArray[np.float64], drawn: NDArray[np.float64]
+    ) -> tuple[list[ChartLine], list[NDArray[np.float64]]]:
+        """A cross where the line of each rope ends or leaves a chart, and its column: NaN but at that row.
+
+        drawn: (ropes, rows) of the chart.
+        """
         marks: list[ChartLine] = []
         places: list[NDArray[np.float64]] = []
         for i, entrant in enumerate(self.race.entrants):
-            without = np.flatnonzero(np.isnan(table[3 + 2 * i]))
-            if entrant.failure and len(without) and (row := without[0]) > 0:  # it has run before
-                marks.append(
-                    ChartLine(f"{entrant.number}: {entrant.failure.partition(':')[0]}", PALETTE[i], cross=True)
-                )
+            without = np.flatnonzero(np.isnan(drawn[i]) & (table[0] > 0.0))
+            if len(without) and (row := without[0]) > 0:  # it has run before
+                why = entrant.failure.partition(":")[0] if entrant.failure else f"beyond {ERROR_TICKS[-1][0]:g} m"
+                marks.append(ChartLine(f"{entrant.number}: {why}", PALETTE[i], cross=True))
                 places.append(np.where(np.arange(len(table[0])) == row, ERROR_TICKS[0][0], math.nan))
         return marks, places

@@ -16,7 +16,7 @@ from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import RopeParams
-from app.scenes.springs.html import colour_scale, simple_drawing, stability_bar, step_mark
+from app.scenes.springs.html import colour_scale, held, simple_drawing, stability_bar, step_mark
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
 from app.scenes.springs.ropes_view import MAX_BEAD_RATIO, RopesDrawing, RopesView
@@ -163,7 +163,7 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
         g = snapshot.readings
         step, stiffness = g.stability.critical_step, g.largest_stiffness
         unit = "N/m" if g.parameter == "stiffness" else "N"
-        text = f"limit {number(stiffness)} {unit}" if stiffness > 0 else "no stiffness is stable at this step"
+        text = f"limit {number(held(stiffness))} {unit}" if stiffness > 0 else "no stiffness is stable at this step"
         if step == float("inf"):
             text = "every stiffness is stable"
         return {"integrator": g.note, "time_step": step_mark(step), g.parameter: text}

@@ -19,6 +19,7 @@ MOMENTS = 60  # that are kept: a second at 60 frames a second
 MARGIN = 0.9  # of the largest stable step: the fastest motion of a run grows with its pulls
 FIRST_RATE = 60  # [1/s] steps a second; others are this times a power of two
 SHORTEST_STEP = 1e-5  # [s] that the parameter allows
+SYMBOLS = "; h: the step, ω: the highest frequency of the springs"
 MAX_OVERSHOOT = 3.0  # of the bounds, up to which a moment beyond them is kept too
 
 
@@ -59,7 +60,7 @@ def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge,
     """The sentences for the panel. t [s]; step [s]; alternative: another setting that would hold, or ""."""
     method = method_name(integrator.name)
     start = f"The run became unstable at t = {t:.2f} s: its time step was"
-    limit = limit_text(gauge)
+    limit = limit_text(gauge) + (SYMBOLS if gauge.omega else "")
     if gauge.share > 1.0:
         holds = f"a time step up to {longest_step(gauge.critical_step)}" if gauge.critical_step > 0 else ""
         proposals = " or ".join(words for words in (holds, alternative) if words)

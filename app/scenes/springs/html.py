@@ -46,7 +46,17 @@ def step_mark(critical_step: float) -> str:
     """The line below the control of the time step. critical_step: the largest stable step [s], 0 or infinity too."""
     if critical_step == math.inf:
         return "every step is stable"
-    return f"limit {longest_step(critical_step)}" if critical_step > 0 else "no step is stable with this method"
+    if critical_step <= 0.0:
+        return "no step is stable with this method"
+    return f"limit {longest_step(-1.0 / held(-1.0 / critical_step))}"
+
+
+def held(limit: float) -> float:
+    """A limit with two figures, rounded down: the last ones of a moving net change all the time."""
+    if limit == 0.0 or math.isinf(limit):
+        return limit
+    unit = 10.0 ** (math.floor(math.log10(abs(limit))) - 1)
+    return math.floor(limit / unit + 1e-9) * unit
 
 
 def simple_drawing(quantity: str) -> Html:

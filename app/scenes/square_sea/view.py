@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 import viser
 
-from app.formats.formatting import number, percent
+from app.formats.formatting import metres, number, percent
 from app.formats.packing import compile_packing
 from app.formats.round_step import round_step
 from app.formats.surface_fields import compile_surface_fields
@@ -280,7 +280,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         waves, theory, p = measured.measured, measured.theory, snapshot.frame.params
         highest = snapshot.frame.highest
         text = fill(
-            "Waves: {} m high, {} s apart", bold(number(waves.significant_height)), bold(number(waves.peak_period))
+            "Waves: {} high, {} s apart", bold(metres(waves.significant_height)), bold(number(waves.peak_period))
         )
         if highest is not None:
             return fill("{}<br>{}", text, report.highest_text(highest))
@@ -296,7 +296,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
 
     def notes(self, snapshot: Snapshot) -> dict[str, str]:
         """Heading -> HTML of the folders below the controls."""
-        return {"Waves, foam and rain": report.readout(snapshot), **files_folder(snapshot.frame.params)}
+        return {"Measured on this sea": report.readout(snapshot), **files_folder(snapshot.frame.params)}
 
     def close(self) -> None:
         """Remove the click callback, which viser keeps when it removes the nodes of a scene."""

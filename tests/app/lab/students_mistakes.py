@@ -248,7 +248,7 @@ CASES: tuple[tuple[str, str, str], ...] = (
     ),
     (
         "reflectance",
-        "must be",
+        "(s + p) in place of 0.5 * (s - p)",
         """
             c, t = np.cos(angle), np.sqrt(1 - (np.sin(angle) / index) ** 2)
             s, p = ((c - index * t) / (c + index * t)) ** 2, ((index * c - t) / (index * c + t)) ** 2
@@ -256,7 +256,7 @@ CASES: tuple[tuple[str, str, str], ...] = (
     ),
     (
         "spectrum",
-        "size ** 3",
+        "kk ** 4 in place of kk ** 3",
         """
             kk, U = np.hypot(*k), np.hypot(*wind)
             if kk == 0:

@@ -41,11 +41,14 @@ def test_a_curve_stays_inside_its_chart(reference: np.ndarray, student: np.ndarr
     assert "inf" not in svg
 
 
-def test_points_far_from_the_reference_are_left_out_and_the_right_ones_lie_on_it() -> None:
+def test_points_far_from_the_reference_are_marks_at_the_edge_and_the_right_ones_lie_on_it() -> None:
     line, dots = places(chart(Points("x", "y", X, X**2, X**2)))
     assert dots == line
-    _, dots = places(chart(Points("x", "y", X, X**2, 10.0 * X**2)))
+    svg = chart(Points("x", "y", X, X**2, 10.0 * X**2))
+    _, dots = places(svg)
     assert len(dots) == 3  # up to 18, the reference's greatest and its range more
+    assert svg.count('class="beyond"') == 4
+    assert "beyond the chart" in svg
 
 
 def test_a_curve_without_a_finite_value_is_left_out() -> None:

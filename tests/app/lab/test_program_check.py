@@ -14,23 +14,15 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from app.lab.checking import Mistake, Wrong, number_text
+from app.lab.checking import Mistake, Wrong
+from app.lab.comparing import call, conform, form_of, same
+from app.lab.diagnose import SEED
 from app.lab.folder import stub
-from app.lab.program_check import (
-    SAMPLES,
-    SEED,
-    StudentFunction,
-    Verdict,
-    call,
-    check_program,
-    conform,
-    form_of,
-    same,
-    special_case,
-)
+from app.lab.program_check import SAMPLES, Verdict, check_program
 from app.lab.runner import BUSY, RunError, Runner
 from app.lab.saved import store
 from app.lab.source import read_source
+from app.lab.student_function import StudentFunction, special_case
 from app.lab.task import Task, load_tasks
 from tests.app.lab.right_solutions import RIGHT
 from tests.app.lab.students_mistakes import CASES as MISTAKES
@@ -307,7 +299,7 @@ def test_an_encoding_that_python_refuses_is_refused(tmp_path: Path, head: bytes)
 def test_a_task_may_take_as_long_as_others_keep_the_processor(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [0.0]
     runner = SimpleNamespace(effort=3.0, watch=lambda file, name, *arguments, twice: 1.0)
-    monkeypatch.setattr("app.lab.program_check.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("app.lab.student_function.time.monotonic", lambda: clock[0])
     student = StudentFunction(cast(Runner, runner), TASKS["gravity"])
     clock[0] = 50.0
     assert student(1.0) == 1.0
@@ -419,18 +411,6 @@ def test_links_of_another_form_stay_as_they_are() -> None:
     assert task.check.normalise(np.array([[3, 1], [0, 1]])).tolist() == [[0, 1], [1, 3]]
     for links in (np.arange(3), np.array([[3, 1, 0], [2, 0, 1]]), np.zeros((0, 2), int)):
         assert np.array_equal(task.check.normalise(links), links)
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
-        (1 / 3, "0.3333"),
-        ((2.0, np.array([1e-9, 20.0])), "(2., [ 0., 20.])"),
-        (np.zeros((4, 4)), "an array of shape (4, 4)"),
-    ],
-)
-def test_a_result_is_told_in_four_decimals(value: object, text: str) -> None:
-    assert number_text(value) == text
 
 
 def test_a_step_of_third_order_with_four_evaluations_is_not_the_fourth() -> None:

@@ -128,6 +128,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("rate instead of amplitude", "return 2 * viscosity * wavenumber ** 2"),
     ),
     "reflectance": (
+        ("angle from the surface", changed(FRESNEL, "b = np.arc", "angle = np.pi / 2 - angle\n            b = np.arc")),
         ("one polarisation only", """
             c = np.cos(angle)
             t = np.sqrt(1 - (np.sin(angle) / index) ** 2)
@@ -153,6 +154,9 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             "if index * np.sin(angle) > 1: return 1\n            b = np.arcsin(index * np.sin(angle))")),
     ),
     "mesh_volume": (
+        ("corners counted from 1", """
+            a, b, c = vertices[faces[:, 0] - 1], vertices[faces[:, 1] - 1], vertices[faces[:, 2] - 1]
+            return np.einsum("ij,ij", a, np.cross(b, c)) / 6"""),
         ("factor 1/6 wrong", """
             V = 0
             for i, j, k in faces:
@@ -218,6 +222,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
             return 9.81 / R ** 2"""),
     ),
     "rain_hit": (
+        ("motion of the surface forgotten", changed(RAIN, "a / (a - b)", "a / (z0[i] - z1[i])")),
         ("surface taken as still", """
             s = np.full(len(z0), np.inf)
             for i in range(len(z0)):
@@ -244,6 +249,9 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("distance instead of share", changed(RAIN, "s[i] = a / (a - b)", "s[i] = a")),
     ),
     "spectrum": (
+        ("wavelength for wavenumber", changed(PHILLIPS, "L = U", "kk = 2 * np.pi / kk\n            L = U")),
+        ("wavelength for wavenumber", changed(
+            PHILLIPS, "L = U", "s, kk = kk, 2 * np.pi / kk\n            L = U", "wind / kk", "wind / s")),
         ("speed not squared", """
             kk = np.hypot(*k)
             if kk == 0:
@@ -291,6 +299,9 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("time not used", "return 2 * viscosity ** 0.5"),
     ),
     "dispersion": (
+        ("wavelength for wavenumber", """
+            w0 = 2 * np.pi / repeat_time
+            return calm * w0 * np.floor(np.sqrt(gravity * 2 * np.pi / k) / w0)"""),
         ("not rounded", "return calm * np.sqrt(gravity * k)"),
         ("2 pi forgotten", """
             w0 = 1 / repeat_time

@@ -58,11 +58,45 @@ def test_a_gap_is_not_joined() -> None:
 def test_a_logarithmic_scale_goes_from_end_to_end_of_its_words() -> None:
     scale = ((1e-4, "0.1 mm"), (1e-2, "1 cm"), (1.0, "1 m"))
     drawing = chart([0.0, 1.0, 2.0, 3.0, 4.0], [1e-2, 1e-9, 1e3, math.nan, -1.0], scale=scale, end=8.0)
+    # Down from the middle to the lower edge at 2/7 of the way, and no line along an edge.
     heights = [py for _, py in points(paths(drawing)[0])]
-    assert heights == pytest.approx([(TOP + BASE) / 2, BASE, TOP], abs=0.06)
-    assert points(paths(drawing)[0])[2][0] == pytest.approx(LEFT + 0.25 * (WIDTH - LEFT - RIGHT), abs=0.06)
+    assert heights == pytest.approx([(TOP + BASE) / 2, BASE], abs=0.06)
+    assert points(paths(drawing)[0])[1][0] == pytest.approx(LEFT + 2 / 7 / 8 * (WIDTH - LEFT - RIGHT), abs=0.06)
     assert drawing is not None
+    assert [round(BASE - y) for _, y in marks(drawing)] == [10]
     assert {"0.1 mm", "1 cm", "1 m"} <= {text.text for text in ET.fromstring(drawing.svg).iter(f"{SVG}text")}
+
+
+def marks(drawing: Drawing | None) -> list[tuple[float, float]]:
+    """The first corners of the marks of values beyond the chart."""
+    assert drawing is not None
+    found = [p.attrib["d"] for p in ET.fromstring(drawing.svg).iter(f"{SVG}path") if p.get("class") == "beyond"]
+    return [(float(x), float(y)) for x, y in (re.match(r"M(\S+) (\S+?)h", path).groups() for path in found)]  # type: ignore
+
+
+def test_a_line_that_leaves_the_chart_has_a_mark_where_it_does_and_comes_back() -> None:
+    """An edge along which a line is drawn reads as a value."""
+    t = np.arange(7.0)
+    values = [0.0, 1.0, 3.0, 5.0, 1.0, -1.0, -1.0]
+    drawing = chart(t, values, limits=(0.0, 2.0))
+    (path,) = paths(drawing)
+    low, high = 0.0 - SPACE * 2.0, 2.0 + SPACE * 2.0
+    assert path.count("M") == 2
+    across = [LEFT + place / 6.0 * (WIDTH - LEFT - RIGHT) for place in (0, 1, (high + 1.0) / 2, 3 + (5 - high) / 4, 4)]
+    assert [x for x, _ in points(path)][:5] == pytest.approx(across, abs=0.06)
+    assert points(path)[-1][1] == pytest.approx(BASE, abs=0.06)
+    assert low < 0.0
+    tops = [TOP + 10.0, BASE - 10.0]
+    assert [y for _, y in marks(drawing)] == pytest.approx(tops, abs=0.06)
+    assert drawing is not None
+    assert "beyond the chart" in drawing.svg
+    inside = chart(t, values)
+    assert marks(inside) == []
+    assert inside is not None
+    assert "beyond" not in inside.svg
+    whole = chart(t, np.full(7, 9.0), limits=(0.0, 2.0))
+    assert paths(whole) == [""]
+    assert len(marks(whole)) == 1
 
 
 def test_an_area_reaches_down_to_the_axis() -> None:

@@ -17,7 +17,7 @@ from app.render.html import ERROR_COLOUR
 from app.render.line_chart import line_chart
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.quantities import measured
-from app.scenes.race.charts import MAX_ROWS, RaceCharts, round_up
+from app.scenes.race.charts import ERROR_TICKS, MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
 from app.scenes.race.html import results_table
 from app.scenes.race.parameters import PRESETS, RaceParams, hidden
@@ -389,6 +389,43 @@ def test_all_roots_follow_the_same_arrows():
     assert scene.readings().results[0].error < 1e-3
 
 
+def test_the_charts_of_a_race_clip_no_value_without_a_mark():
+    """An energy error that grows slowly is drawn as it is; what a diverging rope adds at its end has a cross."""
+    scene = race(ropes=2, points=2)
+    charts = RaceCharts(scene.race)
+    n = 200
+    t = np.arange(n) / 30.0
+    slow = np.linspace(0.0, 3.0 * charts.max_energy, n)
+    fast = 1e-3 * 1.2 ** np.arange(n)
+    errors = np.concatenate((1e-12 * np.ones(n // 2), np.geomspace(1e-12, 1e4, n - n // 2)))
+    charts.rows[:n] = np.array([t, 1e-9 * np.ones(n), errors, slow, errors, fast]).T
+    charts.rows[n - 2 : n, 5] = math.nan
+    charts.count = n
+    scene.race.entrants[1].failure = "diverged: too long a step"
+    for name, chart in charts.charts().items():
+        assert chart.numbers is not None
+        crosses = [i for i, line in enumerate(chart.lines) if line.cross]
+        at = [int(np.flatnonzero(np.isfinite(chart.columns[1 + i]))[0]) for i in crosses]
+        for line, drawn, value in zip(chart.lines, chart.columns[1:], chart.numbers, strict=True):
+            if line.cross or line.fill or value is None:
+                continue
+            known = np.isfinite(value) & (t > 0.0)
+            differs = known & ~(drawn == value)
+            low = differs & np.isfinite(drawn)
+            assert (drawn[low] == ERROR_TICKS[0][0]).all()
+            cut = np.flatnonzero(differs & np.isnan(drawn))
+            assert not cut.size or any(place <= cut[0] for place in at), name
+    energies = charts.charts()["plot_energies"]
+    np.testing.assert_array_equal(energies.columns[1], slow)
+    assert np.nanmax(energies.columns[2]) <= charts.max_energy
+    assert [line.label for line in energies.lines if line.cross] == ["2: diverged"]
+    assert [line.label for line in charts.charts()["plot_errors"].lines if line.cross] == [
+        "1: beyond 10 m",
+        "2: diverged",
+    ]
+    assert ERROR_TICKS[0][1].startswith("≤")
+
+
 def test_a_long_race_keeps_fewer_rows_but_those_of_its_start():
     scene = race(ropes=2, points=2)
     scene.charts = charts = RaceCharts(scene.race)
@@ -508,7 +545,9 @@ def test_the_curves_of_a_rope_that_has_diverged_end_and_a_cross_says_when():
         errors = columns[method_label := next(label for label in columns if label.startswith("1 "))]
         end = 1 + int(np.flatnonzero(np.isnan(errors[1:]))[0])  # an error begins after the start
         assert np.isnan(errors[end:]).all()
-        assert np.isnan(numbers[method_label][end:]).all()
+        lost = 1 + int(np.flatnonzero(np.isnan(numbers[method_label][1:]))[0])
+        assert np.isnan(numbers[method_label][lost:]).all()
+        assert lost >= end  # files have the last numbers of a divergence, too
         assert np.isfinite(errors[1:end]).all()
         assert np.flatnonzero(np.isfinite(columns[said])).tolist() == [end]
         assert numbers[said] is None  # a mark, no number for files

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from app.messages import Ask, BaseParams, KeptState
 from app.panel.compare import PaneWords
 from app.scenes.comparisons import check_count, headings, middle_of, shared_parameters, with_shared
-from app.scenes.moments import arrays_in
 from app.scenes.setups import Setup
 from app.server.loop import SimLoop
 from app.server.shared_clock import Seat, SharedClock
+from app.server.snapshots import kept_state
 from sim.parameters import clamp_value
 
 if TYPE_CHECKING:
@@ -61,12 +61,12 @@ class ComparedLabs:
         """The run of the first lab, to go on from later; None where it does not answer."""
         loop = self.first.loop
         answer: Future[object] = Future()
-        loop.commands.put(Ask(loop.scene.keep, answer))
+        loop.commands.put(Ask(lambda: kept_state(loop.run), answer))
         try:
-            value = answer.result(KEEP_TIMEOUT)
+            state = answer.result(KEEP_TIMEOUT)
         except Exception:
             return None
-        return loop, self.first.settings.params, KeptState(value, arrays_in(value))
+        return (loop, self.first.settings.params, state) if isinstance(state, KeptState) else None
 
     def seat(self, viewer: "Viewer") -> None:
         """Give the lab's loop a place at the clock, in place of that of an earlier loop of it; all begin again.

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable
 
-from app.messages import Advance, BaseParams, Command, Take
+from app.messages import Advance, BaseParams, Command, Reset, Take
 from app.scenes.compiling import Compiling, Job
 from app.scenes.contract import AnyKind
-from app.server.merging import merged
+from app.server.merging import Record, merged, records_of
 
 
 class CompileGate:
@@ -14,12 +14,11 @@ class CompileGate:
     The simulation thread alone calls it and changes it; the viewer thread reads `notice`.
     """
 
-    def __init__(self, compiling: Compiling, kind: AnyKind, params: BaseParams) -> None:
-        """params: those that run."""
+    def __init__(self, compiling: Compiling, kind: AnyKind, record: Record) -> None:
+        """record: the one that runs."""
         self.compiling, self.kind = compiling, kind
-        self.params = params  # those that were handed over last
-        self.held: list[Take] = []  # wait for the compiler, in order
-        self.programs: list[Advance] = []  # wait for what was set before them
+        self.record = record  # the one that was handed over last
+        self.held: list[Command] = []  # parameters that wait for the compiler, and what waits for them, in order
         self.jobs: dict[BaseParams, list[Job]] = {}  # still to be compiled, asked for once and not in each tick
         self.notice = ""  # pending compilation, in words
 
@@ -37,35 +36,59 @@ class CompileGate:
     def admit(self, commands: Iterable[Command]) -> list[Command]:
         """The commands that can be handled now, in order.
 
-        Parameters that cannot run yet wait, and come later by themselves, before a program's wait that was asked for
-        after them. Newer ones that can run drop them, as those are of no more interest: an undo, or another preset.
+        Parameters that cannot run yet wait, and come later by themselves. A reset and a program's wait that were asked
+        for after them come after them. Other commands concern the scene that is shown, and pass. Newer parameters that
+        can run drop those that wait (`drop_held`).
         """
-        admitted: list[Command] = self.passed()
+        admitted = self.passed()
         for command in commands:
-            if isinstance(command, Advance) and self.held:
-                self.programs.append(command)
-                continue
-            if not isinstance(command, Take):
-                admitted.append(command)
-                continue
-            if self.is_ready(command.params):
-                admitted += self.passed()  # of those that wait, what is ready by now
-                self.held = [command]
+            if isinstance(command, Take):
+                admitted += self.passed(command)
+            elif self.held and isinstance(command, Advance | Reset):
+                self.held.append(command)
             else:
-                self.held = [take for take in merged([*self.held, command], self.params) if isinstance(take, Take)]
-            admitted += self.passed()
+                admitted.append(command)
+                self.note([command])
         return admitted
 
-    def passed(self) -> list[Command]:
-        """Those of the parameters that wait that can run now, up to the first that cannot."""
-        ready: list[Command] = []
-        while self.held and self.is_ready(self.held[0].params):
-            take = self.held.pop(0)
-            self.params = take.params
-            ready.append(take)
+    def passed(self, newer: Take | None = None) -> list[Command]:
+        """The commands that wait and can be handled now, up to the first that cannot. newer: comes after them."""
+        passed = self.pop_ready()
+        if newer is not None:
+            self.held = self.drop_held(newer) if self.held else [newer]
+            passed += self.pop_ready()
+        return passed
+
+    def pop_ready(self) -> list[Command]:
+        """Take out those that can be handled now."""
+        count = 0
+        for command in self.held:
+            if isinstance(command, Take) and not self.is_ready(command.params):
+                break
+            count += 1
+        ready, self.held = self.held[:count], self.held[count:]
+        self.note(ready)
         if ready and not self.held:
             self.jobs.clear()
             self.notice = ""
-            ready += self.programs
-            self.programs.clear()
         return ready
+
+    def drop_held(self, newer: Take) -> list[Command]:
+        """What waits once newer parameters have come: without those that are of no more interest.
+
+        An undo goes back past all that waits. Other parameters that can run take the place of those that wait, and
+        begin the run of their act or go back to it, but where they come after a moment: that has parameters of its own.
+        """
+        waiting = [command for command in self.held if isinstance(command, Take)]
+        if newer.changes_only:
+            if not self.is_ready(newer.params) or any(take.state is not None for take in waiting):
+                return merged([*self.held, newer], self.record)
+            back = any(take.back and take.act == newer.act for take in waiting)
+            newer = newer._replace(start=any(take.start and take.back == back for take in waiting), back=back)
+        elif not newer.back and not self.is_ready(newer.params):
+            return merged([*self.held, newer], self.record)
+        return [newer, *(command for command in self.held if isinstance(command, Advance))]
+
+    def note(self, commands: Iterable[Command]) -> None:
+        """Note the record to which commands that are handled lead."""
+        self.record = records_of(self.record, commands)[-1]

@@ -281,6 +281,7 @@ class Viewer:
         (self.came.set if self.visitors() else self.came.clear)()
         if self.current is not None:
             self.current.commands.put(Release(client.client_id))
+            self.current.settings.history.release(client.client_id)
 
     def close(self, picture_time: float | None = None) -> None:
         """Close the open scene. picture_time: [s] to wait for its last picture; None: as long as it takes."""

@@ -3,6 +3,8 @@
 // viser sends a text field at each keystroke. Here a text is sent once it is complete: on Enter or when the field is left.
 // Escape brings the value back; the arrows change its second digit. A list or button that was used gives up the focus, so
 // that the keys of the lab (space, N, R, digits) never type into a list or press a button a second time.
+//
+// Of viser this file uses window.__viserMutable.sendMessage.
 
 (() => {
   "use strict";
@@ -105,6 +107,21 @@
     // A click by keyboard has no detail: the focus stays where Tab has brought it.
     if (used && event.detail > 0) document.activeElement?.blur();
   });
+
+  // What a slider sets until it is let go is one change for Undo: the lab is told when it is held, and when no longer.
+  let held = false;
+  function tellHeld(now) {
+    const holder = document.querySelector("[data-springtide-held]");
+    if (now === held || !holder) return;
+    held = now;
+    const uuid = now ? holder.dataset.springtideHeld : holder.dataset.springtideFree;
+    window.__viserMutable?.sendMessage?.({ type: "GuiUpdateMessage", uuid, updates: { value: true } });
+  }
+  document.addEventListener("pointerdown", ({ target }) => {
+    if (target instanceof Element && target.closest(".multi-slider")) tellHeld(true);
+  }, true);
+  for (const end of ["pointerup", "pointercancel"]) document.addEventListener(end, () => tellHeld(false), true);
+  addEventListener("blur", () => tellHeld(false));
 
   // Assistive software finds a field by its name: viser's labels refer to an identifier that its text fields lack.
   function nameFields() {

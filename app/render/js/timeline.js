@@ -28,7 +28,7 @@
   let state = null, told = "", count = 0, held = false, sentAt = 0, waiting = 0;
 
   function send(act, number) {
-    const updates = { value: `${PAGE}${++count} ${act} ${number}` };
+    const updates = { value: `${PAGE}${++count} ${act} ${number} ${state.run}` };
     window.__viserMutable?.sendMessage?.({ type: "GuiUpdateMessage", uuid: state.inbox, updates });
   }
 

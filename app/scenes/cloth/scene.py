@@ -102,7 +102,7 @@ class ClothScene(NetScene[ClothParams]):
             self.student = student_cloth.StudentCloth(live.cloth)
         self.tuner = ThreadTuner()
         self.grab = ParticleGrab()
-        super().__init__(params, len(SERIES))
+        super().__init__(params)
 
     @property
     def faster(self) -> str:

@@ -101,7 +101,7 @@ class RopeScene(NetScene[RopeParams]):
 
             self.student = student_rope.StudentRope(live.rope)
         self.handles = RopeHandles()
-        super().__init__(params, len(SERIES))
+        super().__init__(params)
 
     @property
     def grab(self) -> ParticleGrab:  # type: ignore[override]

@@ -253,14 +253,14 @@ def test_steps_that_are_kept_whole_are_abandoned_for_a_new_beginning(busy):
 def test_a_reset_that_takes_long_says_that_it_has_begun(busy):
     def long_reset():
         busy.give_turn()
-        seen.append(busy.latest.status.starts)
+        seen.append(busy.latest.status.run.number)
         reset()
 
     seen, reset, busy.run.activity = [], busy.scene.reset, NOTHING
     busy.scene.reset = long_reset
     busy.commands.put(Reset())
     busy.tick(0.0)
-    assert seen == [1]
+    assert seen == [2]
     assert busy.run.request[STOP] == 0
 
 

@@ -32,7 +32,7 @@ def recorded() -> Any:
         loop.tick(1 / 30)
         wall += 1 / 30 + 1e-6
         recorder.note(loop.latest, wall)
-        rows += loop.run.snapshots.pop_rows()
+        rows += [row for _, row in loop.run.snapshots.pop_rows()]
     return kind, recorder.kept(), Plotted(rows, {})
 
 

@@ -18,9 +18,9 @@ from app.notebook.picture import Still, take_still
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import make_setup, preset_setup, read_query, with_values, write_query
-from app.server.access import Access, make_key
 from app.server.served_scene import ServedScene
 from app.server.viewer import Viewer
+from app.server.web.access import Access, make_key
 from sim.parameters import check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_number, is_whole_number
 

@@ -1,7 +1,7 @@
 """The map of the open scene over step and stiffness: measured on request, drawn in the panel, clickable.
 
 viser has no picture that answers a click. The map is SVG in an HTML element. Its click handler moves a hidden slider
-of two handles; from there on a click is a change like any other, which `app/server/guard.py` bounds.
+of two handles; from there on a click is a change like any other, which `app/server/web/guard.py` bounds.
 Of viser's inner names the handler uses `window.__viserMutable.sendMessage`; `tests/browser/test_rope.py` clicks it.
 """
 

@@ -10,9 +10,9 @@ from app.messages import Ask, BaseParams, KeptState
 from app.panel.compare import PaneWords
 from app.scenes.comparisons import check_count, headings, middle_of, shared_parameters, with_shared
 from app.scenes.setups import Setup
-from app.server.loop import SimLoop
-from app.server.shared_clock import Seat, SharedClock
-from app.server.snapshots import kept_state
+from app.server.loop.shared_clock import Seat, SharedClock
+from app.server.loop.sim_loop import SimLoop
+from app.server.loop.snapshots import kept_state
 from sim.parameters import clamp_value
 
 if TYPE_CHECKING:

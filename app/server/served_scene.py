@@ -7,20 +7,20 @@ import traceback
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app.messages import BaseParams, Command, Halt, Vector
+from app.messages import BaseParams, Command, Halt
 from app.panel.compare import Beside
 from app.panel.panel import Panel
 from app.panel.recorder import Kept
-from app.panel.settings import Placing, SceneSettings
-from app.render.cameras import ClientCamera, client_cameras, fit_cameras, place_cameras, place_client_camera
+from app.panel.settings import SceneSettings
 from app.render.html import note
 from app.scenes import NAMES, view_named
 from app.scenes.compiling import describe
-from app.scenes.contract import AnyKind, AnyScene, AnySnapshot
-from app.server.compile_gate import CompileGate
-from app.server.loop import ALONE_INTERVAL, SimLoop
+from app.scenes.contract import AnyKind, AnyScene
+from app.server.loop.clock import PATIENCE
+from app.server.loop.commands import CompileGate
+from app.server.loop.sim_loop import ALONE_INTERVAL, SimLoop
+from app.server.placing import CameraPlacing
 from app.server.replay_file import replay_html
-from app.server.tick_clock import PATIENCE
 
 if TYPE_CHECKING:
     from app.server.viewer import Viewer
@@ -55,16 +55,13 @@ class ServedScene:
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
         self.recorded: Kept | None = None  # the frame of the recording that is shown
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
-        self.placed: Placing | None = None  # what was done last of `settings.placing`
-        self.fitting: tuple[dict[int, ClientCamera], tuple[ClientCamera, ...]] = {}, ()  # see `fit_cameras`
-        self.run = 0  # number of the run that is shown
         self.stop = threading.Event()
         self.is_open = True
         self.threads: list[threading.Thread] = []
         self.commands, self.scene, params = commands, scene, scene.params
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = view_named(kind.name)(self.server, self.commands.put)
-        place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
+        self.cameras = CameraPlacing(self.server, self.view, params)
         self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want)
         self.panel = Panel(
             self.server, self.view, self.settings, scenes=NAMES, workbook=viewer.workbook, session=viewer.session,
@@ -123,41 +120,12 @@ class ServedScene:
                 self.shown = snapshot.serial
                 self.drawn += 1
                 self.attempt("picture", lambda: self.view.show(snapshot.frame))
-                replayed = snapshot.status.replayed
-                if replayed is not None and not snapshot.status.halted:
-                    self.fit_cameras(snapshot.params, replayed)
-                if snapshot.status.run.number != self.run:
-                    self.run = snapshot.status.run.number
-                    self.end_fitting()
-                self.place_cameras(snapshot)  # after the picture: another scene size moves cameras
+                self.cameras.update(snapshot, self.settings.placing)  # another scene size moves cameras
             self.recorded = recorded
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
         recorder.note(snapshot, now)
         recorder.note_sent(recorded)
-
-    def place_cameras(self, snapshot: AnySnapshot) -> None:
-        """Place the cameras as a preset, a link or an undo asks for, once the run is shown that it begins."""
-        placing = self.settings.placing
-        if placing is None or placing is self.placed or placing.act != snapshot.status.run.act:
-            return
-        self.placed = placing
-        if placing.first_view:
-            place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
-        for camera in placing.cameras:
-            place_client_camera(self.server, camera)
-
-    def fit_cameras(self, params: BaseParams, corners: tuple[Vector, Vector]) -> None:
-        """Have all cameras show the last moments of a run that diverged. corners: of what they fill [m]."""
-        before = self.fitting[0] or {camera.client: camera for camera in client_cameras(self.server)}
-        fit_cameras(self.server, self.view.first_view(params), self.view.FIELD_OF_VIEW, corners)
-        self.fitting = before, client_cameras(self.server)
-
-    def end_fitting(self) -> None:
-        """Another run: put the cameras back that nobody has moved since they were fitted."""
-        (before, fitted), self.fitting = self.fitting, ({}, ())
-        for camera in set(fitted) & set(client_cameras(self.server)):
-            place_client_camera(self.server, before.get(camera.client))
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
         """Run a drawing action; an exception halts the run once, and this thread goes on."""

@@ -27,14 +27,14 @@ from app.scenes import NAMES, scene_named
 from app.scenes.compiling import Compiling
 from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
 from app.scenes.setups import make_setup
-from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.beside import ComparedLabs, Comparing
-from app.server.guard import Opened, open_pane, open_server, quiet
-from app.server.loop import SimLoop
-from app.server.panes import Panes
+from app.server.loop.sim_loop import SimLoop
 from app.server.preparation import Preparation, cover
 from app.server.served_scene import MAX_JOIN_TIME, ServedScene
-from app.server.transport import Transport
+from app.server.web.access import OWN_PAGES_ONLY, Access
+from app.server.web.guard import Opened, open_pane, open_server, quiet
+from app.server.web.panes import Panes
+from app.server.web.transport import Transport
 
 if TYPE_CHECKING:
     from app.lab.session import Session

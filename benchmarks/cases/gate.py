@@ -8,8 +8,7 @@ from app.messages import Take
 from app.scenes import NAMES, scene_named
 from app.scenes.compiling import Compiling
 from app.scenes.timer import effort_clock
-from app.server.compile_gate import CompileGate
-from app.server.merging import Record
+from app.server.loop.commands import CompileGate, Record
 
 EVENTS, QUICK_EVENTS = 200, 5  # records of a slider that moves
 LARGE: dict[str, dict[str, Any]] = {"rope": {"points": 1000}, "cloth": {"rows": 128, "cols": 128}}

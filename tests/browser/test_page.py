@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from app.server.access import Access
 from app.server.viewer import Viewer
+from app.server.web.access import Access
 from tests.browser.conftest import new_page
 
 

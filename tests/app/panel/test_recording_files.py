@@ -16,7 +16,7 @@ from app.panel import recording_files
 from app.panel.recorder import Kept, Recorder
 from app.panel.recording_files import Plotted, arrays_of, plots_csv, plots_svg, recording_npz
 from app.scenes import NAMES, scene_named
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from app.server.viewer import Viewer
 
 SMALL: dict[str, dict[str, Any]] = {  # scene -> what makes it cheap; a new scene needs no entry

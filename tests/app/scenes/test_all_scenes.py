@@ -10,7 +10,7 @@ import pytest
 from app.messages import GrabTo, Release, Reset
 from app.scenes import NAMES, scene_named
 from app.scenes.charts import Chart
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.parameters import Parameter, check_record, parameters_of
 
 PRESETS = [(name, preset) for name in NAMES for preset in scene_named(name).presets]

@@ -33,7 +33,7 @@ from app.scenes.mooring.restoring import StaticInputs, static_curve
 from app.scenes.mooring.start import NO_REST
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import MooringView
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.mooring import balance, critical_step, interior
 from sim.parameters import Parameter, check_record, parameters_of
 from sim.validation import ConvergenceError, DivergenceError

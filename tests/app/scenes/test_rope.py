@@ -21,7 +21,7 @@ from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, SPHERE
 from app.scenes.springs.ropes_view import bead_radius
 from app.scenes.springs.tracking import CriticallyDampedTracker
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record, parameters_of
 from sim.springs import INTEGRATORS
 from sim.springs.analysis.extremes import extremes

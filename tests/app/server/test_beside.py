@@ -15,11 +15,11 @@ from app.messages import StepOnce
 from app.scenes.comparisons import COMPARISONS
 from app.scenes.rope.parameters import PRESETS
 from app.scenes.setups import read_query
-from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.viewer import Viewer
+from app.server.web.access import OWN_PAGES_ONLY, Access
 from tests import coroutines
-from tests.app.server.test_guard import say
-from tests.app.server.test_transport import decoded
+from tests.app.server.web.test_guard import say
+from tests.app.server.web.test_transport import decoded
 from tests.waiting import wait_for
 
 KEY = "k-3_" * 5

@@ -17,7 +17,7 @@ from app.panel.recording_files import Plotted
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import scene_named, view_named
 from app.scenes.setups import read_setup
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from app.server.replay_file import BITS, MAX_FRAMES, MAX_RAW_BYTES, replay_html, rounded, thinned
 
 DURATION = 2.0  # [s]

@@ -24,7 +24,9 @@ def place(browser: Visitor) -> list[float]:
 
 async def begun(lab: Viewer, number: int) -> None:
     """Another run than that of a number is shown, and its cameras are placed."""
-    await until(lambda: lab.loop.run.identity.number > number and lab.served.run == lab.loop.run.identity.number)
+    await until(
+        lambda: lab.loop.run.identity.number > number and lab.served.cameras.run == lab.loop.run.identity.number
+    )
 
 
 def test_the_camera_is_a_browsers_and_a_preset_places_all(lab: Viewer) -> None:

@@ -11,10 +11,10 @@ from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
-from app.server.activity import BEGINNING, NOTHING, STEPS
-from app.server.loop import SimLoop
-from app.server.snapshots import MAX_BLIND_TIME
-from app.server.tick_clock import PATIENCE
+from app.server.loop.clock import PATIENCE
+from app.server.loop.commands import BEGINNING, NOTHING, STEPS
+from app.server.loop.sim_loop import SimLoop
+from app.server.loop.snapshots import MAX_BLIND_TIME
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA

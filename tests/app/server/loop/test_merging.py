@@ -32,10 +32,10 @@ from app.messages import (
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
-from app.server.loop import SimLoop
-from app.server.merging import Record, merged
-from app.server.replay import Replay
-from app.server.run import Goal
+from app.server.loop.commands import Record, merged
+from app.server.loop.replay import Replay
+from app.server.loop.run import Goal
+from app.server.loop.sim_loop import SimLoop
 from sim.parameters import parameter
 
 ORIGIN = (0.0, 0.0, 0.0)

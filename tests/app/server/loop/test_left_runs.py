@@ -8,8 +8,8 @@ import pytest
 from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup
-from app.server import run as runs
-from app.server.loop import SimLoop
+from app.server.loop import run as runs
+from app.server.loop.sim_loop import SimLoop
 from app.server.viewer import Viewer
 from tests.waiting import wait_for
 

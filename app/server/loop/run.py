@@ -13,12 +13,11 @@ from app.messages import BaseParams, KeptState, Pause, Play, PlotRow, RunIdentit
 from app.panel.recorder import FrameMemory
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
-from app.server.activity import BEGINNING, NOTHING, OTHER_FORCES, STEPS, Activity
-from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
-from app.server.replay import Replay
-from app.server.shared_clock import Seat
-from app.server.snapshots import Snapshots, kept_state
-from app.server.tick_clock import TickClock
+from app.server.loop.clock import MAX_CATCH_UP, SOLVE_SHARE, FixedStep, TickClock
+from app.server.loop.commands import BEGINNING, NOTHING, OTHER_FORCES, STEPS, Activity
+from app.server.loop.replay import Replay
+from app.server.loop.shared_clock import Seat
+from app.server.loop.snapshots import Snapshots, kept_state
 from sim.interruption import ABANDON, STOP, InterruptionError
 from sim.parameters import effect_of_change
 from sim.validation import DivergenceError

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from app.messages import BaseParams, KeptState, PlotRow, RunLine, RunRow, Snapshot, Status, where_not_finite
 from app.scenes.contract import AnySnapshot
 from app.scenes.moments import arrays_in
-from app.server.activity import NOTHING, STEPS, Activity
+from app.server.loop.commands import NOTHING, STEPS, Activity
 from sim.interruption import InterruptionError
 from sim.validation import DivergenceError
 
 if TYPE_CHECKING:
-    from app.server.run import SceneRun
+    from app.server.loop.run import SceneRun
 
 MAX_BLIND_TIME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least

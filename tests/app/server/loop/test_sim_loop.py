@@ -27,10 +27,9 @@ from app.messages import (
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.server.loop import IDLE_INTERVAL, SimLoop
-from app.server.pacer import MAX_LONG_FRAME, SOLVE_SHARE, FixedStep
-from app.server.run import HURRY_INTERVAL
-from app.server.tick_clock import MAX_FRAME_INTERVAL, PATIENCE
+from app.server.loop.clock import MAX_FRAME_INTERVAL, MAX_LONG_FRAME, PATIENCE, SOLVE_SHARE, FixedStep
+from app.server.loop.run import HURRY_INTERVAL
+from app.server.loop.sim_loop import IDLE_INTERVAL, SimLoop
 from sim.parameters import parameter
 from sim.validation import DivergenceError
 from tests.waiting import wait_for
@@ -392,7 +391,7 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
 def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time(
     late: float, interval: float, apart: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.server.tick_clock.TIMER_STEP", 0.0)
+    monkeypatch.setattr("app.server.loop.clock.TIMER_STEP", 0.0)
     loop, scene = make(gives_way=True)
     clock, stop, starts = scene.clock, threading.Event(), []
 

@@ -19,9 +19,9 @@ from app.panel.settings import SceneSettings
 from app.scenes import NAMES, scene_named
 from app.scenes.compiling import Compiling, Job
 from app.scenes.contract import Advice
-from app.server.compile_gate import CompileGate
-from app.server.loop import SimLoop
-from app.server.snapshots import kept_state
+from app.server.loop.commands import CompileGate
+from app.server.loop.sim_loop import SimLoop
+from app.server.loop.snapshots import kept_state
 
 MAX_ACTS = 6
 STEPS = 2

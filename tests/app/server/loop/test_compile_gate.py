@@ -6,8 +6,7 @@ from app.messages import Advance, KeptState, Pause, Play, Reset, Take
 from app.scenes.compiling import Compiling, Job
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import SCENE
-from app.server.compile_gate import CompileGate
-from app.server.merging import Record
+from app.server.loop.commands import CompileGate, Record
 
 
 class Queue(Compiling):

@@ -33,11 +33,20 @@ from app.messages import (
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.timer import effort_clock, fine_timer
-from app.server.activity import NOTHING, OTHER_FORCES, STEPS
-from app.server.merging import Motion, Record, begins_anew, effect_of_takes, is_urgent, merged
-from app.server.run import Runs, SceneRun
-from app.server.shared_clock import Seat
-from app.server.tick_clock import Clock, TickClock
+from app.server.loop.clock import Clock, TickClock
+from app.server.loop.commands import (
+    NOTHING,
+    OTHER_FORCES,
+    STEPS,
+    Motion,
+    Record,
+    begins_anew,
+    effect_of_takes,
+    is_urgent,
+    merged,
+)
+from app.server.loop.run import Runs, SceneRun
+from app.server.loop.shared_clock import Seat
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do

@@ -89,20 +89,17 @@ class SceneSettings:
         """Set one parameter, bounded to its range."""
         self.set_all({name: value})
 
-    def set_all(self, values: Mapping[str, object], *, begins: bool = False) -> None:
-        """Set parameters, each bounded to its range: one change. begins: and start again, whatever they affect."""
+    def set_all(self, values: Mapping[str, object], *, restarts: bool = False) -> None:
+        """Set parameters, each bounded to its range: one change. restarts: and start again, whatever they affect."""
         known = parameters_of(self.params)
-        params = dataclasses.replace(self.params, **{name: clamp_value(known[name], values[name]) for name in values})
-        if params == self.params and not begins:
+        good = {name: clamp_value(known[name], value) for name, value in values.items()}
+        changed = [name for name, value in good.items() if value != getattr(self.params, name)]
+        if not changed and not restarts:
             return
-        number = next(iter(values)) if len(values) == 1 else ""
-        if number and (known[number].choices or known[number].kind is bool):
-            number = ""
-        act = self.history.note(
-            self.now(),
-            number="" if begins else number,
-            begins=begins or effect_of_change(self.params, params) == "start",
-        )
+        params = dataclasses.replace(self.params, **good)
+        is_number = len(changed) == 1 and not known[changed[0]].choices and known[changed[0]].kind is not bool
+        begins = restarts or effect_of_change(self.params, params) == "start"
+        act = self.history.note(self.now(), number=changed[0] if is_number and not restarts else "", begins=begins)
         self.take(Take(params, act=act), self.loaded)
 
     def toggle_plots(self) -> None:
@@ -112,7 +109,7 @@ class SceneSettings:
 
     def follow(self, advice: Advice) -> None:
         """Set the parameter of an advice, and start again."""
-        self.set_all({advice.name: advice.value}, begins=True)
+        self.set_all({advice.name: advice.value}, restarts=True)
 
     def load(self, preset: str) -> None:
         """Every parameter as the preset has it, and the scene from its start."""

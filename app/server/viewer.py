@@ -2,6 +2,8 @@
 
 # pyright: reportPrivateUsage=false
 
+import contextlib
+import itertools
 import queue
 import threading
 import time
@@ -93,6 +95,8 @@ class Viewer:
         self.changing = threading.Lock()
         # Scenes that browsers ask for, with parameters where a task or a link has them, and a link's camera.
         self.wanted: queue.SimpleQueue[tuple[str, BaseParams | None, ClientCamera | None]] = queue.SimpleQueue()
+        self.requests = itertools.count(1)  # numbers of those to come
+        self.asked = 0  # number of the last one
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
         gui = self.server.gui
         set_theme(gui, dark=False)
@@ -102,35 +106,49 @@ class Viewer:
         self.server.on_client_disconnect(self.release)
 
     def open(
-        self, name: str, params: BaseParams | None = None, *, paused: bool = False, first_look: bool = False
-    ) -> None:
-        """Show a scene, in place of the one that is open.
+        self,
+        name: str,
+        params: BaseParams | None = None,
+        *,
+        paused: bool = False,
+        first_look: bool = False,
+        given_up: Callable[[], bool] = lambda: False,
+    ) -> bool:
+        """Show a scene, in place of the one that is open. Returns False where it was given up before it was there.
 
         params: None for those that the scene was first given. Where there are none: with `first_look` those of a preset
         that keeps moving, otherwise the defaults. first_look: a browser asked for it; parameters of a task of the lab
-        are not kept. Whatever fails leaves a page that says why and offers the scenes; the exception is raised.
+        are not kept. given_up: whether nobody waits for it any more. Whatever fails leaves a page that says why and
+        offers the scenes; the exception is raised.
         """
         with self.changing:
             if self.ended:
-                return
+                return False
+            asked = self.asked
             try:
                 kind = scene_named(name)
                 if params is None:
                     params = self.first_params.get(name) or (make_setup(kind).params if first_look else kind.params())
                 elif not first_look:
                     self.first_params.setdefault(name, params)
-                ready = self.preparation.compile(kind, params, covers=not self.is_open, given_up=self.is_given_up)
+                ready = self.preparation.compile(
+                    kind, params, covers=not self.is_open, given_up=lambda: given_up() or self.is_given_up(asked)
+                )
                 if not ready or self.ended:
-                    return
+                    return False
                 self.close()
                 self.make(kind, params, paused)
+                return True
             except BaseException as error:
                 self.show_failure(name, error)
                 raise
 
-    def is_given_up(self) -> bool:
-        """True if the scene that is being prepared is not wanted any more: the lab ended, or another was asked for."""
-        return self.ended or (self.is_open and not self.wanted.empty())
+    def is_given_up(self, asked: int) -> bool:
+        """True if the lab ended, or another scene was asked for after the request `asked`, while one is open.
+
+        Another request is in the queue, or was taken out and waits until this one is done with.
+        """
+        return self.ended or (self.is_open and (not self.wanted.empty() or self.asked != asked))
 
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
         """Make the scene and serve it, with a line on the page meanwhile."""
@@ -189,6 +207,7 @@ class Viewer:
     def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
         """Ask for a scene; it is opened on a separate thread."""
         self.wanted.put((name, params, camera))
+        self.asked = next(self.requests)
 
     def open_wanted(self) -> None:
         """Open the scenes that browsers ask for; of several waiting only the last."""
@@ -271,10 +290,15 @@ class Viewer:
         return () if comparison is None else comparison.words()
 
     def share_parameters(self, params: BaseParams) -> None:
-        """Copy the common parameters to the labs beside this one."""
+        """Share the common parameters with the labs beside this one."""
         comparison = self.comparison
         if comparison is not None:
-            comparison.share(self, params)
+            comparison.shared.take(self, params)
+
+    def call(self, action: Callable[[], None]) -> None:
+        """Call a function on viser's event loop, soon; a lab that has been shut is not called."""
+        with contextlib.suppress(RuntimeError):  # the event loop is closed
+            self.server.get_event_loop().call_soon_threadsafe(action)
 
     async def release(self, client: viser.ClientHandle) -> None:
         """Release the objects that a browser drags, as it comes or goes."""

@@ -12,7 +12,16 @@
       return false; // a page of another address shows this one
     }
   })();
-  if (framed) document.documentElement.classList.add("springtide-framed", "springtide-bare");
+  if (framed) {
+    document.documentElement.classList.add("springtide-framed", "springtide-bare");
+    // viser connects again only while its page has the focus, which one frame has at most: all have it with their page.
+    const hasFocus = () => window.parent.document.hasFocus();
+    let had = hasFocus();
+    document.hasFocus = hasFocus;
+    setInterval(() => {
+      if (hasFocus() !== had) dispatchEvent(new Event((had = !had) ? "focus" : "blur"));
+    }, 1000); // [ms]
+  }
 
   function update() {
     if (!framed && document.querySelector('[data-springtide-beside]:not([data-springtide-beside="[]"])')) {

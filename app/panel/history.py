@@ -52,7 +52,7 @@ class History:
         return self.act
 
     def press(self, client: int) -> None:
-        """A browser holds a slider: what changes from here on is another act."""
+        """A browser holds a slider: later changes are another act."""
         self.hands.add(client)
         self.number = ""
 

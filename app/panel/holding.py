@@ -11,7 +11,7 @@ from app.render.viser_types import GuiHandle, ViserEvent
 
 
 def add_holding(gui: viser.GuiApi, history: History) -> None:
-    """The buttons; what a browser sets while it holds a slider is one act of the history."""
+    """The buttons; all changes by a slider while it is held are one act of the history."""
     held: GuiHandle = gui.add_button("Slider held", visible=False)
     free: GuiHandle = gui.add_button("Slider free", visible=False)
 

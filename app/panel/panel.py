@@ -149,6 +149,7 @@ class Panel:
 
     def close(self) -> None:
         """Stop the threads of this panel, and keep unfinished input."""
+        self.settings.is_open = False
         if self.guide is not None:
-            self.guide.flush()
+            self.guide.close()
         self.controls_tab.close()

@@ -53,6 +53,7 @@ class SceneSettings:
         # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
         self.loaded = self.nearest_preset(params)
         self.history = History()
+        self.is_open = True  # False once another scene takes its place
         self.placing: Placing | None = None  # for the viewer; the last one counts
         self.watchers: list[Callable[[], None]] = []  # called after each change, to show it
 

@@ -49,7 +49,7 @@ class SharedRecord:
             self.show(viewer)
 
     def take(self, source: "Viewer", params: BaseParams) -> None:
-        """Parameters of a lab have changed: write what a person has changed there, and nothing that it was told."""
+        """Parameters of a lab have changed: write the changes of a person there, and none that it was told."""
         before, self.seen[source] = vars(self.seen.get(source, params)), params
         if source not in self.told:
             self.write(source, {name: value for name, value in vars(params).items() if before.get(name) != value})
@@ -99,7 +99,7 @@ class ComparedLabs:
 
         resume: the run of the first lab is to go on from here when the comparison ends.
         """
-        first, asked = self.first, self.first.asked
+        first, asked = self.first, self.first.requests.number
         self.left = self.kept() if resume else None
         try:
             for number, setup in enumerate(others, 2):

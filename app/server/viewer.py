@@ -3,7 +3,6 @@
 # pyright: reportPrivateUsage=false
 
 import contextlib
-import itertools
 import queue
 import threading
 import time
@@ -32,6 +31,7 @@ from app.scenes.setups import make_setup
 from app.server.beside import ComparedLabs, Comparing
 from app.server.loop.sim_loop import SimLoop
 from app.server.preparation import Preparation, cover
+from app.server.requests import SceneRequest, SceneRequests
 from app.server.served_scene import MAX_JOIN_TIME, ServedScene
 from app.server.web.access import OWN_PAGES_ONLY, Access
 from app.server.web.guard import Opened, open_pane, open_server, quiet
@@ -93,10 +93,7 @@ class Viewer:
         self.current: ServedScene | None = None  # the scene that was opened last; it may be closed
         self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first given
         self.changing = threading.Lock()
-        # Scenes that browsers ask for, with parameters where a task or a link has them, and a link's camera.
-        self.wanted: queue.SimpleQueue[tuple[str, BaseParams | None, ClientCamera | None]] = queue.SimpleQueue()
-        self.requests = itertools.count(1)  # numbers of those to come
-        self.asked = 0  # number of the last one
+        self.requests = SceneRequests()
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
         gui = self.server.gui
         set_theme(gui, dark=False)
@@ -124,7 +121,7 @@ class Viewer:
         with self.changing:
             if self.ended:
                 return False
-            asked = self.asked
+            asked = self.requests.number
             try:
                 kind = scene_named(name)
                 if params is None:
@@ -144,11 +141,8 @@ class Viewer:
                 raise
 
     def is_given_up(self, asked: int) -> bool:
-        """True if the lab ended, or another scene was asked for after the request `asked`, while one is open.
-
-        Another request is in the queue, or was taken out and waits until this one is done with.
-        """
-        return self.ended or (self.is_open and (not self.wanted.empty() or self.asked != asked))
+        """True if the lab ended, or another scene was asked for after the request `asked`, while one is open."""
+        return self.ended or (self.is_open and self.requests.is_newer(asked))
 
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
         """Make the scene and serve it, with a line on the page meanwhile."""
@@ -206,15 +200,12 @@ class Viewer:
 
     def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
         """Ask for a scene; it is opened on a separate thread."""
-        self.wanted.put((name, params, camera))
-        self.asked = next(self.requests)
+        self.requests.put(SceneRequest(name, params, camera))
 
     def open_wanted(self) -> None:
         """Open the scenes that browsers ask for; of several waiting only the last."""
         while not self.ended:
-            name, params, camera = self.wanted.get()
-            while not self.wanted.empty():
-                name, params, camera = self.wanted.get()
+            name, params, camera = self.requests.pop()
             try:
                 if name in NAMES:
                     self.open(name, params, first_look=True)

@@ -100,7 +100,7 @@ class Halt(NamedTuple):
 class Reset(NamedTuple):
     """Back to the start of the scene; parameters and camera stay."""
 
-    run: int = 0  # number of the run that begins, so that an undo can go back to the one before; 0: no undo does
+    act: int = 0  # number of the person's act that asks for it (`History`); 0: no person does
 
 
 class KeptState(NamedTuple):
@@ -108,24 +108,26 @@ class KeptState(NamedTuple):
 
     value: object  # as `Scene.keep` gave it
     arrays: Mapping[int, int]  # identity -> bytes of each array in it; some are shared with the states before
+    run: int = 0  # number of the run that it is of
 
 
 class Take(NamedTuple):
     """Take a whole record of parameters; of several the latest counts.
 
-    The scene goes on as the effect of the change asks for.
+    Parameters of another act than the one with which the present run began begin another run. Others go on with the
+    present one, as the effect of the change asks for.
     """
 
     params: BaseParams  # the scene's record
     start: bool = False  # begin again and run, whatever has changed, as for a preset
     state: KeptState | None = None  # go on from here and run; of a scene that had these parameters
-    run: int = 0  # number of the run with these parameters; 0: that of no panel
-    back: bool = False  # with `start`: go back to the run of that number, as it was when it was left
+    act: int = 0  # number of the act with which the run of these parameters begins; 0: that of the present run
+    back: bool = False  # go back to the last run of that act, as it was when it was left; `start`: if it was not kept
 
     @property
     def changes_only(self) -> bool:
-        """True if the run goes on from where it is, unless a parameter that has changed affects the start."""
-        return not self.start and self.state is None
+        """True if the run goes on from where it is, unless it is of another act or affects the start."""
+        return not self.start and self.state is None and not self.back
 
 
 class Place(NamedTuple):
@@ -188,7 +190,43 @@ SceneCommand = (
 Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
 
 
-PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES); a NaN time clears the plots
+class RunIdentity(NamedTuple):
+    """Identity of a run: the loop gives each run a number where it begins, and nothing else does."""
+
+    number: int = 1  # in the order in which the runs of a scene begin
+    act: int = 1  # number of the person's act with which it began (`History`)
+    before: int = 0  # number of the run from a moment of which it goes on; 0: it began at the start of the scene
+    since: float = 0.0  # [s] of simulated time at that moment
+
+
+class RunLine:
+    """The runs to which a record over time belongs: the present one, and those that it goes on from."""
+
+    def __init__(self) -> None:
+        self.runs: list[RunIdentity] = []
+
+    @property
+    def number(self) -> int:
+        """Number of the present run; 0 before the first."""
+        return self.runs[-1].number if self.runs else 0
+
+    def follow(self, run: RunIdentity) -> float:
+        """Take a run for the present one, unless it is older than that.
+
+        Returns the time [s] up to which the record belongs to it: infinity for the same run, minus infinity for one
+        that has nothing in common with it.
+        """
+        if run.number <= self.number:
+            return math.inf
+        while self.runs and self.runs[-1].number != run.before:
+            self.runs.pop()
+        end = run.since if self.runs else -math.inf
+        self.runs.append(run)
+        return end
+
+
+PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES)
+RunRow = tuple[RunIdentity, PlotRow]  # a plot row with the run that it is of
 
 
 class Status(NamedTuple):
@@ -202,7 +240,7 @@ class Status(NamedTuple):
     capped: bool  # time that could not be made up is being dropped
     frame_rate: float  # frames per second published
     halted: str  # why the run stopped by itself, or ""
-    starts: int = 0  # how often it was begun again, by a reset or a preset
+    run: RunIdentity = RunIdentity()
     # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
     replayed: tuple[Vector, Vector] | None = None
     unmade: bool = False  # the scene could not begin with its parameters

@@ -12,7 +12,7 @@ from app.panel.recorder import Recorder
 from app.panel.recording_files import Plotted
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from app.server.replay_file import replay_html
 
 FOLDER = Path(__file__).with_name("replays")

@@ -115,7 +115,7 @@ def test_a_file_of_tests_lies_where_its_module_lies():
     for module, name in {
         "sim/springs/forces/water.py": "tests/sim/springs/",
         "app/scenes/mooring/report.py": "tests/app/scenes/test_mooring",
-        "app/server/loop.py": "tests/app/server/",
+        "app/server/loop/sim_loop.py": "tests/app/server/",
         "sim/validation.py": "tests/sim/test_validation.py",
     }.items():
         files = files_for(module)

@@ -16,7 +16,7 @@ from app.commands.serve import LOOPBACK, reached_host, say, wait_until
 from app.lab.class_page import page, policy, rows
 from app.lab.classroom import Classroom
 from app.lab.task import load_tasks
-from app.server.access import make_key
+from app.server.web.access import make_key
 
 END_INTERVAL = 0.1  # [s] between two looks of the server whether to end
 PATIENCE = 20.0  # [s] for which a request for what is new waits

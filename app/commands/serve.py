@@ -16,8 +16,8 @@ from collections.abc import Callable, Generator, Sequence
 from typing import TYPE_CHECKING, Any, LiteralString
 
 from app.render.html import fill, note
-from app.server.access import KEY_VARIABLE, Access, read_base_path, read_key, read_origin
-from app.server.guard import Opened, is_loopback, open_server, quiet
+from app.server.web.access import KEY_VARIABLE, Access, read_base_path, read_key, read_origin
+from app.server.web.guard import Opened, is_loopback, open_server, quiet
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def serve_lab(
     beside it. resumes: keep the set-up for the next start that does.
 
     The page is there before the scene is, and shows what is compiled. workbook: None for the guide of the course lab.
-    base_path, origins: of a proxy; see `app/server/access.py`. The key is taken from the environment.
+    base_path, origins: of a proxy; see `app/server/web/access.py`. The key is taken from the environment.
 
     Raises ValueError for what is no address, path or origin.
     """

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from app.messages import Advance, Ask, Pause, Play, Reset
+from app.messages import Advance, Ask, Pause, Play
 from app.notebook.dataset import to_dataset
 from app.notebook.output import Output, cell_of_now
 from app.notebook.picture import Still, take_still
 from app.scenes import scene_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import make_setup, preset_setup, read_query, with_values, write_query
-from app.server.access import Access, make_key
 from app.server.served_scene import ServedScene
 from app.server.viewer import Viewer
+from app.server.web.access import Access, make_key
 from sim.parameters import check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_number, is_whole_number
 
@@ -84,11 +84,7 @@ class Lab:
         good = {name: check_value(name, known[name], plain(value)) for name, value in values.items()}
         settings = self._open.settings
 
-        def set_all() -> None:
-            for name, value in good.items():
-                settings.set(name, value)
-
-        self._on_event_loop(set_all)
+        self._on_event_loop(lambda: settings.set_all(good))
 
     def wait(self, seconds: float) -> float:
         """Let the lab run for `seconds` [s] of simulated time, to a whole step; returns the time then [s].
@@ -105,7 +101,7 @@ class Lab:
 
     def reset(self) -> None:
         """Begin the run again, with the parameters as they are."""
-        self._open.commands.put(Reset())
+        self._on_event_loop(self._open.settings.reset)
 
     def play(self) -> None:
         """Let the clock run."""

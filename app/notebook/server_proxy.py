@@ -4,7 +4,7 @@ import os
 import sys
 from pathlib import Path
 
-from app.server.access import KEY_HEADER, KEY_VARIABLE, make_key
+from app.server.web.access import KEY_HEADER, KEY_VARIABLE, make_key
 
 START_TIMEOUT = 60.0  # [s]
 LAB_VARIABLE = "SPRINGTIDE_LAB"  # the student's folder

@@ -17,10 +17,11 @@ from app.scenes.setups import Setup
 
 
 class PaneWords(NamedTuple):
-    """Title of a pane, and the middle of its scene [m]."""
+    """Title of a pane, the middle of its scene [m], and whether a browser is connected to it."""
 
     heading: str
     middle: tuple[float, float]
+    connected: bool
 
 
 class Beside(NamedTuple):

@@ -61,7 +61,7 @@ class ControlsTab:
 
         read = cast(Callable[[], SpringParams], lambda: self.settings.params)
         with self.gui.add_folder("Stability map", expand_by_default=False):
-            return stability_map.StabilityMapPanel(self.gui, scene, read, self.settings.set)
+            return stability_map.StabilityMapPanel(self.gui, scene, read, self.settings.set_all)
 
     def show_settings(self) -> None:
         """Show the settings beside the controls: the help, and whether there is an event to run on to."""

@@ -6,13 +6,13 @@ Callbacks run on viser's event loop. Each file is made in a separate thread.
 import io
 import re
 import threading
-import traceback
 import zipfile
 from collections.abc import Callable, Sequence
 
 import viser
 
 from app.messages import Pause
+from app.panel.long_work import LongWork
 from app.panel.picture import take_picture
 from app.panel.plots import Plots
 from app.panel.recorder import Kept, Recorder
@@ -44,7 +44,7 @@ PAGE_BUTTONS = (
     '</option></select></label><button type="button" data-springtide-clip>Record</button></div>'
 )
 
-Make = Callable[[viser.ClientHandle], tuple[str, bytes]]  # name and content of a file
+Make = Callable[[viser.ClientHandle, LongWork], tuple[str, bytes]]  # name and content of a file
 MakeReplay = Callable[[AnyKind, Sequence[Kept], Plotted], str]
 
 
@@ -58,13 +58,11 @@ class Files:
         recorder: Recorder,
         plots: Plots,
         make_replay: MakeReplay,
-        say: Callable[[str, str], None],
     ) -> None:
-        """make_replay: makes the page of a replay. say: shows a text below the buttons of a group."""
+        """make_replay: makes the page of a replay."""
         self.server, self.settings, self.recorder, self.plots = server, settings, recorder, plots
-        self.make_replay, self.say_in = make_replay, say
+        self.make_replay = make_replay
         self.busy = threading.Lock()  # one file at a time
-        self.group = ""  # in which the line on it stands
 
     def add_run(self) -> None:
         """The files that hold the run."""
@@ -81,10 +79,6 @@ class Files:
         self.transparent = gui.add_checkbox("Transparent background", initial_value=False)
         gui.add_button_group("", (PICTURE,)).on_click(self.on_file)
 
-    def say(self, text: str) -> None:
-        """Say something below the button that was pressed last."""
-        self.say_in(self.group, text)
-
     async def on_file(self, event: ViserEvent) -> None:
         """Make a file in a separate thread, and send it to the browser that asks."""
         client = event.client
@@ -92,42 +86,37 @@ class Files:
             return
         settings, plots, kind = self.settings, self.plots, self.settings.kind
         makers: dict[str, Make] = {
-            PLOTS: lambda _: (file_name(settings, ".csv"), plots_csv(kind, plots.plotted()).encode()),
-            CHARTS: lambda _: (file_name(settings, ".svg"), plots_svg(kind, plots.plotted()).encode()),
+            PLOTS: lambda _, __: (file_name(settings, ".csv"), plots_csv(kind, plots.plotted()).encode()),
+            CHARTS: lambda _, __: (file_name(settings, ".svg"), plots_svg(kind, plots.plotted()).encode()),
             PICTURE: self.picture_file,
-            REPLAY: lambda _: self.replay_file(),
-            ARRAYS: lambda _: (file_name(settings, ".npz"), recording_npz(kind, self.recorder.kept())),
+            REPLAY: lambda _, __: self.replay_file(),
+            ARRAYS: lambda _, __: (file_name(settings, ".npz"), recording_npz(kind, self.recorder.kept())),
             FILM: self.film_file,
         }
-        self.group = "This run" if event.target.value in (REPLAY, ARRAYS) else "Files"
         if not self.busy.acquire(blocking=False):
-            self.say("Another file is still being made.")
+            client.add_notification(event.target.value, "Another file is still being created.", auto_close_seconds=10.0)
             return
-        self.say(f"{event.target.value}: being made …")
-        threading.Thread(
-            target=self.send, args=(makers[event.target.value], client), name="file for the page", daemon=True
-        ).start()
+        make, work = makers[event.target.value], LongWork(client, event.target.value, "Couldn't create the file")
+        work.start(lambda: self.send(make, client, work), self.busy.release)
 
-    def send(self, make: Make, client: viser.ClientHandle) -> None:
-        """Make a file and send it; whatever goes wrong is said in the folder."""
-        try:
-            name, content = make(client)
-            client.send_file_download(name, content, save_immediately=True)
-            self.say(f"{name}, {len(content) / 1e6:.2f} MB, was sent to the browser.")
-        except (ValueError, TimeoutError, RuntimeError) as reason:
-            self.say(f"No file was made: {reason}")
-        except Exception as error:
-            traceback.print_exc()
-            self.say(f"No file was made: {type(error).__name__}: {error}")
-        finally:
-            self.busy.release()
+    def send(self, make: Make, client: viser.ClientHandle, work: LongWork) -> str:
+        """Make a file and send it; returns the words on its end."""
+        name, content = make(client, work)
+        client.send_file_download(name, content, save_immediately=True)
+        return f"{name}, {len(content) / 1e6:.2f} MB, was sent to the browser."
 
-    def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """One browser's view, drawn again at the chosen size."""
+    def picture_file(self, client: viser.ClientHandle, _: LongWork) -> tuple[str, bytes]:
+        """One browser's view, drawn again at the chosen size. Raises ValueError where it is of another scene by now."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
+        self.check_open()
         return file_name(self.settings, ".png"), picture
 
-    def film_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
+    def check_open(self) -> None:
+        """Raise ValueError where another scene is shown."""
+        if not self.settings.is_open:
+            raise ValueError("another scene was opened before it was there")
+
+    def film_file(self, client: viser.ClientHandle, work: LongWork) -> tuple[str, bytes]:
         """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.
 
         Raises ValueError where nothing was recorded, or where a hand chose another moment meanwhile.
@@ -149,8 +138,9 @@ class Files:
                 self.server.flush()
                 take_picture(client, BARRIER_SIZE)
                 film.writestr(f"{number:04d}.png", take_picture(client, size, transparent=transparent))
+                self.check_open()
                 times.append(f"{number:04d}.png,{kept.time!r}")
-                self.say(f"{FILM}: {number} of {len(chosen)}. Choose another moment to end it.")
+                work.say(f"{number} of {len(chosen)}. Click any other moment to stop.")
                 if content.tell() > MAX_FILM:
                     break
             film.writestr("times.csv", "\n".join(times) + "\n")

@@ -208,7 +208,7 @@ class GuideTab:
         self.revision: int = workbook.revision
         self.refusal = ""  # why the last thing that was asked for was not possible
         self.unwritten = ""  # why a step could not be ticked off at the last look
-        self.pictures = ReportPictures(workbook, self.look_again)
+        self.pictures = ReportPictures(workbook)
         self.shown: Task | None = None
         self.questions: list[QuestionWidgets] = []
         workbook.go_to_scene(kind.name)
@@ -250,11 +250,7 @@ class GuideTab:
         """Take a picture of a browser's view for the report, named by scene and time."""
         now = self.values.get("time")
         at = f"-{now.value:.0f}s" if isinstance(now, LiveNumber) else ""
-        self.pictures.start(client, task, f"{self.kind.name}{at}")
-
-    def look_again(self) -> None:
-        """Show everything anew at the next update."""
-        self.stale = True
+        self.pictures.start(client, task, f"{self.kind.name}{at}", lambda: self.shown is self.workbook.task is task)
 
     def attempt(self, action: Callable[[], None]) -> str:
         """Do something; returns why it was not possible, or ""."""
@@ -286,7 +282,7 @@ class GuideTab:
         if self.workbook.revision != self.revision:
             self.revision, stale = self.workbook.revision, True
         if task is not self.shown:
-            self.refusal = self.unwritten = self.pictures.said = ""
+            self.refusal = self.unwritten = ""
             self.show_task(task)
         elif refresh or stale:
             self.show_values(task)
@@ -371,8 +367,7 @@ class GuideTab:
     def said(self) -> Html:
         """The failed action and its cause."""
         error = self.refusal or self.unwritten or self.workbook.answers.error
-        said = fill('<div class="springtide-refusal" role="alert">{}</div>', error) if error else Html()
-        return join((said, faint(self.pictures.said))) if self.pictures.said else said
+        return fill('<div class="springtide-refusal" role="alert">{}</div>', error) if error else Html()
 
     def answer_text(self, task: Task) -> Html:
         """The law, and the answer with the present values, or the settings that the scene lacks."""
@@ -384,6 +379,11 @@ class GuideTab:
             hint = coloured(f"Press “{SET_UP}” for the numbers.", WARNING_COLOUR)
             return fill('<div class="springtide-answer">{}{}</div>', laws, hint)
         return fill('<div class="springtide-answer">{}{}</div>', laws, fill_in(guide.answer, self.values))
+
+    def close(self) -> None:
+        """End, and keep the texts that are being typed."""
+        self.shown = None
+        self.flush()
 
     def flush(self) -> None:
         """Keep the texts that are being typed."""

@@ -1,4 +1,4 @@
-"""Earlier settings, which undo brings back, with the runs that had them."""
+"""Earlier settings, which undo brings back, with the acts that began their runs."""
 
 import collections
 import itertools
@@ -9,7 +9,7 @@ from app.messages import BaseParams
 from app.render.cameras import ClientCamera
 
 MAX_SETTINGS = 100  # kept; beyond that the oldest are dropped
-SAME_CHANGE = 1.0  # [s] within which changes of one parameter, as a slider is moved, count as one
+SAME_CHANGE = 1.0  # [s] after a change of a number, or the release of its slider, within which it goes on
 
 
 class EarlierSettings(NamedTuple):
@@ -17,37 +17,56 @@ class EarlierSettings(NamedTuple):
 
     params: BaseParams
     preset: str
-    run: int = 1  # number of the run, which `History.note` sets
-    cameras: tuple[ClientCamera, ...] = ()  # of all browsers
+    act: int = 1  # number of the act that began their run, which `History.note` sets
+    runs: bool = False  # that act has the lab run, as a preset does; set by `History.note` too
+    cameras: tuple[ClientCamera, ...] = ()  # of all browsers, before a change that places them
 
 
 class History:
-    """The settings before each change, the last one first to be taken, and the numbers of the runs."""
+    """The settings before each act of a person, the last one first to be taken, and the numbers of the acts.
+
+    An act is what a person does at once, whatever it sets. Changes of one number are one act as long as a slider is
+    held, and where they follow each other soon.
+    """
 
     def __init__(self) -> None:
-        self.run, self.runs = 1, itertools.count(2)  # number of the present run, and of those to come
+        self.act, self.runs = 1, False  # that began the present run: at first the opening of the scene
+        self.acts = itertools.count(2)  # numbers of those to come
         self.settings: collections.deque[EarlierSettings] = collections.deque(maxlen=MAX_SETTINGS)
-        self.last = "", 0.0  # what was changed last, and when [s]
+        self.number, self.changed_at = "", 0.0  # name of the number that was changed last, and when [s]
+        self.hands: set[int] = set()  # browsers in which a slider is held
 
-    def note(self, before: EarlierSettings, what: str, *, begins: bool = False) -> int:
-        """Keep the settings before a change. what: the parameter or the preset. begins: it begins another run.
+    def note(self, before: EarlierSettings, *, number: str = "", begins: bool = False, runs: bool = False) -> int:
+        """Keep the settings before a change. number: name of the number that changes, alone.
 
-        Returns the number of the run after it.
+        begins: it begins another run. runs: and has the lab run. Returns the number of the act that begins the run
+        after it.
         """
-        name, at = self.last
-        now = time.monotonic()
-        self.last = what, now
-        if name != what or now - at > SAME_CHANGE:
-            self.settings.append(before._replace(run=self.run))
+        goes_on = number != "" and number == self.number
+        goes_on = goes_on and (bool(self.hands) or time.monotonic() - self.changed_at <= SAME_CHANGE)
+        self.number, self.changed_at = number, time.monotonic()
+        if not goes_on:
+            self.settings.append(before._replace(act=self.act, runs=self.runs))
             if begins:
-                self.run = next(self.runs)
-        return self.run
+                self.act, self.runs = next(self.acts), runs
+        return self.act
+
+    def press(self, client: int) -> None:
+        """A browser holds a slider: later changes are another act."""
+        self.hands.add(client)
+        self.number = ""
+
+    def release(self, client: int) -> None:
+        """A browser holds no slider any more, or has left. What it sent last may still come."""
+        if client in self.hands:
+            self.hands.discard(client)
+            self.changed_at = time.monotonic()
 
     def take_last(self) -> EarlierSettings | None:
         """Settings before the last change that is still kept; None if there is none. Their run is the present one."""
-        self.last = "", 0.0
+        self.number = ""
         if not self.settings:
             return None
         settings = self.settings.pop()
-        self.run = settings.run
+        self.act, self.runs = settings.act, settings.runs
         return settings

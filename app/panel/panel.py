@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import viser
 
 from app.lab.workbook import Workbook
-from app.messages import PlotRow
+from app.messages import RunRow
 from app.panel.changes import Changes
 from app.panel.compare import Beside, Compare
 from app.panel.controls import Controls
@@ -20,6 +20,7 @@ from app.panel.display import add_switches, add_theme_buttons
 from app.panel.files import MakeReplay
 from app.panel.guide import GuideTab
 from app.panel.head import Head
+from app.panel.holding import add_holding
 from app.panel.keys import add_keys
 from app.panel.plots import Plots
 from app.panel.recorder import Recorder
@@ -66,6 +67,7 @@ class Panel:
         self.status_at = self.marks_at = 0.0
         self.plots = Plots(server, kind)
         add_theme_buttons(gui, view)
+        add_holding(gui, settings.history)
         self.head = Head(gui, view, settings, scenes, self.place_first_view)
         self.controls = Controls(gui, lambda: settings.params, settings.set)
         self.recorder = Recorder(kind.packing, wake)
@@ -117,7 +119,7 @@ class Panel:
         """Put the camera of a browser where a new one would be."""
         place_camera(client.camera, *self.view.first_view(self.settings.params), self.view.FIELD_OF_VIEW)
 
-    def update(self, snapshot: AnySnapshot, rows: list[PlotRow], busy: float = 0.0) -> None:
+    def update(self, snapshot: AnySnapshot, rows: list[RunRow], busy: float = 0.0) -> None:
         """Show the state of the loop at a few hertz, and at once if it starts, stops or halts.
 
         rows: new plot rows. busy: [s] that the present tick has taken.
@@ -147,6 +149,7 @@ class Panel:
 
     def close(self) -> None:
         """Stop the threads of this panel, and keep unfinished input."""
+        self.settings.is_open = False
         if self.guide is not None:
-            self.guide.flush()
+            self.guide.close()
         self.controls_tab.close()

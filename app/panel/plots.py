@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from viser import uplot
 
 from app.formats.round_step import round_step
-from app.messages import ChartLine, PlotRow
+from app.messages import ChartLine, PlotRow, RunIdentity, RunLine, RunRow
 from app.panel.recording_files import Plotted
 from app.render.viser_types import GuiHandle
 from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
@@ -93,6 +93,7 @@ class Plots:
     def __init__(self, server: viser.ViserServer, kind: AnyKind) -> None:
         self.server, self.kind = server, kind
         self.rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_ROWS)
+        self.line = RunLine()  # the runs of the rows
         self.charts: dict[str, viser.GuiUplotHandle] = {}  # by the parameter that opens it
         self.looks: dict[str, Look] = {}  # label, lines and scales of each chart
         self.sent: dict[str, object] = {}  # the ends of the rows that each plot shows
@@ -120,15 +121,18 @@ class Plots:
         """The rows that are kept, and the whole charts of now."""
         return Plotted(tuple(self.rows), self.curves)
 
-    def update(self, snapshot: AnySnapshot, rows: list[PlotRow], moment: float | None = None) -> None:
+    def follow(self, run: RunIdentity) -> None:
+        """Drop the rows that do not belong to a run."""
+        end = self.line.follow(run)
+        while self.rows and self.rows[-1][0] > end:
+            self.rows.pop()
+
+    def update(self, snapshot: AnySnapshot, rows: list[RunRow], moment: float | None = None) -> None:
         """Take new rows and, at a few hertz, send open charts. moment: time to show [s]; None: the last."""
-        for row in rows:
-            if row[0] != row[0]:  # a NaN time: the run starts over
-                self.rows.clear()
-            else:
-                while self.rows and self.rows[-1][0] >= row[0]:  # it has gone on from an earlier moment
-                    self.rows.pop()
-                self.rows.append(row)
+        for run, row in rows:
+            self.follow(run)
+            self.rows.append(row)
+        self.follow(snapshot.status.run)
         self.curves = cast(Mapping[str, Chart | Columns], snapshot.curves or {})
         now = time.monotonic()
         if now - self.sent_at < SEND_INTERVAL:

@@ -10,7 +10,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from app.messages import BaseParams, KeptState
+from app.messages import BaseParams, KeptState, RunLine
 from app.scenes.contract import AnySnapshot, FramePacking
 from app.scenes.moments import arrays_in
 
@@ -82,7 +82,8 @@ class FrameMemory:
 class Recorder:
     """Records on the viewer's thread; the page's controls choose on viser's event loop. One lock for both.
 
-    While a frame is chosen, the page shows it, and nothing is recorded. A run that begins again begins a new recording.
+    While a frame is chosen, the page shows it, and nothing is recorded. Another run begins a new recording; one that
+    goes on from a moment of the recording continues it there.
     Where memory is short, frames are taken out, the more the older they are: the time between those that stay grows in
     proportion to their age. Those with a state stay rather than others.
     """
@@ -95,7 +96,7 @@ class Recorder:
         self.memory = FrameMemory()
         self.spacing = 0.0  # time between frames over their age when frames were taken out last
         self.noted_at = 0.0  # [s] of the clock, of the last frame
-        self.starts = -1
+        self.line = RunLine()  # the runs of the frames
         self.was_running = False  # at the last snapshot: where a frame is chosen the lab pauses a little later
         self.position: int | None = None  # of the frame that is shown; None: the present
         self.playing = False
@@ -112,12 +113,14 @@ class Recorder:
             if status.running and not self.was_running:  # the lab goes on: the present is shown
                 self.position, self.playing = None, False
             self.was_running = status.running
-            if status.starts != self.starts:
-                self.starts = status.starts
-                self.clear()
-            while self.frames and self.frames[-1].time > status.time:  # it has gone on from an earlier moment
+            known = self.line.number
+            # Within a run time goes back where its last moments are shown again.
+            end = min(self.line.follow(status.run), status.time)
+            while self.frames and self.frames[-1].time > end:
                 self.forget(self.frames.pop())
                 self.position, self.playing = None, False
+            if self.line.number != known:
+                self.position, self.playing, self.spacing = None, False, 0.0
 
     def note(self, snapshot: AnySnapshot, wall: float) -> None:
         """Record a snapshot of a running scene; best once it is drawn, as its packed form can be kept.
@@ -171,12 +174,6 @@ class Recorder:
             else:
                 self.forget(kept)
         self.frames = frames
-
-    def clear(self) -> None:
-        """Forget all frames, and show the present."""
-        self.frames.clear()
-        self.memory, self.spacing = FrameMemory(), 0.0
-        self.position, self.playing = None, False
 
     def span(self) -> tuple[float, float]:
         """Simulated times [s] of the first and the last frame; (0, 0) where there is none."""

@@ -1,8 +1,8 @@
 """The settings of the open scene: its parameters, the preset that they come from, and what an undo brings back."""
 
 import dataclasses
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, TypeAlias
 
 import viser
 
@@ -22,8 +22,18 @@ OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
 OpenScene: TypeAlias = Callable[[str, BaseParams | None, ClientCamera | None], None]
 
 
+class Placing(NamedTuple):
+    """Cameras that are to be placed once the first picture of a run is shown."""
+
+    act: int  # with which the run begins
+    first_view: bool  # every camera as that of a new browser
+    cameras: tuple[ClientCamera, ...] = ()  # those of single browsers, after that
+
+
 class SceneSettings:
-    """The settings of one scene. Each change of them posts one command, then calls the watchers.
+    """The settings of one scene. Each act of a person is one change, with one entry in the history.
+
+    Each change posts one command, then calls the watchers.
 
     Changes come on viser's event loop, one after the other; other threads read `params`.
     """
@@ -43,7 +53,8 @@ class SceneSettings:
         # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
         self.loaded = self.nearest_preset(params)
         self.history = History()
-        self.cameras: tuple[ClientCamera, ...] = ()  # of what is being loaded, for the viewer to place
+        self.is_open = True  # False once another scene takes its place
+        self.placing: Placing | None = None  # for the viewer; the last one counts
         self.watchers: list[Callable[[], None]] = []  # called after each change, to show it
 
     @property
@@ -77,32 +88,40 @@ class SceneSettings:
 
     def set(self, name: str, value: object) -> None:
         """Set one parameter, bounded to its range."""
-        good = clamp_value(parameters_of(self.params)[name], value)
-        if getattr(self.params, name) == good:
+        self.set_all({name: value})
+
+    def set_all(self, values: Mapping[str, object], *, restarts: bool = False) -> None:
+        """Set parameters, each bounded to its range: one change. restarts: and start again, whatever they affect."""
+        known = parameters_of(self.params)
+        good = {name: clamp_value(known[name], value) for name, value in values.items()}
+        changed = [name for name, value in good.items() if value != getattr(self.params, name)]
+        if not changed and not restarts:
             return
-        params = dataclasses.replace(self.params, **{name: good})
-        run = self.note(name, begins=effect_of_change(self.params, params) == "start")
-        self.take(Take(params, run=run), self.loaded)
+        params = dataclasses.replace(self.params, **good)
+        is_number = len(changed) == 1 and not known[changed[0]].choices and known[changed[0]].kind is not bool
+        begins = restarts or effect_of_change(self.params, params) == "start"
+        act = self.history.note(self.now(), number=changed[0] if is_number and not restarts else "", begins=begins)
+        self.take(Take(params, act=act), self.loaded)
 
     def toggle_plots(self) -> None:
         """Open all plots, or close them if one is open."""
         plots = [name for name in parameters_of(self.params) if name in self.kind.plots or name in self.kind.curves]
-        on = not any(getattr(self.params, name) for name in plots)
-        for name in plots:
-            self.set(name, on)
+        self.set_all(dict.fromkeys(plots, not any(getattr(self.params, name) for name in plots)))
 
     def follow(self, advice: Advice) -> None:
         """Set the parameter of an advice, and start again."""
-        self.set(advice.name, advice.value)
-        self.reset()
+        self.set_all({advice.name: advice.value}, restarts=True)
 
     def load(self, preset: str) -> None:
-        """Every parameter as the preset has it, and the scene from its start: one command."""
+        """Every parameter as the preset has it, and the scene from its start."""
         self.load_params(self.params_of(preset), preset)
 
-    def load_params(self, params: BaseParams, preset: str) -> None:
-        """Take parameters, and the scene from its start: one command. preset: that they come from."""
-        self.take(Take(params, start=True, run=self.note(preset, begins=True)), preset)
+    def load_params(self, params: BaseParams, preset: str, cameras: tuple[ClientCamera, ...] = ()) -> None:
+        """Take parameters, and the scene from its start. preset: that they come from. cameras: of single browsers."""
+        before = self.now(cameras=client_cameras(self.server))
+        act = self.history.note(before, begins=True, runs=True)
+        self.placing = Placing(act, first_view=True, cameras=cameras)
+        self.take(Take(params, start=True, act=act), preset)
 
     def set_up(self, setup: task.TaskSetup) -> None:
         """Show the set-up of a task. Raises ValueError for an unknown scene, preset or parameter."""
@@ -114,30 +133,32 @@ class SceneSettings:
         if setup.scene != self.kind.name:
             self.open_scene(setup.scene, setup.params, camera)
             return
-        self.cameras = () if camera is None else (camera,)
-        self.load_params(with_fields_of(self.params, setup.params), setup.preset or next(iter(self.kind.presets)))
+        params = with_fields_of(self.params, setup.params)
+        self.load_params(params, setup.preset or next(iter(self.kind.presets)), () if camera is None else (camera,))
 
     def open_first_view_of(self, scene: str) -> None:
         """Show another scene in its first view."""
         self.open_scene(scene, None, None)
 
     def resume(self, params: BaseParams, state: KeptState) -> None:
-        """Have the scene go on from a state, with the parameters that it had then: one command."""
-        self.take(Take(params, state=state, run=self.note("moment", begins=True)), self.loaded)
+        """Have the scene go on from a state, with the parameters that it had then."""
+        act = self.history.note(self.now(), begins=True, runs=True)
+        self.take(Take(params, state=state, act=act), self.loaded)
 
     def reset(self) -> None:
         """Begin the scene again."""
-        self.post(Reset(self.note("reset", begins=True)))
+        self.post(Reset(self.history.note(self.now(), begins=True)))
 
     def undo(self) -> None:
-        """The settings before the last change, and the run that had them if that change has begun another."""
-        run, settings = self.history.run, self.history.take_last()
+        """The settings before the last act, and the run that had them if that act has begun another."""
+        act, settings = self.history.act, self.history.take_last()
         if settings is None:
             return
         known = settings.preset in self.presets  # a set-up of the user may be gone
-        back = settings.run != run
-        self.cameras = settings.cameras if back else ()
-        take = Take(settings.params, start=back, run=settings.run, back=back)
+        back = settings.act != act
+        if settings.cameras:
+            self.placing = Placing(settings.act, first_view=False, cameras=settings.cameras)
+        take = Take(settings.params, start=back and settings.runs, act=settings.act, back=back)
         self.take(take, settings.preset if known else next(iter(self.kind.presets)))
 
     def read_own(self, chosen: str = "") -> None:
@@ -149,10 +170,9 @@ class SceneSettings:
             self.loaded = next(iter(self.kind.presets))
         self.tell()
 
-    def note(self, what: str, *, begins: bool) -> int:
-        """Keep the settings for an undo, before a change. Returns the number of the run after it (`History.note`)."""
-        now = EarlierSettings(self.params, self.loaded, cameras=client_cameras(self.server))
-        return self.history.note(now, what, begins=begins)
+    def now(self, cameras: tuple[ClientCamera, ...] = ()) -> EarlierSettings:
+        """The settings as they are, for the history. cameras: of all browsers, if they are about to be placed."""
+        return EarlierSettings(self.params, self.loaded, cameras=cameras)
 
     def take(self, command: Take, preset: str) -> None:
         """Take parameters, and have the simulation take them too. preset: that they come from."""

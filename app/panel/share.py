@@ -65,7 +65,7 @@ class Share:
         self.server, self.settings, self.plots = server, settings, plots
         self.changes, self.workbook, self.beside = changes, workbook, beside
         gui = server.gui
-        self.files = Files(server, settings, recorder, plots, make_replay, self.say)
+        self.files = Files(server, settings, recorder, plots, make_replay)
         self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
         # Identity of buttons -> the buttons, their names, and the time [s] until which they say that it is done.
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
@@ -103,7 +103,6 @@ class Share:
             self.add_line("This set-up")
         with gui.add_folder("Files"):
             self.files.add()
-            self.add_line("Files")
 
     def add_line(self, group: str) -> None:
         """The line of a group, below its buttons."""

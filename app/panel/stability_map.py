@@ -1,7 +1,7 @@
 """The map of the open scene over step and stiffness: measured on request, drawn in the panel, clickable.
 
 viser has no picture that answers a click. The map is SVG in an HTML element. Its click handler moves a hidden slider
-of two handles; from there on a click is a change like any other, which `app/server/guard.py` bounds.
+of two handles; from there on a click is a change like any other, which `app/server/web/guard.py` bounds.
 Of viser's inner names the handler uses `window.__viserMutable.sendMessage`; `tests/browser/test_rope.py` clicks it.
 """
 
@@ -10,7 +10,7 @@ import itertools
 import math
 import threading
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -96,9 +96,9 @@ class StabilityMapPanel:
         gui: viser.GuiApi,
         scene: StabilityMap,
         read: Callable[[], SpringParams],
-        take: Callable[[str, float], None],
+        take: Callable[[Mapping[str, float]], None],
     ) -> None:
-        """read: the parameters as set now; take: sets a parameter, on viser's event loop."""
+        """read: the parameters as set now; take: sets parameters at once, on viser's event loop."""
         self.scene, self.read, self.take = scene, read, take
         self.button = gui.add_button(
             "Measure the map", hint="Measures which time steps and stiffnesses are stable; click the map to go there"
@@ -163,11 +163,13 @@ class StabilityMapPanel:
         """Set step and stiffness to a place in the map, (0, 0) its lower left corner and (1, 1) its upper right."""
         if self.axes is None:
             return
-        for name, values, part in (
-            ("time_step", self.axes.steps, place[0]),
-            (self.axes.parameter, self.axes.stiffnesses, place[1]),
-        ):
-            self.take(name, float(f"{values[0] * (values[-1] / values[0]) ** min(max(part, 0.0), 1.0):.3g}"))
+        self.take({
+            name: float(f"{values[0] * (values[-1] / values[0]) ** min(max(part, 0.0), 1.0):.3g}")
+            for name, values, part in (
+                ("time_step", self.axes.steps, place[0]),
+                (self.axes.parameter, self.axes.stiffnesses, place[1]),
+            )
+        })  # fmt: skip
 
 
 def place_of(values: NDArray[np.float64], value: float) -> float:

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import viser
 
 from app.messages import Pause, Play
-from app.panel.recorder import RATES, Kept, Recorder
+from app.panel.recorder import RATES, Recorder
 from app.panel.settings import SceneSettings
 from app.render.html import fill
 from app.render.viser_inside import uuid_of
@@ -26,8 +26,7 @@ class Timeline:
     def __init__(self, gui: viser.GuiApi, recorder: Recorder, settings: SceneSettings) -> None:
         self.recorder, self.settings = recorder, settings
         self.span_at = 0.0
-        self.told: Kept | None = None  # frame of the recording that the pages know of
-        self.told_playing = False
+        self.told: tuple[object, ...] = ()  # what the pages know of: the shown frame, whether it plays, and the run
         self.is_running = False  # the lab, at the last update
         self.ran_before = False  # the lab ran when a page chose a frame of the recording
         self.actions: dict[str, Callable[[float], None]] = {
@@ -39,13 +38,16 @@ class Timeline:
         self.state = gui.add_html("")
 
     async def on_inbox(self, _: ViserEvent) -> None:
-        """A page has sent its own word, which is new each time, an action, and the action's number."""
+        """A page has sent its own word, which is new each time, an action, its number, and the number of the run.
+
+        A time of another run than the recorded one means nothing in this one.
+        """
         words = self.inbox.value.split()
         try:
-            action, number = self.actions[words[1]], float(words[2])
+            action, number, run = self.actions[words[1]], float(words[2]), int(words[3])
         except (LookupError, ValueError):
             return
-        if math.isfinite(number):
+        if math.isfinite(number) and run == self.recorder.line.number:
             action(number)
             self.recorder.wake()
 
@@ -97,12 +99,14 @@ class Timeline:
         self.is_running = running
         now = time.monotonic()
         recorder, shown = self.recorder, self.recorder.shown
-        if shown is self.told and recorder.playing == self.told_playing and now - self.span_at < SPAN_INTERVAL:
+        present = id(shown), recorder.playing, recorder.line.number
+        if present == self.told and now - self.span_at < SPAN_INTERVAL:
             return
-        self.span_at, self.told, self.told_playing = now, shown, recorder.playing
+        self.span_at, self.told = now, present
         low, high = recorder.span()
         state = {
             "inbox": uuid_of(self.inbox),
+            "run": recorder.line.number,
             "low": round(low, 3),
             "high": round(high, 3),
             "shown": None if shown is None else round(shown.time, 3),

@@ -16,17 +16,16 @@ def row_number(t: float, interval: float) -> int:
 
 
 class PlotRows:
-    """Rows of `columns` values, one each `interval` [s] of simulated time."""
+    """Rows of values, one each `interval` [s] of simulated time."""
 
-    def __init__(self, columns: int, interval: float = ROW_INTERVAL) -> None:
-        self.columns, self.interval = columns, interval
+    def __init__(self, interval: float = ROW_INTERVAL) -> None:
+        self.interval = interval
         self.waiting: collections.deque[PlotRow] = collections.deque(maxlen=MAX_WAITING_ROWS)
         self.restart()
 
     def restart(self) -> None:
-        """Clear the plots, by a row without numbers (see `app/messages.py`)."""
+        """Begin again, with the row of the start."""
         self.waiting.clear()
-        self.waiting.append((math.nan,) * (self.columns + 1))
         self.number = -1  # of the last row; the first is that of the start
 
     def resume(self) -> None:

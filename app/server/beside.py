@@ -2,23 +2,83 @@
 
 import threading
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from typing import TYPE_CHECKING
 
 from app.messages import Ask, BaseParams, KeptState
 from app.panel.compare import PaneWords
 from app.scenes.comparisons import check_count, headings, middle_of, shared_parameters, with_shared
-from app.scenes.moments import arrays_in
 from app.scenes.setups import Setup
-from app.server.loop import SimLoop
-from app.server.shared_clock import Seat, SharedClock
-from sim.parameters import clamp_value
+from app.server.loop.shared_clock import Seat, SharedClock
+from app.server.loop.sim_loop import SimLoop
+from app.server.loop.snapshots import kept_state
 
 if TYPE_CHECKING:
     from app.server.viewer import Viewer
 
 KEEP_TIMEOUT = 5.0  # [s] for the first lab to hand over its state, to go on from when it is alone again
+
+
+class SharedRecord:
+    """The parameters that labs side by side have in common; each lab sends to it and shows it.
+
+    What is done to a lab is done on its own event loop, so that a lab never sees half of a change.
+    """
+
+    def __init__(self, labs: "Callable[[], tuple[Viewer, ...]]") -> None:
+        """labs: those that are side by side now."""
+        self.labs = labs
+        self.writing = threading.Lock()
+        self.values: dict[str, tuple[object, BaseParams]] = {}  # as set last, with the record in which it was set
+        self.seen: dict[Viewer, BaseParams] = {}  # the parameters of each lab when they were looked at last
+        self.told: set[Viewer] = set()  # labs that are showing the record just now
+
+    def join(self, viewer: "Viewer") -> None:
+        """A lab shows another scene: the first one brings its parameters, another one shows the record."""
+        viewer.call(lambda: self.enter(viewer))
+
+    def enter(self, viewer: "Viewer") -> None:
+        """See `join`."""
+        if not viewer.is_open:
+            return
+        self.seen[viewer] = viewer.settings.params
+        if viewer is self.labs()[0]:
+            self.write(viewer, vars(viewer.settings.params))
+        else:
+            self.show(viewer)
+
+    def take(self, source: "Viewer", params: BaseParams) -> None:
+        """Parameters of a lab have changed: write the changes of a person there, and none that it was told."""
+        before, self.seen[source] = vars(self.seen.get(source, params)), params
+        if source not in self.told:
+            self.write(source, {name: value for name, value in vars(params).items() if before.get(name) != value})
+
+    def write(self, source: "Viewer", values: Mapping[str, object]) -> None:
+        """Take values of a lab that others have in common with it, and have these show them."""
+        params = source.settings.params
+        for viewer in self.labs():
+            if viewer is source or not viewer.is_open:
+                continue
+            common = shared_parameters(params, viewer.settings.params).keys() & values.keys()
+            with self.writing:
+                self.values.update({name: (values[name], params) for name in common})
+            if common:
+                viewer.call(lambda viewer=viewer: self.show(viewer))
+
+    def show(self, viewer: "Viewer") -> None:
+        """Show the record in a lab, bounded to the ranges there."""
+        if not viewer.is_open:
+            return
+        settings = viewer.settings
+        with self.writing:
+            values = dict(self.values)
+        shown = {name: v for name, (v, of) in values.items() if name in shared_parameters(of, settings.params)}
+        self.told.add(viewer)
+        try:
+            settings.set_all(shown)
+        finally:
+            self.told.discard(viewer)
 
 
 class ComparedLabs:
@@ -32,23 +92,23 @@ class ComparedLabs:
         self.seats: dict[Viewer, Seat] = {}  # of the loops that run
         self.changing, self.ended = threading.Lock(), False  # of `seats`
         self.left: tuple[SimLoop, BaseParams, KeptState] | None = None  # the run of the first lab, as it was before
+        self.shared = SharedRecord(lambda: self.viewers)
 
     def begin(self, others: Sequence[Setup], *, resume: bool) -> None:
         """Open the others, then let all begin together. Whatever fails leaves the first lab alone, and is raised.
 
         resume: the run of the first lab is to go on from here when the comparison ends.
         """
-        first = self.first
+        first, asked = self.first, self.first.requests.number
         self.left = self.kept() if resume else None
         try:
             for number, setup in enumerate(others, 2):
                 pane = self.make_pane(number)
                 self.viewers = (*self.viewers, pane)
                 pane.comparison = self
-                pane.open(
-                    setup.scene, with_shared(setup.params, first.settings.params), paused=not first.loop.run.running
-                )
-                if first.ended:
+                params, paused = with_shared(setup.params, first.settings.params), not first.loop.run.running
+                is_there = pane.open(setup.scene, params, paused=paused, given_up=lambda: first.is_given_up(asked))
+                if not is_there or first.is_given_up(asked):
                     self.end()
                     return
         except BaseException:
@@ -61,12 +121,12 @@ class ComparedLabs:
         """The run of the first lab, to go on from later; None where it does not answer."""
         loop = self.first.loop
         answer: Future[object] = Future()
-        loop.commands.put(Ask(loop.scene.keep, answer))
+        loop.commands.put(Ask(lambda: kept_state(loop.run), answer))
         try:
-            value = answer.result(KEEP_TIMEOUT)
+            state = answer.result(KEEP_TIMEOUT)
         except Exception:
             return None
-        return loop, self.first.settings.params, KeptState(value, arrays_in(value))
+        return (loop, self.first.settings.params, state) if isinstance(state, KeptState) else None
 
     def seat(self, viewer: "Viewer") -> None:
         """Give the lab's loop a place at the clock, in place of that of an earlier loop of it; all begin again.
@@ -81,7 +141,7 @@ class ComparedLabs:
             self.place()
             loop.commands.put(Ask(lambda: loop.join(seat), Future()))
         if self.first.is_open:
-            self.share(self.first, self.first.settings.params)
+            self.shared.join(viewer)
 
     def leave(self, viewer: "Viewer") -> None:
         """The lab's loop is gone, or stands still for good: the others do not wait for it."""
@@ -101,20 +161,11 @@ class ComparedLabs:
         """Titles of the panes on the page."""
         viewers = [viewer for viewer in self.viewers if viewer.is_open]
         if len(viewers) < len(self.viewers):
-            return tuple(PaneWords("", (0.0, 0.0)) for _ in self.viewers)
+            return tuple(PaneWords("", (0.0, 0.0), connected=True) for _ in self.viewers)
         panes = [(viewer.settings.kind, viewer.settings.params) for viewer in viewers]
         middles = [middle_of(kind.name, params) for kind, params in panes]
-        return tuple(PaneWords(*pair) for pair in zip(headings(panes), middles, strict=True))
-
-    def share(self, source: "Viewer", params: BaseParams) -> None:
-        """Copy the common parameters of this lab to the others."""
-        for viewer in self.viewers:
-            if viewer is source or not viewer.is_open:
-                continue
-            for name, parameter in shared_parameters(params, viewer.settings.params).items():
-                value = clamp_value(parameter, getattr(params, name))
-                if value != getattr(viewer.settings.params, name):
-                    viewer.server.get_event_loop().call_soon_threadsafe(viewer.settings.set, name, value)
+        connected = [viewer.visitors() > 0 for viewer in viewers]
+        return tuple(PaneWords(*pane) for pane in zip(headings(panes), middles, connected, strict=True))
 
     def end(self) -> None:
         """End the other labs; the first one goes on from where it was before, if it is still the same run."""
@@ -131,7 +182,7 @@ class ComparedLabs:
             viewer.shut()
         if self.left is not None and first.is_open and first.loop is self.left[0]:
             _, params, state = self.left
-            first.server.get_event_loop().call_soon_threadsafe(first.settings.resume, params, state)
+            first.call(lambda: first.settings.resume(params, state))
 
 
 class Comparing:
@@ -153,8 +204,8 @@ class Comparing:
                 return
             if self.first.comparison is not None:
                 self.first.comparison.end()
-            if with_first:
-                self.first.open(setups[0].scene, setups[0].params)
+            if with_first and not self.first.open(setups[0].scene, setups[0].params):
+                return  # another scene was asked for
             self.latest = ComparedLabs(self.first, self.make_pane)
             self.latest.begin(setups[1:] if with_first else setups, resume=not with_first)
 

@@ -26,7 +26,7 @@ from app.render.viser_inside import change_buffers
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import setup_block, write_value
-from app.server.guard import open_server
+from app.server.web.guard import open_server
 from sim.parameters import in_words, parameters_of
 
 MAX_FRAMES = 200  # of a replay

@@ -12,15 +12,15 @@ from app.panel.compare import Beside
 from app.panel.panel import Panel
 from app.panel.recorder import Kept
 from app.panel.settings import SceneSettings
-from app.render.cameras import fit_cameras, place_cameras, place_client_camera
 from app.render.html import note
 from app.scenes import NAMES, view_named
 from app.scenes.compiling import describe
 from app.scenes.contract import AnyKind, AnyScene
-from app.server.compile_gate import CompileGate
-from app.server.loop import ALONE_INTERVAL, SimLoop
+from app.server.loop.clock import PATIENCE
+from app.server.loop.commands import CompileGate
+from app.server.loop.sim_loop import ALONE_INTERVAL, SimLoop
+from app.server.placing import CameraPlacing
 from app.server.replay_file import replay_html
-from app.server.tick_clock import PATIENCE
 
 if TYPE_CHECKING:
     from app.server.viewer import Viewer
@@ -55,14 +55,13 @@ class ServedScene:
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
         self.recorded: Kept | None = None  # the frame of the recording that is shown
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
-        self.starts = 0  # how often the shown run was begun again
         self.stop = threading.Event()
         self.is_open = True
         self.threads: list[threading.Thread] = []
         self.commands, self.scene, params = commands, scene, scene.params
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = view_named(kind.name)(self.server, self.commands.put)
-        place_cameras(self.server, *self.view.first_view(params), self.view.FIELD_OF_VIEW)
+        self.cameras = CameraPlacing(self.server, self.view, params)
         self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want)
         self.panel = Panel(
             self.server, self.view, self.settings, scenes=NAMES, workbook=viewer.workbook, session=viewer.session,
@@ -70,8 +69,9 @@ class ServedScene:
             beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
         )  # fmt: skip
         self.settings.watchers.append(lambda: viewer.share_parameters(self.settings.params))
-        self.gate = CompileGate(viewer.compiling, kind, params)
-        self.loop = SimLoop(self.scene, self.commands, viewer.audience, admit=self.gate.admit, paused=paused)
+        self.loop = SimLoop(self.scene, self.commands, viewer.audience, paused=paused)
+        self.gate = CompileGate(viewer.compiling, kind, self.loop.record)
+        self.loop.admit = self.gate.admit
         if params != wanted:  # the loop finds out once more, and says why; the panel has the controls to put it right
             self.settings.load_params(wanted, self.settings.nearest_preset(wanted))
 
@@ -120,16 +120,7 @@ class ServedScene:
                 self.shown = snapshot.serial
                 self.drawn += 1
                 self.attempt("picture", lambda: self.view.show(snapshot.frame))
-                replayed = snapshot.status.replayed
-                if replayed is not None and not snapshot.status.halted:
-                    view = self.view.first_view(snapshot.params)
-                    fit_cameras(self.server, view, self.view.FIELD_OF_VIEW, replayed)
-                if snapshot.status.starts != self.starts:  # after the picture: another scene size moves cameras
-                    self.starts = snapshot.status.starts
-                    place_cameras(self.server, *self.view.first_view(snapshot.params), self.view.FIELD_OF_VIEW)
-                    for camera in self.settings.cameras:
-                        place_client_camera(self.server, camera)
-                    self.settings.cameras = ()
+                self.cameras.update(snapshot, self.settings.placing)  # another scene size moves cameras
             self.recorded = recorded
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))

@@ -2,6 +2,7 @@
 
 # pyright: reportPrivateUsage=false
 
+import contextlib
 import queue
 import threading
 import time
@@ -27,14 +28,15 @@ from app.scenes import NAMES, scene_named
 from app.scenes.compiling import Compiling
 from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
 from app.scenes.setups import make_setup
-from app.server.access import OWN_PAGES_ONLY, Access
 from app.server.beside import ComparedLabs, Comparing
-from app.server.guard import Opened, open_pane, open_server, quiet
-from app.server.loop import SimLoop
-from app.server.panes import Panes
+from app.server.loop.sim_loop import SimLoop
 from app.server.preparation import Preparation, cover
+from app.server.requests import SceneRequest, SceneRequests
 from app.server.served_scene import MAX_JOIN_TIME, ServedScene
-from app.server.transport import Transport
+from app.server.web.access import OWN_PAGES_ONLY, Access
+from app.server.web.guard import Opened, open_pane, open_server, quiet
+from app.server.web.panes import Panes
+from app.server.web.transport import Transport
 
 if TYPE_CHECKING:
     from app.lab.session import Session
@@ -91,8 +93,7 @@ class Viewer:
         self.current: ServedScene | None = None  # the scene that was opened last; it may be closed
         self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first given
         self.changing = threading.Lock()
-        # Scenes that browsers ask for, with parameters where a task or a link has them, and a link's camera.
-        self.wanted: queue.SimpleQueue[tuple[str, BaseParams | None, ClientCamera | None]] = queue.SimpleQueue()
+        self.requests = SceneRequests()
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
         gui = self.server.gui
         set_theme(gui, dark=False)
@@ -102,35 +103,46 @@ class Viewer:
         self.server.on_client_disconnect(self.release)
 
     def open(
-        self, name: str, params: BaseParams | None = None, *, paused: bool = False, first_look: bool = False
-    ) -> None:
-        """Show a scene, in place of the one that is open.
+        self,
+        name: str,
+        params: BaseParams | None = None,
+        *,
+        paused: bool = False,
+        first_look: bool = False,
+        given_up: Callable[[], bool] = lambda: False,
+    ) -> bool:
+        """Show a scene, in place of the one that is open. Returns False where it was given up before it was there.
 
         params: None for those that the scene was first given. Where there are none: with `first_look` those of a preset
         that keeps moving, otherwise the defaults. first_look: a browser asked for it; parameters of a task of the lab
-        are not kept. Whatever fails leaves a page that says why and offers the scenes; the exception is raised.
+        are not kept. given_up: whether nobody waits for it any more. Whatever fails leaves a page that says why and
+        offers the scenes; the exception is raised.
         """
         with self.changing:
             if self.ended:
-                return
+                return False
+            asked = self.requests.number
             try:
                 kind = scene_named(name)
                 if params is None:
                     params = self.first_params.get(name) or (make_setup(kind).params if first_look else kind.params())
                 elif not first_look:
                     self.first_params.setdefault(name, params)
-                ready = self.preparation.compile(kind, params, covers=not self.is_open, given_up=self.is_given_up)
+                ready = self.preparation.compile(
+                    kind, params, covers=not self.is_open, given_up=lambda: given_up() or self.is_given_up(asked)
+                )
                 if not ready or self.ended:
-                    return
+                    return False
                 self.close()
                 self.make(kind, params, paused)
+                return True
             except BaseException as error:
                 self.show_failure(name, error)
                 raise
 
-    def is_given_up(self) -> bool:
-        """True if the scene that is being prepared is not wanted any more: the lab ended, or another was asked for."""
-        return self.ended or (self.is_open and not self.wanted.empty())
+    def is_given_up(self, asked: int) -> bool:
+        """True if the lab ended, or another scene was asked for after the request `asked`, while one is open."""
+        return self.ended or (self.is_open and self.requests.is_newer(asked))
 
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
         """Make the scene and serve it, with a line on the page meanwhile."""
@@ -188,14 +200,12 @@ class Viewer:
 
     def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
         """Ask for a scene; it is opened on a separate thread."""
-        self.wanted.put((name, params, camera))
+        self.requests.put(SceneRequest(name, params, camera))
 
     def open_wanted(self) -> None:
         """Open the scenes that browsers ask for; of several waiting only the last."""
         while not self.ended:
-            name, params, camera = self.wanted.get()
-            while not self.wanted.empty():
-                name, params, camera = self.wanted.get()
+            name, params, camera = self.requests.pop()
             try:
                 if name in NAMES:
                     self.open(name, params, first_look=True)
@@ -271,16 +281,22 @@ class Viewer:
         return () if comparison is None else comparison.words()
 
     def share_parameters(self, params: BaseParams) -> None:
-        """Copy the common parameters to the labs beside this one."""
+        """Share the common parameters with the labs beside this one."""
         comparison = self.comparison
         if comparison is not None:
-            comparison.share(self, params)
+            comparison.shared.take(self, params)
+
+    def call(self, action: Callable[[], None]) -> None:
+        """Call a function on viser's event loop, soon; a lab that has been shut is not called."""
+        with contextlib.suppress(RuntimeError):  # the event loop is closed
+            self.server.get_event_loop().call_soon_threadsafe(action)
 
     async def release(self, client: viser.ClientHandle) -> None:
         """Release the objects that a browser drags, as it comes or goes."""
         (self.came.set if self.visitors() else self.came.clear)()
         if self.current is not None:
             self.current.commands.put(Release(client.client_id))
+            self.current.settings.history.release(client.client_id)
 
     def close(self, picture_time: float | None = None) -> None:
         """Close the open scene. picture_time: [s] to wait for its last picture; None: as long as it takes."""

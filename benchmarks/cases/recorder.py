@@ -7,8 +7,8 @@ from app.scenes import NAMES, scene_named
 from app.scenes.moments import arrays_in
 from app.scenes.setups import make_setup
 from app.scenes.timer import effort_clock
-from app.server.loop import SimLoop
-from app.server.snapshots import KEEP_INTERVAL, KEEP_SHARE
+from app.server.loop.sim_loop import SimLoop
+from app.server.loop.snapshots import KEEP_INTERVAL, KEEP_SHARE
 
 DURATION, QUICK_DURATION = 130.0, 1.0  # [s] of wall time that are recorded
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.server.access import Access, make_key
 from app.server.viewer import Viewer
+from app.server.web.access import Access, make_key
 from tests.browser import test_rope
 from tests.browser.conftest import Tab
 from tests.jupyter import Jupyter, jupyter

@@ -75,6 +75,27 @@ def test_two_ropes_on_one_clock_with_linked_cameras(pair: Viewer, open_tab: Any)
     tab.wait(lambda: pair.comparison is None and second.ended)
 
 
+def test_a_pane_that_lost_its_line_says_so_and_comes_back_by_itself(pair: Viewer, open_tab: Any) -> None:
+    pair.comparing.begin([read_query("?scene=rope&stiffness=2000")], False)
+    assert pair.comparison is not None
+    second = pair.comparison.viewers[1]
+    tab = open_tab(pair.port, width=900, height=500, address=f"http://127.0.0.1:{pair.port}/beside?")
+    clock = tab.page.locator("#clock")
+    tab.wait(lambda: pair.visitors() and second.visitors() and min(pair.scene.time, second.scene.time) > 0.3)
+    tab.page.locator("#reset").click()  # the first pane has the focus
+    pane = pair.panes.servers.pop(2)  # lets nobody in
+    assert pane.loop is not None
+    pane.loop.call_soon_threadsafe(lambda: [task.cancel() for task in pane.open])
+    tab.wait(lambda: "Waiting for lab 2 to connect" in clock.inner_text(), 20)
+    assert not second.visitors()
+    time = second.scene.time
+    tab.page.wait_for_timeout(1000)
+    assert second.scene.time == time
+    pair.panes.servers[2] = pane
+    tab.wait(lambda: second.visitors() and second.scene.time > time, 30)
+    tab.wait(lambda: "t = " in clock.inner_text(), 10)
+
+
 def test_the_camera_over_a_sea_is_as_far_from_its_middle_in_both_panes(open_tab: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     try:

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from app.render import scripts
-from app.server.access import Access
-from app.server.page import covered
 from app.server.viewer import Viewer
+from app.server.web.access import Access
+from app.server.web.page import covered
 from tests.browser.conftest import new_page
 
 

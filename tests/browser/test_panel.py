@@ -109,23 +109,24 @@ def test_the_preset_that_is_shown_is_chosen_again_and_begins_again(shown: tuple[
     name = preset.input_value()
     viewer.loop.commands.put(Pause())
     tab.wait(lambda: not viewer.loop.run.running)
-    starts = viewer.loop.run.counts["starts"]
+    number = viewer.loop.run.identity.number
     preset.click()
     tab.page.get_by_role("option", name=name, exact=True).click()
-    tab.wait(lambda: viewer.loop.run.counts["starts"] > starts and viewer.loop.run.running)
+    tab.wait(lambda: viewer.loop.run.identity.number > number and viewer.loop.run.running)
     assert preset.input_value() == name
     preset.click()
     tab.page.get_by_role("option", name="Pendulum", exact=True).click()
     tab.wait(lambda: viewer.settings.loaded == "Pendulum")
-    tab.wait(lambda: viewer.loop.run.counts["starts"] == starts + 2)
+    tab.wait(lambda: viewer.loop.run.identity.number == number + 2)
     assert not tab.errors
 
 
 def test_keys_go_to_the_lab_after_a_list_was_used(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
+    number = lab.loop.run.identity.number
     tab.page.get_by_label("Preset").click()
     tab.page.get_by_role("option", name="Pendulum", exact=False).first.click()
-    tab.wait(lambda: lab.loop.run.counts["starts"] > 0, 10)
+    tab.wait(lambda: lab.loop.run.identity.number > number, 10)
     tab.wait(lambda: lab.loop.run.running, 10)
     tab.page.keyboard.press("Space")
     tab.wait(lambda: not lab.loop.run.running, 10)

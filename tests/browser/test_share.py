@@ -157,9 +157,9 @@ def test_film_clip_and_plots_are_made_as_files(
         made = saved("[data-springtide-charts]").read_bytes()
         assert made.startswith(begin)
     assert iio.imread(made).std() > 1.0
-    recorder, starts = lab.panel.recorder, lab.loop.run.counts["starts"]
+    recorder, number = lab.panel.recorder, lab.loop.run.identity.number
     lab.loop.commands.put(Reset())
-    tab.wait(lambda: recorder.starts > starts and len(recorder.frames) > 4, 30)
+    tab.wait(lambda: recorder.line.number > number and len(recorder.frames) > 4, 30)
     lab.loop.commands.put(Pause())
     tab.wait(lambda: not lab.loop.run.running, 20)
     frames = lab.panel.recorder.kept()

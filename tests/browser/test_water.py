@@ -16,9 +16,9 @@ from PIL import Image
 from app.render.scripts import SCENE, tags
 from app.render.skies import set_sky
 from app.render.water import DrawnWater, Tile
-from app.server.guard import open_server
-from app.server.page import covered
 from app.server.viewer import Viewer
+from app.server.web.guard import open_server
+from app.server.web.page import covered
 from sim.ocean.radial_grid import RadialGrid
 from tests.browser.conftest import NO_NOTES, new_page, vertices_of
 
@@ -197,7 +197,7 @@ def test_a_sea_of_rings_is_water_too(chromium, server):
 def no_answer(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As with a viser of another page."""
     monkeypatch.setattr("app.render.injection.MAX_ANSWER_TIME", 1.0)
-    monkeypatch.setattr("app.server.page.tags", lambda entry: "")
+    monkeypatch.setattr("app.server.web.page.tags", lambda entry: "")
     covered.cache_clear()
     yield
     covered.cache_clear()

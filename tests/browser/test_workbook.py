@@ -49,7 +49,7 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     text.click()
     page.keyboard.type("It swings for ever, r n space and all.")  # none of its keys may play, step or reset the lab
     tab.wait(lambda: kept("predict") == "It swings for ever, r n space and all.")
-    assert lab.loop.latest.status.starts == 0
+    assert lab.loop.latest.status.run.number == 1
     assert lab.loop.run.running
 
     page.get_by_role("button", name="Set this up").click()

@@ -11,7 +11,7 @@ import pytest
 from app.messages import Play, Reset
 from app.scenes import NAMES
 from app.scenes.warmup import prepare
-from app.server.pacer import MAX_CATCH_UP
+from app.server.loop.clock import MAX_CATCH_UP
 from app.server.viewer import Viewer
 from sim.parameters import parameters_of
 from tests.stress.clients import clients_of, until

@@ -9,7 +9,7 @@ import pytest
 
 from app.messages import Reset, where_not_finite
 from app.scenes.radial_sea.scene import RadialSeaParams, RadialSeaScene
-from app.server.loop import FRAME_INTERVAL, SimLoop
+from app.server.loop.sim_loop import FRAME_INTERVAL, SimLoop
 from sim.ocean import Sea
 from sim.ocean.dispersion import omega
 from sim.ocean.spectra import SPECTRA

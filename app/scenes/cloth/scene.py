@@ -19,6 +19,7 @@ from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
 from app.scenes.springs.divergence import holding_step
 from app.scenes.springs.grab import GrabSpring, ParticleGrab
 from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
+from app.scenes.springs.methods import FEW_POINTS, method_that_runs
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.speed_advice import faster_steps
 from app.scenes.springs.thread_tuner import ThreadTuner
@@ -27,7 +28,6 @@ from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from sim.springs import Air, Net, cloth
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
-from sim.springs.integrator_fallback import integrator_or_fallback
 from sim.springs.stability import Mode, gershgorin
 from sim.springs.state import State, energy
 
@@ -76,8 +76,15 @@ def compile_gauge(law: str) -> None:
 
 def needs(params: ClothParams) -> tuple[str, ...]:
     """Compiled pieces that a scene with these parameters runs."""
-    net = build(params, sphere_home(params))
-    return pieces_of_law((integrator_or_fallback(params.integrator, net, params.time_step)[0].name, GAUGE), params.law)
+    method = method_that_runs(params.integrator, params.time_step, lambda: build(small(params), sphere_home(params)))
+    return pieces_of_law((method, GAUGE), params.law)
+
+
+def small(params: ClothParams) -> ClothParams:
+    """A cloth of a few points that has the links of this one: its frequencies and damping have the same bounds."""
+    rows, cols = min(params.rows, FEW_POINTS), min(params.cols, FEW_POINTS)
+    width, length = params.width * (cols - 1) / (params.cols - 1), params.length * (rows - 1) / (params.rows - 1)
+    return dataclasses.replace(params, rows=rows, cols=cols, width=width, length=length)
 
 
 def cloth_bound(net: Net, state: State) -> float:
@@ -102,7 +109,7 @@ class ClothScene(NetScene[ClothParams]):
             self.student = student_cloth.StudentCloth(live.cloth)
         self.tuner = ThreadTuner()
         self.grab = ParticleGrab()
-        super().__init__(params, len(SERIES))
+        super().__init__(params)
 
     @property
     def faster(self) -> str:

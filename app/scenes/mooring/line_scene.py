@@ -57,7 +57,7 @@ class LineScene(abc.ABC):
 
     def __init__(self, params: MooringParams) -> None:
         self.params = params
-        self.plot_rows = PlotRows(len(SERIES))
+        self.plot_rows = PlotRows()
         self.last_moments = LastMoments()
         self.restoring = RestoringCurve()
         self.reset()

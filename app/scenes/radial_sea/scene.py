@@ -131,7 +131,7 @@ class RadialSeaScene:
             self.student = student_sea.StudentRadialSea(live.tables)
         self.hull_file, self.file_shape = ("", reading_of(params)), None
         self.grid_choice: tuple[int, int, str] | None = None
-        self.plot_rows = PlotRows(len(SERIES), PLOT_INTERVAL)
+        self.plot_rows = PlotRows(PLOT_INTERVAL)
         self.reset()
 
     @property

@@ -1,8 +1,11 @@
-"""Names of the integration methods in the panel, in the order of its list."""
+"""Names of the integration methods in the panel, in the order of its list, and which of them runs."""
+
+from collections.abc import Callable
 
 from sim.parameters import in_words
-from sim.springs import INTEGRATORS
+from sim.springs import INTEGRATORS, Net
 from sim.springs.automatic import AUTO
+from sim.springs.integrator_fallback import integrator_or_fallback
 
 TITLES = {  # name -> (title in a list, name in a sentence)
     "explicit_euler": ("Euler, explicit (lab eq. 5)", "explicit Euler"),
@@ -23,7 +26,20 @@ ORDER = sorted(INTEGRATORS, key=[*TITLES, *INTEGRATORS].index)
 METHODS = {name: TITLES[name][0] if name in TITLES else in_words(name) for name in ORDER}
 METHODS_AND_AUTO = {**METHODS, AUTO: "Automatic (Dormand-Prince or Nyström)"}  # where a net chooses its method
 
+FEW_POINTS = 8  # along a side of a net that has all the links of a large one about some point
+
 
 def method_name(integrator: str) -> str:
     """A method in a sentence or a label."""
     return TITLES[integrator][1] if integrator in TITLES else in_words(integrator)
+
+
+def method_that_runs(name: str, step: float, build: Callable[[], Net]) -> str:
+    """Name of the method that runs where `name` is chosen.
+
+    build: makes a net with the damping and the fastest vibration of the one that moves. It is asked for only where
+    these decide which method runs: making a large one would take longer than a slider event may.
+    """
+    if name != AUTO and not INTEGRATORS[name].undamped_only:
+        return name
+    return integrator_or_fallback(name, build(), step)[0].name

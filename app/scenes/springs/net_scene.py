@@ -36,10 +36,9 @@ class NetScene(abc.ABC, Generic[P]):
     fallback_note: str
     assessed_at: float  # [s]
 
-    def __init__(self, params: P, columns: int) -> None:
-        """columns: number of values in a plot row."""
+    def __init__(self, params: P) -> None:
         self.params = params
-        self.plot_rows = PlotRows(columns)
+        self.plot_rows = PlotRows()
         self.last_moments = LastMoments()
         self.recent: RecentGauges[Any] = RecentGauges()
         self.reset()

@@ -115,7 +115,7 @@ class SquareSeaScene:
 
             self.student = student_sea.StudentSea(live.tables)
         self.counts: collections.Counter[str] = collections.Counter()
-        self.plot_rows = PlotRows(len(SERIES), PLOT_ROW_INTERVAL)
+        self.plot_rows = PlotRows(PLOT_ROW_INTERVAL)
         self.gauge = WaveGauge()
         self.reset()
 

@@ -13,8 +13,8 @@ import pytest
 
 from app.commands import serve
 from app.commands.serve import Opening
-from app.server.guard import open_server
 from app.server.viewer import Viewer
+from app.server.web.guard import open_server
 from benchmarks.labs import connected
 
 ROOT = Path(__file__).parents[3]

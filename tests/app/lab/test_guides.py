@@ -12,7 +12,7 @@ from app.panel.guide import SnapshotValues
 from app.panel.task_setups import setup_of_task
 from app.render.formula import formula
 from app.scenes import scene_named
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 
 TASKS = load_tasks(with_checks=False)
 GUIDED = [task for task in TASKS if task.guide is not None]

@@ -16,7 +16,7 @@ from app.lab.versions import Versions
 from app.panel.code_panel import compared_text
 from app.panel.guide import SnapshotValues
 from app.scenes import scene_named
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from tests.waiting import wait_for
 
 TASKS = {task.name: task for task in load_tasks()}

@@ -12,8 +12,8 @@ from typing import Any
 import psutil
 import pytest
 
-from app.server.access import Access
-from app.server.guard import open_server, quiet
+from app.server.web.access import Access
+from app.server.web.guard import open_server, quiet
 from tests.jupyter import Jupyter, join, jupyter
 
 # Imported by the tests, as it takes seconds and each process of the tests collects this file.

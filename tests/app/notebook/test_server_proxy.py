@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from app.notebook.server_proxy import LAB_VARIABLE, springtide
-from app.server.access import KEY_HEADER, KEY_VARIABLE, read_key
+from app.server.web.access import KEY_HEADER, KEY_VARIABLE, read_key
 
 ROOT = Path(__file__).parents[3]
 

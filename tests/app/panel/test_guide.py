@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -249,18 +249,34 @@ def test_a_picture_is_kept_for_the_task_that_is_shown(student: Viewer, folder: P
 
     guide = show(student, "spring_force")
     wait_for(lambda: "time" in guide.values)
-    event = SimpleNamespace(target=SimpleNamespace(value=PICTURE), client_id=1, client=object())
+    words: list[Any] = []
+    client = SimpleNamespace(
+        add_notification=lambda title, body, **_: words.append(SimpleNamespace(body=body)) or words[-1]
+    )
+    event = SimpleNamespace(target=SimpleNamespace(value=PICTURE), client_id=1, client=client)
     monkeypatch.setattr("app.panel.report_pictures.take_picture", lambda client, size, *, jpeg: b"\xff\xd8\xff")
     coroutines.run(guide.on_tool(event))
-    wait_for(lambda: "The report has the picture" in guide.answer.content)
+    wait_for(lambda: "The report has the picture" in words[-1].body)
     name = next((folder / PICTURES).iterdir()).name
     assert name.startswith("spring_force-rope-")
-    assert name in guide.answer.content
+    assert name in words[-1].body
     monkeypatch.setattr("app.panel.report_pictures.take_picture", refuse)
     wait_for(lambda: not guide.pictures.busy.locked())
     coroutines.run(guide.on_tool(event))
-    wait_for(lambda: "No picture was taken: the browser has gone" in guide.answer.content)
+    wait_for(lambda: words[-1].body == "No picture was taken: the browser has gone")
     assert len(list((folder / PICTURES).iterdir())) == 1
+    # A picture that comes late is of another task, or of another scene.
+    for change in (lambda: show(student, "step_euler"), lambda: student.open("cloth")):
+        guide = show(student, "spring_force")
+
+        def come_late(*_: object, change: Callable[[], object] = change, **__: object) -> bytes:
+            change()
+            return b"\xff\xd8\xff"
+
+        monkeypatch.setattr("app.panel.report_pictures.take_picture", come_late)
+        coroutines.run(guide.on_tool(event))
+        wait_for(lambda: "another task or scene was opened" in words[-1].body)
+        assert len(list((folder / PICTURES).iterdir())) == 1
 
 
 def test_the_name_is_kept_and_refused(student: Viewer, folder: Path) -> None:
@@ -368,12 +384,12 @@ def test_what_is_asked_for_in_the_middle_of_a_look_is_shown_by_the_next(
 ) -> None:
     guide = show(student, "step_euler")
     student.served.stop_threads()
-    said = "The report has the picture “rope”."
+    said = "The prediction could not be kept."
 
     def ask_meanwhile() -> None:
-        guide.pictures.said, guide.stale = said, True  # as the thread that takes a picture does
+        guide.refusal, guide.stale = said, True  # as a browser's act does
 
-    guide.pictures.said, guide.stale = "", True
+    guide.refusal, guide.stale = "", True
     with monkeypatch.context() as patch:
         patch.setattr(guide.questions[-1], "show", ask_meanwhile)
         guide.update(student.loop.latest, False)

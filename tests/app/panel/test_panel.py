@@ -15,7 +15,7 @@ from app.lab.folder import make_folder
 from app.lab.session import Session
 from app.lab.task import load_tasks
 from app.lab.workbook import Workbook
-from app.messages import Reset, RunOn, Take
+from app.messages import RunOn, Take
 from app.panel.readings import WITHHELD
 from app.scenes import NAMES, scene_named
 from app.scenes.radial_sea.parameters import RadialSeaParams
@@ -150,7 +150,7 @@ def test_a_preset_is_loaded_once_by_its_key_and_once_from_the_list(lab: Viewer) 
         coroutines.run(callback(SimpleNamespace(target=command, client_id=1)))
     assert panel.head.preset.value == "Pendulum" != before
     time.sleep(0.3)  # viser tells of the assignment to the list, too
-    assert posted == [Take(panel.settings.params, start=True, run=panel.settings.history.run)]
+    assert posted == [Take(panel.settings.params, start=True, act=panel.settings.history.act)]
     panel.head.preset.value = before
     chosen: list[Any] = panel.head.preset._impl.update_cb
     for callback in chosen:
@@ -172,7 +172,7 @@ def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(v
     for callback in button._impl.update_cb:
         coroutines.run(callback(SimpleNamespace(target=button, client_id=1)))
     assert panel.settings.params.length == 84.5
-    assert [type(command) for command in posted] == [Take, Reset]
+    assert [type(command) for command in posted] == [Take]
     assert posted[0].params == panel.settings.params
     folders = [folder.order for folder, _ in panel.controls_tab.readings.notes.values()]
     assert list(panel.controls_tab.readings.notes) == ["Tensions", "Bed and slack"]

@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import ChartLine, Snapshot
+from app.messages import ChartLine, Snapshot, Status
 from app.panel.plots import KEPT_DASH, MIN_FILLED, SHOWN_ROWS, Plots, at_times, beside, scale_of, with_kept
 from app.scenes import scene_named
 from app.scenes.charts import Chart, lines_of, with_numbers
+
+STATUS = Status(True, 1.0, 1, 1.0, 1.0, False, 20.0, "")
 
 
 @pytest.mark.parametrize(
@@ -77,7 +79,7 @@ def test_the_curves_of_a_race_are_kept_and_dropped() -> None:
     plots = Plots(server, kind)
     for _ in range(3):
         scene.advance(100)
-        snapshot: Any = Snapshot(1, scene.frame(), None, None, scene.params, scene.curves())
+        snapshot: Any = Snapshot(1, scene.frame(), STATUS, None, scene.params, scene.curves())
         plots.update(snapshot, [])
     chart = plots.curves["plot_errors"]
     assert isinstance(chart, Chart)

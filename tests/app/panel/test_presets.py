@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from app.messages import Pause
 from app.panel.history import EarlierSettings, History
 from app.scenes.mooring.parameters import MooringParams
@@ -70,23 +72,55 @@ def test_a_preset_and_a_change_can_be_undone(lab: Viewer) -> None:
 def test_a_slider_that_is_moved_is_one_change() -> None:
     history = History()
     for stiffness in range(1, 50):
-        history.note(EarlierSettings(RopeParams(stiffness=float(stiffness)), "first"), "stiffness")
-    history.note(EarlierSettings(RopeParams(mass=3.0), "first"), "mass")
+        history.note(EarlierSettings(RopeParams(stiffness=float(stiffness)), "first"), number="stiffness")
+    history.note(EarlierSettings(RopeParams(mass=3.0), "first"), number="mass")
     assert history.take_last() == EarlierSettings(RopeParams(mass=3.0), "first")
     assert history.take_last() == EarlierSettings(RopeParams(stiffness=1.0), "first")
     assert history.take_last() is None
 
 
-def test_each_change_that_begins_a_run_has_a_number_to_which_undo_returns() -> None:
-    history = History()
-    changes = ("b", True), ("mass", False), ("reset", True), ("b", True)
-    assert [history.note(EarlierSettings(RopeParams(), "a"), what, begins=begins) for what, begins in changes] == [
-        2,
-        2,
-        3,
-        4,
-    ]
-    assert history.note(EarlierSettings(RopeParams(), "a"), "b", begins=True) == 4  # the same change
-    back = [history.take_last() for _ in range(4)]
-    assert [settings.run for settings in back if settings is not None] == [3, 2, 2, 1]
-    assert history.note(EarlierSettings(RopeParams(), "a"), "c", begins=True) == 5  # no number comes twice
+def test_each_act_that_begins_a_run_has_a_number_to_which_undo_returns() -> None:
+    history, settings = History(), EarlierSettings(RopeParams(), "a")
+    acts = ("points", True), ("mass", False), ("", True), ("", True), ("points", True)
+    assert [history.note(settings, number=number, begins=begins) for number, begins in acts] == [2, 2, 3, 4, 5]
+    assert history.note(settings, number="points", begins=True) == 5  # the same change
+    back = [history.take_last() for _ in range(5)]
+    assert [settings.act for settings in back if settings is not None] == [4, 3, 2, 2, 1]
+    assert history.note(settings, begins=True) == 6  # no number comes twice
+
+
+def test_a_drag_is_one_change_however_slow_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = 100.0
+    monkeypatch.setattr("app.panel.history.time.monotonic", lambda: now)
+    history, settings = History(), EarlierSettings(RopeParams(), "a")
+
+    def drag(waits: list[float], client: int) -> None:
+        nonlocal now
+        history.press(client)
+        for wait in waits:
+            now += wait
+            history.note(settings, number="mass")
+        history.release(client)
+
+    drag([0.1, 1.5, 30.0], 1)
+    history.note(settings, number="mass")  # what the page sent last comes after the release
+    assert len(history.settings) == 1
+    drag([0.2], 1)
+    assert len(history.settings) == 2
+    now += 1.5
+    history.note(settings, number="mass")  # an arrow key
+    now += 0.5
+    history.note(settings, number="mass")
+    assert len(history.settings) == 3
+    history.press(2)
+    history.release(3)
+    now += 5.0
+    history.note(settings, number="mass")
+    now += 5.0
+    history.note(settings, number="mass")
+    assert len(history.settings) == 4
+    now += 5.0
+    history.release(2)  # or it has left
+    now += 5.0
+    history.note(settings, number="mass")
+    assert len(history.settings) == 5

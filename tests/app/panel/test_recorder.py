@@ -5,13 +5,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from app.messages import KeptState, Snapshot, Status
+from app.messages import KeptState, RunIdentity, Snapshot, Status
 from app.panel import recorder as module
 from app.panel.recorder import Recorder, arrays_of_frame
 from app.panel.recording_files import arrays_of
 from app.scenes import scene_named
 from app.scenes.moments import arrays_in
 
+RUN = RunIdentity()
 INTERVAL = 0.05  # [s] between two frames, of simulated and of wall time
 
 
@@ -20,8 +21,8 @@ class Frame(NamedTuple):
     points: np.ndarray
 
 
-def snapshot(number: int, starts: int = 0, running: bool = True, points: Any = None) -> Any:
-    status = Status(running, number * INTERVAL, number, 1.0, 1.0, False, 20.0, "", starts)
+def snapshot(number: int, run: RunIdentity = RUN, running: bool = True, points: Any = None) -> Any:
+    status = Status(running, number * INTERVAL, number, 1.0, 1.0, False, 20.0, "", run)
     points = np.full((10, 3), number, np.float32) if points is None else points
     return Snapshot(number, Frame(number, points), status, None, None)
 
@@ -105,7 +106,7 @@ def test_playing_ends_at_the_last_frame_or_begins_again(filled: Recorder) -> Non
 
 def test_a_run_that_begins_again_begins_a_new_recording(filled: Recorder) -> None:
     filled.show_time(1.0)
-    filled.note(snapshot(0, starts=1), 200.0)
+    filled.note(snapshot(0, RunIdentity(2)), 200.0)
     assert filled.span() == (0.0, 0.0)
     assert number_of(filled) is None
 
@@ -115,7 +116,7 @@ def test_a_run_that_goes_back_while_the_past_is_shown_shows_the_present(filled: 
     filled.show_time(40 * INTERVAL)
     filled.follow(snapshot(99, running=False))
     assert number_of(filled) == 40
-    filled.follow(snapshot(0, running=False))  # a parameter was changed that begins the scene again
+    filled.follow(snapshot(0, RunIdentity(2), running=False))  # a parameter was changed that begins the scene again
     assert number_of(filled) is None
     assert filled.span() == (0.0, 0.0)
 
@@ -223,10 +224,20 @@ def test_a_run_that_goes_on_from_earlier_replaces_what_came_later(filled: Record
     size = filled.memory.bytes
     filled.show_time(1.0)
     filled.note(snapshot(99, running=False), 5.0)
-    filled.note(snapshot(21), 5.1)
+    filled.note(snapshot(23, RunIdentity(2, 2, before=1, since=20 * INTERVAL)), 5.1)  # the first that is shown of it
     assert number_of(filled) is None
-    assert [kept.time for kept in filled.frames] == [n * INTERVAL for n in range(22)]
+    assert [kept.time for kept in filled.frames] == [n * INTERVAL for n in (*range(21), 23)]
     assert filled.memory.bytes == size * 22 // 100
+    filled.note(snapshot(12, RunIdentity(3, 3, before=1, since=10 * INTERVAL)), 5.2)  # of the first run once more
+    assert [kept.time for kept in filled.frames] == [n * INTERVAL for n in (*range(11), 12)]
+
+
+def test_no_frame_of_the_run_before_stays_before_the_first_of_another(filled: Recorder) -> None:
+    """Whatever its time is: one that comes late, at a high speed, or of a run that is not recorded here."""
+    filled.note(snapshot(40, RunIdentity(2)), 200.0)
+    assert [kept.time for kept in filled.frames] == [40 * INTERVAL]
+    filled.note(snapshot(41, RunIdentity(4, before=3, since=40 * INTERVAL)), 200.1)
+    assert [kept.time for kept in filled.frames] == [41 * INTERVAL]
 
 
 def test_it_goes_on_from_the_last_state_up_to_the_frame_that_is_shown() -> None:

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from app.messages import Reset, Take
-from app.panel.settings import SceneSettings
+from app.messages import Take
+from app.panel.settings import Placing, SceneSettings
 from app.render.cameras import ClientCamera
 from app.scenes import scene_named
 from app.scenes.contract import Advice
@@ -39,7 +39,7 @@ def test_a_value_is_bounded_posted_and_told_once(told: Told) -> None:
     told.settings.set("points", 10**6)
     expected = RopeParams(points=1000)
     assert told.settings.params == expected
-    assert told.posted == [Take(expected, run=1)]
+    assert told.posted == [Take(expected, act=1)]
     assert told.shown == [expected]
     told.settings.set("points", 1000)
     assert (len(told.posted), len(told.shown)) == (1, 1)
@@ -47,7 +47,10 @@ def test_a_value_is_bounded_posted_and_told_once(told: Told) -> None:
 
 def test_an_advice_is_set_and_the_scene_begins_again(told: Told) -> None:
     told.settings.follow(Advice("time_step", 1 / 500, "1/500 s"))
-    assert told.posted == [Take(RopeParams(time_step=1 / 500), run=1), Reset(2)]
+    assert told.posted == [Take(RopeParams(time_step=1 / 500), act=2)]
+    told.settings.undo()
+    assert told.posted[1:] == [Take(RopeParams(), act=1, back=True)]
+    assert (told.settings.params, len(told.posted)) == (RopeParams(), 2)
 
 
 def test_all_plots_open_and_close_together(told: Told) -> None:
@@ -57,17 +60,20 @@ def test_all_plots_open_and_close_together(told: Told) -> None:
     for on in (False, True, False):
         settings.toggle_plots()
         assert [getattr(settings.params, name) for name in names] == [on] * len(names)
+    assert len(told.posted) == 4
+    settings.undo()
+    assert all(getattr(settings.params, name) for name in names)
 
 
 def test_a_setup_is_loaded_with_its_camera_or_asked_for_in_another_scene(told: Told) -> None:
     settings, cloth = told.settings, scene_named("cloth").params()
     settings.show_setup(Setup("rope", RopeParams(mass=0.3), {}, "Pendulum", CAMERA), 7)
-    assert settings.cameras == (ClientCamera(7, *CAMERA),)
+    assert settings.placing == Placing(2, first_view=True, cameras=(ClientCamera(7, *CAMERA),))
     assert (settings.params, settings.loaded) == (RopeParams(mass=0.3), "Pendulum")
     assert settings.other_name == "Pendulum (changed)"
     settings.show_setup(Setup("cloth", cloth, {}, "", CAMERA), 7)
     assert told.asked == [("cloth", cloth, ClientCamera(7, *CAMERA))]
     assert len(told.posted) == 1
     settings.undo()
-    assert (settings.params, settings.cameras) == (RopeParams(), ())
-    assert told.posted[-1] == Take(RopeParams(), start=True, run=1, back=True)
+    assert settings.params == RopeParams()
+    assert told.posted[-1] == Take(RopeParams(), act=1, back=True)

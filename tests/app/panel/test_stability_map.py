@@ -45,7 +45,7 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 def make(params: Any) -> tuple[live.StabilityMapPanel, dict[str, float]]:
     """A map and what its clicks have set."""
     taken: dict[str, float] = {}
-    return live.StabilityMapPanel(Gui(), rope.SCENE.stability_map, lambda: params, taken.__setitem__), taken
+    return live.StabilityMapPanel(Gui(), rope.SCENE.stability_map, lambda: params, taken.update), taken
 
 
 @pytest.mark.usefixtures("small")

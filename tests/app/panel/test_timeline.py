@@ -41,8 +41,8 @@ class Lab:
     def resume(self, params: BaseParams, state: KeptState) -> None:
         self.resumed.append(state)
 
-    def take(self, text: str) -> None:
-        self.line.inbox.value = text
+    def take(self, text: str, run: int = 1) -> None:
+        self.line.inbox.value = f"{text} {run}"
         asyncio.run(self.line.on_inbox(None))
 
     @property
@@ -78,6 +78,12 @@ def test_the_run_goes_on_from_the_moment_that_the_message_names(lab: Lab) -> Non
     assert lab.resumed == []  # no state was kept that early
     lab.take("a2 continue 7")
     assert (lab.time, lab.resumed) == (pytest.approx(7.0), [STATE])
+
+
+def test_a_moment_of_another_run_is_ignored(lab: Lab) -> None:
+    lab.take("a1 show 6.4", run=2)
+    lab.take("a2 continue 7", run=0)
+    assert (lab.time, lab.posted, lab.resumed) == (None, [], [])
 
 
 def test_speed_and_loop_are_set_to_what_is_offered(lab: Lab) -> None:

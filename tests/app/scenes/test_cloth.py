@@ -15,7 +15,7 @@ from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wi
 from app.scenes.cloth.view import ClothView, checks, faces
 from app.scenes.quantities import measured, plotted_quantities, recorded_quantities
 from app.scenes.springs.quantities import STABILITY
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record
 from sim.springs import INTEGRATORS
 from sim.validation import DivergenceError

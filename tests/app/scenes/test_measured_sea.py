@@ -16,7 +16,7 @@ from app.scenes.radial_sea.report import readout_of
 from app.scenes.radial_sea.view import RadialSeaView
 from app.scenes.square_sea.report import readout
 from app.scenes.square_sea.view import SquareSeaView
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.ocean.statistics import expected
 from tests.sim.floating.test_mesh_files import DECK, SIDES, VERTICES, stl
 

@@ -20,7 +20,7 @@ from app.scenes.mooring.report import notes_of
 from app.scenes.mooring.scene import SCENE
 from app.scenes.quantities import measured
 from app.scenes.setups import described, missing_files, read_file, read_setup_text, write_file
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from app.server.replay_file import replay_html
 from sim.mooring import read_moordyn
 

@@ -19,7 +19,7 @@ from app.scenes.mooring.report import figures_of, marks_of, notes_of
 from app.scenes.mooring.scene import advice, remedy, scene_of, warnings
 from app.scenes.mooring.start import NO_REST
 from app.scenes.mooring.start_check import MAX_REST_STRETCH, rounded_up
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record
 from sim.validation import ConvergenceError
 from tests.app.scenes.test_mooring import random_params

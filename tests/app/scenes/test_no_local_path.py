@@ -30,7 +30,7 @@ from app.scenes.setups import (
     write_file,
     write_query,
 )
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from app.server.replay_file import replay_html
 from app.study.sweep.results import about
 from app.study.sweep.spec import make_spec, read_spec

@@ -20,7 +20,7 @@ from app.scenes import NAMES, scene_named
 from app.scenes.mooring import report as mooring_report
 from app.scenes.quantities import Quantity, measured, read, recorded_quantities, written
 from app.scenes.radial_sea import report as radial_report
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from app.study.sweep.case import run_case
 from sim.ocean.weathering import Weathering
 from sim.parameters import parameters_of

@@ -28,7 +28,7 @@ from app.scenes.rope.scene import RopeScene
 from app.scenes.springs.methods import method_name
 from app.scenes.springs.rope_handles import offset_of
 from app.scenes.springs.rope_parameters import ROOT, build_rope
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.frames import steps_for
 from sim.parameters import check_record, parameters_of
 from sim.springs import simulate

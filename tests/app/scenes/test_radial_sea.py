@@ -24,7 +24,7 @@ from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of
 from app.scenes.radial_sea.report import forces_html, marks_of
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.floating import Hull, equilibrium_draft, heave_period
 from sim.ocean.fluids import fluids
 from sim.ocean.foam import whitecaps

@@ -11,7 +11,7 @@ from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, weathered
 from app.scenes.radial_sea.report import forces_html
 from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
 from app.scenes.radial_sea.well_blowout import JetTotal
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.floating import equilibrium_draft, submerged
 from sim.floating.heave_meter import HeaveMeter
 from sim.parameters import check_record

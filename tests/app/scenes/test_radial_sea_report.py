@@ -18,7 +18,7 @@ from app.scenes.radial_sea.quantities import QUANTITIES
 from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_budget_text, readout_of, surfaces_html
 from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
 from app.scenes.radial_sea.well_blowout import OilBudget
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.ocean.fluid_column import FluidColumn
 from sim.ocean.fluids import fluids
 from sim.ocean.weathering import oil_records, weather

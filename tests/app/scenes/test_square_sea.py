@@ -14,7 +14,7 @@ from app.scenes.square_sea.parameters import PRESETS, SquareSeaParams, condition
 from app.scenes.square_sea.rainfall import RING_STEEPNESS, SeaRain
 from app.scenes.square_sea.scene import SCENE, SquareSeaScene
 from app.scenes.square_sea.statistics import theory
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.ocean import Sea
 from sim.ocean.foam import pace, whitecaps
 from sim.ocean.spectra import SPECTRA

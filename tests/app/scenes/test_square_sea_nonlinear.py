@@ -14,7 +14,7 @@ from app.scenes.quantities import measured
 from app.scenes.square_sea import report
 from app.scenes.square_sea.parameters import LINEAR_ONLY, PRESETS, SquareSeaParams, hidden, solved_points
 from app.scenes.square_sea.scene import SCENE, SquareSeaScene
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.ocean import Sea
 from sim.ocean.nonlinear import NonlinearSea, stokes_wave
 from sim.parameters import parameters_of

@@ -25,7 +25,7 @@ from app.scenes.square_sea.report import (
     wind_line,
 )
 from app.scenes.square_sea.scene import SquareSeaScene
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from sim.ocean.planets import EARTH_GRAVITY
 from sim.parameters import check_record
 

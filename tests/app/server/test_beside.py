@@ -3,8 +3,10 @@
 import asyncio
 import http.client
 import threading
+import time
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 import viser
@@ -12,14 +14,18 @@ import websockets
 from websockets.asyncio.client import connect
 
 from app.messages import StepOnce
+from app.panel.settings import SceneSettings
+from app.scenes import scene_named
 from app.scenes.comparisons import COMPARISONS
-from app.scenes.rope.parameters import PRESETS
+from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.setups import read_query
-from app.server.access import OWN_PAGES_ONLY, Access
+from app.server.beside import SharedRecord
+from app.server.preparation import Preparation
 from app.server.viewer import Viewer
+from app.server.web.access import OWN_PAGES_ONLY, Access
 from tests import coroutines
-from tests.app.server.test_guard import say
-from tests.app.server.test_transport import decoded
+from tests.app.server.web.test_guard import say
+from tests.app.server.web.test_transport import decoded
 from tests.waiting import wait_for
 
 KEY = "k-3_" * 5
@@ -107,11 +113,121 @@ def test_one_sky_one_speed_and_only_what_differs_is_said(pair: Viewer) -> None:
     wait_for(lambda: "Damping: 3" in line_of(pair))
 
 
-def run(viewer: Viewer, action: Callable[[], None]) -> None:
+def run(viewer: Any, action: Callable[[], None]) -> None:
     """Call what only viser's event loop may call."""
     done = threading.Event()
     viewer.server.get_event_loop().call_soon_threadsafe(lambda: (action(), done.set()))
     assert done.wait(10.0)
+
+
+class Pane:
+    """A lab of a comparison with an event loop and settings, and nothing else."""
+
+    is_open = True
+
+    def __init__(self, labs: list["Pane"]) -> None:
+        self.events = asyncio.new_event_loop()
+        self.thread = threading.Thread(target=self.events.run_forever)
+        self.thread.start()
+        self.server = SimpleNamespace(get_clients=dict, get_event_loop=lambda: self.events)
+        self.settings = SceneSettings(self.server, scene_named("rope"), RopeParams(), lambda command: None)  # type: ignore[arg-type]
+        self.changes: list[float] = []
+        self.settings.watchers.append(lambda: self.changes.append(self.settings.params.speed))
+        labs.append(self)
+
+    call = Viewer.call
+
+    def end(self) -> None:
+        self.call(self.events.stop)
+        self.thread.join()
+        self.events.close()
+
+
+@pytest.fixture
+def panes() -> Iterator[tuple[SharedRecord, Any, Any]]:
+    """Two labs with one record."""
+    labs: list[Any] = []
+    record = SharedRecord(lambda: tuple(labs))
+    first, second = Pane(labs), Pane(labs)
+    for lab in labs:
+        lab.settings.watchers.append(lambda lab=lab: record.take(lab, lab.settings.params))
+        record.join(lab)
+        run(lab, lambda: None)
+    yield record, first, second
+    for lab in labs:
+        if not lab.events.is_closed():
+            lab.end()
+
+
+def quiet(*labs: Any) -> None:
+    """Wait until nothing is under way."""
+    for _ in range(3):
+        for lab in labs:
+            run(lab, lambda: None)
+
+
+@pytest.mark.parametrize("hand", [0, 1])
+def test_a_slider_under_the_hand_is_never_moved_by_the_other_lab(panes: Any, hand: int) -> None:
+    """60 changes a second, while the event loop of the other lab is held up."""
+    moved, other = panes[1 + hand], panes[2 - hand]
+    for number in range(60):
+        if number % 6 == 0:
+            other.call(lambda: time.sleep(0.06))
+        moved.call(lambda number=number: moved.settings.set("speed", 0.1 + 0.01 * number))
+        time.sleep(1 / 60)
+    quiet(moved, other)
+    assert moved.changes == pytest.approx([0.1 + 0.01 * number for number in range(60)])
+    assert moved.settings.params.speed == other.settings.params.speed == pytest.approx(0.69)
+    assert len(other.changes) <= 60
+    assert len(other.settings.history.settings) == 1  # one act here, too
+
+
+def test_two_hands_at_once_end_at_one_value(panes: Any) -> None:
+    _, first, second = panes
+    for number in range(40):
+        for lab, value in ((first, 0.1 + 0.01 * number), (second, 3.0 + 0.01 * number)):
+            lab.call(lambda lab=lab, value=value: lab.settings.set("speed", value))
+    quiet(first, second)
+    assert first.settings.params.speed == second.settings.params.speed
+    assert first.settings.params.speed == pytest.approx(0.49) or first.settings.params.speed == pytest.approx(3.39)
+    assert max(len(first.changes), len(second.changes)) <= 80
+
+
+def test_a_lab_that_is_being_shut_is_not_called(panes: Any) -> None:
+    _, first, second = panes
+    second.end()
+    shown: list[bool] = []
+    first.settings.watchers.append(lambda: shown.append(True))
+    run(first, lambda: first.settings.set("speed", 0.5))
+    assert shown == [True]  # the watchers after it are called
+
+
+def test_a_scene_that_is_asked_for_ends_a_comparison_that_is_being_opened(monkeypatch: pytest.MonkeyPatch) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    compiling = threading.Event()
+
+    def compile_slowly(kind: Any, params: Any, *, covers: bool, given_up: Callable[[], bool]) -> bool:
+        if kind.name != "cloth":
+            return True
+        compiling.set()
+        wait_for(given_up)
+        return False
+
+    try:
+        viewer.open("rope")
+        monkeypatch.setattr(Preparation, "compile", lambda self, *given, **how: compile_slowly(*given, **how))
+        for with_first in (True, False):
+            compiling.clear()
+            setups = [read_query("?scene=cloth")] * 2
+            viewer.comparing.want(setups[: 1 + with_first], with_first)
+            assert compiling.wait(10.0)
+            viewer.want("race" if with_first else "rope")
+            wait_for(lambda name="race" if with_first else "rope": viewer.settings.kind.name == name)
+            with viewer.comparing.lock:
+                assert viewer.comparison is None
+            assert not viewer.panes.servers
+    finally:
+        viewer.shut()
 
 
 def line_of(viewer: Viewer) -> str:

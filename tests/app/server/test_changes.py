@@ -1,74 +1,28 @@
 """Links of one browser of a shared lab: the last one wins, all see it for some seconds, and it can be undone."""
 
 import asyncio
-import contextlib
 import types
-from collections.abc import AsyncGenerator, Callable
-from typing import Any
 from unittest.mock import Mock
 
-import msgspec
 import pytest
-import viser
-import websockets
-from websockets.asyncio.client import ClientConnection, connect
 
 from app.panel.changes import SHOWN_TIME, UNDO, Change, Changes, Notice
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
 from tests import coroutines
-from tests.stress.clients import CAMERA
-
-PROTOCOL = websockets.Subprotocol(f"viser-v{viser.__version__}")
-MAX_WAIT = 120.0  # [s]: a scene may have to be compiled first
+from tests.app.server.visitors import Visitor, until, visitor
 
 
-async def until(condition: Callable[[], Any]) -> Any:
-    """Wait until something holds, and return it."""
-    async with asyncio.timeout(MAX_WAIT):
-        while not (found := condition()):
-            await asyncio.sleep(0.01)
-        return found
+async def follow(browser: Visitor, query: str) -> None:
+    """Follow a link, and wait until the line about it is drawn."""
+    await browser.send(browser.lab.panel.share.inbox, f"page{browser.client}\n{query}")
+    await until(lambda: f'data-springtide-changer="page{browser.client}"' in shown(browser.lab))
 
 
-class Visitor:
-    """A browser without a page."""
-
-    def __init__(self, lab: Viewer, socket: ClientConnection, client: int) -> None:
-        self.lab, self.socket, self.client = lab, socket, client
-
-    async def send(self, handle: Any, value: str) -> None:
-        """Send the value of a control."""
-        message = {"type": "GuiUpdateMessage", "uuid": handle._impl.uuid, "updates": {"value": value}}
-        await self.socket.send(msgspec.msgpack.encode(message))
-
-    async def follow(self, query: str) -> None:
-        """Follow a link, and wait until the line about it is drawn."""
-        await self.send(self.lab.panel.share.inbox, f"page{self.client}\n{query}")
-        await until(lambda: f'data-springtide-changer="page{self.client}"' in shown(self.lab))
-
-    async def undo(self) -> None:
-        """Press the button below the line."""
-        await self.send(self.lab.panel.share.notice.undo, UNDO)
-
-
-@contextlib.asynccontextmanager
-async def visitor(lab: Viewer) -> AsyncGenerator[Visitor]:
-    """A browser that looks at the lab, and reads what it is sent."""
-    before = set(lab.server.get_clients())
-    address = f"ws://127.0.0.1:{lab.port}"
-    async with connect(address, subprotocols=[PROTOCOL], max_size=None, max_queue=None) as socket:
-        reading = asyncio.ensure_future(read(socket))
-        await socket.send(msgspec.msgpack.encode(CAMERA))
-        (client,) = await until(lambda: set(lab.server.get_clients()) - before)
-        yield Visitor(lab, socket, client)
-        reading.cancel()
-
-
-async def read(socket: ClientConnection) -> None:
-    async for _ in socket:
-        pass
+async def undo(browser: Visitor) -> None:
+    """Press the button below the line."""
+    await browser.send(browser.lab.panel.share.notice.undo, UNDO)
 
 
 def shown(lab: Viewer) -> str:
@@ -114,10 +68,10 @@ def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pyte
             await until(lambda: vars(lab.settings.params)["points"] == 9)
             assert lab.changes.latest is None
             async with visitor(lab) as second:
-                await first.follow("?scene=rope&preset=Pendulum")
+                await follow(first, "?scene=rope&preset=Pendulum")
                 assert "You opened <b>Rope</b> (Pendulum) for all." in shown(lab)
                 assert "Another browser opened <b>Rope</b> (Pendulum) for all." in shown(lab)
-                await second.follow("?scene=rope&points=11")  # the last one wins
+                await follow(second, "?scene=rope&points=11")  # the last one wins
                 assert vars(lab.settings.params)["points"] == 11
                 clock[0] += 0.9 * SHOWN_TIME
                 await asyncio.sleep(0.3)
@@ -135,15 +89,15 @@ def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer) -> Non
             await first.send(lab.panel.share.inbox, "page\n?scene=rope&points=9&stiffness=500")
             await until(lambda: vars(lab.settings.params)["points"] == 9 and shown(lab))
             before = lab.settings.params
-            await first.follow("?scene=cloth")
+            await follow(first, "?scene=cloth")
             assert lab.panel.kind.name == "cloth"
             assert "Another browser opened <b>Cloth</b>" in shown(lab)  # in the panel of the scene that it opened
-            await second.undo()
+            await undo(second)
             await until(lambda: lab.panel.kind.name == "rope" and not shown(lab))
             assert lab.settings.params == before
-            await second.undo()  # once more, and too late
-            await first.follow("?scene=rope&points=13")
-            await second.undo()
+            await undo(second)  # once more, and too late
+            await follow(first, "?scene=rope&points=13")
+            await undo(second)
             await until(lambda: lab.settings.params == before and not shown(lab))
 
     coroutines.run(undo_links())

@@ -159,18 +159,18 @@ def test_a_preset_that_is_undone_while_it_is_compiled_never_begins(
     reset = scene.reset
     monkeypatch.setattr(scene, "reset", lambda: (begun.append(scene.params), reset()))
     for number in range(times):
-        before, starts = panel.settings.params, watched.loop.run.counts["starts"]
+        before, begun_runs = panel.settings.params, watched.loop.run.identity.number
         panel.settings.load_params(RopeParams(integrator="rk4", gravity=9.0), undone)
         assert asked(watched, lambda: scene.params) == before
         panel.settings.undo()
         assert asked(watched, lambda: scene.params) == before
         panel.settings.set("gravity", 1.0 + number % 7)
         assert asked(watched, lambda: scene.params.gravity) == 1.0 + number % 7  # type: ignore[attr-defined]
-        assert watched.loop.run.counts["starts"] == starts
+        assert watched.loop.run.identity.number == begun_runs
         assert not watched.loop.run.halted
         if number % 5 == 4:
             panel.settings.load_params(RopeParams(gravity=2.0), ready)
-            assert asked(watched, lambda: watched.loop.run.counts["starts"]) == starts + 1
+            assert asked(watched, lambda: watched.loop.run.identity.number) == begun_runs + 1
     assert all(params.integrator != "rk4" for params in begun)
     assert len(begun) == times // 5
 
@@ -187,7 +187,7 @@ def test_a_preset_that_settles_late_is_not_lost(watched: Viewer, monkeypatch: py
         panel.settings.load_params(RopeParams(integrator="rk4", gravity=1.0 + number), preset)
         for _ in range(8):  # ticks
             asked(watched, lambda: None)
-        assert watched.loop.run.counts["starts"] == number + 1
+        assert watched.loop.run.identity.number == number + 2
         assert watched.scene.params is panel.settings.params
         assert not watched.loop.run.halted
 

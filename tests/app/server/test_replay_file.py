@@ -17,7 +17,7 @@ from app.panel.recording_files import Plotted
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import scene_named, view_named
 from app.scenes.setups import read_setup
-from app.server.loop import SimLoop
+from app.server.loop.sim_loop import SimLoop
 from app.server.replay_file import BITS, MAX_FRAMES, MAX_RAW_BYTES, replay_html, rounded, thinned
 
 DURATION = 2.0  # [s]
@@ -32,7 +32,7 @@ def recorded() -> Any:
         loop.tick(1 / 30)
         wall += 1 / 30 + 1e-6
         recorder.note(loop.latest, wall)
-        rows += loop.run.snapshots.pop_rows()
+        rows += [row for _, row in loop.run.snapshots.pop_rows()]
     return kind, recorder.kept(), Plotted(rows, {})
 
 

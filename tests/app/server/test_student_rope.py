@@ -36,7 +36,7 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
         assert loop.latest.frame.reference is None
         (folder / "rope.py").write_text(RIGHT, "utf-8")
         wait_for(lambda: loop.latest.frame.reference is not None)
-        assert loop.run.counts["starts"] == 1  # both ropes began again
+        assert loop.run.identity.number == 2  # both ropes began again
         (folder / "rope.py").write_text(RIGHT.replace("    r = np", "    while True: pass\n    r = np"), "utf-8")
         wait_for(lambda: session.state.version == 3)
         ticks, started = loop.run.counts["ticks"], time.monotonic()
@@ -50,7 +50,7 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
         viewer.make_scene(scene_named("race"), RaceParams(), viewer.commands.put)  # which runs nothing of the student's
         (folder / "rope.py").write_text(RIGHT + "\n# once more\n", "utf-8")
         wait_for(lambda: taken(session) == 4)
-        assert loop.run.counts["starts"] == 1
+        assert loop.run.identity.number == 2
     finally:
         viewer.shut()
         session.close()

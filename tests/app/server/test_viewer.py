@@ -196,7 +196,7 @@ def test_of_several_scenes_asked_for_only_the_last_is_opened(lab: Viewer, monkey
         for name in ("cloth", "square_sea", "rope") * 100 + ("cloth",):
             lab.want(name)
         time.sleep(0.05)
-    wait_for(lambda: lab.is_open and lab.panel.kind.name == "cloth" and lab.wanted.empty())
+    wait_for(lambda: lab.is_open and lab.panel.kind.name == "cloth" and lab.requests.waiting.empty())
     assert len(opened) <= 2
 
 

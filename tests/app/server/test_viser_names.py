@@ -41,7 +41,7 @@ def try_lab(name):
     exec(compile(source, str(path), "exec"), inside.__dict__)
     from app.server.replay_file import replay_html
     from app.server.viewer import Viewer
-    from tests.app.server.test_guard import PROTOCOL, connect
+    from tests.app.server.web.test_guard import PROTOCOL, connect
     from tests.stress.clients import CAMERA
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("race")

@@ -5,6 +5,7 @@
 // that the keys of the lab (space, N, R, digits) never type into a list or press a button a second time.
 
 import { page } from "../core/life.js";
+import { send as sendToLab } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { stepped } from "./numbers.js";
 
@@ -91,6 +92,20 @@ page.listen(document, "click", (event) => {
   // A click by keyboard has no detail: the focus stays where Tab has brought it.
   if (used && event.detail > 0) document.activeElement?.blur();
 });
+
+// What a slider sets until it is let go is one change for Undo: the lab is told when it is held, and when no longer.
+let held = false;
+function tellHeld(now) {
+  const holder = document.querySelector("[data-springtide-held]");
+  if (now === held || !holder) return;
+  held = now;
+  sendToLab(now ? holder.dataset.springtideHeld : holder.dataset.springtideFree, true);
+}
+page.listen(document, "pointerdown", ({ target }) => {
+  if (target instanceof Element && target.closest(".multi-slider")) tellHeld(true);
+}, { capture: true });
+page.listen(document, ["pointerup", "pointercancel"], () => tellHeld(false), { capture: true });
+page.listen(window, "blur", () => tellHeld(false));
 
 // Assistive software finds a field by its name: viser's labels refer to an identifier that its text fields lack.
 function nameFields() {

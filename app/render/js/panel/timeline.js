@@ -25,7 +25,7 @@ const button = (act) => bar.querySelector(`[data-act=${act}]`);
 let state = null, told = "", count = 0, held = false, sentAt = 0, waiting = 0;
 
 function send(act, number) {
-  sendToLab(state.inbox, `${PAGE}${++count} ${act} ${number}`);
+  sendToLab(state.inbox, `${PAGE}${++count} ${act} ${number} ${state.run}`);
 }
 
 function put(element, text) {

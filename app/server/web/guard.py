@@ -42,10 +42,10 @@ from app.render.viser_inside import (
     send_to_all,
 )
 from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
-from app.server.access import OWN_PAGES_ONLY, Access, admitted, refusal
-from app.server.pace import PACE, Pace, put_small_first
-from app.server.page import own_answer, with_cover
-from app.server.panes import Panes
+from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, refusal
+from app.server.web.pace import PACE, Pace, put_small_first
+from app.server.web.page import own_answer, with_cover
+from app.server.web.panes import Panes
 
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
 MAX_LENGTH = 1000  # of a text, or of a list

@@ -5,8 +5,8 @@ import http.client
 
 import pytest
 
-from app.server.page import ALIVE_PATH, COVER, SERVER_NAME, TITLE, covered
 from app.server.viewer import Viewer
+from app.server.web.page import ALIVE_PATH, COVER, SERVER_NAME, TITLE, covered
 
 MAX_START = 30_000  # characters before the end of the cover; viser's client has 800,000
 

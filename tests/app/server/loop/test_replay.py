@@ -8,8 +8,8 @@ from app.render.cameras import fit_cameras
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.rope.scene import RopeScene
-from app.server.loop import SimLoop
-from app.server.replay import MOMENT_INTERVAL, Replay
+from app.server.loop.replay import MOMENT_INTERVAL, Replay
+from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record
 from tests.app.render.test_cameras import FakeCamera
 

@@ -6,8 +6,8 @@ from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take, TogglePl
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.race import scene as race
 from app.scenes.rope.scene import SCENE
-from app.server.loop import SimLoop
-from app.server.shared_clock import LEAD, Seat, SharedClock
+from app.server.loop.shared_clock import LEAD, Seat, SharedClock
+from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record
 
 STEPS = (1 / 240, 1 / 60, 1 / 100)

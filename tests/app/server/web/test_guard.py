@@ -18,7 +18,8 @@ import websockets
 from viser import _messages as vm
 from websockets.asyncio.client import connect
 
-from app.server.guard import (
+from app.server.viewer import Viewer
+from app.server.web.guard import (
     MAX_TEXT_LENGTH,
     Intake,
     allowed_value,
@@ -27,7 +28,6 @@ from app.server.guard import (
     is_own_origin,
     open_server,
 )
-from app.server.viewer import Viewer
 from tests import coroutines
 from tests.stress.clients import CAMERA
 from tests.waiting import wait_for
@@ -163,7 +163,7 @@ async def leave_at_once(port: int) -> None:
 def test_a_browser_that_leaves_while_its_camera_waits_is_not_counted(
     lab: Viewer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.server.guard.INTAKE_INTERVAL", 0.3)
+    monkeypatch.setattr("app.server.web.guard.INTAKE_INTERVAL", 0.3)
     before = len(lab.server.get_clients())
     coroutines.run(leave_at_once(lab.port))
     time.sleep(0.5)  # until the turn of the camera would have come

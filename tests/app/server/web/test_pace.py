@@ -13,10 +13,10 @@ import websockets
 from viser import _messages as vm
 from websockets.asyncio.client import connect
 
-from app.server.guard import open_server
-from app.server.pace import MAX_UNASKED, MOST, PATIENCE, PROBE_INTERVAL, QUEUE, SMALL, Pace, small_first
+from app.server.web.guard import open_server
+from app.server.web.pace import MAX_UNASKED, MOST, PATIENCE, PROBE_INTERVAL, QUEUE, SMALL, Pace, small_first
 from tests import coroutines
-from tests.app.server.test_transport import decoded
+from tests.app.server.web.test_transport import decoded
 
 PICTURE = b"p" * 97_000
 LINE, ROUND_TRIP = 2.5e6, 0.08  # [bytes/s] and [s] of the line that has to do

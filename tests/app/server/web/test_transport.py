@@ -11,8 +11,8 @@ import websockets
 import zstandard
 from websockets.asyncio.client import connect
 
-from app.server.guard import open_server
-from app.server.transport import Transport
+from app.server.web.guard import open_server
+from app.server.web.transport import Transport
 from tests import coroutines
 
 NODES = 12  # of the drawing, a mesh and a place each

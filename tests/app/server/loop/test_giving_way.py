@@ -11,10 +11,10 @@ from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
-from app.server.activity import BEGINNING, NOTHING, STEPS
-from app.server.loop import SimLoop
-from app.server.snapshots import MAX_BLIND_TIME
-from app.server.tick_clock import PATIENCE
+from app.server.loop.clock import PATIENCE
+from app.server.loop.commands import BEGINNING, NOTHING, STEPS
+from app.server.loop.sim_loop import SimLoop
+from app.server.loop.snapshots import MAX_BLIND_TIME
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
@@ -253,14 +253,14 @@ def test_steps_that_are_kept_whole_are_abandoned_for_a_new_beginning(busy):
 def test_a_reset_that_takes_long_says_that_it_has_begun(busy):
     def long_reset():
         busy.give_turn()
-        seen.append(busy.latest.status.starts)
+        seen.append(busy.latest.status.run.number)
         reset()
 
     seen, reset, busy.run.activity = [], busy.scene.reset, NOTHING
     busy.scene.reset = long_reset
     busy.commands.put(Reset())
     busy.tick(0.0)
-    assert seen == [1]
+    assert seen == [2]
     assert busy.run.request[STOP] == 0
 
 

@@ -22,7 +22,7 @@ import viser
 
 from app.render.viser_inside import pass_windows_through
 from app.render.viser_types import ViserConnection, ViserMessage
-from app.server.transport import kind_and_size
+from app.server.web.transport import kind_and_size
 
 SMALL = 8192  # [bytes] below which a message is no picture: it never waits, and no ping follows it
 QUEUE = 0.02  # [s] of the line's rate that may wait in front of it, beyond what is on the way

@@ -8,8 +8,8 @@ import pytest
 from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup
-from app.server import left_runs
-from app.server.loop import SimLoop
+from app.server.loop import run as runs
+from app.server.loop.sim_loop import SimLoop
 from app.server.viewer import Viewer
 from tests.waiting import wait_for
 
@@ -20,12 +20,12 @@ TICK = 1 / 30  # [s]
 def begun(name: str) -> SimLoop:
     """A scene that has run for a while and stands still, with costs that do not count."""
     loop = SimLoop(scene_named(name).make(make_setup(scene_named(name)).params), effort=lambda: 0.0)
-    run(loop)
+    go_on(loop)
     loop.handle(Pause())
     return loop
 
 
-def run(loop: SimLoop) -> None:
+def go_on(loop: SimLoop) -> None:
     for _ in range(TICKS):
         loop.tick(TICK)
 
@@ -51,15 +51,15 @@ def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, c
     rows = tuple(loop.run.snapshots.kept_rows)
     assert time > 0.0
     other = make_setup(kind, list(kind.presets)[1]).params
-    moment = Take(params, state=KeptState(loop.scene.keep(), {}), run=2)
-    changes = {"preset": Take(other, start=True, run=2), "reset": Reset(2), "moment": moment}
+    moment = Take(params, state=KeptState(loop.scene.keep(), {}, 1), act=2)
+    changes = {"preset": Take(other, start=True, act=2), "reset": Reset(2), "moment": moment}
     loop.handle(changes[change])
     loop.handle(Play())
-    run(loop)
-    starts = loop.run.counts["starts"]
-    loop.handle(Take(params, start=True, run=1, back=True))
+    go_on(loop)
+    number = loop.run.identity.number
+    loop.handle(Take(params, start=True, act=1, back=True))
     assert (loop.scene.time, loop.run.running, loop.run.halted) == (time, False, "")
-    assert loop.run.counts["starts"] == starts + 1  # so that the recording and the cameras are those of another run
+    assert loop.run.identity[:3] == (number + 1, 1, 0)  # so that the recording and the cameras are those of another run
     check_same(loop, before)
     loop.run.snapshots.publish()
     assert tuple(loop.run.snapshots.kept_rows)[: len(rows)] == rows
@@ -69,12 +69,12 @@ def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, c
 
 
 def test_a_run_that_is_too_large_begins_again_and_the_panel_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(left_runs, "MAX_BYTES", 1000.0)
+    monkeypatch.setattr(runs, "MAX_BYTES", 1000.0)
     loop = begun("rope")
     params = loop.scene.params
-    loop.handle(Take(make_setup(scene_named("rope"), "Pendulum").params, start=True, run=2))
+    loop.handle(Take(make_setup(scene_named("rope"), "Pendulum").params, start=True, act=2))
     assert (len(loop.runs.left.runs), loop.runs.left.memory.bytes) == (0, 0)
-    loop.handle(Take(params, start=True, run=1, back=True))
+    loop.handle(Take(params, start=True, act=1, back=True))
     assert (loop.scene.time, loop.run.running, loop.run.snapshots.status().restarted) == (0.0, True, True)
     loop.tick(10.0)
     assert not loop.run.snapshots.status().restarted
@@ -85,16 +85,16 @@ def test_memory_is_bounded_and_the_oldest_go_first(monkeypatch: pytest.MonkeyPat
     loop.handle(Reset(2))
     size = loop.runs.left.memory.bytes
     assert size == sum(loop.runs.left.runs[0].arrays.values()) > 0
-    monkeypatch.setattr(left_runs, "MAX_BYTES", 3.5 * size)
-    for number in range(3, 30):
-        loop.handle(Reset(number))
+    monkeypatch.setattr(runs, "MAX_BYTES", 3.5 * size)
+    for act in range(3, 30):
+        loop.handle(Reset(act))
         assert loop.runs.left.memory.bytes <= 3.5 * size
-    assert loop.runs.left.runs[-1].number == 28
+    assert loop.runs.left.runs[-1].act == 28
     assert loop.runs.left.pop(1) is None
-    kept = [run.number for run in loop.runs.left.runs]
+    kept = [run.act for run in loop.runs.left.runs]
     assert kept == list(range(kept[0], 29))
-    for number in kept:
-        assert loop.runs.left.pop(number) is not None
+    for act in kept:
+        assert loop.runs.left.pop(act) is not None
     assert loop.runs.left.memory.bytes == 0
 
 
@@ -102,8 +102,8 @@ def test_a_run_that_never_began_leaves_the_one_before_untouched() -> None:
     """A preset whose kernels are still compiled, and an undo that comes first."""
     loop = begun("rope")
     time = loop.scene.time
-    loop.handle(Take(loop.scene.params, start=True, run=1, back=True))
-    assert (loop.scene.time, loop.run.counts["starts"]) == (time, 0)
+    loop.handle(Take(loop.scene.params, start=True, act=1, back=True))
+    assert (loop.scene.time, loop.run.identity.number) == (time, 1)
 
 
 @pytest.mark.parametrize("change", [lambda lab: lab.settings.load("Pendulum"), lambda lab: lab.settings.reset()])
@@ -115,13 +115,13 @@ def test_undo_gives_back_the_screen(lab: Viewer, change: Callable[[Viewer], None
     lab.settings.post(Pause())
     wait_for(lambda: not lab.loop.run.running)
     time, before = lab.loop.scene.time, arrays_of(lab.loop)
-    starts = lab.loop.run.counts["starts"]
+    number = lab.loop.run.identity.number
     change(lab)
     lab.settings.post(StepOnce())
-    wait_for(lambda: lab.loop.run.counts["starts"] > starts and not lab.loop.run.running)
+    wait_for(lambda: lab.loop.run.identity.number > number and not lab.loop.run.running)
     lab.settings.undo()
     # Its snapshot comes once the whole run is back.
-    wait_for(lambda: (status := lab.loop.latest.status).starts == starts + 2 and status.time == time)
+    wait_for(lambda: (status := lab.loop.latest.status).run.number == number + 2 and status.time == time)
     check_same(lab.loop, before)
     assert not lab.loop.run.running
     assert lab.panel.head.preset.value == "Over the sphere"

@@ -7,10 +7,10 @@ import websockets
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from app.server.access import KEY_HEADER, Access, admitted, make_key, read_base_path, read_key, read_origin
-from app.server.guard import may_connect, open_server
+from app.server.web.access import KEY_HEADER, Access, admitted, make_key, read_base_path, read_key, read_origin
+from app.server.web.guard import may_connect, open_server
 from tests import coroutines
-from tests.app.server.test_guard import say
+from tests.app.server.web.test_guard import say
 
 KEY = "k-3_" * 5
 HUB = "https://hub.example.org"

@@ -1,6 +1,7 @@
-"""The run of a scene: its steps within the budget of a frame, its divergence, its start, and who waits for it."""
+"""The runs of a scene: which is the present one, its steps within the budget of a frame, and the undo of its start."""
 
 import collections
+import itertools
 import traceback
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -8,19 +9,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.messages import Pause
+from app.messages import BaseParams, KeptState, Pause, Play, PlotRow, RunIdentity, Take
+from app.panel.recorder import FrameMemory
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
-from app.server.activity import BEGINNING, NOTHING, OTHER_FORCES, STEPS, Activity
-from app.server.pacer import MAX_CATCH_UP, SOLVE_SHARE, FixedStep
-from app.server.replay import Replay
-from app.server.shared_clock import Seat
-from app.server.snapshots import Snapshots
-from app.server.tick_clock import TickClock
+from app.server.loop.clock import MAX_CATCH_UP, SOLVE_SHARE, FixedStep, TickClock
+from app.server.loop.commands import BEGINNING, NOTHING, OTHER_FORCES, STEPS, Activity
+from app.server.loop.replay import Replay
+from app.server.loop.shared_clock import Seat
+from app.server.loop.snapshots import Snapshots, kept_state
 from sim.interruption import ABANDON, STOP, InterruptionError
+from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
+MAX_BYTES = 100e6  # of all runs that are kept for an undo; beyond that the oldest are dropped
+ROW_BYTES = 32  # of a number in a plot row, with its place in the tuple
 BEGUN = "the lab was begun again or went on from another moment"  # why the time that a program waits for does not come
 
 
@@ -60,6 +64,7 @@ class SceneRun:
     def __init__(self, scene: AnyScene, audience: Callable[[], int], clock: TickClock, *, paused: bool) -> None:
         """The arguments are those of `SimLoop`."""
         self.scene, self.audience, self.clock = scene, audience, clock
+        self.identity, self.numbers = RunIdentity(), itertools.count(2)  # of this run; of those to come
         self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
         self.activity = NOTHING
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
@@ -231,6 +236,8 @@ class SceneRun:
             self.counts["solves ended early"] += 1
             if begins or activity == OTHER_FORCES or self.request[STOP] == ABANDON:
                 self.unfinished = action if begins else self.scene.reset
+            if self.unfinished is not None and not begins:
+                self.identify()
         except DivergenceError as error:
             self.unmade = begins
             if error.moments and self.running:
@@ -290,10 +297,15 @@ class SceneRun:
         self.halted, self.replay, self.unfinished, self.unmade = "", None, None, False
         self.pacer.debt = 0.0
 
-    def reset(self, action: Callable[[], None] | None = None) -> None:
-        """The scene from its start, or by another action; a run that had halted goes on."""
+    def identify(self, act: int = 0, before: int = 0, since: float = 0.0) -> None:
+        """Give the run that begins its number; see `RunIdentity`. act: 0 for that of the run before."""
+        self.identity = RunIdentity(next(self.numbers), act or self.identity.act, before, since)
+
+    def reset(self, act: int = 0, action: Callable[[], None] | None = None) -> None:
+        """The scene from its start, or by another action, for an act; a run that had halted goes on."""
         self.running |= bool(self.halted)
         self.clear()
+        self.identify(act)
         if self.seat is not None:
             self.seat.begin()
         self.begin(action or self.scene.reset)
@@ -310,3 +322,160 @@ def failure_words(error: Exception, *, begins: bool) -> str:
         return f"The scene cannot begin with these values. {error}"
     traceback.print_exception(error)
     return f"The scene stopped with {type(error).__name__}: {error}"
+
+
+class LeftRun(NamedTuple):
+    """A run as it was when it was left."""
+
+    act: int  # with which it began
+    params: BaseParams
+    state: KeptState
+    rows: tuple[PlotRow, ...]  # of its plots
+    running: bool
+
+    @property
+    def arrays(self) -> dict[int, int]:
+        """Identity -> bytes of all that it holds."""
+        return {**self.state.arrays, id(self.rows): ROW_BYTES * len(self.rows) * len(self.rows[0]) if self.rows else 0}
+
+
+class LeftRuns:
+    """The last ones, within bounded memory; one that is larger than that is not kept."""
+
+    def __init__(self) -> None:
+        self.runs: collections.deque[LeftRun] = collections.deque()
+        self.memory = FrameMemory()
+
+    def add(self, run: LeftRun) -> None:
+        """Keep a run."""
+        self.runs.append(run)
+        self.memory.add(run.arrays)
+        while self.memory.bytes > MAX_BYTES:
+            self.memory.remove(self.runs.popleft().arrays)
+
+    def pop(self, act: int) -> LeftRun | None:
+        """The last run of that act, which is no longer kept then; None if it is not kept."""
+        for place in reversed(range(len(self.runs))):
+            if self.runs[place].act == act:
+                found = self.runs[place]
+                del self.runs[place]
+                self.memory.remove(found.arrays)
+                return found
+        return None
+
+
+class Runs:
+    """Lets the runs of a scene follow each other: which commands begin another one, and the undo that goes back."""
+
+    def __init__(self, run: SceneRun) -> None:
+        self.run, self.left = run, LeftRuns()
+
+    def obey(self, command: Take) -> None:
+        """Take a record of parameters: with another run, or according to the effect of the change."""
+        params, start, state, act, back = command
+        run = self.run
+        is_other = act not in (0, run.identity.act)
+        if not command.changes_only:
+            run.awaited = None
+        if is_other:
+            self.leave()
+        if back and is_other:
+            self.go_back(command)
+        elif state is not None:
+            self.resume(params, state, act)
+        elif start and not back:
+            self.begin_with(params, act)
+        elif is_other:
+            self.change_start(params, act)
+        else:  # also where the run that an undo leaves has never begun
+            self.take(params)
+
+    def take(self, params: BaseParams) -> None:
+        """Take parameters according to the effect of their change; those that affect the start begin another run."""
+        run, scene = self.run, self.run.scene
+        effect = effect_of_change(scene.params, params)
+        if effect in (None, "look"):
+            scene.params = params
+        elif effect == "start" or run.unmade:
+            self.change_start(params)
+        else:
+            self.end_replay()
+            run.pacer.cost_unknown = True
+            run.guarded(lambda: scene.change_forces(params), OTHER_FORCES)
+            scene.params = params  # also where the scene failed, so that a reset has them
+
+    def end_replay(self) -> None:
+        """End showing the last moments of a run that diverged."""
+        run = self.run
+        if run.replay is not None:
+            run.halt(run.replay.reason)
+            run.replay = None
+
+    def change_start(self, params: BaseParams, act: int = 0) -> None:
+        """The scene from its start with these parameters; it runs if it ran before or had halted."""
+        run = self.run
+        self.end_replay()
+        run.scene.params, run.pacer.cost_unknown = params, True
+        if run.seat is not None:
+            run.seat.begin_others()
+        run.reset(act)
+
+    def begin_again(self, act: int) -> None:
+        """The scene from its start, as an act asks for; 0: as no act does."""
+        self.run.awaited = None
+        if act not in (0, self.run.identity.act):
+            self.leave()
+        self.run.reset(act)
+
+    def begin_with(self, params: BaseParams, act: int, left: LeftRun | None = None) -> None:
+        """The scene from its start with these parameters, running; or as it was in a run that was left."""
+        run = self.run
+        run.scene.params, run.pacer.cost_unknown = params, True
+        if run.seat is not None:
+            run.seat.begin_others()
+            run.seat.tell_others(Play())
+        run.reset(act, None if left is None else lambda: self.return_to(left))
+        run.running = not run.halted
+
+    def resume(self, params: BaseParams, state: KeptState, act: int) -> None:
+        """The scene from a state that was kept, with the parameters that it had then, running."""
+        run = self.run
+        run.clear()
+        run.scene.params, run.pacer.cost_unknown = params, True
+        run.snapshots.forget_rates()
+        run.guarded(lambda: run.scene.resume(state.value))
+        run.identify(act, state.run, run.scene.time)
+        if run.seat is not None:
+            run.seat.go_on_from(run.scene.time)
+            run.seat.tell_others(Play())
+        run.running = not run.halted
+
+    def leave(self) -> None:
+        """Keep the present run for an undo before another one begins, unless it has halted."""
+        run = self.run
+        if not (run.stopped_by or run.unmade or run.unfinished):
+            rows = tuple(run.snapshots.kept_rows)
+            self.left.add(LeftRun(run.identity.act, run.scene.params, kept_state(run), rows, run.running))
+
+    def go_back(self, command: Take) -> None:
+        """Go back to the run of an act, as it was when it was left; from its start if it is not kept."""
+        params, start, _, act, _ = command
+        run, left = self.run, self.left.pop(act)
+        if left is None:
+            (self.begin_with if start else self.change_start)(params, act)
+            run.snapshots.show_restarted()
+            return
+        self.begin_with(left.params, act, left)
+        run.running = left.running and not run.halted
+        if run.seat is not None and not run.running:
+            run.seat.tell_others(Pause())
+        self.take(params)  # which may have been changed just before the run was left
+
+    def return_to(self, left: LeftRun) -> None:
+        """The scene from its start, then as it was in a run that was left, with its plots."""
+        run = self.run
+        run.scene.reset()
+        run.scene.resume(left.state.value)
+        run.snapshots.bring_back(left.rows)
+        if run.seat is not None:
+            run.seat.go_on_from(run.scene.time)

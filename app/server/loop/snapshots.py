@@ -6,15 +6,15 @@ import traceback
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.messages import BaseParams, KeptState, PlotRow, Snapshot, Status, where_not_finite
-from app.scenes.contract import AnyScene, AnySnapshot
+from app.messages import BaseParams, KeptState, PlotRow, RunLine, RunRow, Snapshot, Status, where_not_finite
+from app.scenes.contract import AnySnapshot
 from app.scenes.moments import arrays_in
-from app.server.activity import NOTHING, STEPS, Activity
+from app.server.loop.commands import NOTHING, STEPS, Activity
 from sim.interruption import InterruptionError
 from sim.validation import DivergenceError
 
 if TYPE_CHECKING:
-    from app.server.run import SceneRun
+    from app.server.loop.run import SceneRun
 
 MAX_BLIND_TIME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
@@ -32,8 +32,9 @@ class Snapshots:
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
         self.restarted_until = 0.0  # [s] of the ticks, while the panel says that an undo could only begin a run again
         self.keep_at = 0.0  # [s] of the ticks from which a state is kept again
-        self.plot_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
+        self.plot_rows: collections.deque[RunRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
+        self.line = RunLine()  # of `kept_rows`
         self.published = 0.0  # [s] of simulated time, of the last snapshot
         self.is_shown = True  # the latest snapshot is of the scene as it is
         self.whole_at = run.clock.now()  # [s], when that was so last
@@ -109,23 +110,23 @@ class Snapshots:
 
     def hand_over(self, rows: Sequence[PlotRow]) -> None:
         """Queue new plot rows for the viewer, and keep those of the present run."""
-        self.plot_rows.extend(rows)
+        identity, kept = self.run.identity, self.kept_rows
+        end = self.line.follow(identity)
+        while kept and kept[-1][0] > end:
+            kept.pop()
         for row in rows:
-            if row[0] != row[0]:  # a NaN time: the run starts over
-                self.kept_rows.clear()
-                continue
-            while self.kept_rows and self.kept_rows[-1][0] >= row[0]:  # it has gone on from an earlier moment
-                self.kept_rows.pop()
-            self.kept_rows.append(row)
+            if not kept or row[0] > kept[-1][0]:  # a run that goes on from a moment makes the row of it once more
+                kept.append(row)
+                self.plot_rows.append((identity, row))
 
-    def pop_rows(self) -> list[PlotRow]:
+    def pop_rows(self) -> list[RunRow]:
         """The rows that have come since the last call; the viewer thread calls it."""
         return [self.plot_rows.popleft() for _ in range(len(self.plot_rows))]
 
     def bring_back(self, rows: Sequence[PlotRow]) -> None:
-        """Plot the rows of a run that comes back, after those of its start."""
-        self.plot_rows.extend([*self.run.scene.take_plot_rows(), *rows])
-        self.kept_rows = collections.deque(rows, maxlen=MAX_PLOT_ROWS)
+        """Plot the rows of a run that comes back, in place of those of its start."""
+        self.run.scene.take_plot_rows()
+        self.hand_over(rows)
 
     def keep_state(self) -> KeptState | None:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""
@@ -135,7 +136,7 @@ class Snapshots:
         if clock.wall < self.keep_at or not run.audience():
             return None
         start = clock.effort()
-        state = kept_state(run.scene)
+        state = kept_state(run)
         self.keep_at = clock.wall + max(KEEP_INTERVAL, (clock.effort() - start) / KEEP_SHARE)
         return state
 
@@ -159,7 +160,7 @@ class Snapshots:
             frame_rate=(len(history) - 1) / elapsed if elapsed > 0 else 0.0,
             halted=run.halted,
             faster=run.scene.faster if capped else "",
-            starts=run.counts["starts"],
+            run=run.identity,
             unmade=run.unmade,
             restarted=wall < self.restarted_until,
             replayed=None if moment is None else (moment.low, moment.high),
@@ -174,7 +175,7 @@ class Snapshots:
         self.restarted_until = self.run.clock.wall + RESTARTED_SHOWN
 
 
-def kept_state(scene: AnyScene) -> KeptState:
-    """The state of a scene, to go on from."""
-    value = scene.keep()
-    return KeptState(value, arrays_in(value))
+def kept_state(run: "SceneRun") -> KeptState:
+    """The state of a run, to go on from."""
+    value = run.scene.keep()
+    return KeptState(value, arrays_in(value), run.identity.number)

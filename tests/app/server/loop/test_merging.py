@@ -32,10 +32,10 @@ from app.messages import (
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
-from app.server.loop import SimLoop
-from app.server.merging import merged
-from app.server.replay import Replay
-from app.server.run import Goal
+from app.server.loop.commands import Record, merged
+from app.server.loop.replay import Replay
+from app.server.loop.run import Goal
+from app.server.loop.sim_loop import SimLoop
 from sim.parameters import parameter
 
 ORIGIN = (0.0, 0.0, 0.0)
@@ -199,7 +199,7 @@ def test_all_sequences_of_commands_do_the_same_merged_as_in_order(length: int, l
     begins = [lane.begin(**changes) for changes in STATES.values()]
     after, count = lane.after, 0
     for sequence in sequences(length):
-        several = merged(sequence, Params())
+        several = merged(sequence, Record(Params(), 1))
         if len(several) == len(sequence):
             assert all(a is b for a, b in zip(several, sequence, strict=True))
             continue
@@ -212,9 +212,9 @@ def test_all_sequences_of_commands_do_the_same_merged_as_in_order(length: int, l
 def test_grabs_of_one_particle_by_one_browser_are_one() -> None:
     """Another browser takes nothing that is held, and another particle is grabbed anew."""
     first, second = GrabTo(1, (1.0, 0.0, 0.0), 7), GrabTo(1, (2.0, 0.0, 0.0), 7)
-    assert merged([first, second], Params()) == [second]
+    assert merged([first, second], Record(Params(), 1)) == [second]
     for other in (GrabTo(2, (2.0, 0.0, 0.0), 7), GrabTo(1, (2.0, 0.0, 0.0), 8)):
-        assert merged([first, other], Params()) == [first, other]
+        assert merged([first, other], Record(Params(), 1)) == [first, other]
 
 
 def sequences(most: int) -> Iterable[tuple[Command, ...]]:
@@ -238,7 +238,7 @@ def test_a_rope_is_left_by_merged_commands_as_by_all_in_order(first: int) -> Non
     count = 0
     for rest in itertools.product(commands, repeat=2):
         sequence = (commands[first], *rest)
-        several = merged(sequence, params)
+        several = merged(sequence, Record(params, 1))
         if len(several) == len(sequence):
             continue
         ends = []

@@ -10,7 +10,7 @@ also passes on to the others what concerns all.
 
 import queue
 
-from app.messages import Command, Pause, Play, Reset, StepOnce, Take, TogglePlay
+from app.messages import Command, Pause, Play, Reset, StepOnce, TogglePlay
 
 LEAD = 0.05  # [s] of wall time by which loops may differ while they run: they draw at different moments
 MAX_DEBT = 0.25  # [s] of wall time that the clock makes up for
@@ -77,10 +77,6 @@ class Seat:
                 if any(seat.halted for seat in self.clock.seats):  # which paused the others
                     self.tell_others(Play())
                     self.told.put(Play())
-            case Take(start=start) if not command.changes_only:
-                if start:
-                    self.begin_others()
-                self.tell_others(Play())
             case _:
                 pass
         return command

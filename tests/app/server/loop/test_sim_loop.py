@@ -27,10 +27,9 @@ from app.messages import (
     where_not_finite,
 )
 from app.scenes.contract import FRAME_INTERVAL
-from app.server.loop import IDLE_INTERVAL, SimLoop
-from app.server.pacer import MAX_LONG_FRAME, SOLVE_SHARE, FixedStep
-from app.server.run import HURRY_INTERVAL
-from app.server.tick_clock import MAX_FRAME_INTERVAL, PATIENCE
+from app.server.loop.clock import MAX_FRAME_INTERVAL, MAX_LONG_FRAME, PATIENCE, SOLVE_SHARE, FixedStep
+from app.server.loop.run import HURRY_INTERVAL
+from app.server.loop.sim_loop import IDLE_INTERVAL, SimLoop
 from sim.parameters import parameter
 from sim.validation import DivergenceError
 from tests.waiting import wait_for
@@ -392,7 +391,7 @@ def test_an_answer_of_the_student_s_functions_is_taken_in_a_sleep_and_does_not_e
 def test_where_sleeps_end_late_there_are_fewer_frames_in_the_same_simulated_time(
     late: float, interval: float, apart: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.server.tick_clock.TIMER_STEP", 0.0)
+    monkeypatch.setattr("app.server.loop.clock.TIMER_STEP", 0.0)
     loop, scene = make(gives_way=True)
     clock, stop, starts = scene.clock, threading.Event(), []
 
@@ -483,7 +482,7 @@ def test_a_preset_starts_from_exactly_its_record_and_what_is_changed_after_it_fo
     assert scene.starts == [preset]
     assert (scene.params.stiffness, scene.changes) == (6.0, 1)
     assert loop.run.running
-    assert loop.latest.status.starts == 1
+    assert loop.latest.status.run.number == 2
 
 
 def test_states_are_kept_while_the_run_goes_on_and_gone_on_from_without_a_new_start() -> None:
@@ -498,12 +497,12 @@ def test_states_are_kept_while_the_run_goes_on_and_gone_on_from_without_a_new_st
     loop.tick(1.0)
     assert loop.latest.state is None
     time, state = states[3]
-    starts = loop.latest.status.starts
+    run = loop.latest.status.run
     loop.commands.put(Take(Params(stiffness=3.0), state=state))
     loop.tick(0.0)
     assert (scene.time, scene.params.stiffness, scene.resets) == (time, 3.0, 0)
     assert loop.run.running
-    assert loop.latest.status.starts == starts
+    assert loop.latest.status.run == (run.number + 1, run.act, run.number, time)
 
 
 def test_single_steps_are_counted_and_bounded_by_the_frames_budget() -> None:
@@ -528,7 +527,7 @@ def test_no_plot_row_is_lost_where_nobody_takes_the_snapshots() -> None:
     loop.run.snapshots.plot_rows.clear()
     for _ in range(30):
         loop.tick(FRAME_INTERVAL)
-    times = [row[0] for row in loop.run.snapshots.plot_rows]
+    times = [row[0] for _, row in loop.run.snapshots.plot_rows]
     assert times == pytest.approx([FRAME_INTERVAL * k for k in range(1, 31)], abs=0.011)
 
 

@@ -2,11 +2,11 @@
 
 from concurrent.futures import Future
 
-from app.messages import Advance, KeptState, Play, Reset, Take
+from app.messages import Advance, KeptState, Pause, Play, Reset, Take
 from app.scenes.compiling import Compiling, Job
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import SCENE
-from app.server.compile_gate import CompileGate
+from app.server.loop.commands import CompileGate, Record
 
 
 class Queue(Compiling):
@@ -32,7 +32,7 @@ class Queue(Compiling):
 
 def made() -> tuple[Queue, CompileGate]:
     queue = Queue()
-    return queue, CompileGate(queue, SCENE, RopeParams())
+    return queue, CompileGate(queue, SCENE, Record(RopeParams(), 1))
 
 
 def test_a_method_that_is_not_compiled_waits_and_starts_by_itself() -> None:
@@ -62,10 +62,47 @@ def test_going_back_to_what_is_there_ends_the_wait() -> None:
 def test_a_preset_is_held_until_it_can_run() -> None:
     queue, gate = made()
     preset = Take(RopeParams(integrator="tr_bdf2"), start=True)
-    assert gate.admit([preset, Reset()]) == [Reset()]
+    assert gate.admit([preset, Pause()]) == [Pause()]
     queue.finish("tr_bdf2")
     assert gate.admit([Play()]) == [preset, Play()]
     assert gate.admit([]) == []
+
+
+def test_a_reset_does_not_overtake_the_preset_before_it() -> None:
+    queue, gate = made()
+    preset = Take(RopeParams(integrator="tr_bdf2"), start=True, act=2)
+    assert gate.admit([Reset(2)]) == [Reset(2)]
+    assert gate.admit([preset, Reset(3), Reset(4)]) == []
+    queue.finish("tr_bdf2")
+    assert gate.admit([]) == [preset, Reset(3), Reset(4)]
+    assert gate.record == Record(preset.params, 4)
+
+
+def test_an_undo_drops_all_that_waits() -> None:
+    queue, gate = made()
+    changed = RopeParams(integrator="tr_bdf2", gravity=3.0)
+    assert gate.admit([Take(changed, start=True, act=2), Reset(3), Take(changed, act=3)]) == []
+    undone = Take(RopeParams(), act=1, back=True)
+    assert gate.admit([undone]) == [undone]
+    assert not gate.notice
+    queue.finish("tr_bdf2")
+    assert gate.admit([]) == []
+
+
+def test_what_can_run_begins_the_run_of_the_preset_that_it_drops() -> None:
+    _, gate = made()
+    assert gate.admit([Take(RopeParams(integrator="tr_bdf2", gravity=3.0), start=True, act=2)]) == []
+    changed = Take(RopeParams(gravity=3.0), act=2)
+    assert gate.admit([changed]) == [changed._replace(start=True)]
+
+
+def test_nothing_drops_a_moment_to_go_on_from_but_what_begins_again() -> None:
+    queue, gate = made()
+    moment = Take(RopeParams(integrator="rk4"), state=KeptState(0.0, {}), act=2)
+    changed = Take(RopeParams(gravity=3.0), act=2)
+    assert gate.admit([moment, changed]) == []
+    queue.finish("rk4")
+    assert gate.admit([]) == [moment, changed]
 
 
 def test_of_two_presets_only_the_last_is_loaded() -> None:
@@ -100,7 +137,7 @@ def test_a_moment_to_go_on_from_keeps_its_own_parameters() -> None:
 def test_a_newer_record_that_can_run_drops_the_preset_that_waits() -> None:
     queue, gate = made()
     assert gate.admit([Take(RopeParams(integrator="rk4"), start=True)]) == []
-    undone = Take(RopeParams(gravity=3.0))
+    undone = Take(RopeParams(gravity=3.0), act=1, back=True)
     assert gate.admit([undone]) == [undone]
     assert not gate.notice
     queue.finish("rk4")

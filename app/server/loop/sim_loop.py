@@ -33,12 +33,20 @@ from app.messages import (
 )
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.timer import effort_clock, fine_timer
-from app.server.activity import NOTHING, OTHER_FORCES, STEPS
-from app.server.merging import Motion, begins_anew, effect_of_takes, is_urgent, merged
-from app.server.run import SceneRun
-from app.server.runs import Runs
-from app.server.shared_clock import Seat
-from app.server.tick_clock import Clock, TickClock
+from app.server.loop.clock import Clock, TickClock
+from app.server.loop.commands import (
+    NOTHING,
+    OTHER_FORCES,
+    STEPS,
+    Motion,
+    Record,
+    begins_anew,
+    effect_of_takes,
+    is_urgent,
+    merged,
+)
+from app.server.loop.run import Runs, SceneRun
+from app.server.loop.shared_clock import Seat
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
@@ -81,6 +89,11 @@ class SimLoop:
     def latest(self) -> AnySnapshot:
         """The latest snapshot, for other threads too."""
         return self.run.snapshots.latest
+
+    @property
+    def record(self) -> Record:
+        """The parameters of the present run, and its act."""
+        return Record(self.scene.params, self.run.identity.act)
 
     def tick(self, wall: float) -> None:
         """One frame, `wall` seconds after the last."""
@@ -153,7 +166,7 @@ class SimLoop:
         """Cancel the solve for the commands that have come, or answer them with a snapshot."""
         self.take_in()
         run, activity, whole = self.run, self.run.activity, is_kept_whole()
-        params, effect = effect_of_takes(self.scene.params, self.waiting)
+        params, effect = effect_of_takes(self.record, self.waiting)
         anew = any(map(begins_anew, self.waiting)) or effect == "start"
         asked = anew or any(map(is_urgent, self.waiting)) or effect == "forces"
         if anew and activity != NOTHING:
@@ -169,7 +182,7 @@ class SimLoop:
         drags = self.drags_waiting() if within_steps else []
         for command in drags:
             self.scene.handle(command)
-        is_begun = self.latest.status.starts == run.counts["starts"]
+        is_begun = self.latest.status.run == run.identity
         if drags or self.latest.params != params or not is_begun:
             run.pacer.capped = activity == STEPS
             run.snapshots.publish_in_solve(params, with_frame=within_steps)
@@ -187,10 +200,10 @@ class SimLoop:
         Those that follow a cancelled one wait for the next tick, where what has cancelled it may supersede them.
         """
         run, waiting, self.waiting = self.run, self.waiting, []
-        left, unfinished = merged(waiting, self.scene.params), run.unfinished
+        left, unfinished = merged(waiting, self.record), run.unfinished
         if unfinished is not None:
             first = [command for command in left if not isinstance(command, Motion)][:1]
-            if any(map(begins_anew, first)) or effect_of_takes(self.scene.params, first)[1] == "start":
+            if any(map(begins_anew, first)) or effect_of_takes(self.record, first)[1] == "start":
                 run.unfinished = None
             else:
                 run.begin(unfinished)
@@ -219,8 +232,8 @@ class SimLoop:
                 run.halt(reason)
             case Take():
                 self.runs.obey(command)
-            case Reset(number):
-                self.runs.begin_again(number)
+            case Reset(act):
+                self.runs.begin_again(act)
             case Ask(read, answer):
                 self.tell(read, answer)
             case Advance(seconds, answer):

@@ -1,0 +1,46 @@
+"""Words about work that takes long, such as a file: the browser that asked is told, whatever scene it shows by then."""
+
+import threading
+import traceback
+from collections.abc import Callable
+
+import viser
+
+SHOWN_TIME = 10.0  # [s] for which the end of a work is shown
+
+
+class LongWork:
+    """One work in a separate thread, with a notification in the browser that asked for it."""
+
+    def __init__(self, client: viser.ClientHandle, title: str, failed: str) -> None:
+        """title: names the work. failed: begins the words on why it came to nothing."""
+        self.failed = failed
+        self.words = client.add_notification(title, "…", loading=True)
+
+    def say(self, text: str) -> None:
+        """Say how far it is."""
+        self.words.body = text
+
+    def start(self, work: Callable[[], str], done: Callable[[], None]) -> None:
+        """Do the work, which returns the words on its end or raises. done: called in any case."""
+
+        def run() -> None:
+            try:
+                self.end(work(), "green")
+            except OSError as error:  # a TimeoutError is one too
+                self.end(f"{self.failed}: {error.strerror or error}", "red")
+            except (ValueError, RuntimeError) as reason:
+                self.end(f"{self.failed}: {reason}", "red")
+            except Exception as error:
+                traceback.print_exc()
+                self.end(f"{self.failed}: {type(error).__name__}: {error}", "red")
+            finally:
+                done()
+
+        threading.Thread(target=run, name="long work", daemon=True).start()
+
+    def end(self, text: str, color: str) -> None:
+        """Say how it ended, for a while."""
+        words = self.words
+        words.body, words.loading, words.color = text, False, color  # type: ignore[assignment]
+        words.auto_close_seconds = SHOWN_TIME

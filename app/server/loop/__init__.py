@@ -1,0 +1,1 @@
+"""The simulation thread: commands, runs, snapshots and clocks of one scene."""

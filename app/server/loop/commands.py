@@ -1,0 +1,257 @@
+"""Commands before a tick: those that pass, those that wait, those that are superseded, and those that cancel a solve.
+
+Parameters wait until the kernels that they need are compiled, since compiling here would freeze the page. Nothing
+overtakes what it may depend on.
+"""
+
+import itertools
+from collections.abc import Iterable, Sequence
+from typing import Literal, NamedTuple
+
+from app.messages import (
+    Advance,
+    Ask,
+    BaseParams,
+    Command,
+    GrabTo,
+    Halt,
+    Pause,
+    Place,
+    Play,
+    Release,
+    Reset,
+    SceneCommand,
+    StepOnce,
+    StudentAnswer,
+    Take,
+    TogglePlay,
+)
+from app.scenes.compiling import Compiling, Job
+from app.scenes.contract import AnyKind
+from sim.parameters import EFFECTS, Effect, effect_of_change
+
+Motion = Play | Pause | TogglePlay | Halt  # what leaves the scene alone
+
+
+class Record(NamedTuple):
+    """Parameters, and the number of the act with which the run that has them begins."""
+
+    params: BaseParams
+    act: int
+
+
+def merged(commands: Iterable[Command], record: Record) -> list[Command]:
+    """The commands that have the same effect as all of them in order. record: that of the scene before.
+
+    Only neighbours are merged, so that nothing moves past what might depend on it.
+    """
+    kept: list[Command] = []
+    for command in commands:
+        match kept[-1] if kept else None, command:
+            case (_, Take(start=True, back=False)):
+                while kept and is_begun_over(kept[-1]):
+                    kept.pop()  # nothing of it is left once the scene has begun again, and runs
+            case (Take(), Take()) if command.changes_only:
+                drop_changes(kept, command, record)
+            case (StepOnce(before), StepOnce(steps)):
+                kept.pop()
+                command = StepOnce(before + steps)
+            case (last, _) if last is not None and repeats(last, command):
+                kept.pop()
+            case _:
+                pass
+        kept.append(command)
+    return kept
+
+
+def is_begun_over(command: Command) -> bool:
+    """True if nothing of a command is left once the scene has begun again, nor in the run that an undo goes back to."""
+    if isinstance(command, Take):
+        return command.state is None and not command.back
+    return isinstance(command, Reset)
+
+
+def repeats(earlier: Command, later: Command) -> bool:
+    """True if the later one of two neighbours does all that both do."""
+    match earlier, later:
+        case (Place(thing), Place(other)):
+            return thing == other
+        case (GrabTo(particle, _, client), GrabTo(other, _, by)):
+            return (particle, client) == (other, by)
+        case (Release(client), Release(by)):
+            return client == by
+        case (Reset(first), Reset(second)):
+            return second != 0 or first == 0
+        case (StudentAnswer(), StudentAnswer()):
+            return True
+        case _:
+            return False
+
+
+def drop_changes(kept: list[Command], change: Take, record: Record) -> None:
+    """Drop the last changes of parameters, as far as `change` alone has the same effect as all of them in order."""
+    last = len(kept)
+    while last and isinstance(before := kept[last - 1], Take) and before.changes_only:
+        last -= 1
+    chain = len(kept) - last
+    records = records_of(record, [*kept, change])[-chain - 2 :]  # the first is the one before the chain
+    for dropped in range(chain, 0, -1):
+        if is_one_change(records[-dropped - 2 :]):
+            del kept[-dropped:]
+            return
+
+
+def records_of(record: Record, commands: Iterable[Command]) -> list[Record]:
+    """A record, and those to which the commands lead from it one after the other."""
+    records = [record]
+    for command in commands:
+        if isinstance(command, Take | Reset):
+            last = records[-1]
+            params = command.params if isinstance(command, Take) else last.params
+            records.append(Record(params, command.act or last.act))
+    return records
+
+
+def effect_between(before: Record, after: Record) -> Effect | None:
+    """Effect of going from one record to another: another act begins another run."""
+    return "start" if before.act != after.act else effect_of_change(before.params, after.params)
+
+
+def is_one_change(records: Sequence[Record]) -> bool:
+    """True if going from the first record to the last at once has the same effect as going by the others.
+
+    Other forces count from the next step on, so that of several the last ones count: a net whose number of points
+    changes twice is interpolated once. A scene that has begun again and then takes other forces need not be as one that
+    begins with these.
+    """
+    effects: list[Effect | None] = [effect_between(a, b) for a, b in itertools.pairwise(records)]
+    begins = [number for number, effect in enumerate(effects) if effect == "start"]
+    if begins and "forces" in effects[begins[-1] :]:
+        return False
+    return rank(effect_between(records[0], records[-1])) >= max(map(rank, effects))
+
+
+def rank(effect: Effect | None) -> int:
+    """Effects in order: a greater one includes the smaller ones."""
+    return -1 if effect is None else EFFECTS.index(effect)
+
+
+def begins_anew(command: Command) -> bool:
+    """True if the scene begins from its start after this command, whatever it is like before."""
+    return isinstance(command, Reset) or (isinstance(command, Take) and command.start)
+
+
+def is_urgent(command: Command) -> bool:
+    """True if a command should not wait for a long solve.
+
+    Drags, going on and those of a waiting program may; a change of parameters as its effect asks for.
+    """
+    if isinstance(command, Take):
+        return not command.changes_only
+    return not isinstance(command, SceneCommand | Play | Ask | Advance)
+
+
+def effect_of_takes(record: Record, commands: Iterable[Command]) -> tuple[BaseParams, Effect | None]:
+    """The last parameters that commands bring, and the greatest effect on the way to them from `record`."""
+    records = records_of(record, commands)
+    effects: list[Effect | None] = [effect_between(a, b) for a, b in itertools.pairwise(records)]
+    return records[-1].params, max(effects, key=rank, default=None)
+
+
+class Activity(NamedTuple):
+    """One solve. A new beginning of the scene cancels each of them."""
+
+    kind: Literal["none", "steps", "beginning", "forces", "frame"]
+    may_end: bool = False  # cancelled by all that asks for another solve, too
+
+
+NOTHING = Activity("none")
+STEPS = Activity("steps", may_end=True)  # the scene's frame is that of a whole step, also in the middle of one
+BEGINNING = Activity("beginning")  # where it fails, there is no scene to run
+OTHER_FORCES = Activity("forces")  # the scene's parameters are the old or the new ones
+
+
+class CompileGate:
+    """Holds back parameters of one scene until their kernels are compiled; the scene goes on with the present ones.
+
+    The simulation thread alone calls it and changes it; the viewer thread reads `notice`.
+    """
+
+    def __init__(self, compiling: Compiling, kind: AnyKind, record: Record) -> None:
+        """record: the one that runs."""
+        self.compiling, self.kind = compiling, kind
+        self.record = record  # the one that was handed over last
+        self.held: list[Command] = []  # parameters that wait for the compiler, and what waits for them, in order
+        self.jobs: dict[BaseParams, list[Job]] = {}  # still to be compiled, asked for once and not in each tick
+        self.notice = ""  # pending compilation, in words
+
+    def is_ready(self, params: BaseParams) -> bool:
+        """True if all is compiled that these parameters run; if not, it is compiled next."""
+        if params not in self.jobs:
+            self.jobs[params] = self.compiling.missing(self.kind.name, params)
+            if self.jobs[params]:
+                self.compiling.want(self.jobs[params])
+                names = ", ".join(job.piece for job in self.jobs[params])
+                self.notice = f"Compiling {names}: starts by itself when it is ready."
+        self.jobs[params] = [job for job in self.jobs[params] if job not in self.compiling.settled]
+        return not self.jobs[params]
+
+    def admit(self, commands: Iterable[Command]) -> list[Command]:
+        """The commands that can be handled now, in order.
+
+        Parameters that cannot run yet wait, and come later by themselves. A reset and a program's wait that were asked
+        for after them come after them. Other commands concern the scene that is shown, and pass. Newer parameters that
+        can run drop those that wait (`drop_held`).
+        """
+        admitted = self.passed()
+        for command in commands:
+            if isinstance(command, Take):
+                admitted += self.passed(command)
+            elif self.held and isinstance(command, Advance | Reset):
+                self.held.append(command)
+            else:
+                admitted.append(command)
+                self.note([command])
+        return admitted
+
+    def passed(self, newer: Take | None = None) -> list[Command]:
+        """The commands that wait and can be handled now, up to the first that cannot. newer: comes after them."""
+        passed = self.pop_ready()
+        if newer is not None:
+            self.held = self.drop_held(newer) if self.held else [newer]
+            passed += self.pop_ready()
+        return passed
+
+    def pop_ready(self) -> list[Command]:
+        """Take out those that can be handled now."""
+        count = 0
+        for command in self.held:
+            if isinstance(command, Take) and not self.is_ready(command.params):
+                break
+            count += 1
+        ready, self.held = self.held[:count], self.held[count:]
+        self.note(ready)
+        if ready and not self.held:
+            self.jobs.clear()
+            self.notice = ""
+        return ready
+
+    def drop_held(self, newer: Take) -> list[Command]:
+        """The commands that wait once newer parameters have come, without those of no more interest.
+
+        An undo goes back past all that waits. Other parameters that can run take the place of those that wait, and
+        begin the run of their act or go back to it, but where they come after a moment: that has parameters of its own.
+        """
+        waiting = [command for command in self.held if isinstance(command, Take)]
+        if newer.changes_only:
+            if not self.is_ready(newer.params) or any(take.state is not None for take in waiting):
+                return merged([*self.held, newer], self.record)
+            back = any(take.back and take.act == newer.act for take in waiting)
+            newer = newer._replace(start=any(take.start and take.back == back for take in waiting), back=back)
+        elif not newer.back and not self.is_ready(newer.params):
+            return merged([*self.held, newer], self.record)
+        return [newer, *(command for command in self.held if isinstance(command, Advance))]
+
+    def note(self, commands: Iterable[Command]) -> None:
+        """Note the record to which commands that are handled lead."""
+        self.record = records_of(self.record, commands)[-1]

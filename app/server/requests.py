@@ -1,0 +1,41 @@
+"""Scenes that browsers ask for: of several that wait only the last counts."""
+
+import itertools
+import queue
+from typing import NamedTuple
+
+from app.messages import BaseParams
+from app.render.cameras import ClientCamera
+
+
+class SceneRequest(NamedTuple):
+    """A scene to open."""
+
+    scene: str
+    params: BaseParams | None  # where a task or a link has them
+    camera: ClientCamera | None  # of a link
+
+
+class SceneRequests:
+    """The queue of them; any thread may put."""
+
+    def __init__(self) -> None:
+        self.waiting: queue.SimpleQueue[SceneRequest] = queue.SimpleQueue()
+        self.numbers = itertools.count(1)
+        self.number = 0  # of the last request
+
+    def put(self, request: SceneRequest) -> None:
+        """Ask for a scene."""
+        self.waiting.put(request)
+        self.number = next(self.numbers)
+
+    def pop(self) -> SceneRequest:
+        """Wait for a request, and take the last one out."""
+        request = self.waiting.get()
+        while not self.waiting.empty():
+            request = self.waiting.get()
+        return request
+
+    def is_newer(self, number: int) -> bool:
+        """True if a scene was asked for after the request of this number; it may have been taken out already."""
+        return self.number != number or not self.waiting.empty()

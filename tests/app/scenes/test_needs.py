@@ -1,0 +1,49 @@
+"""What is compiled before parameters run is known without the net that they describe, and is what the scene runs."""
+
+import dataclasses
+import random
+from typing import Any
+
+import pytest
+
+from app.scenes import scene_named
+from app.scenes.cloth import scene as cloth
+from app.scenes.cloth.start import sphere_home
+from app.scenes.rope import scene as rope
+from app.scenes.setups import make_setup
+from sim.parameters import clamp_value, parameters_of
+from sim.springs.automatic import AUTO
+from sim.springs.integrator_fallback import integrator_or_fallback
+
+SIZES = {"rope": ("points",), "cloth": ("rows", "cols")}
+
+
+def fail(*_: object) -> None:
+    raise AssertionError("a net is built")
+
+
+def test_a_method_that_is_named_needs_no_net(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (cloth, rope):
+        monkeypatch.setattr(module, "build", fail)
+        for method in ("rk4", "leapfrog", "implicit_euler"):
+            assert module.needs(dataclasses.replace(module.SCENE.params(), integrator=method))[0].startswith(method)
+
+
+@pytest.mark.parametrize("module", [cloth, rope], ids=["cloth", "rope"])
+@pytest.mark.parametrize("method", [AUTO, "pefrl"])
+def test_a_small_net_has_the_method_of_the_large_one(module: Any, method: str) -> None:
+    rng = random.Random(method)
+    kind = scene_named(module.SCENE.name)
+    declared, found = parameters_of(kind.params), set()
+    for _ in range(40):
+        params: Any = make_setup(kind, rng.choice(list(kind.presets))).params
+        values = {name: rng.randint(2, 40) for name in SIZES[kind.name]}
+        for name in rng.sample(["stiffness", "damping", "gravity", "sphere_radius", "contact_damping"], 3):
+            values[name] = clamp_value(declared[name], getattr(params, name) * 10 ** rng.uniform(-2.0, 1.0))
+        step = 10 ** rng.uniform(-4.0, -1.5)
+        params = dataclasses.replace(params, **values, integrator=method, time_step=step)
+        net = module.build(params, sphere_home(params)) if module is cloth else module.build(params)
+        runs = integrator_or_fallback(method, net, step)[0].name
+        assert module.needs(params)[0].startswith(runs)
+        found.add(runs)
+    assert len(found) > 1 or method != AUTO

@@ -152,7 +152,7 @@ def file_name(function: Callable[..., Any]) -> str:
 
 
 def described(value: Any) -> Any:
-    """The value of a name in a kernel: of another kernel the name of its files, the text of a number, "" of all else."""
+    """The value of a name in a kernel: a kernel's is the name of its files, a number's its text, all else's ""."""
     if isinstance(value, VariantEntry):
         return [described(kernel) for kernel in value.variants.values()]
     if isinstance(value, Entry):

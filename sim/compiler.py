@@ -138,7 +138,7 @@ def without_processor(key: Any) -> tuple[Any, Any]:
 
 
 def file_name(function: Callable[..., Any]) -> str:
-    """Name of a kernel's files: by its name, its code and what it uses, wherever it stands in its source.
+    """Name of a kernel's files: by its name, its code and the names in it, wherever it stands in its source.
 
     The folder is named by the sources, which are not always what runs: Python takes byte code for new if the time of
     the source in whole seconds, and its size, are the same.
@@ -152,7 +152,7 @@ def file_name(function: Callable[..., Any]) -> str:
 
 
 def described(value: Any) -> Any:
-    """What a name stands for in a kernel: another kernel, by the name of its files, or a number; "" for all else."""
+    """The value of a name in a kernel: a kernel's is the name of its files, a number's its text, all else's ""."""
     if isinstance(value, VariantEntry):
         return [described(kernel) for kernel in value.variants.values()]
     if isinstance(value, Entry):

@@ -6,7 +6,6 @@ https://www.ndbc.noaa.gov/faq/measdes.shtml describes them: alpha1 and alpha2 ar
 import datetime
 import math
 import re
-import warnings
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -60,9 +59,8 @@ def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum
     moments = {kind: moment_at(other, kind, time, f) for kind, other in files_beside(path).items()}
     known = {kind: values for kind, values in moments.items() if values is not None}
     if not {"alpha1", "r1"} <= known.keys():
-        if known:
-            warnings.warn(f"{path.name}: directions need the files of alpha1 and of r1 at the same time", stacklevel=3)
-        return made(path, time, f, S)
+        needed = "no directions: they need the files of alpha1 and of r1 at the same time"
+        return made(path, time, f, S, notes=[needed] if known else [])
     mean, first = towards(known["alpha1"]), shares(known["r1"])
     if {"alpha2", "r2"} <= known.keys():
         D = spread_by_moments(DIRECTIONS, mean, first, towards(known["alpha2"]), shares(known["r2"]))

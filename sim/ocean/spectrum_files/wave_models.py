@@ -67,9 +67,15 @@ def from_wavespectra(
             notes += [f"place {number} of {count}"] if count > 1 else []
         time, i = None, 0
         if "time" in data.dims:
+            whole = (data > 0.0).any([axis for axis in data.dims if axis != "time"]).values
+            data = data.isel(time=np.flatnonzero(whole)) if whole.any() else data
             times = [datetime.datetime.fromisoformat(str(one)[:19]) for one in data["time"].values]
             i = nearest(times, when, path)
             data, time = data.isel(time=i), times[i]
+        lost = data.isnull().any([axis for axis in data.dims if axis != "freq"]).values
+        if lost.any():
+            data = data.isel(freq=np.flatnonzero(~lost))
+            notes.append(f"left out, as they have no value: {int(lost.sum())} of {len(lost)} frequencies")
         f = np.asarray(data["freq"].values, float)
         if "dir" not in data.dims or data.sizes["dir"] < 2:
             return made(path, time, f, np.asarray(data.squeeze().values, float), notes=notes)

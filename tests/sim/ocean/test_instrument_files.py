@@ -149,6 +149,7 @@ def test_netcdf_of_ndbc_is_read_with_the_spreading_of_its_moments(tmp_path, xarr
         return tuple(axes), np.stack([factor * values for factor in factors])[:, :, None, None]
 
     data = {"spectral_wave_density": of(S, (1.0, 4.0))}
+    data["spectral_wave_density"][1][:, -2:] = np.nan
     if directional:
         data |= {"mean_wave_dir": of(0 * F + FROM), "principal_wave_dir": of(0 * F + FROM),
                  "wave_spectrum_r1": of(0 * F + 0.94), "wave_spectrum_r2": of(0 * F + 0.78)}  # fmt: skip
@@ -156,7 +157,12 @@ def test_netcdf_of_ndbc_is_read_with_the_spreading_of_its_moments(tmp_path, xarr
     xarray.Dataset(data, axes).to_netcdf(path)
     bearing = FROM if directional else None
     assert_is_the_sea(read_spectrum(path, "2020-01-01"), HEIGHT, bearing)
-    assert_is_the_sea(read_spectrum(path), 2.0 * HEIGHT, bearing)
+    last = read_spectrum(path)
+    assert_is_the_sea(last, 2.0 * HEIGHT, bearing)
+    assert f"left out, as they have no value: 2 of {len(F)} frequencies" in last.notes
+    data["spectral_wave_density"][1][1] = np.nan
+    xarray.Dataset(data, axes).to_netcdf(path)
+    assert read_spectrum(path).name == "44013w2020.nc, 2020-01-01 00:00"  # the last one with values
 
 
 def test_netcdf_of_era5_is_read_at_the_first_place_with_waves(tmp_path, xarray):

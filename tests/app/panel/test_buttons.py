@@ -49,8 +49,9 @@ class Client:
             near=0.1, far=100.0, image_width=32, image_height=16,
         )  # fmt: skip
 
-    def add_notification(self, *said: object, **how: object) -> None:
+    def add_notification(self, *said: object, **how: object) -> SimpleNamespace:
         self.sent.append(said)
+        return SimpleNamespace()
 
     def send_file_download(self, name: str, content: bytes, **how: object) -> None:
         self.sent.append((name, len(content)))

@@ -166,21 +166,23 @@ def test_a_film_has_a_picture_of_each_frame_and_ends_where_another_moment_is_cho
 ) -> None:
     lab.served.stop_threads()
     panel = lab.panel
-    panel.share.files.group = "Files"
     frames = tuple(SimpleNamespace(time=0.1 * i) for i in range(4))
     chosen: list[Any] = []
     monkeypatch.setattr(panel.recorder, "kept", lambda: frames)
     monkeypatch.setattr(panel.recorder, "send_frame", chosen.append)
     monkeypatch.setattr(type(panel.recorder), "shown", property(lambda _: chosen[-1] if chosen else None))
     monkeypatch.setattr("app.panel.files.take_picture", lambda client, size, **_: repr(size).encode())
+    said: list[str] = []
     client: Any = None
-    name, content = panel.share.files.film_file(client)
+    work: Any = SimpleNamespace(say=said.append)
+    name, content = panel.share.files.film_file(client, work)
     assert name.endswith("-film.zip")
     with zipfile.ZipFile(io.BytesIO(content)) as film:
         assert film.namelist() == ["0001.png", "0002.png", "0003.png", "0004.png", "times.csv"]
         times = film.read("times.csv").decode().split()
     assert [line.split(",")[0] for line in times[2:]] == film.namelist()[:4]
+    assert said[-1].startswith("4 of 4.")
     chosen.clear()
     monkeypatch.setattr(panel.recorder, "send_frame", lambda kept: chosen.append(frames[0]))
     with pytest.raises(ValueError, match="another moment was chosen"):
-        panel.share.files.film_file(client)
+        panel.share.files.film_file(client, work)

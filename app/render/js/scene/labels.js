@@ -8,8 +8,10 @@
 // aLabelIndex, aRect and aParams, which its vertex shader explains. Labels with a size in the scene stay where they are:
 // they shrink with what they stand at.
 
+import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
 import { viewer } from "../core/viewer.js";
+import { followContext } from "../shading/context.js";
 import { isDark } from "../shading/dark.js";
 import { QUALITY } from "../shading/quality.js";
 import { replaceShader } from "../shading/shaders.js";
@@ -151,6 +153,7 @@ function makeOverlay(renderer) {
     return false;
   }
   canvas.removeAttribute("data-engine"); // by which one finds the canvas of the picture
+  followContext(canvas.springtideRenderer, page);
   return canvas.springtideRenderer;
 }
 

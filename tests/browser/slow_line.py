@@ -17,6 +17,7 @@ class Line:
         """rate: [bytes/s] each way. delay: [s] each way. buffer: [bytes] that may wait in a router before the line."""
         self.lab, self.rate, self.delay, self.buffer = port, rate, delay, buffer
         self.port = 0
+        self.writers: list[asyncio.StreamWriter] = []
         self.ready = threading.Event()
         self.thread = threading.Thread(target=lambda: asyncio.run(self.serve()), daemon=True)
 
@@ -36,6 +37,7 @@ class Line:
         end.setblocking(False)
         await self.loop.sock_connect(end, ("127.0.0.1", self.lab))
         there, on = await asyncio.open_connection(sock=end, limit=CHUNK)
+        self.writers += [back, on]
         to_browser = asyncio.ensure_future(self.carry(there, back))
         to_lab = asyncio.ensure_future(self.carry(here, on))
         try:
@@ -45,6 +47,16 @@ class Line:
             to_lab.cancel()
             back.close()
             on.close()
+
+    def cut(self) -> None:
+        """Cut all connections, as where a laptop changes its network; new ones are let through."""
+
+        def abort() -> None:
+            for writer in self.writers:
+                writer.transport.abort()
+            self.writers.clear()
+
+        self.loop.call_soon_threadsafe(abort)
 
     async def carry(self, source: asyncio.StreamReader, target: asyncio.StreamWriter) -> None:
         """One way: what comes waits in the router until the line is free, and arrives `delay` later."""

@@ -8,7 +8,7 @@ const FAST = 16.7, MIDDLING = 30, SLOW = 60, VERY_SLOW = 300; // [ms]
 function judged(...lists) {
   const judge = makeJudge();
   return lists.map((list) => {
-    for (const [length, count] of list) for (let k = 0; k < count; k++) judge.take(length);
+    for (const [length, count, compiled] of list) for (let k = 0; k < count; k++) judge.take(length, compiled);
     return judge.step();
   });
 }
@@ -30,4 +30,8 @@ test("very slow frames take two steps at once, and one of more than 500 ms all",
 test("quality rises after 20 s of fast frames; where that was too much, after four times as long", () => {
   const steps = judged([[SLOW, 80]], [[FAST, 1100]], [[FAST, 200]], [[SLOW, 110]], [[FAST, 4000]], [[FAST, 1200]]);
   assert.deepEqual(steps, [1, 1, 0, 1, 1, 0]);
+});
+
+test("two frames of more than 2 s in a row are too slow, even if they compiled programs; one may be a long compilation", () => {
+  assert.deepEqual(judged([[2500, 1, true]], [[900, 5, true]], [[2500, 1, true]], [[2500, 1, true]]), [0, 0, 0, 4]);
 });

@@ -14,20 +14,11 @@ const PARTS = {
   beside: () => import("./beside.js"),
 };
 
-function say(names) {
-  const notice = document.createElement("div"), close = document.createElement("button");
-  notice.id = "springtide-notice";
-  notice.setAttribute("role", "alert");
-  notice.textContent = `A part of this page did not start: ${names.join(", ")}. The rest works. Load the page again to retry.`;
-  close.type = "button";
-  close.textContent = "Close";
-  close.addEventListener("click", () => notice.remove());
-  notice.append(close);
-  document.body.append(notice);
-}
-
 const names = Object.keys(PARTS);
 const ended = await Promise.allSettled(names.map((name) => PARTS[name]()));
 const missing = names.filter((_, k) => ended[k].status === "rejected");
 for (const { reason } of ended) if (reason) console.error(reason);
-if (missing.length > 0) say(missing);
+if (missing.length > 0) {
+  const { notice } = await import("../core/notice.js");
+  notice("springtide-missing", `A part of this page did not start: ${missing.join(", ")}. The rest works. Load the page again to retry.`);
+}

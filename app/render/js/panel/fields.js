@@ -14,6 +14,7 @@ const NAMED = `${FIELD}, textarea, .mantine-Slider-thumb, .mantine-NumberInput-i
 const setText = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
 const before = new WeakMap(); // field -> its text when it was entered
 const drafts = new WeakMap(); // field -> what was typed since
+const DRAGGED = 4; // [pixels] from which on a press with the mouse is a drag
 let sending = false;
 
 function fieldOf(event) {
@@ -57,6 +58,22 @@ page.listen(document, "focusin", (event) => {
   before.set(field, field.value);
   field.select();
 });
+// WebKit puts the caret where the mouse is released in a field that it has just entered, so that what is typed would be added
+// to the old text. A text that the mouse was drawn over stays selected as it is.
+let entered = null; // the field that the press under way has brought the focus to, and where the press was
+page.listen(document, "pointerdown", (event) => {
+  const field = fieldOf(event);
+  entered = field && field !== document.activeElement ? { field, x: event.clientX } : null;
+}, { capture: true });
+page.listen(document, "mouseup", (event) => {
+  if (entered && fieldOf(event) === entered.field && Math.abs(event.clientX - entered.x) < DRAGGED) {
+    const { field } = entered;
+    event.preventDefault();
+    field.select();
+    setTimeout(() => document.activeElement === field && !drafts.has(field) && field.select());
+  }
+  entered = null;
+}, { capture: true });
 page.listen(document, "input", (event) => {
   const field = fieldOf(event);
   if (!field || sending) return;

@@ -6,6 +6,7 @@
 // Of viser this file uses window.__viserMutable.canvas and the charts of the page.
 
 import { page } from "../core/life.js";
+import { notice } from "../core/notice.js";
 import { springtide } from "../core/springtide.js";
 import { PAGE, send as sendToLab, viewer } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
@@ -14,7 +15,7 @@ import { chartsOfPage } from "./charts.js";
 const MAX_LENGTH = 5000; // [characters] that the lab takes
 const MAX_REPLAY = 2e8; // [bytes] of a replay that is read
 const BLOCK = '<script type="application/json" id="springtide-setup">'; // holds the set-up file in a replay
-const BLOCK_END = "<\/script>"; // this script stands in a page, which would end it at the plain word
+const BLOCK_END = "</script>";
 const CLIP_TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/webm"];
 const CLIP_RATE = 30; // [1/s] pictures of a clip
 const CLIP_BITS = 12e6; // [bit/s]
@@ -50,12 +51,25 @@ function ofLab(search) {
   return `?${found}`;
 }
 
+// Copy a link to the clipboard. A browser that refuses, or a page without encryption, has it selected.
+async function copy(link) {
+  try {
+    await navigator.clipboard.writeText(link.href);
+  } catch {
+    getSelection().selectAllChildren(link);
+    const hint = document.createElement("div");
+    hint.setAttribute("role", "status");
+    hint.textContent = `Press ${/Mac|iP/.test(navigator.platform) ? "⌘C" : "Ctrl+C"} to copy this link.`;
+    link.after(hint);
+  }
+}
+
 function completeLinks() {
   for (const link of document.querySelectorAll("[data-springtide-link]:not([data-springtide-done])")) {
     link.dataset.springtideDone = "";
     link.href = location.origin + location.pathname.replace(/pane\/\d\/[^/]*$/, "") + link.dataset.springtideLink;
     link.textContent = link.href;
-    if (performance.now() - pressed < ASKED) navigator.clipboard?.writeText(link.href).catch(() => {});
+    if (performance.now() - pressed < ASKED) copy(link);
   }
 }
 
@@ -85,7 +99,7 @@ function toggleClip(button) {
   }
   const type = CLIP_TYPES.find((one) => window.MediaRecorder?.isTypeSupported(one));
   if (!type) {
-    button.textContent = "This browser records no clips";
+    notice("springtide-clips", "This browser records no clips. Choose “As pictures” instead, or another browser.");
     return;
   }
   const parts = [], started = performance.now();

@@ -10,7 +10,6 @@
 import { springtide } from "../core/springtide.js";
 import { viewer } from "../core/viewer.js";
 import { awaitsSky } from "../sea/sky_table.js";
-import { contextNumber } from "../shading/context.js";
 import { isDark } from "../shading/dark.js";
 import { QUALITY } from "../shading/quality.js";
 import { programsReady } from "../shading/shaders.js";
@@ -88,7 +87,7 @@ function inputsOf(renderer, scene, camera) {
   const list = [
     isDark(), devicePixelRatio, details, pixels, canvas.width, canvas.height, canvas.clientWidth, canvas.clientHeight,
     toneMapping, toneMappingExposure, outputColorSpace, shadowMap.enabled, scene.environmentIntensity,
-    scene.backgroundIntensity, scene.backgroundBlurriness, scene.fog, camera, awaitsSky(scene), skiesRead, programsReady, contextNumber(),
+    scene.backgroundIntensity, scene.backgroundBlurriness, scene.fog, camera, awaitsSky(scene), skiesRead, programsReady,
   ];
   list.textures = new Set();
   for (const part of ["background", "environment", "environmentRotation", "backgroundRotation", "overrideMaterial"]) {
@@ -111,7 +110,7 @@ export function paceFrames(renderer, life) {
   function isDrawn() {
     if (!drawing) return true;
     const { fence, compiled } = drawing;
-    if (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    if (fence && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
     gl.deleteSync(fence);
     drawing = null;
     length = performance.now() - started;
@@ -144,6 +143,7 @@ export function paceFrames(renderer, life) {
   wrapMethod(life, renderer, "render", (earlier) => function (scene, camera) {
     const { scene: own, camera: eye, requestRender } = viewer() ?? {};
     if (scene !== own || renderer.getRenderTarget()) return void earlier.call(this, scene, camera);
+    if (gl.isContextLost()) return;
     makeOpaque(renderer, scene);
     if (camera !== eye || QUALITY.isCapturing() || springtide.isRecording || !keepsPixels) {
       last = null;
@@ -165,6 +165,8 @@ export function paceFrames(renderer, life) {
     last = null;
     earlier.apply(this, size);
   });
+  // The fence is lost with the context.
+  life.listen(renderer.domElement, "webglcontextrestored", () => ([last, drawing] = [null, null]));
   const press = ({ target }) => {
     if (target !== renderer.domElement) pressed = performance.now();
   };

@@ -8,12 +8,15 @@
 // aLabelIndex, aRect and aParams, which its vertex shader explains. Labels with a size in the scene stay where they are:
 // they shrink with what they stand at.
 
+import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
 import { viewer } from "../core/viewer.js";
+import { followContext } from "../shading/context.js";
 import { isDark } from "../shading/dark.js";
 import { QUALITY } from "../shading/quality.js";
 import { replaceShader } from "../shading/shaders.js";
 
+const LABEL_TEXTURE = 4096; // [pixels] width of viser's texture of places
 const LABEL_GAP = 0.15; // between two labels, in heights of a label
 const MAX_RAISE = 12; // [heights of a label] by which one is raised: one that had to be higher is hidden
 const MAX_LEADERS = 64; // lines from raised labels to their places
@@ -151,6 +154,7 @@ function makeOverlay(renderer) {
     return false;
   }
   canvas.removeAttribute("data-engine"); // by which one finds the canvas of the picture
+  followContext(canvas.springtideRenderer, page);
   return canvas.springtideRenderer;
 }
 
@@ -158,6 +162,9 @@ function makeOverlay(renderer) {
 export function dressLabels(renderer, scene, camera) {
   const meshes = findLabels(scene);
   if (!meshes.length) return;
+  // A smaller texture (Firefox that resists fingerprinting) is shrunk by three, and labels would stand anywhere.
+  labelGroup.visible = renderer.capabilities.maxTextureSize >= LABEL_TEXTURE;
+  if (!labelGroup.visible) return;
   darkenLabels(meshes);
   const backgrounds = meshes.find(({ material }) => !material.uniforms.uAtlas && !material.depthTest);
   if (backgrounds?.geometry.attributes.aRect) arrangeLabels(backgrounds, camera);

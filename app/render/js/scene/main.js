@@ -20,8 +20,9 @@ import { beginFrame, isLinked, meshOf } from "../shading/shaders.js";
 import { lightMeshes } from "./ambient.js";
 import { contact } from "./contact.js";
 import { makeOpaque, paceFrames } from "./frames.js";
+import { renewInstances } from "./instances.js";
 import { dressLabels } from "./labels.js";
-import { shrinkPhotograph } from "./photograph.js";
+import { preparePhotograph } from "./photograph.js";
 import { dressSmoke } from "./smoke.js";
 import { drawOneLightOfEachSun } from "./sun.js";
 import { vertexColors } from "./vertex_colors.js";
@@ -68,11 +69,12 @@ function follow(renderer, scene) {
 }
 
 function dressScene(renderer, scene, camera) {
-  if (isPlain()) return;
+  if (isPlain() || renderer.getContext().isContextLost()) return; // no program links without a context
   if (current?.renderer !== renderer) follow(renderer, scene);
   QUALITY.beforeRender(renderer);
   beginFrame();
-  shrinkPhotograph(renderer, scene);
+  renewInstances(renderer, scene);
+  preparePhotograph(renderer, scene);
   drawOneLightOfEachSun(scene);
   const active = [];
   forEachShaded((shader, node) => {

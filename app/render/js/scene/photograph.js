@@ -1,17 +1,25 @@
-// A smaller copy of the photograph of the sky, which is drawn in its place without a graphics card.
+// The photograph of the sky: a smaller copy without a graphics card, and another one after the graphics context was lost.
 //
 // Before three draws with a photograph, it blurs it for reflections. In software this takes four seconds for 1024 x 512
-// pixels, and half a second for the copy.
+// pixels, and half a second for the copy. viser draws the photograph once, so that it is lost with the context: its numbers
+// are read once, beside the page, and it is made of them again.
 
+import { toHalf } from "../sea/half.js";
+import { contextNumber } from "../shading/context.js";
 import { QUALITY } from "../shading/quality.js";
-import { LINEAR } from "../shading/three.js";
+import { FLOAT, HALF_FLOAT, LINEAR } from "../shading/three.js";
 
 const SMALL_SKY = 256; // [pixels] width of the copy; the table of the sky has as many columns
+const KEPT_SKY = 512; // [pixels] width, at most, of what is made again
 const halves = new WeakMap(); // photograph or copy -> copy of half its width; null where it cannot be made
+// Photograph or copy -> { context: number of the one that it was drawn in, kept: { numbers, width, height } or null, again: the
+// texture made of them }.
+const known = new WeakMap();
 
-// Of three this uses the frame buffer of a target, which is missing if another renderer has drawn it.
-function halve(renderer, larger) {
-  const { renderTarget, image, mapping, type, format } = larger, gl = renderer.getContext();
+// A copy of half the width, in another target. Of three this uses the frame buffer of a target, which is missing if another
+// renderer has drawn it: then it is null.
+function halve(renderer, larger, type = larger.type) {
+  const { renderTarget, image, mapping, format } = larger, gl = renderer.getContext();
   const framebufferOf = (target) => renderer.properties.get(target).__webglFramebuffer;
   if (!renderTarget || !framebufferOf(renderTarget)) return null;
   const [width, height] = [image.width >> 1, image.height >> 1], before = renderer.getRenderTarget();
@@ -31,12 +39,61 @@ function halve(renderer, larger) {
   return texture;
 }
 
-// Give the scene the smaller copy. It is the same at all qualities: another size would need other programs.
-export function shrinkPhotograph(renderer, scene) {
+// Read the numbers of a photograph, at half its width at most.
+function keepNumbers(renderer, photograph, state) {
+  const limit = QUALITY.isSoftware() ? SMALL_SKY : KEPT_SKY;
+  let small = photograph;
+  while (small && (small === photograph || small.image.width > limit)) small = halve(renderer, small, FLOAT);
+  if (!small) return;
+  const { width, height } = small.image, floats = new Float32Array(4 * width * height);
+  const take = () => {
+    state.kept = { numbers: Uint16Array.from(floats, toHalf), width, height };
+    small.renderTarget.dispose();
+  };
+  // It fails where the context is lost.
+  renderer.readRenderTargetPixelsAsync(small.renderTarget, 0, 0, width, height, floats).then(take, () => {});
+}
+
+function textureOf(photograph, { numbers, width, height }) {
+  const made = photograph.clone();
+  made.source = new photograph.source.constructor({ data: numbers, width, height });
+  Object.assign(made, { isDataTexture: true, isRenderTargetTexture: false, type: HALF_FLOAT });
+  Object.assign(made, { generateMipmaps: false, flipY: false, unpackAlignment: 4, renderTarget: photograph.renderTarget });
+  made.needsUpdate = true;
+  return made;
+}
+
+// Put one texture in the place of another wherever the scene has it.
+function replace(scene, photograph, other) {
+  for (const [holder, name] of [[scene, "environment"], [scene, "background"], [scene.userData, "photograph"]]) {
+    if (holder[name] === photograph) holder[name] = other;
+  }
+}
+
+function stateOf(renderer, photograph) {
+  if (!known.has(photograph)) {
+    const state = { context: contextNumber(), kept: null, again: null };
+    known.set(photograph, state);
+    if (renderer.extensions.has("EXT_color_buffer_float")) keepNumbers(renderer, photograph, state);
+  }
+  return known.get(photograph);
+}
+
+// Give the scene the smaller copy, the same at all qualities, since another size would need other programs; and the one that
+// is made again where the photograph is lost.
+export function preparePhotograph(renderer, scene) {
   while (QUALITY.isSoftware() && scene.environment?.image?.width > SMALL_SKY) {
     const larger = scene.environment;
     if (!halves.has(larger)) halves.set(larger, halve(renderer, larger));
-    if (!halves.get(larger)) return;
-    scene.environment = halves.get(larger);
+    const smaller = halves.get(larger);
+    if (!smaller) break;
+    known.set(smaller, stateOf(renderer, larger));
+    scene.environment = smaller;
   }
+  const photograph = scene.environment;
+  if (!photograph?.renderTarget || photograph.isDataTexture) return;
+  const state = stateOf(renderer, photograph);
+  if (state.context === contextNumber() || !state.kept) return;
+  state.again ??= textureOf(photograph, state.kept);
+  replace(scene, photograph, state.again);
 }

@@ -235,7 +235,7 @@ export const water = {
     // Where only one program is compiled in a frame, that of plain water comes first.
     const hasPlain = sea.isReady || dressPlain(sea, renderer, camera, scene, shape);
     sea.isReady = !awaitsSky(scene) && dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole });
-    if (sea.isReady && !isLinked(renderer, sea.polar.material)) {
+    if (sea.isReady && isLinked(renderer, sea.polar.material) === false) {
       refused.add(mesh.material);
       return this.update({ base, mesh, data, renderer, scene, camera });
     }

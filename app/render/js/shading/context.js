@@ -1,9 +1,12 @@
 // The number of the graphics context. What was drawn into a texture is lost with it, and every cache of such a texture has
 // the number in its key.
 
+import { notice } from "../core/notice.js";
 import { springtide } from "../core/springtide.js";
 import { viewer } from "../core/viewer.js";
 
+const PATIENCE = 5000; // [ms] after which a lost context is spoken of: most come back at once
+const LOST = "springtide-lost"; // identifier of that sentence
 let number = 0;
 
 export const contextNumber = () => number;
@@ -16,7 +19,15 @@ function next() {
 export function followContext(renderer, life) {
   next();
   const { domElement: canvas } = renderer;
+  let timer = 0;
+  life.own(() => clearTimeout(timer));
+  life.listen(canvas, "webglcontextlost", () => {
+    const words = "The browser has taken the graphics away from this page. Load it again if the picture does not come back.";
+    timer = setTimeout(() => notice(LOST, words), PATIENCE);
+  });
   life.listen(canvas, "webglcontextrestored", () => {
+    clearTimeout(timer);
+    notice(LOST, "");
     next();
     viewer()?.requestRender();
   });

@@ -16,14 +16,15 @@ const LEAST_FRAMES = 3; // of a window
 const SKIPPED = 3; // frames after a change: they compile programs
 const LONG = 300; // [ms] of a frame, from which on one such frame is enough
 const TERRIBLE = 500; // [ms] of a frame, from which on the last step is taken at once
+const HOPELESS = 2000; // [ms] of two frames in a row, from which on the last step is taken, even if they compiled programs
 const PATIENCE = 20_000; // [ms] of fast frames before a step up; four times as long after a step up that was too much
 const TRIAL = 10_000; // [ms] after a step up in which slow frames mean that it was too much
 
 // The step of "automatic", from the lengths of frames [ms] that `take` is given.
 export function makeJudge(step = 0) {
-  let frames = [], spent = 0, skipped = SKIPPED, slowWindows = 0, fast = 0, patience = PATIENCE, trial = 0;
+  let frames = [], spent = 0, skipped = SKIPPED, slowWindows = 0, fast = 0, patience = PATIENCE, trial = 0, last = 0;
   const forget = () => {
-    [frames, spent, skipped, slowWindows] = [[], 0, SKIPPED, 0];
+    [frames, spent, skipped, slowWindows, last] = [[], 0, SKIPPED, 0, 0];
   };
   const change = (by) => {
     step = Math.min(Math.max(step + by, 0), STEPS.length - 1);
@@ -33,7 +34,11 @@ export function makeJudge(step = 0) {
   return {
     step: () => step,
     forget,
-    take(length) {
+    // compiled: whether programs were made for the frame, which says little about the others.
+    take(length, compiled = false) {
+      if (length > HOPELESS && last > HOPELESS && step < STEPS.length - 1) return void change(STEPS.length);
+      last = length;
+      if (compiled) return;
       if (skipped > 0) return void (skipped = length > LONG ? 0 : skipped - 1);
       if (length > TERRIBLE && step < STEPS.length - 1) return void change(STEPS.length);
       frames.push(length);

@@ -16,7 +16,7 @@ import { wrapMethod } from "./wrap.js";
 
 const KEY = "springtide-quality"; // of the local storage
 const STEPS_KEY = "springtide-quality-steps"; // of the local storage: the last step of each renderer, by its name
-// Names of renderers without a graphics card of their own.
+// Names of renderers without a graphics card of their own. Others are known by their time: WebKit says "Apple GPU" everywhere.
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|microsoft basic render|paravirtual/i;
 const FIXED = { high: 0, medium: 2, low: 4 }; // step of each choice but "automatic"
 let judge = makeJudge();
@@ -161,9 +161,9 @@ export const QUALITY = {
     // A clip whose pictures change their size in the middle cannot be played.
     const measured = !isFixed && choice === "automatic" && document.visibilityState === "visible" && !springtide.isRecording;
     if (!measured) judge.forget();
-    if (!measured || began < valid || compiled) return;
+    if (!measured || began < valid) return;
     const before = judge.step();
-    judge.take(length);
+    judge.take(length, compiled);
     if (judge.step() === before) return;
     keepStep();
     show();

@@ -78,11 +78,11 @@ export function disposeMaterials(object) {
   for (const material of object.userData.materials?.values() ?? [object.material]) material.dispose();
 }
 
-// Whether the program of a material linked. If a driver refuses it, the material gets viser's shader back, so that the
+// Whether the program of a material linked; null where it has none yet. If a driver refuses it, the material gets viser's shader back, so that the
 // mesh is still drawn, and the server is not told that the shader is active.
 export function isLinked(renderer, material) {
   const program = renderer.properties.get(material).currentProgram;
-  if (!program) return false; // not drawn yet
+  if (!program) return null; // not drawn yet
   const gl = renderer.getContext();
   if (program.__springtide === undefined) {
     program.__springtide = gl.getProgramParameter(program.program, gl.LINK_STATUS);

@@ -1,0 +1,177 @@
+"""What a page has lost and finds again: its graphics context, its connection, its server."""
+
+import base64
+import io
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+from app.messages import Pause
+from app.render import surroundings
+from app.server import page as served_page
+from app.server.viewer import Viewer
+from tests.browser.conftest import Tab, new_page
+from tests.browser.slow_line import slow_line
+
+FAST = 1e9  # [bytes/s]
+MAX_DIFFERENCE = 2.0  # of 255, in the mean
+CUTS = 3
+# Listeners of window and document, observers, and objects of WebGL that a page has made and not given up.
+COUNTED = """const count = window.counted = { listeners: 0, observers: 0, textures: 0, framebuffers: 0 };
+const { addEventListener: add, removeEventListener: remove } = EventTarget.prototype;
+const isCounted = (target) => target === window || target === document || target === undefined;
+EventTarget.prototype.addEventListener = function (...all) {
+    if (isCounted(this)) {
+        count.listeners += 1;
+        all[2]?.signal?.addEventListener("abort", () => (count.listeners -= 1));
+    }
+    return add.apply(this, all);
+};
+EventTarget.prototype.removeEventListener = function (...all) {
+    if (isCounted(this)) count.listeners -= 1;
+    return remove.apply(this, all);
+};
+for (const Observer of [MutationObserver, ResizeObserver]) {
+    const { observe, disconnect } = Observer.prototype, open = new WeakSet();
+    Observer.prototype.observe = function (...all) {
+        // viser's own end with their elements.
+        if (!open.has(this) && new Error().stack.includes("springtide/")) { open.add(this); count.observers += 1; }
+        return observe.apply(this, all);
+    };
+    Observer.prototype.disconnect = function () {
+        if (open.delete(this)) count.observers -= 1;
+        return disconnect.call(this);
+    };
+}
+for (const [kind, name] of [["Texture", "textures"], ["Framebuffer", "framebuffers"]]) {
+    const P = WebGL2RenderingContext.prototype, make = P[`create${kind}`], give = P[`delete${kind}`];
+    P[`create${kind}`] = function () { count[name] += 1; return make.call(this); };
+    P[`delete${kind}`] = function (object) { if (object) count[name] -= 1; return give.call(this, object); };
+}"""
+LOSE = """() => { const gl = document.querySelector("canvas[data-engine]").getContext("webgl2");
+    window.graphics = gl.getExtension("WEBGL_lose_context");
+    window.graphics.loseContext(); }"""
+
+
+def picture(tab: Tab) -> NDArray[np.float64]:
+    """What the canvas of the scene shows (height, width, 3), 0 to 255."""
+    data = tab.page.evaluate("document.querySelector('canvas[data-engine]').toDataURL()")
+    return np.asarray(Image.open(io.BytesIO(base64.b64decode(data.partition(",")[2]))).convert("RGB"), float)
+
+
+def final_picture(tab: Tab) -> NDArray[np.float64]:
+    """The picture once it no longer changes, with the programs of the sea."""
+    shots = [picture(tab)]
+
+    def is_final() -> bool:
+        tab.page.wait_for_timeout(1500)
+        shots.append(picture(tab))
+        return bool(np.array_equal(shots[-1], shots[-2]))
+
+    tab.wait(is_final)
+    return shots[-1]
+
+
+@pytest.mark.parametrize("scene", ["square_sea", pytest.param("radial_sea", marks=pytest.mark.long)])
+def test_a_lost_context_comes_back_with_its_picture(open_tab: Callable[..., Tab], scene: str) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open(scene)
+    viewer.loop.commands.put(Pause())
+    tab = open_tab(viewer.port, width=480, height=320, drawn=True)
+    try:
+        tab.wait(lambda: tab.page.evaluate("window.__springtide?.skiesDrawn"))
+        before = final_picture(tab)
+        contexts = tab.page.evaluate("window.__springtide.contexts")
+        tab.page.evaluate(LOSE)
+        tab.page.wait_for_timeout(500)
+        tab.page.evaluate("window.graphics.restoreContext()")
+        tab.wait(lambda: tab.page.evaluate("window.__springtide.contexts") > contexts)
+        difference = np.abs(final_picture(tab) - before)
+        assert difference.mean() < MAX_DIFFERENCE
+        assert np.quantile(difference, 0.999) < 20.0  # a small thing that is missing
+    finally:
+        viewer.shut()
+
+
+@pytest.mark.parametrize("scene", ["square_sea", "rope"])
+def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open(scene)
+    viewer.loop.commands.put(Pause())
+    with slow_line(viewer.port, FAST, 0.0) as line:
+        page = new_page(chromium, 480, 320, drawn=False)
+        page.add_init_script(COUNTED)
+        page.emulate_media(color_scheme="dark")
+
+        def settle() -> dict[str, int]:
+            """What the page holds, once that no longer changes."""
+            page.wait_for_selector(".springtide-panel[data-state]")
+            found, again = {}, {"": 0}
+            while found != again:
+                found = page.evaluate("counted")
+                page.wait_for_timeout(1500)
+                again = page.evaluate("counted")
+            return found
+
+        def dark() -> list[bool | None]:
+            """Whether the server draws dark, for each browser."""
+            return [surroundings._dark.get(client) for client in viewer.server.get_clients().values()]
+
+        try:
+            page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2")
+            page.wait_for_function("window.__springtide?.quality")
+            page.bring_to_front()  # viser connects again where the page has the focus
+            held = [settle()]
+            clients = set(viewer.server.get_clients())
+            for _ in range(CUTS):
+                line.cut()
+                while not set(viewer.server.get_clients()) - clients:
+                    page.wait_for_timeout(100)
+                clients |= set(viewer.server.get_clients())
+                held.append(settle())
+                if scene == "rope":
+                    while dark() != [True]:
+                        page.wait_for_timeout(100)
+            assert min(held[0].values()) > 0
+            for name in ("listeners", "observers"):
+                assert {counts[name] for counts in held} == {held[0][name]}
+            assert held[1:] == [held[1]] * CUTS  # viser may make one texture more with the first
+            assert page.evaluate("document.querySelectorAll('#springtide-slow').length") == 0
+        finally:
+            page.close()
+            viewer.shut()
+
+
+def test_a_page_reloads_for_another_server_only_and_not_while_it_records(
+    chromium: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    page = new_page(chromium, 480, 320, drawn=False)
+    try:
+        viewer.open("rope")
+        page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2")
+        page.wait_for_selector(".springtide-panel[data-state]")
+        page.evaluate("window.isFirst = true")
+        questions: list[str] = []
+        page.route("**/springtide-alive", lambda route: (questions.append("failed"), route.abort()))
+        while len(questions) < 2:  # a laptop that wakes misses some
+            page.wait_for_timeout(100)
+        assert page.locator("#springtide-cover.springtide-hidden").count() == 1
+        page.wait_for_function("document.querySelector('#springtide-cover-words').innerText.includes('has stopped')")
+        page.unroute("**/springtide-alive")
+        page.wait_for_selector("#springtide-cover.springtide-hidden", state="attached")  # the same server
+        page.evaluate("window.__springtide.isRecording = true")
+        monkeypatch.setattr(served_page, "SERVER_NAME", "another")
+        with page.expect_response("**/springtide-alive"):
+            pass
+        page.wait_for_timeout(500)
+        assert page.evaluate("window.isFirst") is True
+        page.evaluate("window.__springtide.isRecording = false")
+        page.wait_for_function("window.isFirst === undefined")
+    finally:
+        page.close()
+        viewer.shut()

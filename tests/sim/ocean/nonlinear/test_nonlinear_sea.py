@@ -274,3 +274,25 @@ def test_seas_of_all_steepnesses_go_on_or_say_why(hs, tp, order, depth):
         assert np.abs(sea.height).max() <= 2.0 * hs
         assert account.breaking >= 0.0
         assert abs(account.error) <= 0.03 * (account.kinetic + account.potential)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 12.0])
+def test_a_steep_wave_runs_alike_in_every_direction(depth: float) -> None:
+    """k a = 0.2 along eight wavenumbers of one length: speed and crest after a period, order 3."""
+    side, n = 200.0, 48
+    wave = stokes_wave(0.4 * side / (2.0 * math.pi * 5.0), side / 5.0, depth, order=12)
+    x = np.arange(n) * side / n
+    X, Y = np.meshgrid(x, x, indexing="ij")
+    speeds, crests = [], []
+    for i, j in ((5, 0), (4, 3), (3, 4), (0, 5), (-3, 4), (-4, 3), (-5, 0), (4, -3)):
+        along = (i * X + j * Y) / 5.0
+        start = wave.elevation(along), wave.potential(along)
+        sea = NonlinearSea(length=side, order=3, depth=depth, start=start, breaking=False, step=0.1)
+        before = np.fft.fft2(sea.height)[i, j]
+        sea.advance(0.4 * wave.wavelength / wave.speed)
+        turned = np.angle(before / np.fft.fft2(sea.height)[i, j])
+        speeds.append(abs(turned) / (0.8 * math.pi) * wave.speed)
+        crests.append(float(sea.waves_at().amplitude.max()))
+    assert speeds == pytest.approx([wave.speed] * 8, rel=3e-3)
+    assert np.ptp(speeds) < 1e-5 * wave.speed
+    assert np.ptp(crests) < 1e-5 * wave.height

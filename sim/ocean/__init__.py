@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sim.ocean.any_sea import AnySea
-    from sim.ocean.crest_heights import HighCrests, forristall_crest, high_crests, narrow_band_moments
     from sim.ocean.dispersion import (
         group_speed,
         mode_ratios,
@@ -23,106 +22,63 @@ if TYPE_CHECKING:
         viscous_two_layer,
         wavenumber,
     )
-    from sim.ocean.gerstner import draw_waves
-    from sim.ocean.measured import measured_spectrum
     from sim.ocean.nonlinear.energy import SeaEnergy
     from sim.ocean.nonlinear.packets import breather, modulated_waves
     from sim.ocean.nonlinear.sea import NonlinearSea
     from sim.ocean.nonlinear.stokes import StokesWave, stokes_wave
-    from sim.ocean.radial import RadialSea
-    from sim.ocean.recorded import recorded_waves
-    from sim.ocean.ripples import Ripples, gaussian_volume
-    from sim.ocean.sea import Sea
+    from sim.ocean.radial.gerstner import draw_waves
+    from sim.ocean.radial.radial import RadialSea
+    from sim.ocean.records.measured import measured_spectrum
+    from sim.ocean.records.recorded import recorded_waves
+    from sim.ocean.records.wave_record import zero_crossings
     from sim.ocean.spectra import SPECTRA
     from sim.ocean.spectra.moments import Moments
     from sim.ocean.spectrum_files import read_spectrum
-    from sim.ocean.statistics import beaufort, expected, theory
-    from sim.ocean.surface import Surface
-    from sim.ocean.wave_record import zero_crossings
+    from sim.ocean.statistics.crest_heights import HighCrests, forristall_crest, high_crests, narrow_band_moments
+    from sim.ocean.statistics.statistics import beaufort, expected, theory
+    from sim.ocean.tile.ripples import Ripples, gaussian_volume
+    from sim.ocean.tile.sea import Sea
+    from sim.ocean.tile.surface import Surface
     from sim.water import Water
     from sim.waves import Waves
 
 __all__ = [
-    "SPECTRA",
-    "AnySea",
-    "HighCrests",
-    "Moments",
-    "NonlinearSea",
-    "RadialSea",
-    "Ripples",
-    "Sea",
-    "SeaEnergy",
-    "StokesWave",
-    "Surface",
-    "Water",
-    "Waves",
-    "beaufort",
-    "breather",
-    "draw_waves",
-    "expected",
-    "forristall_crest",
-    "gaussian_volume",
-    "group_speed",
-    "high_crests",
-    "measured_spectrum",
-    "mode_ratios",
-    "modulated_waves",
-    "narrow_band_moments",
-    "omega",
-    "phase_speed",
-    "read_spectrum",
-    "recorded_waves",
-    "stokes_wave",
-    "theory",
-    "two_layer",
-    "viscous_root",
-    "viscous_two_layer",
-    "wavenumber",
-    "zero_crossings",
+    "SPECTRA", "AnySea", "HighCrests", "Moments", "NonlinearSea", "RadialSea", "Ripples", "Sea", "SeaEnergy",
+    "StokesWave", "Surface", "Water", "Waves", "beaufort", "breather", "draw_waves", "expected", "forristall_crest",
+    "gaussian_volume", "group_speed", "high_crests", "measured_spectrum", "mode_ratios", "modulated_waves",
+    "narrow_band_moments", "omega", "phase_speed", "read_spectrum", "recorded_waves", "stokes_wave", "theory",
+    "two_layer", "viscous_root", "viscous_two_layer", "wavenumber", "zero_crossings",
 ]  # fmt: skip
 
 # Imported on first use, so that the closed forms of `sim.ocean.dispersion` cost neither numba nor pyfftw.
 HOMES = {
-    "AnySea": "sim.ocean.any_sea",
-    "HighCrests": "sim.ocean.crest_heights",
-    "Moments": "sim.ocean.spectra.moments",
-    "NonlinearSea": "sim.ocean.nonlinear.sea",
-    "RadialSea": "sim.ocean.radial",
-    "Ripples": "sim.ocean.ripples",
-    "SPECTRA": "sim.ocean.spectra",
-    "Sea": "sim.ocean.sea",
-    "SeaEnergy": "sim.ocean.nonlinear.energy",
-    "StokesWave": "sim.ocean.nonlinear.stokes",
-    "Surface": "sim.ocean.surface",
-    "Water": "sim.water",
-    "Waves": "sim.waves",
-    "beaufort": "sim.ocean.statistics",
-    "breather": "sim.ocean.nonlinear.packets",
-    "draw_waves": "sim.ocean.gerstner",
-    "expected": "sim.ocean.statistics",
-    "forristall_crest": "sim.ocean.crest_heights",
-    "gaussian_volume": "sim.ocean.ripples",
-    "group_speed": "sim.ocean.dispersion",
-    "high_crests": "sim.ocean.crest_heights",
-    "measured_spectrum": "sim.ocean.measured",
-    "mode_ratios": "sim.ocean.dispersion",
-    "modulated_waves": "sim.ocean.nonlinear.packets",
-    "narrow_band_moments": "sim.ocean.crest_heights",
-    "omega": "sim.ocean.dispersion",
-    "phase_speed": "sim.ocean.dispersion",
-    "read_spectrum": "sim.ocean.spectrum_files",
-    "recorded_waves": "sim.ocean.recorded",
-    "stokes_wave": "sim.ocean.nonlinear.stokes",
-    "theory": "sim.ocean.statistics",
-    "two_layer": "sim.ocean.dispersion",
-    "viscous_root": "sim.ocean.dispersion",
-    "viscous_two_layer": "sim.ocean.dispersion",
-    "wavenumber": "sim.ocean.dispersion",
-    "zero_crossings": "sim.ocean.wave_record",
+    "sim.ocean.any_sea": "AnySea",
+    "sim.ocean.dispersion": "group_speed mode_ratios omega phase_speed two_layer viscous_root "
+    "viscous_two_layer wavenumber",
+    "sim.ocean.nonlinear.energy": "SeaEnergy",
+    "sim.ocean.nonlinear.packets": "breather modulated_waves",
+    "sim.ocean.nonlinear.sea": "NonlinearSea",
+    "sim.ocean.nonlinear.stokes": "StokesWave stokes_wave",
+    "sim.ocean.radial.gerstner": "draw_waves",
+    "sim.ocean.radial.radial": "RadialSea",
+    "sim.ocean.records.measured": "measured_spectrum",
+    "sim.ocean.records.recorded": "recorded_waves",
+    "sim.ocean.records.wave_record": "zero_crossings",
+    "sim.ocean.spectra": "SPECTRA",
+    "sim.ocean.spectra.moments": "Moments",
+    "sim.ocean.spectrum_files": "read_spectrum",
+    "sim.ocean.statistics.crest_heights": "HighCrests forristall_crest high_crests narrow_band_moments",
+    "sim.ocean.statistics.statistics": "beaufort expected theory",
+    "sim.ocean.tile.ripples": "Ripples gaussian_volume",
+    "sim.ocean.tile.sea": "Sea",
+    "sim.ocean.tile.surface": "Surface",
+    "sim.water": "Water",
+    "sim.waves": "Waves",
 }
+HOME_OF = {name: home for home, names in HOMES.items() for name in names.split()}
 
 
 def __getattr__(name: str) -> Any:
-    if name not in HOMES:
+    if name not in HOME_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(HOMES[name]), name)
+    return getattr(importlib.import_module(HOME_OF[name]), name)

@@ -16,7 +16,7 @@ from PIL import Image
 from app.render.injection import disable_shaders, injector_of
 from app.render.skies import set_sky
 from app.render.water import DrawnWater, Tile
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.radial.radial_grid import RadialGrid
 from tests.browser.conftest import NO_NOTES, new_page, vertices_of
 
 SIZE = 32

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from app.scenes.square_sea.parameters import LONG_CRESTED_STARTS, SquareSeaParams, solved_points
 from app.scenes.square_sea.tile_mesh import Fields, Highest
 from sim.ocean import Sea
-from sim.ocean.crest_heights import HighCrests, high_crests, moments_of
 from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves
-from sim.ocean.statistics import expected
+from sim.ocean.statistics.crest_heights import HighCrests, high_crests, moments_of
+from sim.ocean.statistics.statistics import expected
 
 TOLERANCE = 1e-4  # of a step, over the waves' amplitude
 FADE_PERIODS, ROGUE_FADE_PERIODS = 5.0, 2.0  # peak periods over which the nonlinear terms are faded in

@@ -36,10 +36,10 @@ from sim.ocean.nonlinear.march import LinearMarch, March
 from sim.ocean.nonlinear.padded_transforms import PaddedTransforms
 from sim.ocean.nonlinear.start import checked_size, free_waves, mean_wavenumber, resized, started
 from sim.ocean.nonlinear.surface import NonlinearSurface
-from sim.ocean.query import sample
-from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.sea import Sea
-from sim.ocean.tile_surface import sampled, shares
+from sim.ocean.radial.radial_grid import RadialGrid
+from sim.ocean.tile.query import sample
+from sim.ocean.tile.sea import Sea
+from sim.ocean.tile.tile_surface import sampled, shares
 from sim.validation import (
     argument_error,
     check_choice,

@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim.ocean.medium import Medium
+from sim.ocean.fluids.medium import Medium
 from sim.ocean.nonlinear.modes import Modes, make_modes, spectrum_of
-from sim.ocean.sea import LENGTHS, SIZES, Sea
 from sim.ocean.spectra import Conditions
+from sim.ocean.tile.sea import LENGTHS, SIZES, Sea
 from sim.turns import within_half_turn
 from sim.validation import argument_error, as_array, check_number, is_whole_number
 from sim.water import Water

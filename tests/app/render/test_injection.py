@@ -18,7 +18,7 @@ import pytest
 from app.render import injection
 from app.render.injection import SCRIPTS, ShaderInjector
 from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Grid, Material, Oil, SlickRegion, uniform_table
-from sim.ocean.oil_film import BAND_WIDTH, BANDS
+from sim.ocean.fluids.oil_film import BAND_WIDTH, BANDS
 
 
 class FakeServer:

@@ -11,7 +11,7 @@ from sim.floating import Body, FloatState, Hull
 from sim.ocean import RadialSea, Sea
 from sim.ocean.any_sea import AnySea
 from sim.ocean.nonlinear import NonlinearSea
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.water import Water
 from sim.waves import STRETCHINGS, Waves
 from tests.refusals import assert_refused

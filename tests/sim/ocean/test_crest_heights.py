@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.crest_heights import (
+from sim.ocean.statistics.crest_heights import (
     forristall_crest,
     high_crests,
     moments_of,

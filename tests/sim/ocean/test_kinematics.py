@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import draw_waves
-from sim.ocean.radial import RadialSea
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.radial.gerstner import draw_waves
+from sim.ocean.radial.radial import RadialSea
 from sim.ocean.spectra import SPECTRA
 from sim.water import Water
 from sim.waves import Waves

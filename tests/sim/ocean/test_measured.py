@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from sim.ocean import RadialSea, Sea, draw_waves, measured_spectrum, read_spectrum, recorded_waves
-from sim.ocean.measured import spread_by_mean, spread_by_moments
+from sim.ocean.records.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import Conditions
 from sim.ocean.spectrum_files.wave_models import refused
-from sim.ocean.statistics import expected, theory
+from sim.ocean.statistics.statistics import expected, theory
 from tests.refusals import assert_refused
 
 FREQUENCY = np.concatenate(

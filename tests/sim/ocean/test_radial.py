@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from sim.ocean.dispersion import mode_ratios, two_layer, viscous_root
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids
-from sim.ocean.gerstner import draw_waves, widened
-from sim.ocean.radial import RadialSea
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import fluids
+from sim.ocean.radial.gerstner import draw_waves, widened
+from sim.ocean.radial.radial import RadialSea
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.spectra import SPECTRA
 from sim.waves import Waves
 from tests.naive_ocean import plane_integral

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids
-from sim.ocean.gerstner import draw_waves
-from sim.ocean.radial import RadialSea, phases_at
-from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.slick import SlickCover, slick_radius, spreading_coefficient
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import fluids
+from sim.ocean.fluids.slick import SlickCover, slick_radius, spreading_coefficient
+from sim.ocean.radial.gerstner import draw_waves
+from sim.ocean.radial.radial import RadialSea, phases_at
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.spectra import SPECTRA
 from sim.waves import Waves
 

@@ -24,14 +24,14 @@ from numpy.typing import ArrayLike
 from sim.interruption import raise_if_stopped, stop_request
 from sim.jit import kernel
 from sim.ocean.any_sea import AnySea, RadialSurface, SurfaceAt
-from sim.ocean.band_plan import BandPlan
-from sim.ocean.departing_waves import DepartingWaves
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.footprints import Footprints
-from sim.ocean.query import WaveFields, find_labels
-from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.slick import SlickCover
-from sim.ocean.wave_sum import set_mesh
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.slick import SlickCover
+from sim.ocean.radial.band_plan import BandPlan
+from sim.ocean.radial.departing_waves import DepartingWaves
+from sim.ocean.radial.footprints import Footprints
+from sim.ocean.radial.radial_grid import RadialGrid
+from sim.ocean.radial.wave_sum import set_mesh
+from sim.ocean.tile.query import WaveFields, find_labels
 from sim.turns import TURN, within_half_turn
 from sim.validation import argument_error, as_array, check_finite, check_kind, check_not_negative, check_positions
 from sim.water import SAME_WATER, Water

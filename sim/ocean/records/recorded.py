@@ -17,8 +17,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import MAX_WAVES
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.radial.gerstner import MAX_WAVES
 from sim.ocean.spectra import Conditions
 from sim.turns import within_half_turn
 from sim.validation import argument_error, as_array, check_angle, check_kind, check_vector, check_within

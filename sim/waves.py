@@ -1,6 +1,6 @@
 """Linear waves and the water that carries them: the one record of waves, and the one sum over them in double precision.
 
-    >>> waves = Waves(kx=[0.06, 0.0], ky=[0.0, 0.1], amplitude=[1.0, 0.5], phase=[0.0, 0.25], water=Water(depth=60.0))
+    >>> waves = Waves(kx=[0.06, 0.0], ky=[0.0, 0.1], amplitude=[1.0, 0.5], phase=[0.0, 1.57], water=Water(depth=60.0))
     >>> flow = waves.kinematics([[0.0, 0.0, 0.0], [0.0, 0.0, -60.0]], t=12.0)
     >>> flow.velocity.shape, flow.acceleration.shape, flow.pressure.shape
     ((2, 3), (2, 3), (2,))
@@ -62,7 +62,7 @@ class Kinematics(NamedTuple):
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Waves:
-    """n waves a cos(k.x - omega t + 2 pi phase) on one water. Arrays (n,) float64.
+    """n waves a cos(k.x - omega t + phase) on one water. Arrays (n,) float64.
 
     Raises ValueError for arrays that are not finite or not of one shape (n,), and for what is no `Water`.
     """
@@ -70,7 +70,7 @@ class Waves:
     kx: np.ndarray  # [rad/m]
     ky: np.ndarray  # [rad/m]
     amplitude: np.ndarray  # [m]
-    phase: np.ndarray  # [turns] at t = 0
+    phase: np.ndarray  # [rad] at t = 0
     omega: np.ndarray = None  # type: ignore[assignment]  # [rad/s]; by default that of gravity waves on the water
     water: Water = DEEP_SEA
     elevation_error: float = 0.0  # [m] root mean square of the elevation of the waves that are left out
@@ -121,8 +121,7 @@ class Waves:
         and Hagemeijer 1991, Proc. ISOPE 3:64). Raises ValueError for a height that these amplitudes cannot have.
         """
         x, y = check_vector("place", place, "m", 2)
-        turns = 2.0 * math.pi * self.phase
-        theta = turns + self.kx * x + self.ky * y - self.omega * check_finite("t", t, "s")
+        theta = self.phase + self.kx * x + self.ky * y - self.omega * check_finite("t", t, "s")
         highest = float(self.amplitude.sum())
         height = check_within("height", height, -0.99 * highest, 0.99 * highest, "m")
         largest = max(float(self.amplitude.max(initial=0.0)), 1e-300)
@@ -132,7 +131,7 @@ class Waves:
             turned = 2.0 * np.arctan(np.exp(np.clip(-middle / largest * self.amplitude, -300.0, 300.0)) * half)
             is_high = float((self.amplitude * np.cos(turned)).sum()) > height
             low, high = (low, middle) if is_high else (middle, high)
-        return dataclasses.replace(self, phase=(turns - theta + turned) / (2.0 * math.pi))
+        return dataclasses.replace(self, phase=self.phase - theta + turned)
 
     @functools.cached_property
     def table(self) -> np.ndarray:
@@ -143,7 +142,7 @@ class Waves:
         double = -2.0 * k * self.water.depth
         speed = np.where(level, 0.0, self.omega) / -np.expm1(double)
         turn = 2.0 * math.pi
-        rows = (kx / turn, self.ky / turn, self.phase, self.omega / turn, kx / k, self.ky / k)
+        rows = (kx / turn, self.ky / turn, self.phase / turn, self.omega / turn, kx / k, self.ky / k)
         return np.array([*rows, speed, np.exp(double), self.amplitude])
 
     def elevation(self, points: ArrayLike, t: float) -> np.ndarray:

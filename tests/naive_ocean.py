@@ -165,10 +165,10 @@ def flow_of_waves(waves, points: np.ndarray, t: float) -> tuple[np.ndarray, np.n
     phi = a omega/k cosh k(z + h)/sinh kh sin(k.x - omega t + phase), h at most 300/k."""
     velocity, acceleration, pressure = np.zeros((len(points), 3)), np.zeros((len(points), 3)), np.zeros(len(points))
     x, y, z = points.T
-    for kx, ky, a, omega, turns in zip(waves.kx, waves.ky, waves.amplitude, waves.omega, waves.phase, strict=True):
+    for kx, ky, a, omega, phase in zip(waves.kx, waves.ky, waves.amplitude, waves.omega, waves.phase, strict=True):
         k = np.hypot(kx, ky)
         h = min(waves.water.depth, 300.0 / k)
-        theta = kx * x + ky * y - omega * t + 2.0 * np.pi * turns
+        theta = kx * x + ky * y - omega * t + phase
         C, S = np.cosh(k * (z + h)) / np.sinh(k * h), np.sinh(k * (z + h)) / np.sinh(k * h)
         gradient = np.stack([kx * C * np.cos(theta), ky * C * np.cos(theta), k * S * np.sin(theta)], axis=1)
         rates = np.stack([kx * C * np.sin(theta), ky * C * np.sin(theta), -k * S * np.cos(theta)], axis=1)

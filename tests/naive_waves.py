@@ -40,7 +40,7 @@ def second_order_pair(k1: np.ndarray, k2: np.ndarray, depth: float, gravity: flo
 def side_band_growth(
     wave: StokesWave, p: float, q: float = 0.0, count: int = 10
 ) -> tuple[float, np.ndarray, np.ndarray]:
-    """Fastest growth [1/s] of disturbances e^(i (p x + q y)) times a series of the period of a wave on deep water.
+    """Fastest growth [1/s] of disturbances e^(i (p x + q y)) times a series of the period of a wave, in its depth.
 
     Returns it with amplitudes (2 count + 1,) of elevation and surface potential of e^(i ((n + p) x + q y)), n from
     -count; p, q in wavenumbers of the wave, count at most about 10. Euler's equations linearised about the exact wave
@@ -51,22 +51,22 @@ def side_band_growth(
     x = np.arange(m) * wave.wavelength / m
     eta = wave.elevation(x)
     j = K * np.arange(1, len(wave.sines) + 1)
-    E = np.exp(np.outer(eta, j))
-    C, S = E * np.cos(np.outer(x, j)), E * np.sin(np.outer(x, j))
-    u, w = C @ (j * wave.sines) - c, S @ (j * wave.sines)
-    uz, wz = C @ (j**2 * wave.sines), S @ (j**2 * wave.sines)
+    C, S = heights_of(j, eta, wave.depth)
+    cos, sin = np.cos(np.outer(x, j)), np.sin(np.outer(x, j))
+    u, w = (C * cos) @ (j * wave.sines) - c, (S * sin) @ (j * wave.sines)
+    uz, wz = (S * cos) @ (j**2 * wave.sines), (C * sin) @ (j**2 * wave.sines)
     slope = w / u  # a streamline
     n = np.arange(-count, count + 1)
     kx = K * (n + p)
     k = np.hypot(kx, K * q)
     wave_x = np.exp(1j * np.outer(x, kx))
-    F = wave_x * np.exp(np.outer(eta, k))  # phi' on the surface
+    F, Fz = (wave_x * part for part in heights_of(k, eta, wave.depth))  # phi' on the surface, and phi'_z over k
     # eta'_t = -u eta'_x - uz eta_x eta' + wz eta' + phi'_z - eta_x phi'_x
     A11 = -u[:, None] * 1j * kx * wave_x + (wz - uz * slope)[:, None] * wave_x
-    A12 = (k - 1j * kx * slope[:, None]) * F
+    A12 = k * Fz - 1j * kx * slope[:, None] * F
     # phi'_t = -(u u_z + w w_z + g) eta' - u phi'_x - w phi'_z
     A21 = -(u * uz + w * wz + g)[:, None] * wave_x
-    A22 = -(u[:, None] * 1j * kx + w[:, None] * k) * F
+    A22 = -(u[:, None] * 1j * kx * F + w[:, None] * k * Fz)
     zero = np.zeros_like(F)
     values, vectors = scipy.linalg.eig(np.block([[A11, A12], [A21, A22]]), np.block([[wave_x, zero], [zero, F]]))
     found = np.where(np.isfinite(values), values.real, -np.inf)
@@ -75,3 +75,11 @@ def side_band_growth(
     # Surface potential: psi' = phi' + W eta', W the vertical velocity of the wave
     surface = F @ b + w * (wave_x @ a)
     return float(found[best]), a, np.linalg.solve(wave_x, surface)
+
+
+def heights_of(k: np.ndarray, z: np.ndarray, depth: float) -> tuple[np.ndarray, np.ndarray]:
+    """cosh k(z + h) and sinh k(z + h) over cosh kh, (heights, waves)."""
+    near = np.exp(np.outer(z, k))
+    far = 0.0 * near if math.isinf(depth) else np.exp(-np.outer(z + 2.0 * depth, k))
+    scale = 1.0 if math.isinf(depth) else 1.0 + np.exp(-2.0 * k * depth)
+    return (near + far) / scale, (near - far) / scale

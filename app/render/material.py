@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.ocean.oil_film import EXTINCTION, light_through
+from sim.ocean.fluids.oil_film import EXTINCTION, light_through
 from sim.validation import argument_error
 
 RGB = tuple[float, float, float]
@@ -41,7 +41,7 @@ class SlickRegion:
 
 @dataclass(frozen=True)
 class Oil:
-    """Oil in a slick, which lets the less light through the thicker it is (`sim/ocean/oil_film.py`)."""
+    """Oil in a slick, which lets the less light through the thicker it is (`sim/ocean/fluids/oil_film.py`)."""
 
     color: RGB  # sRGB of a thick layer, in 0..1
     refractive_index: float

@@ -19,7 +19,7 @@ from app.render.injection import add_data_mesh, injector_of
 from app.render.material import WATER_UNIFORMS, Grid, Material, Waterline, as_bytes, uniform_table, waterline_table
 from app.render.skies import CAMERA_RANGE
 from app.render.viser_inside import set_arrays
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.radial.radial_grid import RadialGrid
 
 RIPPLE_PERIOD = 1024.0  # [s] after which ripples start again: their phases are single precision in the browser
 MIN_STEP, MAX_STEP = 2.5e-4, 4e-3  # [m] to which displacements are rounded before they are sent

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from sim.ocean import read_spectrum
-from sim.ocean.gerstner import peak_wavenumber
+from sim.ocean.radial.gerstner import peak_wavenumber
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Spectrum
 from sim.parameters import Parameter, parameters_of
 

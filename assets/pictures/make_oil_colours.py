@@ -1,7 +1,8 @@
 """Draw `oil_colours.svg` in this folder: the colour of a film of crude against its thickness, with the Bonn classes.
 
 Run as `python assets/pictures/make_oil_colours.py`. Each stripe has the light that comes up through the film and the
-light of an even sky that it mirrors straight up, by `sim/ocean/oil_film.py`, for the water and oil of the radial sea.
+light of an even sky that it mirrors straight up, by `sim/ocean/fluids/oil_film.py`, for the water and oil of the radial
+sea.
 """
 
 from pathlib import Path
@@ -9,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from app.render.material import Material, linear
-from sim.ocean.fluids import fluids
-from sim.ocean.oil_film import APPEARANCES, light_through, mirrored_light
+from sim.ocean.fluids.fluids import fluids
+from sim.ocean.fluids.oil_film import APPEARANCES, light_through, mirrored_light
 
 OIL = "Alaska North Slope 2002"
 SKY = np.array([0.75, 0.85, 1.0]) * 2.5  # radiance of the sky, linear, over that of a white body in its light

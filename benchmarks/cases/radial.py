@@ -4,9 +4,9 @@ from typing import Any
 
 from benchmarks.timing import median_times
 from sim.ocean import Sea
-from sim.ocean.gerstner import draw_waves
-from sim.ocean.radial import RadialSea
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.radial.gerstner import draw_waves
+from sim.ocean.radial.radial import RadialSea
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.spectra import SPECTRA
 
 WAVES, RINGS, SPOKES = 64, 128, 128

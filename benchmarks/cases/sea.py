@@ -5,7 +5,7 @@ from typing import Any
 
 from benchmarks.timing import median_times
 from sim.ocean import Sea
-from sim.ocean.transforms import Transforms
+from sim.ocean.tile.transforms import Transforms
 
 QUICK_REPEATS, REPEATS = 60, 400
 

@@ -15,8 +15,8 @@ import numpy as np
 from app.scenes.charts import PALETTE
 from app.study.tables import MARKERS
 from sim.ocean import Sea
-from sim.ocean.query import sample
-from sim.ocean.wave_sum import Bands, VertexSums, add_waves, wave_rows
+from sim.ocean.radial.wave_sum import Bands, VertexSums, add_waves, wave_rows
+from sim.ocean.tile.query import sample
 
 LENGTH = 500.0  # [m] of the tile
 T = 5.0  # [s]

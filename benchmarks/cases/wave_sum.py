@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.native.build import build
 from benchmarks.timing import median_times
-from sim.ocean.wave_sum import WAVE, Bands, VertexSums, add_waves
+from sim.ocean.radial.wave_sum import WAVE, Bands, VertexSums, add_waves
 
 WAVES, RINGS, SPOKES = 64, 128, 128
 

@@ -3,6 +3,7 @@
 from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices
 from sim.floating.dataset import with_dataset
 from sim.floating.equilibrium import equilibrium_draft
+from sim.floating.excitation import WaveExcitation
 from sim.floating.float_in import FloatRun, FloatState, float_in
 from sim.floating.fluid_state import FluidState, make_water, still_water
 from sim.floating.heave_meter import HeaveMeter
@@ -11,13 +12,14 @@ from sim.floating.hydrostatics import Submerged, pressure_force, submerged
 from sim.floating.motion import MotionCoefficients, step
 from sim.floating.periods import heave_period, roll_period
 from sim.floating.prediction import HydrostaticPrediction, predict
-from sim.floating.response import response_amplitude
+from sim.floating.response import LinearForces, linear_forces, response_amplitude
 from sim.floating.shapes import SHAPES, Shape
 from sim.floating.stability import metacentric_height, righting_arm
 
 __all__ = [
     "SHAPES", "Body", "Fleet", "FloatRun", "FloatState", "FluidState", "HeaveMeter", "Hull", "HydrostaticPrediction",
-    "MotionCoefficients", "Shape", "Submerged", "equilibrium_draft", "float_in", "heave_period", "lowest",
-    "make_fleet", "make_water", "metacentric_height", "predict", "pressure_force", "pull", "response_amplitude",
-    "righting_arm", "roll_period", "shape_from_file", "step", "still_water", "submerged", "vertices", "with_dataset",
+    "LinearForces", "MotionCoefficients", "Shape", "Submerged", "WaveExcitation", "equilibrium_draft", "float_in",
+    "heave_period", "linear_forces", "lowest", "make_fleet", "make_water", "metacentric_height", "predict",
+    "pressure_force", "pull", "response_amplitude", "righting_arm", "roll_period", "shape_from_file", "step",
+    "still_water", "submerged", "vertices", "with_dataset",
 ]  # fmt: skip

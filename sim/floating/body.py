@@ -37,7 +37,10 @@ UNIFORM_DENSITY = 500.0  # [kg/m3] of a body that is given neither density nor m
 
 
 class Body(NamedTuple):
-    """One body and how it starts. It has a uniform density, or a mass, and then a centre of gravity and an inertia."""
+    """A body and how it starts, of uniform density, 500 kg/m3 where neither it nor a mass is given.
+
+    A mass may come with a centre of gravity and an inertia.
+    """
 
     hull: Hull
     density: float | None = None  # [kg/m3], uniform; None: 500, or by the mass

@@ -20,7 +20,7 @@ from sim.floating.hydrodynamics import DIRECTIONS, afloat
 from sim.floating.rotation import axes_of, four, heading_angle, heading_of
 from sim.interruption import raise_if_stopped
 from sim.jit import kernel
-from sim.ocean.gerstner import widened
+from sim.ocean.radial.gerstner import widened
 from sim.validation import argument_error
 from sim.waves import AMPLITUDE, RESPONSES, Waves, sums_at
 

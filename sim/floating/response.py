@@ -32,20 +32,23 @@ MAX_MISS = 1e-6  # [rad] from the only heading of a dataset
 
 
 class LinearForces(NamedTuple):
-    """Of a body about its centre of gravity: (-w^2 (M + A) - i w B + C) xi = X in waves of amplitude 1 m."""
+    """Of a body about its centre of gravity: (-w^2 (M + A) - i w B + C) xi = X in waves of amplitude 1 m.
+
+    ...: the shape of the frequencies, () for a single one.
+    """
 
     mass: np.ndarray  # M (6, 6) [kg, kg m, kg m2]
     stiffness: np.ndarray  # C (6, 6) [N/m, N, N m], that of the waterline
-    added: np.ndarray  # A (n, 6, 6)
-    damping: np.ndarray  # B (n, 6, 6)
-    excitation: np.ndarray  # X (n, 6) complex [N/m, N]
+    added: np.ndarray  # A (..., 6, 6)
+    damping: np.ndarray  # B (..., 6, 6)
+    excitation: np.ndarray  # X (..., 6) complex [N/m, N]
     centre: tuple[float, float, float]  # [m] of the centre of gravity at rest
 
 
 def response_amplitude(
     body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = 9.81
 ) -> np.ndarray:
-    """Motion (n, 6) of the body's centre of gravity at frequencies (n,) [rad/s], for waves of amplitude 1 m.
+    """Motion (..., 6) of the body's centre of gravity at frequencies (...) [rad/s], for waves of amplitude 1 m.
 
     Complex: surge, sway, heave [m/m], roll, pitch, yaw [rad/m] along and about the body's axes, x = Re(xi e^(-i w t))
     in the wave cos(k.x - w t), x from the centre of gravity. heading [rad]: where the waves go to, from the body's x.
@@ -59,12 +62,12 @@ def response_amplitude(
     not have, and for a body that sinks, has a trim, or is not stable upright.
     """
     f = linear_forces(body, frequency, heading, layers, gravity)
-    w = np.asarray(frequency, dtype=float)[:, None, None]
+    w = np.asarray(frequency, dtype=float)[..., None, None]
     D = f.stiffness - w * w * (f.mass + f.added) - 1j * w * f.damping
     # what nothing restores is in units of 1/w, or its rows would be lost in long waves beside those of the stiffness
-    unit = np.ones((len(w), 6, 1))
-    unit[:, LEVEL_MOTIONS] = 1.0 / w
-    scaled = np.linalg.solve(unit * D * unit.swapaxes(1, 2), unit * f.excitation[..., None])
+    unit = np.ones((*w.shape[:-2], 6, 1))
+    unit[..., LEVEL_MOTIONS, :] = 1.0 / w
+    scaled = np.linalg.solve(unit * D * unit.swapaxes(-1, -2), unit * f.excitation[..., None])
     return (unit * scaled)[..., 0]
 
 
@@ -74,9 +77,10 @@ def linear_forces(
     """The terms of the equation that `response_amplitude` solves, with the same arguments and errors."""
     check_body("body", body)
     check_pose(body)
-    w = as_array("frequency", frequency, "finite numbers above 0 rad/s, shape (n,)")
-    if w.ndim != 1 or not ((w > 0.0) & (w < math.inf)).all():
-        raise argument_error("frequency", w.tolist(), "finite numbers above 0 rad/s, shape (n,)")
+    given = as_array("frequency", frequency, "finite numbers above 0 rad/s")
+    if not ((given > 0.0) & (given < math.inf)).all():
+        raise argument_error("frequency", given.tolist(), "finite numbers above 0 rad/s")
+    w = given.ravel()
     heading, gravity = check_angle("heading", heading), check_positive("gravity", gravity, "m/s2")
     layers = check_layers(layers)
     hull, density = body.loaded()
@@ -107,5 +111,6 @@ def linear_forces(
         X += density_step * (plane.rise + 1j * k[:, None] * slope)
     root = math.sqrt(gravity)
     centre = (float(body.position[0]), float(body.position[1]), -draft - float(hull.extents[2, 0]))
-    added, damping = (fluid * np.array(part) for part in zip(*(linear.at(one / root) for one in w), strict=True))
-    return LinearForces(mass, C, added, root * damping, gravity * X, centre)
+    at = [linear.at(one / root) for one in w]
+    added, damping = (fluid * np.reshape([one[i] for one in at], (*given.shape, 6, 6)) for i in range(2))
+    return LinearForces(mass, C, added, root * damping, gravity * X.reshape(*given.shape, 6), centre)

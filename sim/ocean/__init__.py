@@ -3,45 +3,84 @@
 Conventions: SI units, radians, z up. Directions are where waves and wind go to, from +x towards +y. A wave is
 Re[2 h0 exp(i(k.x - omega t))] with omega >= 0; Hs = 4 sqrt(m0), m0 the variance of the height.
 
-`SPECTRA`, `Sea`, `RadialSea`, `draw_waves`, `measured_spectrum`, `read_record`, `read_spectrum`, `recorded_waves` and
-`zero_crossings` are imported from here. Waves of `draw_waves`, `recorded_waves` and `Sea.waves_at` are
-`sim.waves.Waves`.
+The names of `__all__` are imported from here: seas and their waves, spectra and records, dispersion, statistics. All
+seas have one interface, `AnySea`. The other modules are imported by their own paths.
 """
 
 import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sim.ocean.gerstner import draw_waves
-    from sim.ocean.measured import measured_spectrum
-    from sim.ocean.radial import RadialSea
-    from sim.ocean.recorded import recorded_waves
-    from sim.ocean.sea import Sea
+    from sim.ocean.any_sea import AnySea
+    from sim.ocean.dispersion import (
+        group_speed,
+        mode_ratios,
+        omega,
+        phase_speed,
+        two_layer,
+        viscous_root,
+        viscous_two_layer,
+        wavenumber,
+    )
+    from sim.ocean.nonlinear.energy import SeaEnergy
+    from sim.ocean.nonlinear.packets import breather, modulated_waves
+    from sim.ocean.nonlinear.sea import NonlinearSea
+    from sim.ocean.nonlinear.stokes import StokesWave, stokes_wave
+    from sim.ocean.radial.gerstner import draw_waves
+    from sim.ocean.radial.radial import RadialSea
+    from sim.ocean.records.measured import measured_spectrum
+    from sim.ocean.records.recorded import recorded_waves
+    from sim.ocean.records.wave_record import zero_crossings
     from sim.ocean.spectra import SPECTRA
+    from sim.ocean.spectra.moments import Moments
     from sim.ocean.spectrum_files import read_spectrum
     from sim.ocean.spectrum_files.records import read_record
-    from sim.ocean.wave_record import zero_crossings
+    from sim.ocean.statistics.crest_heights import HighCrests, forristall_crest, high_crests, narrow_band_moments
+    from sim.ocean.statistics.statistics import beaufort, expected, theory
+    from sim.ocean.tile.ripples import Ripples, gaussian_volume
+    from sim.ocean.tile.sea import Sea
+    from sim.ocean.tile.surface import Surface
+    from sim.water import Water
+    from sim.waves import Waves
 
 __all__ = [
-    "SPECTRA", "RadialSea", "Sea", "draw_waves", "measured_spectrum", "read_record", "read_spectrum", "recorded_waves",
-    "zero_crossings",
+    "SPECTRA", "AnySea", "HighCrests", "Moments", "NonlinearSea", "RadialSea", "Ripples", "Sea", "SeaEnergy",
+    "StokesWave", "Surface", "Water", "Waves", "beaufort", "breather", "draw_waves", "expected", "forristall_crest",
+    "gaussian_volume", "group_speed", "high_crests", "measured_spectrum", "mode_ratios", "modulated_waves",
+    "narrow_band_moments", "omega", "phase_speed", "read_record", "read_spectrum", "recorded_waves", "stokes_wave",
+    "theory", "two_layer", "viscous_root", "viscous_two_layer", "wavenumber", "zero_crossings",
 ]  # fmt: skip
 
 # Imported on first use, so that the closed forms of `sim.ocean.dispersion` cost neither numba nor pyfftw.
 HOMES = {
-    "SPECTRA": "sim.ocean.spectra",
-    "RadialSea": "sim.ocean.radial",
-    "Sea": "sim.ocean.sea",
-    "draw_waves": "sim.ocean.gerstner",
-    "measured_spectrum": "sim.ocean.measured",
-    "read_record": "sim.ocean.spectrum_files.records",
-    "read_spectrum": "sim.ocean.spectrum_files",
-    "recorded_waves": "sim.ocean.recorded",
-    "zero_crossings": "sim.ocean.wave_record",
+    "sim.ocean.any_sea": "AnySea",
+    "sim.ocean.dispersion": "group_speed mode_ratios omega phase_speed two_layer viscous_root "
+    "viscous_two_layer wavenumber",
+    "sim.ocean.nonlinear.energy": "SeaEnergy",
+    "sim.ocean.nonlinear.packets": "breather modulated_waves",
+    "sim.ocean.nonlinear.sea": "NonlinearSea",
+    "sim.ocean.nonlinear.stokes": "StokesWave stokes_wave",
+    "sim.ocean.radial.gerstner": "draw_waves",
+    "sim.ocean.radial.radial": "RadialSea",
+    "sim.ocean.records.measured": "measured_spectrum",
+    "sim.ocean.records.recorded": "recorded_waves",
+    "sim.ocean.records.wave_record": "zero_crossings",
+    "sim.ocean.spectra": "SPECTRA",
+    "sim.ocean.spectra.moments": "Moments",
+    "sim.ocean.spectrum_files": "read_spectrum",
+    "sim.ocean.spectrum_files.records": "read_record",
+    "sim.ocean.statistics.crest_heights": "HighCrests forristall_crest high_crests narrow_band_moments",
+    "sim.ocean.statistics.statistics": "beaufort expected theory",
+    "sim.ocean.tile.ripples": "Ripples gaussian_volume",
+    "sim.ocean.tile.sea": "Sea",
+    "sim.ocean.tile.surface": "Surface",
+    "sim.water": "Water",
+    "sim.waves": "Waves",
 }
+HOME_OF = {name: home for home, names in HOMES.items() for name in names.split()}
 
 
 def __getattr__(name: str) -> Any:
-    if name not in HOMES:
+    if name not in HOME_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(HOMES[name]), name)
+    return getattr(importlib.import_module(HOME_OF[name]), name)

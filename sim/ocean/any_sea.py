@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.water import Water
 from sim.waves import Kinematics, Waves
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from sim import dispersion as linear
 from sim.interruption import raise_if_stopped
-from sim.ocean.viscous_layers import Layers, surface_roots
+from sim.ocean.fluids.viscous_layers import Layers, surface_roots
 from sim.validation import (
     argument_error,
     check_frequencies,
@@ -171,9 +171,9 @@ def viscous_two_layer(
     """(omega [rad/s], decay rate [1/s]) of the surface wave on a layer of viscous fluid on deep viscous fluid.
 
     densities [kg/m3]; dynamic viscosities [Pa s], above 0; thickness [m]; tensions [N/m]; film: the upper surface
-    cannot be stretched. The exact linear problem, see `sim.ocean.viscous_layers`; the root is the one that grows out of
-    the surface mode of `two_layer` with the viscosities. omega is 0 where the motion creeps without oscillating.
-    Raises ValueError where a value is not allowed or the upper fluid is the heavier.
+    cannot be stretched. The exact linear problem, see `sim.ocean.fluids.viscous_layers`; the root is the one that
+    grows out of the surface mode of `two_layer` with the viscosities. omega is 0 where the motion creeps without
+    oscillating. Raises ValueError where a value is not allowed or the upper fluid is the heavier.
     """
     k, X_surface, X_interface, G1 = _two_layer_roots(
         k, upper_density, thickness, lower_density, gravity, INF, surface_tension, interface_tension

@@ -7,16 +7,20 @@ from sim.springs.analysis.energy_history import EnergyHistory
 from sim.springs.cloth import cloth, vertical_cloth
 from sim.springs.integrators import Integrator, discover
 from sim.springs.laws import LAWS
+from sim.springs.laws.stiffening import Stiffening
 from sim.springs.net import Air, Contact, Family, Grab, Net, PinPath
 from sim.springs.rope import lab_units, rope
 from sim.springs.run import Run
 from sim.springs.simulate import simulate
-from sim.springs.stability import critical_step
+from sim.springs.stability import Gauge, Mode, critical_step, critical_stiffness, gauge, step_limit, top_modes
 from sim.springs.state import State, advance
+from sim.springs.statics import Equilibrium, catenary, equilibrium, hanging_chain
 
 INTEGRATORS: dict[str, Integrator] = discover()
 
 __all__ = [
-    "INTEGRATORS", "LAWS", "Air", "Contact", "EnergyHistory", "Family", "Grab", "Integrator", "Net", "PinPath", "Run",
-    "State", "advance", "cloth", "critical_step", "lab_units", "rope", "simulate", "vertical_cloth",
+    "INTEGRATORS", "LAWS", "Air", "Contact", "EnergyHistory", "Equilibrium", "Family", "Gauge", "Grab", "Integrator",
+    "Mode", "Net", "PinPath", "Run", "State", "Stiffening", "advance", "catenary", "cloth", "critical_step",
+    "critical_stiffness", "equilibrium", "gauge", "hanging_chain", "lab_units", "rope", "simulate", "step_limit",
+    "top_modes", "vertical_cloth",
 ]  # fmt: skip

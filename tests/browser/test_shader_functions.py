@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from app.render.material import WATER_UNIFORMS, Grid, Waterline, uniform_table, waterline_table
 from app.render.scripts import modules
 from app.render.skies import set_sky
-from sim.ocean.oil_film import APPEARANCES, EXTINCTION, light_through, mirrored_light
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.fluids.oil_film import APPEARANCES, EXTINCTION, light_through, mirrored_light
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.particles.rain_rings import ring_wave
 from tests.browser.glsl import evaluate, page_with_modules
 

@@ -19,7 +19,7 @@ from app.render.water import DrawnWater, Tile
 from app.server.viewer import Viewer
 from app.server.web.guard import open_server
 from app.server.web.page import covered
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.radial.radial_grid import RadialGrid
 from tests.browser.conftest import NO_NOTES, new_page, vertices_of
 
 SIZE = 32

@@ -10,7 +10,7 @@ import numpy as np
 from sim.floating import Body, Hull, MotionCoefficients, make_fleet, make_water, step
 from sim.floating.body import pull
 from sim.ocean import Sea
-from sim.ocean.radial import RadialSea
+from sim.ocean.radial.radial import RadialSea
 from sim.springs import INTEGRATORS, Air, Contact, Grab, cloth, rope
 from sim.springs.state import State, advance
 from sim.waves import Waves

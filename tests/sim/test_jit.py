@@ -45,7 +45,7 @@ def test_the_hash_changes_with_any_edit_and_any_new_name(tmp_path):
 
 
 def test_another_python_numba_or_llvm_finds_no_kernels_of_this_one(monkeypatch):
-    path = ROOT / "sim" / "ocean" / "evolve.py"
+    path = ROOT / "sim" / "ocean" / "tile" / "evolve.py"
     found = {reachable_hash(path)}
     for part in (jit.llvmlite, jit.numba):
         monkeypatch.setattr(part, "__version__", "0.0.1")
@@ -65,9 +65,9 @@ def test_other_files_do_not_change_the_hash(tmp_path):
 
 
 def test_a_kernels_folder_is_named_by_what_the_kernel_can_reach(tmp_path):
-    code = "import sim.jit as j, pathlib; print(j.kernel_folder(pathlib.Path('sim/ocean/evolve.py').resolve()))"
+    code = "import sim.jit as j, pathlib; print(j.kernel_folder(pathlib.Path('sim/ocean/tile/evolve.py').resolve()))"
     found = Path(python(code, SPRINGTIDE_CACHE=str(tmp_path)))
-    name = f"evolve-{reachable_hash(ROOT / 'sim' / 'ocean' / 'evolve.py')}"
+    name = f"evolve-{reachable_hash(ROOT / 'sim' / 'ocean' / 'tile' / 'evolve.py')}"
     assert found == tmp_path / "kernels" / processor() / name
     assert found.is_dir()
 

@@ -20,14 +20,13 @@ T = 86_412.5  # [s]
 def some_waves(n: int = 13) -> Waves:
     random = np.random.default_rng(5)
     kx, ky, amplitude = random.uniform(-0.3, 0.3, n), random.uniform(-0.3, 0.3, n), random.uniform(0.0, 1.0, n)
-    return Waves(kx, ky, amplitude, random.uniform(size=n), water=Water(depth=25.0, gravity=3.7))
+    return Waves(kx, ky, amplitude, random.uniform(0.0, 6.3, n), water=Water(depth=25.0, gravity=3.7))
 
 
 def angles(waves: Waves) -> np.ndarray:
     """theta (points, waves) [rad] in extended precision."""
     k = [np.asarray(one, np.longdouble) for one in (waves.kx, waves.ky)]
-    turned = np.asarray(waves.phase, np.longdouble) * 2 * np.arccos(np.longdouble(-1))
-    return POINTS[:, :1] * k[0] + POINTS[:, 1:] * k[1] - np.asarray(waves.omega, np.longdouble) * T + turned
+    return POINTS[:, :1] * k[0] + POINTS[:, 1:] * k[1] - np.asarray(waves.omega, np.longdouble) * T + waves.phase
 
 
 def test_elevation_and_responses_are_sums_over_the_waves():
@@ -87,3 +86,9 @@ def test_all_seas_are_asked_alike(sea):
     assert flow.acceleration == pytest.approx(same.acceleration, abs=1e-9)
     assert sea.waves_at(3.0).water == Water()
     assert sea.waves_at(3.0).significant_height == pytest.approx(sea.significant_height, rel=1e-9)
+
+
+def test_a_phase_is_in_radians():
+    quarter = Waves([0.05], [0.0], [1.0], [0.5 * math.pi])
+    assert quarter.elevation([[0.0, 0.0]], 0.0)[0] == pytest.approx(0.0, abs=1e-15)
+    assert quarter.elevation([[1.0, 0.0]], 0.0)[0] == pytest.approx(-math.sin(0.05))

@@ -13,7 +13,7 @@ from sim import floating, springs
 from sim.ocean import SPECTRA, RadialSea, Sea, dispersion, draw_waves, zero_crossings
 from sim.ocean.nonlinear import NonlinearSea, stokes_wave
 from sim.ocean.planets import gravity_of
-from sim.ocean.statistics import beaufort
+from sim.ocean.statistics.statistics import beaufort
 from sim.ocean.weathering import Spill, weather
 from sim.particles.fire import Fire
 from sim.particles.jet import Jet

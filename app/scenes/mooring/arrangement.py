@@ -14,7 +14,7 @@ from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.rows import LineRows
 from sim import floating
 from sim.mooring import Line, LineType, MooredBody, Point, System, moored
-from sim.ocean.gerstner import draw_waves, waves_under
+from sim.ocean.radial.gerstner import draw_waves, waves_under
 from sim.ocean.spectra import SPECTRA
 from sim.water import Water
 from sim.waves import Waves

@@ -27,7 +27,7 @@ from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
 from sim.floating.shapes import Appearance
 from sim.interruption import raise_if_stopped
 from sim.ocean.any_sea import AnySea, SurfaceAt
-from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.fluids.fluid_column import FluidColumn
 
 GRAVITY = 9.81  # [m/s2]
 FIRST_PLACES = ((-2.4, 1.0), (-3.0, 4.6), (0.4, -0.8))  # [m] at size 1 of the first three bodies

@@ -14,8 +14,8 @@ from app.render.viser_inside import set_arrays
 from app.scenes.radial_sea.cutaway import DIRECTION, FAR_WALL_POINTS, HALF_WIDTH, Cutaway
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.materials import mixture_share, rgb_of
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.oil_film import light_through
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.oil_film import light_through
 
 BRIGHT_WATER: RGB = (0.13, 0.50, 0.60)  # of the water under its surface, as if light came through
 DEEP_WATER: RGB = (0.03, 0.16, 0.27)  # of the water at the floor

@@ -16,9 +16,9 @@ from app.scenes.radial_sea.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
 from app.scenes.radial_sea.wave_choice import WaveChoice
 from sim.ocean import Sea
 from sim.ocean.any_sea import AnySea, RadialSurface
-from sim.ocean.foam import whitecaps
-from sim.ocean.radial import CLEAN, RadialSea, lost
-from sim.ocean.statistics import energy_by_wavenumber, expected
+from sim.ocean.radial.radial import CLEAN, RadialSea, lost
+from sim.ocean.statistics.foam import whitecaps
+from sim.ocean.statistics.statistics import energy_by_wavenumber, expected
 from sim.waves import Waves
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.well_blowout import OilBudget, Slick
 from sim.floating import Hull
 from sim.ocean.any_sea import RadialSurface
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.weathering import Weathering
 
 

@@ -13,7 +13,7 @@ from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
 from sim.floating import Hull
 from sim.floating.rotation import heading_angle
-from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.particles.plume import flame_height, radiated_light
 
 LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"

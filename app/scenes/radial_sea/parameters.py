@@ -16,10 +16,10 @@ from app.scenes.sea_parameters import (
     unused_waves,
 )
 from sim.floating.hull import MeshReading
-from sim.ocean.emulsions import MIXTURE_LAWS
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import Fluid, fluids
-from sim.ocean.radial_grid import LAWS
+from sim.ocean.fluids.emulsions import MIXTURE_LAWS
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import Fluid, fluids
+from sim.ocean.radial.radial_grid import LAWS
 from sim.ocean.spectra import SPECTRA, Conditions, Spectrum
 from sim.ocean.weathering import Spill, WeatheredOil, can_weather, oil_at, weather
 from sim.parameters import parameter, with_parameters

@@ -11,10 +11,10 @@ from app.scenes.quantities import Quantities, Quantity, for_tasks, slug
 from app.scenes.radial_sea.bodies import BODY_KINDS, BodyKind
 from app.scenes.radial_sea.parameters import weathered_oil
 from app.scenes.radial_sea.well_blowout import FALL_TIME, LANDING, NOZZLE
-from sim.ocean.emulsions import arrhenius
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import diffuse_reflectance, normal_reflectance
-from sim.ocean.oil_film import OPAQUE_THICKNESS
+from sim.ocean.fluids.emulsions import arrhenius
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import diffuse_reflectance, normal_reflectance
+from sim.ocean.fluids.oil_film import OPAQUE_THICKNESS
 from sim.water import SEA_DENSITY
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.ocean import Sea
-from sim.ocean.query import bicubic
+from sim.ocean.tile.query import bicubic
 
 SIZE, LENGTH = 96, 57.6  # cells and side [m] of the square
 WIDEST = 0.42  # share of the side within which rings are drawn whole; they fade to its edge

@@ -17,10 +17,10 @@ from app.scenes.radial_sea.frame import RadialReadings
 from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
 from app.scenes.radial_sea.quantities import OF_BODY, OF_OIL_BUDGET, QUANTITIES
 from app.scenes.radial_sea.well_blowout import CROSSING_WAVE, OilBudget
-from sim.ocean.emulsions import MIXTURE_LAWS
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import peak_wavenumber
-from sim.ocean.oil_film import appearance
+from sim.ocean.fluids.emulsions import MIXTURE_LAWS
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.oil_film import appearance
+from sim.ocean.radial.gerstner import peak_wavenumber
 from sim.ocean.weathering.components import WARM
 from sim.parameters import parameters_of
 

@@ -36,11 +36,11 @@ from app.scenes.sea_parameters import notes_on_file
 from sim.floating import Body, Hull, MotionCoefficients, Shape, make_fleet, shape_from_file, step, still_water
 from sim.interruption import kept_whole
 from sim.ocean.any_sea import AnySea
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.radial import RadialSea
-from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.sea import Sea
-from sim.ocean.slick import SlickCover
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.slick import SlickCover
+from sim.ocean.radial.radial import RadialSea
+from sim.ocean.radial.radial_grid import RadialGrid
+from sim.ocean.tile.sea import Sea
 from sim.ocean.weathering import Weathering, weather
 from sim.parameters import Value, check_record
 from sim.particles.fire import Fire

@@ -12,8 +12,8 @@ from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
 from app.lab.tabulate import Interval
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of
 from app.scenes.radial_sea.parameters import RadialSeaParams, column_of
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import normal_reflectance
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import normal_reflectance
 
 # The functions, as the tasks name them.
 VISCOSITY, DECAY, REFLECTANCE, DRAFT = "mixture_viscosity", "wave_decay", "reflectance", "draft"

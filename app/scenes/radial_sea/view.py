@@ -31,7 +31,7 @@ from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
 from app.scenes.radial_sea.stain_view import Stains
 from app.scenes.radial_sea.well_blowout import FIRE, RIG
 from sim.ocean.any_sea import RadialSurface
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.radial.radial_grid import RadialGrid
 
 SUN_BEARING = 1.25  # [rad] from +x: beyond the buoys, as seen from the first view
 SUN_LAMP_INTENSITY = 2.2  # of the lamp that stands for a sun of SUN_LAMP_STRENGTH

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from app.scenes.radial_sea.parameters import RadialSeaParams, conditions_of, spectrum_of
-from sim.ocean.gerstner import draw_waves
+from sim.ocean.radial.gerstner import draw_waves
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.waves import Waves
 

@@ -10,8 +10,8 @@ import numpy as np
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from sim.interruption import raise_if_stopped
 from sim.ocean.any_sea import AnySea
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.slick import SlickCover, slick_radius, slick_thickness, spreading_coefficient
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.slick import SlickCover, slick_radius, slick_thickness, spreading_coefficient
 from sim.ocean.weathering.laws import DRIFT
 from sim.particles.fire import Fire
 from sim.particles.jet import Jet

@@ -9,7 +9,7 @@ from app.scenes.square_sea.foam_limit import FoamLimit
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.tile_mesh import Fields, set_mesh_of
 from sim.ocean import Sea
-from sim.ocean.foam import pace
+from sim.ocean.statistics.foam import pace
 
 PACE_INTERVAL = 0.5  # [s] of simulated time between two calculations of the sea's slope and frequency
 

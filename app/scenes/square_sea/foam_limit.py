@@ -3,7 +3,7 @@
 import math
 
 from app.scenes.square_sea.parameters import SquareSeaParams
-from sim.ocean.foam import threshold, whitecaps
+from sim.ocean.statistics.foam import threshold, whitecaps
 
 FULL_FOAM_DEPTH = 0.35  # the Jacobian of full foam lies this many standard deviations of the Jacobian below the limit
 FOAM_CORRECTION_RATE = 0.15  # [1/s] standard deviations by which the limit moves where e times too little is drawn

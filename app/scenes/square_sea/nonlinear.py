@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from app.scenes.square_sea.parameters import LONG_CRESTED_STARTS, SquareSeaParams, solved_points
 from app.scenes.square_sea.tile_mesh import Fields, Highest
 from sim.ocean import Sea
-from sim.ocean.high_crests import HighCrests, high_crests, moments_of
 from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves
-from sim.ocean.statistics import expected
+from sim.ocean.statistics.crest_heights import HighCrests, high_crests, moments_of
+from sim.ocean.statistics.statistics import expected
 
 TOLERANCE = 1e-4  # of a step, over the waves' amplitude
 FADE_PERIODS, ROGUE_FADE_PERIODS = 5.0, 2.0  # peak periods over which the nonlinear terms are faded in
@@ -49,8 +49,7 @@ def nonlinear_sea(p: SquareSeaParams, linear: Sea, t: float, place: tuple[float,
             waves = modulated_waves(amplitude, count, p.length, c.gravity, c.density)
         # Its phases are those of its start; water that is not deep has a dispersion of its own.
         omega = c.omega(waves.kx)
-        phase = waves.phase + omega * t / (2.0 * math.pi)
-        waves = dataclasses.replace(waves, water=c.water, omega=omega, phase=phase)
+        waves = dataclasses.replace(waves, water=c.water, omega=omega, phase=waves.phase + omega * t)
     size = (n, 1) if p.start in LONG_CRESTED_STARTS else n
     return NonlinearSea(size, p.length, p.order, start=waves, fade=fade, rtol=TOLERANCE, time=t)
 

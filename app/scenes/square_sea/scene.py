@@ -36,8 +36,8 @@ from app.scenes.square_sea.statistics import INTERVAL, LiveStatistics
 from app.scenes.square_sea.tile_mesh import Fields
 from app.scenes.square_sea.weather_change import WeatherChange
 from sim.ocean import Sea
-from sim.ocean.foam import whitecaps
-from sim.ocean.wave_gauge import WaveGauge, where_hit
+from sim.ocean.records.wave_gauge import WaveGauge, where_hit
+from sim.ocean.statistics.foam import whitecaps
 from sim.parameters import effect_of_change
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.scenes.square_sea.parameters import SquareSeaParams, acting
 from sim.ocean import Sea
-from sim.ocean.statistics import Statistics, expected, height_scatter, measured, open_sea_height
+from sim.ocean.statistics.statistics import Statistics, expected, height_scatter, measured, open_sea_height
 
 if TYPE_CHECKING:
     from app.scenes.square_sea.nonlinear import Heights, Marching

@@ -12,7 +12,7 @@ from app.scenes.square_sea.parameters import SquareSeaParams, acting, conditions
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA, Spectrum
 from sim.ocean.spectra.record import MIN_WIND_SPEED
-from sim.ocean.statistics import expected
+from sim.ocean.statistics.statistics import expected
 from sim.parameters import parameters_of
 
 GRAVITY, SPECTRUM, DISPERSION = "gravity", "spectrum", "dispersion"  # the functions, as the tasks name them

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.ocean.amplitudes import integers
 from sim.ocean.dispersion import omega
+from sim.ocean.tile.amplitudes import integers
 
 
 class Modes(NamedTuple):

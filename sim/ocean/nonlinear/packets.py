@@ -70,5 +70,4 @@ def carrier(amplitude: float, count: int, length: float, gravity: float) -> tupl
 def free_waves(numbers: np.ndarray, waves: np.ndarray, length: float, gravity: float, density: float) -> Waves:
     """Waves with these numbers on the length; waves: complex amplitudes [m] at time 0."""
     k = numbers * (2.0 * math.pi / length)
-    phase = np.angle(waves) / (2.0 * math.pi)
-    return Waves(k, np.zeros_like(k), np.abs(waves), phase, water=Water(math.inf, gravity, density))
+    return Waves(k, np.zeros_like(k), np.abs(waves), np.angle(waves), water=Water(math.inf, gravity, density))

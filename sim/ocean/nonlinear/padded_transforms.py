@@ -8,8 +8,8 @@ transformed: at M = 3 that takes 0.75 of the time of a whole transform.
 import numpy as np
 
 from sim.jit import kernel
-from sim.ocean.buffer_pool import ALIGNMENT
-from sim.ocean.transforms import make_plan
+from sim.ocean.tile.buffer_pool import ALIGNMENT
+from sim.ocean.tile.transforms import make_plan
 
 FACTORS = (2, 3, 5, 7)  # for which FFTW has fast code
 

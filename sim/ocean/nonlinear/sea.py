@@ -3,10 +3,12 @@
 Choose it where waves act on one another: groups that steepen, crests, rogue waves. `Sea` is cheaper and reaches any
 time at once. Limits:
 - Potential flow under a surface without overhangs: no overturning, no tension, no viscosity, level bottom.
-- Steepness by order. The speed of a wave of k a = 0.3 is off by 1.4e-3 at order 3, 1e-4 at 5 and 1e-5 at 7; k a = 0.35
-  needs order 7, k a = 0.4 breaks up.
-- Short waves on high crests: the series in z diverges where k_max a exceeds about 5 (k_max: largest wavenumber of the
-  grid; a: amplitude of the sea). `breaking` damps what grows there.
+- Steepness by order. The speed of a wave of k a = 0.3 in deep water is off by 1.4e-3 at order 3, 1e-4 at 5 and 1e-5 at
+  7; k a = 0.35 needs order 7, k a = 0.4 breaks up. An even order need not improve on the odd one below it.
+- No growth by wind: what breaks is lost. A sea of 10 m/s over 50 km loses 7.6 % of its Hs in 15 minutes.
+- Energy drifts with the error of the steps: -1e-4 in 200 periods of k a = 0.2 at the default rtol.
+- Short waves on high crests: the series in z diverges where k_max a exceeds about 5 (k_max: largest wavenumber of
+  the grid, a: amplitude of the sea). `breaking` damps what grows there.
 
     >>> from sim.ocean.nonlinear import stokes_wave
     >>> wave = stokes_wave(height=2.0, wavelength=100.0)
@@ -34,10 +36,10 @@ from sim.ocean.nonlinear.march import LinearMarch, March
 from sim.ocean.nonlinear.padded_transforms import PaddedTransforms
 from sim.ocean.nonlinear.start import checked_size, free_waves, mean_wavenumber, resized, started
 from sim.ocean.nonlinear.surface import NonlinearSurface
-from sim.ocean.query import sample
-from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.sea import Sea
-from sim.ocean.tile_surface import sampled, shares
+from sim.ocean.radial.radial_grid import RadialGrid
+from sim.ocean.tile.query import sample
+from sim.ocean.tile.sea import Sea
+from sim.ocean.tile.tile_surface import sampled, shares
 from sim.validation import (
     argument_error,
     check_choice,
@@ -72,8 +74,9 @@ class NonlinearSea(AnySea):
         size: int | tuple[int, int] | None = None,
         length: float | tuple[float, float] | None = None,
         order: int = 3,
+        *,
+        start: Sea | Waves | tuple[ArrayLike, ArrayLike],
         depth: float | None = None,
-        start: Sea | Waves | tuple[ArrayLike, ArrayLike] | None = None,
         gravity: float | None = None,
         density: float | None = None,
         fade: float | None = None,

@@ -6,10 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim.ocean.medium import Medium
+from sim.ocean.fluids.medium import Medium
 from sim.ocean.nonlinear.modes import Modes, make_modes, spectrum_of
-from sim.ocean.sea import LENGTHS, SIZES, Sea
 from sim.ocean.spectra import Conditions
+from sim.ocean.tile.sea import LENGTHS, SIZES, Sea
+from sim.turns import within_half_turn
 from sim.validation import argument_error, as_array, check_number, is_whole_number
 from sim.water import Water
 from sim.waves import Waves
@@ -94,8 +95,8 @@ def linear_start(waves: Waves, modes: Modes, t: float) -> np.ndarray:
     n, m = modes.size
     i, j = (np.rint(k * (side / (2.0 * math.pi))).astype(int)
             for k, side in zip((waves.kx, waves.ky), modes.length, strict=True))  # fmt: skip
-    # a cos(k.x - omega t + 2 pi phase), and its potential (g/omega) a sin(...)
-    wave = 0.5 * waves.amplitude * np.exp(1j * (2.0 * math.pi * waves.phase - waves.omega * t))
+    # a cos(k.x - omega t + phase), and its potential (g/omega) a sin(...)
+    wave = 0.5 * waves.amplitude * np.exp(1j * (waves.phase - waves.omega * t))
     spectra = wave, -1j * modes.gravity / np.where(waves.omega > 0.0, waves.omega, math.inf) * wave
     u = np.zeros((2, m, n // 2), complex)
     there = (np.abs(i) < n // 2) & (np.abs(j) < max(m // 2, 1))
@@ -118,9 +119,9 @@ def free_waves(modes: Modes, u: np.ndarray, t: float, water: Water) -> Waves:
     turned = 1j * omega / modes.gravity * u[1][there]
     onward, back = u[0][there] + turned, np.conj(u[0][there] - turned)
     waves, frequency = np.concatenate([onward, back]), np.tile(omega, 2)
-    phase = (np.angle(waves) + frequency * t) / (2.0 * math.pi)
+    phase = np.angle(waves) + frequency * t
     kx, ky = np.concatenate([kx, -kx]), np.concatenate([ky, -ky])
-    return Waves(kx, ky, np.abs(waves), phase, frequency, water)
+    return Waves(kx, ky, np.abs(waves), within_half_turn(phase), frequency, water)
 
 
 def resized(modes: Modes, u: np.ndarray, size: tuple[int, int]) -> tuple[Modes, np.ndarray]:

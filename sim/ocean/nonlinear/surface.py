@@ -1,10 +1,10 @@
-"""The surface of nonlinear waves at one time, with the fields of `sim.ocean.surface`."""
+"""The surface of nonlinear waves at one time, with the fields of `sim.ocean.tile.surface`."""
 
 import numpy as np
 
 from sim.ocean.nonlinear.modes import Modes
 from sim.ocean.nonlinear.padded_transforms import PaddedTransforms
-from sim.ocean.surface import field
+from sim.ocean.tile.surface import field
 
 
 class NonlinearSurface:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim.ocean.measured import spread_by_mean, spread_by_moments
+from sim.ocean.records.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import SECOND_EXPONENT, SECOND_PEAK, Spectrum, peaked
 from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, filled, made, nearest, towards
 from sim.ocean.spectrum_files.sense import COMPASS

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.ocean.measured import measured_spectrum
+from sim.ocean.records.measured import measured_spectrum
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.sense import sense_of
 from sim.validation import argument_error

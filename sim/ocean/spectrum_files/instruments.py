@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.ocean.measured import spread_by_moments
+from sim.ocean.records.measured import spread_by_moments
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.contents import DIRECTIONS, MAGNETIC, filled, made, nearest, towards
 from sim.ocean.spectrum_files.tables import MEANINGS, from_columns

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sim.ocean.records.wave_record import zero_crossings
 from sim.ocean.spectrum_files.sense import warnings_of
-from sim.ocean.wave_record import zero_crossings
 from sim.tables import Meaning, line_error, read_table, read_text
 from sim.tables.columns import LENGTH, TIME
 from sim.validation import argument_error, check_kind

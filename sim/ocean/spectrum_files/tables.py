@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sim.ocean.measured import spread_by_mean
+from sim.ocean.records.measured import spread_by_mean
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import shares
 from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, filled, made, unrepeated

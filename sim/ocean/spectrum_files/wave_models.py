@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from sim.ocean.measured import spread_by_moments
+from sim.ocean.records.measured import spread_by_moments
 from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import shares
 from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, MAGNETIC, made, nearest, towards, unrepeated

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.ocean.fluids import Fluid, fluids, oil_rows
+from sim.ocean.fluids.fluids import Fluid, fluids, oil_rows
 from sim.validation import check_choice, check_number
 
 CELSIUS = 273.15  # [K]

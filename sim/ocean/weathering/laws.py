@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.ocean.emulsions import pal_rhodes_factor
+from sim.ocean.fluids.emulsions import pal_rhodes_factor
 from sim.ocean.weathering.components import CELSIUS, PseudoComponents
 from sim.validation import check_not_negative, check_number, check_positive, check_within
 

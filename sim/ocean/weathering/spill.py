@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.fluids import Fluid, fluids, mixed_density, oil_index
+from sim.ocean.fluids.fluids import Fluid, fluids, mixed_density, oil_index
 from sim.ocean.weathering import laws
 from sim.ocean.weathering.components import (
     CELSIUS,

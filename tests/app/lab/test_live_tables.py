@@ -21,7 +21,7 @@ from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.scene import SquareSeaScene
-from sim.ocean.emulsions import arrhenius
+from sim.ocean.fluids.emulsions import arrhenius
 from tests.waiting import wait_for
 
 TASKS = {task.name: task for task in load_tasks()}

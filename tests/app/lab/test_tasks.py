@@ -11,8 +11,8 @@ from app.lab.task import Task, load_tasks, read_task
 from app.scenes import scene_named
 from sim.floating import Hull, equilibrium_draft
 from sim.ocean.dispersion import viscous_root
-from sim.ocean.emulsions import arrhenius
-from sim.ocean.fluids import fresnel
+from sim.ocean.fluids.emulsions import arrhenius
+from sim.ocean.fluids.fluids import fresnel
 from sim.ocean.planets import gravity_of
 from sim.ocean.spectra.phillips import PhillipsConditions, density
 from sim.springs import rope, simulate

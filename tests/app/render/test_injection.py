@@ -14,7 +14,7 @@ from app.render import injection
 from app.render.injection import ShaderInjector
 from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Grid, Material, Oil, SlickRegion, uniform_table
 from app.render.scripts import SHARED, modules
-from sim.ocean.oil_film import BAND_WIDTH, BANDS
+from sim.ocean.fluids.oil_film import BAND_WIDTH, BANDS
 
 
 class FakeServer:

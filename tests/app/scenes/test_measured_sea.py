@@ -17,7 +17,7 @@ from app.scenes.radial_sea.view import RadialSeaView
 from app.scenes.square_sea.report import readout
 from app.scenes.square_sea.view import SquareSeaView
 from app.server.loop.sim_loop import SimLoop
-from sim.ocean.statistics import expected
+from sim.ocean.statistics.statistics import expected
 from tests.sim.floating.test_mesh_files import DECK, SIDES, VERTICES, stl
 
 FREQUENCY = np.arange(0.04, 0.4, 0.005)

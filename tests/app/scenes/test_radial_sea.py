@@ -26,10 +26,10 @@ from app.scenes.radial_sea.scene import RadialSeaScene
 from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
 from app.server.loop.sim_loop import SimLoop
 from sim.floating import Hull, equilibrium_draft, heave_period
-from sim.ocean.fluids import fluids
-from sim.ocean.foam import whitecaps
-from sim.ocean.gerstner import peak_wavenumber
-from sim.ocean.radial import RadialSea
+from sim.ocean.fluids.fluids import fluids
+from sim.ocean.radial.gerstner import peak_wavenumber
+from sim.ocean.radial.radial import RadialSea
+from sim.ocean.statistics.foam import whitecaps
 from sim.parameters import check_record, clamp_value, effect_of_change, parameters_of
 
 CALM = {"waves": False, "rig": False, "ripples": False}

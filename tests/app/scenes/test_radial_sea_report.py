@@ -19,8 +19,8 @@ from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_b
 from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
 from app.scenes.radial_sea.well_blowout import OilBudget
 from app.server.loop.sim_loop import SimLoop
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import fluids
 from sim.ocean.weathering import oil_records, weather
 from sim.parameters import check_record, parameters_of
 from tests import naive_spill

@@ -9,7 +9,7 @@ from app.scenes.sea_parameters import SPECTRUM_PARAMETERS
 from app.scenes.square_sea import parameters as square
 from sim.ocean import Sea
 from sim.ocean.spectra import PARAMETERS
-from sim.ocean.statistics import expected
+from sim.ocean.statistics.statistics import expected
 from sim.parameters import parameters_of
 
 SWELL = {"wind_speed": 0.0, "second_height": 1.0, "second_period": 6.0}

@@ -16,8 +16,8 @@ from app.scenes.square_sea.scene import SCENE, SquareSeaScene
 from app.scenes.square_sea.statistics import theory
 from app.server.loop.sim_loop import SimLoop
 from sim.ocean import Sea
-from sim.ocean.foam import pace, whitecaps
 from sim.ocean.spectra import SPECTRA
+from sim.ocean.statistics.foam import pace, whitecaps
 from sim.parameters import effect_of_change, parameters_of
 
 Scene: Any = SquareSeaScene  # its frames and readings have more than every scene has

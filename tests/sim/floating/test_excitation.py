@@ -8,7 +8,7 @@ import pytest
 
 from sim.floating import Body, Hull, make_fleet, with_dataset
 from sim.floating.excitation import HEADING_TOLERANCE, WaveExcitation
-from sim.ocean.radial import RadialSea
+from sim.ocean.radial.radial import RadialSea
 from sim.waves import Waves
 from tests.sim.floating.test_hydrodynamics import wedge
 
@@ -26,7 +26,7 @@ def forces_on(hull: Hull, yaws: tuple[float, ...], bearing: float) -> np.ndarray
     body, one = Body(hull, 512.5).afloat(), np.ones(1)
     fleet = make_fleet([body])
     k = math.pi / float(hull.size[0])
-    sea = RadialSea(Waves(k * math.cos(bearing) * one, k * math.sin(bearing) * one, 0.1 * one, 0.4 * one))
+    sea = RadialSea(Waves(k * math.cos(bearing) * one, k * math.sin(bearing) * one, 0.1 * one, 2.5 * one))
     excitation = WaveExcitation([body], np.ones(1))
     found = []
     for yaw in yaws:

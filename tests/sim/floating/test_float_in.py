@@ -7,9 +7,9 @@ import pytest
 
 from sim.floating import Body, FloatState, Hull, MotionCoefficients, float_in, response_amplitude
 from sim.ocean import Sea
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids
-from sim.ocean.radial import RadialSea
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import fluids
+from sim.ocean.radial.radial import RadialSea
 from sim.waves import Waves
 from tests.refusals import assert_refused
 

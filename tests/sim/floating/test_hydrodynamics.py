@@ -35,7 +35,7 @@ from sim.floating.hydrodynamics import (
 )
 from sim.floating.linear_table import table_of
 from sim.floating.prediction import predict
-from sim.ocean.radial import RadialSea
+from sim.ocean.radial.radial import RadialSea
 from sim.waves import Waves
 
 WATER = ((1025.0, math.inf),)

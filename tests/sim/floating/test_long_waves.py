@@ -9,7 +9,7 @@ from sim.floating import Body, Hull, MotionCoefficients, float_in, response_ampl
 from sim.floating.equilibrium import upright
 from sim.floating.hydrodynamics import haskind, linear_hull
 from sim.mooring.moored import moored
-from sim.ocean.radial import RadialSea
+from sim.ocean.radial.radial import RadialSea
 from sim.water import Water
 from sim.waves import Waves
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.floating import Body, Hull, response_amplitude, with_dataset
+from sim.floating import Body, Hull, linear_forces, response_amplitude, with_dataset
 from sim.floating.dataset import MOTIONS
 from sim.floating.hydrodynamics import velocity_at
 from tests.refusals import assert_refused
@@ -121,3 +121,16 @@ def test_what_is_no_dataset_is_refused(tmp_path):
     (tmp_path / "text.nc").write_text("no", "utf-8")
     for path in (tmp_path / "text.nc", tmp_path / "none.nc"):
         assert_refused("path", lambda path=path: with_dataset(Hull.box(1.0, 1.0, 1.0), path), "export_dataset")
+
+
+def test_frequencies_of_any_shape_have_the_answers_of_a_list():
+    body = Body(Hull.box(30.0, 10.0, 6.0), density=512.5)
+    listed, forces = response_amplitude(body, [0.5, 0.9], 0.4), linear_forces(body, [0.5, 0.9], 0.4)
+    one = response_amplitude(body, 0.5, 0.4)
+    assert one.shape == (6,)
+    assert one == pytest.approx(listed[0], rel=1e-12)
+    assert response_amplitude(body, [[0.5], [0.9]], 0.4) == pytest.approx(listed[:, None], rel=1e-12)
+    single = linear_forces(body, 0.9, 0.4)
+    for name in ("added", "damping", "excitation"):
+        assert np.array_equal(getattr(single, name), getattr(forces, name)[1])
+    assert response_amplitude(body, [], 0.4).shape == (0, 6)

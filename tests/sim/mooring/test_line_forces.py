@@ -82,12 +82,12 @@ def test_drag_split_off_has_the_closed_form_across_and_along(way):
 def test_a_wave_alone_pushes_by_its_acceleration_and_drags_by_its_velocity(way, t):
     k, omega = 0.08, math.sqrt(9.81 * 0.08 * math.tanh(0.08 * 60.0))
     one = np.ones(1)
-    waves = Waves(0.8 * k * one, 0.6 * k * one, 1.2 * one, 0.15 * one, omega * one, Water(60.0))
+    waves = Waves(0.8 * k * one, 0.6 * k * one, 1.2 * one, 0.9 * one, omega * one, Water(60.0))
     system, x = one_node(way, waves=waves)
     p, v, a = system.kernel_view(1.0), np.zeros(9), np.empty(9)
     place = x[2::3]
     set_acceleration(x, v, t, p, a)
-    theta = k * (0.8 * place[0] + 0.6 * place[1]) - omega * t + 2.0 * math.pi * 0.15
+    theta = k * (0.8 * place[0] + 0.6 * place[1]) - omega * t + 0.9
     level = 1.2 * omega * math.cosh(k * (place[2] + 60.0)) / math.sinh(k * 60.0)
     upward = 1.2 * omega * math.sinh(k * (place[2] + 60.0)) / math.sinh(k * 60.0)
     flow = np.array([0.8 * level * math.cos(theta), 0.6 * level * math.cos(theta), upward * math.sin(theta)])

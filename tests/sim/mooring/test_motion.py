@@ -95,7 +95,7 @@ def suspended_in_waves() -> tuple[System, Rest]:
     """A taut line in a regular wave and a current, displaced so that it swings."""
     waves = Waves(
         kx=np.array([0.1]), ky=np.array([0.05]), amplitude=np.array([0.8]), omega=np.array([1.05]),
-        phase=np.array([0.1]), water=Water(60.0),
+        phase=np.array([0.2 * math.pi]), water=Water(60.0),
     )  # fmt: skip
     kind = LineType("rope", 0.08, 12.0, 4e4, 200.0, 1.0, 1.2, 0.3, 0.05)
     points = (Point(1, "fixed", (0.0, 0.0, -40.0)), Point(2, "fixed", (30.0, 5.0, -2.0)))

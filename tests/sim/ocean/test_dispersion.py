@@ -18,7 +18,7 @@ from sim.ocean.dispersion import (
     viscous_two_layer,
 )
 from sim.ocean.dispersion import wavenumber as wavenumber_at
-from sim.ocean.fluids import fluids
+from sim.ocean.fluids.fluids import fluids
 from sim.ocean.spectra import SPECTRA
 from sim.water import Water
 from tests.naive_ocean import film_roots, layer_roots, two_layer_determinant, viscous_roots

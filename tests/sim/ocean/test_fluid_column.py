@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim.ocean.dispersion import mode_ratios, omega, two_layer, viscous_root, viscous_two_layer
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import fluids
 
 K = np.array([0.05, 0.5, 5.0, 50.0])
 OIL = next(f for f in fluids().values() if f.surface_tension and f.interface_tension and f.viscosity > 0.005)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.ocean.emulsions import (
+from sim.ocean.fluids.emulsions import (
     MIXTURE_LAWS,
     arrhenius,
     grunberg_nissan,
@@ -15,8 +15,8 @@ from sim.ocean.emulsions import (
     pal_rhodes_factor,
     taylor,
 )
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import (
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import (
     diffuse_reflectance,
     fluids,
     fresnel,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.foam import pace, threshold, whitecaps
+from sim.ocean.statistics.foam import pace, threshold, whitecaps
 
 
 def test_the_cover_is_that_of_monahan_and_o_muircheartaigh():

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import draw_waves
-from sim.ocean.radial import RadialSea
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.radial.gerstner import draw_waves
+from sim.ocean.radial.radial import RadialSea
 from sim.ocean.spectra import SPECTRA
 from sim.water import Water
 from sim.waves import Waves
@@ -179,7 +179,7 @@ def test_water_in_the_shallows_moves_as_long_waves_do(kh, within):
     """u = a w/(k h), and w = a w (1 + z/h) sin."""
     depth, one = 10.0, np.ones(1)
     k, w = kh / depth, 0.01
-    waves = Waves(k * one, 0.0 * one, one, 0.25 * one, w * one, Water(depth))
+    waves = Waves(k * one, 0.0 * one, one, 0.5 * math.pi * one, w * one, Water(depth))
     flow = waves.kinematics([[0.0, 0.0, -5.0]], 0.0)
     assert flow.velocity[0, 2] == pytest.approx(w * 0.5, rel=max(within, kh**2))
     level = dataclasses.replace(waves, phase=0.0 * one).kinematics([[0.0, 0.0, -5.0]], 0.0).velocity[0, 0]

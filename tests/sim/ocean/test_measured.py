@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from sim.ocean import RadialSea, Sea, draw_waves, measured_spectrum, read_spectrum, recorded_waves
-from sim.ocean.measured import spread_by_mean, spread_by_moments
+from sim.ocean.records.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import Conditions
 from sim.ocean.spectrum_files.wave_models import refused
-from sim.ocean.statistics import expected, theory
+from sim.ocean.statistics.statistics import expected, theory
 from tests.refusals import assert_refused
 
 FREQUENCY = np.concatenate(
@@ -282,8 +282,8 @@ def record() -> tuple[np.ndarray, np.ndarray]:
     spectrum = measured_spectrum(FREQUENCY, density(FREQUENCY))
     waves = draw_waves(spectrum, spectrum.conditions(), 300, seed=5)
     t = 100.0 + 0.5 * np.arange(2400)
-    turns = waves.phase - np.sqrt(9.81 * waves.k) * t[:, None] / (2.0 * math.pi)
-    return t, 0.3 + (waves.amplitude * np.cos(2.0 * math.pi * turns)).sum(axis=1)
+    theta = waves.phase - np.sqrt(9.81 * waves.k) * t[:, None]
+    return t, 0.3 + (waves.amplitude * np.cos(theta)).sum(axis=1)
 
 
 def test_a_record_passes_its_place_as_it_was_recorded(record):
@@ -305,7 +305,7 @@ def test_a_record_on_water_of_a_depth_passes_as_recorded(record):
     t, eta = record
     conditions = Conditions(depth=15.0)
     waves = recorded_waves(t, eta, -1.0, (5.0, 0.0), conditions, error=0.001)
-    theta = 2.0 * math.pi * waves.phase + 5.0 * waves.kx - waves.omega * t[::7, None]
+    theta = waves.phase + 5.0 * waves.kx - waves.omega * t[::7, None]
     found = (waves.amplitude * np.cos(theta)).sum(axis=1)
     assert np.sqrt(np.mean((found - eta[::7] + eta.mean()) ** 2)) < 0.002 * 4.0 * eta.std()
 

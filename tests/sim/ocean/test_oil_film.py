@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from sim.ocean.oil_film import (
+from sim.ocean.fluids.oil_film import (
     APPEARANCES,
     BAND_WIDTH,
     BANDS,

@@ -16,15 +16,15 @@ from sim.ocean.dispersion import (
     viscous_root,
     viscous_two_layer,
 )
-from sim.ocean.emulsions import arrhenius, pal_rhodes
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids, fresnel, mixed, oil_index
-from sim.ocean.oil_film import light_through
+from sim.ocean.fluids.emulsions import arrhenius, pal_rhodes
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import fluids, fresnel, mixed, oil_index
+from sim.ocean.fluids.oil_film import light_through
+from sim.ocean.fluids.slick import slick_radius
 from sim.ocean.planets import RADIUS_RULES, gravity_of
-from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.slick import slick_radius
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.spectra import Conditions
-from sim.ocean.statistics import beaufort, expected, measured, resolved_in_time
+from sim.ocean.statistics.statistics import beaufort, expected, measured, resolved_in_time
 from sim.ocean.weathering import Spill, weather
 from tests.refusals import Row, assert_refused, each
 

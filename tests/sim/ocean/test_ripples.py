@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.ripples import gaussian_volume
+from sim.ocean.tile.ripples import gaussian_volume
 from tests.naive_ocean import dropped_gaussian, pushed_gaussian
 
 

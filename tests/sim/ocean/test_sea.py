@@ -10,9 +10,9 @@ import pytest
 from sim.interruption import STOP, TURN, InterruptionError, use_request
 from sim.ocean import Sea
 from sim.ocean.dispersion import viscous_root
-from sim.ocean.medium import Medium
+from sim.ocean.fluids.medium import Medium
 from sim.ocean.spectra import SPECTRA
-from sim.ocean.statistics import expected as expected_of
+from sim.ocean.statistics.statistics import expected as expected_of
 from tests.naive_ocean import grid_fields, sum_of_waves
 
 FIELDS = ("height", "displacement", "slope", "jacobian")

@@ -7,7 +7,7 @@ import pytest
 
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, elfouhaily, jonswap
 from sim.ocean.spectra.spreading import SPREADINGS, hasselmann_exponent, spread
-from sim.ocean.statistics import theory
+from sim.ocean.statistics.statistics import theory
 from sim.parameters import parameters_of
 from tests.naive_ocean import plane_integral
 

@@ -7,7 +7,7 @@ import pytest
 
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA
-from sim.ocean.statistics import (
+from sim.ocean.statistics.statistics import (
     _peak_period,
     beaufort,
     drawn,

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids
-from sim.ocean.gerstner import draw_waves
-from sim.ocean.radial import RadialSea
-from sim.ocean.radial_grid import RadialGrid
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import fluids
+from sim.ocean.radial.gerstner import draw_waves
+from sim.ocean.radial.radial import RadialSea
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.spectra import SPECTRA
-from sim.ocean.tile_surface import particles, sample_mesh
+from sim.ocean.tile.tile_surface import particles, sample_mesh
 
 
 def tile(choppiness: float = 1.0) -> Sea:

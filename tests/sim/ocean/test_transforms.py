@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from sim.ocean import Sea, transforms
-from sim.ocean.buffer_pool import BufferPool
-from sim.ocean.transforms import Transforms, load_wisdom, save_wisdom, wisdom_paths
+from sim.ocean import Sea
+from sim.ocean.tile import transforms
+from sim.ocean.tile.buffer_pool import BufferPool
+from sim.ocean.tile.transforms import Transforms, load_wisdom, save_wisdom, wisdom_paths
 
 
 @pytest.fixture

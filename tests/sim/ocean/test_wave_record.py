@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import SPECTRA, Sea, zero_crossings
-from sim.ocean.wave_gauge import WaveGauge
+from sim.ocean.records.wave_gauge import WaveGauge
 
 
 def gaussian_record(duration: float = 40000.0, **values) -> tuple[np.ndarray, np.ndarray]:

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import fluids
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import fluids
 from sim.ocean.weathering import Spill, laws, oil_records, pseudo_components, weather
 from sim.ocean.weathering.components import (
     api_gravity,

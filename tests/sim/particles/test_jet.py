@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.ocean.slick import slick_radius, slick_thickness
+from sim.ocean.fluids.slick import slick_radius, slick_thickness
 from sim.particles.jet import Jet
 
 FLAT = np.zeros((8, 8))

@@ -482,7 +482,7 @@ export const WATER_GLSL = {
     // Share of the light from below that a film of oil lets through, in red, green and blue.
     vec3 lightThrough(float d) { return exp(-oilExtinction * d); }
 
-    // What a film of oil mirrors over what a fluid of this index does, in red, green and blue (sim/ocean/oil_film.py).
+    // What a film of oil mirrors over what a fluid of this index does, in red, green and blue (sim/ocean/fluids/oil_film.py).
     // facing: cosine of the angle from which it is seen; change: of the thickness d across a pixel, which blurs fringes.
     vec3 filmGain(float d, float change, float facing, float index) {
       float n = oilFilm.x, r1 = (1.0 - n) / (1.0 + n);

@@ -16,9 +16,9 @@ from app.server.loop.commands import BEGINNING, NOTHING, STEPS
 from app.server.loop.sim_loop import SimLoop
 from app.server.loop.snapshots import MAX_BLIND_TIME
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
-from sim.ocean.fluid_column import FluidColumn, _layer_roots
+from sim.ocean.fluids.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
-from sim.ocean.statistics import open_sea_height
+from sim.ocean.statistics.statistics import open_sea_height
 
 
 def ask(loop, **changes):

@@ -67,7 +67,7 @@ def test_a_divergence_is_dated_to_the_step_and_what_came_before_it_is_kept():
 def test_drafts_are_archimedes():
     values = {"waves": False, "spill": "layer", "thickness": 0.3, "bodies": 3, "density": 500.0, "size": 1.0}
     found = run_case("radial_sea", values, (2.0,)).measures
-    from sim.ocean.fluids import fluids
+    from sim.ocean.fluids.fluids import fluids
 
     oil = fluids()["Alaska North Slope 2002"].density
     water = found["box_draft_at_rest"][0]

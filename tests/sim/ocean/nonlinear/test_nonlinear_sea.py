@@ -275,3 +275,42 @@ def test_seas_of_all_steepnesses_go_on_or_say_why(hs, tp, order, depth):
         assert np.abs(sea.height).max() <= 2.0 * hs
         assert account.breaking >= 0.0
         assert abs(account.error) <= 0.03 * (account.kinetic + account.potential)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 12.0])
+def test_a_steep_wave_runs_alike_in_every_direction(depth: float) -> None:
+    """k a = 0.2 along eight wavenumbers of one length: speed and crest after a period, order 3."""
+    side, n = 200.0, 48
+    wave = stokes_wave(0.4 * side / (2.0 * math.pi * 5.0), side / 5.0, depth, order=12)
+    x = np.arange(n) * side / n
+    X, Y = np.meshgrid(x, x, indexing="ij")
+    speeds, crests = [], []
+    for i, j in ((5, 0), (4, 3), (3, 4), (0, 5), (-3, 4), (-4, 3), (-5, 0), (4, -3)):
+        along = (i * X + j * Y) / 5.0
+        start = wave.elevation(along), wave.potential(along)
+        sea = NonlinearSea(length=side, order=3, depth=depth, start=start, breaking=False, step=0.1)
+        before = np.fft.fft2(sea.height)[i, j]
+        sea.advance(0.4 * wave.wavelength / wave.speed)
+        turned = np.angle(before / np.fft.fft2(sea.height)[i, j])
+        speeds.append(abs(turned) / (0.8 * math.pi) * wave.speed)
+        crests.append(float(sea.waves_at().amplitude.max()))
+    assert speeds == pytest.approx([wave.speed] * 8, rel=3e-3)
+    assert np.ptp(speeds) < 1e-5 * wave.speed
+    assert np.ptp(crests) < 1e-5 * wave.height
+
+
+def test_the_drift_of_the_energy_is_the_error_of_the_account() -> None:
+    """k a = 0.2 over 10 periods: 5e-6 of the energy at the default tolerance, a hundredth of that at 1e-8."""
+    drifts = []
+    for rtol in (1e-6, 1e-8):
+        wave = stokes_wave(0.4 * 100.0 / (2.0 * math.pi), 100.0, order=12)
+        x = np.arange(64) * 100.0 / 64
+        start = wave.elevation(x), wave.potential(x)
+        sea = NonlinearSea(length=100.0, start=start, breaking=False, rtol=rtol)
+        before = sea.energy.kinetic + sea.energy.potential
+        sea.advance(10.0 * 100.0 / wave.speed)
+        drift = sea.energy.kinetic + sea.energy.potential - before
+        assert sea.energy.error == pytest.approx(drift, abs=1e-12 * before)
+        drifts.append(drift / before)
+    assert -1e-5 < drifts[0] < -2e-6
+    assert abs(drifts[1]) < 0.01 * abs(drifts[0])

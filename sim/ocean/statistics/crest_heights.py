@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from sim.ocean.sea import Sea
+    from sim.ocean.tile.sea import Sea
 
 LONG_CRESTED = 1e-3  # ratio of the slopes' standard deviations across and along, below which crests count as long
 

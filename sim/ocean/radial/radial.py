@@ -24,14 +24,15 @@ from numpy.typing import ArrayLike
 from sim.interruption import raise_if_stopped, stop_request
 from sim.jit import kernel
 from sim.ocean.any_sea import AnySea, RadialSurface, SurfaceAt
-from sim.ocean.band_plan import BandPlan
-from sim.ocean.departing_waves import DepartingWaves
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.footprints import Footprints
-from sim.ocean.query import WaveFields, find_labels
-from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.slick import SlickCover
-from sim.ocean.wave_sum import set_mesh
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.slick import SlickCover
+from sim.ocean.radial.band_plan import BandPlan
+from sim.ocean.radial.departing_waves import DepartingWaves
+from sim.ocean.radial.footprints import Footprints
+from sim.ocean.radial.radial_grid import RadialGrid
+from sim.ocean.radial.wave_sum import set_mesh
+from sim.ocean.tile.query import WaveFields, find_labels
+from sim.turns import TURN, within_half_turn
 from sim.validation import argument_error, as_array, check_finite, check_kind, check_not_negative, check_positions
 from sim.water import SAME_WATER, Water
 from sim.waves import RESPONSES, Kinematics, Waves, sums_at
@@ -95,16 +96,16 @@ class RadialSea(AnySea):
         self.expose(exposure or 0.0)
 
     def _set(self, waves: Waves, column: FluidColumn, phase: np.ndarray, loss: np.ndarray, t: float = 0.0) -> None:
-        """phase (n,) [turns] at time t [s]; loss (n,): -ln of the share of their amplitude that the waves have left."""
+        """phase (n,) [rad] at time t [s]; loss (n,): -ln of the share of their amplitude that the waves have left."""
         self.waves, self.column, self._lost = waves, column, loss
         k = waves.k
         rate, self.decay = column.roots(k)
         self.ratio = column.interface_ratio(k)
         amplitude = waves.amplitude * np.exp(-loss)
-        # Phases at t = 0, within half a turn, in double: a month of seconds leaves an error of 1e-9 turns.
-        phase = phase + rate / (2.0 * math.pi) * t
+        # Phases at t = 0, within half a turn, in double: a month of seconds leaves an error of 1e-8 rad.
+        phase = within_half_turn(phase + rate * t)
         water = Water(math.inf, column.gravity, column.surface.density)
-        self._own = Waves(waves.kx, waves.ky, amplitude, phase - np.rint(phase), rate, water)
+        self._own = Waves(waves.kx, waves.ky, amplitude, phase, rate, water)
         self._loss = None
         self._forget_wavenumbers()
         # Of which waves, and `interface_of` them.
@@ -192,7 +193,7 @@ class RadialSea(AnySea):
         if plan is None or plan.grid is not grid:
             plan = self._plan = BandPlan(grid, waves.k)
         slick = None if self.slick is None else (self.slick, self.losses(waves.k))
-        sums = plan.sums(waves, phases_at(waves, t), self.choppiness, centre, slick)
+        sums = plan.sums(waves, phases_at(waves, t) / TURN, self.choppiness, centre, slick)
         self.evaluated += plan.evaluated
         self.skipped += plan.skipped
         vertices, slope = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)
@@ -267,9 +268,8 @@ def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:
 
 
 def phases_at(waves: Waves, t: float) -> np.ndarray:
-    """Phase (n,) [turns], within half a turn, at time t [s] at the origin."""
-    turns = waves.phase - waves.omega / (2.0 * math.pi) * t
-    return turns - np.rint(turns)
+    """Phase (n,) [rad], within half a turn, at time t [s] at the origin."""
+    return within_half_turn(waves.phase - waves.omega * t)
 
 
 def interface_of(waves: Waves, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.amplitudes import fold, resolved, waves_of_tile
-from sim.ocean.medium import Medium
+from sim.ocean.fluids.medium import Medium
 from sim.ocean.spectra import Conditions
-from sim.ocean.wavenumbers import Wavenumbers
+from sim.ocean.tile.amplitudes import fold, resolved, waves_of_tile
+from sim.ocean.tile.wavenumbers import Wavenumbers
 from sim.validation import argument_error, check_finite
 from sim.water import Water
 from sim.waves import Waves

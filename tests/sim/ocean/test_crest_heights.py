@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.high_crests import forristall_crest, high_crests, moments_of, most_probable_highest, narrow_band_moments
+from sim.ocean.statistics.crest_heights import (
+    forristall_crest,
+    high_crests,
+    moments_of,
+    most_probable_highest,
+    narrow_band_moments,
+)
 
 
 def test_the_highest_crest_of_gaussian_tiles() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sim.ocean.dispersion import damped_root
-from sim.ocean.fluid_column import FluidColumn
+from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.spectra import Conditions
 from sim.validation import argument_error, check_kind, check_number
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from sim.interruption import pieces
+from sim.turns import within_half_turn
 from sim.water import Water
 from sim.waves import Waves
 
@@ -98,8 +99,8 @@ def waves_of_tile(k: np.ndarray, h0: np.ndarray, omega: np.ndarray, base: float,
     there = h0 != 0.0
     h0, omega = h0[there], omega[there]
     kx, ky = (np.broadcast_to(along, there.shape)[there] for along in (k[:, None], k[None, :]))
-    phase = (np.angle(h0) + omega * base) / (2.0 * math.pi)
-    return Waves(kx, ky, 2.0 * np.abs(h0), phase - np.rint(phase), omega, water)
+    phase = within_half_turn(np.angle(h0) + omega * base)
+    return Waves(kx, ky, 2.0 * np.abs(h0), phase, omega, water)
 
 
 def _mixed(z: Any) -> Any:

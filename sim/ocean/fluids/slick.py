@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.ocean.dispersion import group_speed
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.fluids import Fluid
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.fluids import Fluid
 from sim.validation import argument_error, check_not_negative, check_positive
 from sim.water import SEA_DENSITY
 

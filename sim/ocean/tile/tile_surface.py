@@ -13,16 +13,16 @@ from numpy.typing import ArrayLike
 
 from sim.jit import kernel
 from sim.ocean.any_sea import RadialSurface, SurfaceAt
-from sim.ocean.query import bicubic, query, sample
-from sim.ocean.radial_grid import FADE, RadialGrid
+from sim.ocean.radial.radial_grid import FADE, RadialGrid
+from sim.ocean.tile.query import bicubic, query, sample
 from sim.validation import check_positions
 from sim.water import Water
 from sim.waves import Kinematics
 
 if TYPE_CHECKING:
     from sim.ocean.nonlinear.surface import NonlinearSurface
-    from sim.ocean.sea import Sea
-    from sim.ocean.surface import Surface
+    from sim.ocean.tile.sea import Sea
+    from sim.ocean.tile.surface import Surface
 
 INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
 REACH = 0.05  # [m] of the differences that give the slope at a point

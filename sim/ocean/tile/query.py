@@ -15,7 +15,7 @@ from sim.jit import chosen, is_stopped, kernel
 from sim.waves import AMPLITUDE, EAST, ECHO, KX, KY, NORTH, PHASE, RATE, SPEED, sums_at
 
 if TYPE_CHECKING:
-    from sim.ocean.surface import Surface
+    from sim.ocean.tile.surface import Surface
 
 TOLERANCE = 1e-9  # share of a cell at which a label counts as found
 NEWTON_STEPS, HALVINGS = 40, 8

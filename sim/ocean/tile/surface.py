@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.evolve import set_imaginary_multiple, set_real_multiple
+from sim.ocean.tile.evolve import set_imaginary_multiple, set_real_multiple
 
 if TYPE_CHECKING:
-    from sim.ocean.tile_heights import TileHeights
+    from sim.ocean.tile.tile_heights import TileHeights
 
 
 class Multiple(Protocol):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.ocean.gerstner import widened
+from sim.ocean.radial.gerstner import widened
 
 MAX_KEPT = 8  # sets of hulls
 

@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike
 
 from sim.dispersion import tanh_depth
 from sim.jit import kernel
-from sim.ocean.evolve import add_heights, shift_time
 from sim.ocean.spectra import Conditions
+from sim.ocean.tile.evolve import add_heights, shift_time
 from sim.validation import argument_error, as_array, check_finite, check_not_negative, check_positions, check_positive
 
 QUIET = 1e-6  # [m] root mean square height below which rings are dropped

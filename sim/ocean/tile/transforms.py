@@ -13,7 +13,7 @@ import numpy as np
 
 from sim.cache import own_folder, shared_folders
 from sim.files import replacing
-from sim.ocean.buffer_pool import BufferPool
+from sim.ocean.tile.buffer_pool import BufferPool
 
 PRECISIONS: dict[str, tuple[type[np.floating[Any]], type[np.complexfloating[Any, Any]]]] = {
     "single": (np.float32, np.complex64),

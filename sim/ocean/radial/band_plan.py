@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from sim.ocean.radial_grid import RadialGrid
-from sim.ocean.slick import SlickCover
-from sim.ocean.wave_sum import Bands, Calm, VertexSums, add_waves, calm_waves, wave_rows
+from sim.ocean.fluids.slick import SlickCover
+from sim.ocean.radial.radial_grid import RadialGrid
+from sim.ocean.radial.wave_sum import Bands, Calm, VertexSums, add_waves, calm_waves, wave_rows
 from sim.waves import Waves
 
 

@@ -8,8 +8,8 @@ import math
 import numpy as np
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.amplitudes import integers
-from sim.ocean.transforms import PRECISIONS
+from sim.ocean.tile.amplitudes import integers
+from sim.ocean.tile.transforms import PRECISIONS
 
 
 class Wavenumbers:

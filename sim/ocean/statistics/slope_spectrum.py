@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from sim.ocean.amplitudes import resolved
 from sim.ocean.spectra import Conditions, Spectrum
-from sim.ocean.wavenumbers import Wavenumbers
+from sim.ocean.tile.amplitudes import resolved
+from sim.ocean.tile.wavenumbers import Wavenumbers
 
 
 class SlopeSpectrum:

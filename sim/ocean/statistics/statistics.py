@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from sim.angles import direction_of, within_turn
-from sim.ocean.gerstner import energy_range
+from sim.ocean.radial.gerstner import energy_range
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.validation import argument_error, check_not_negative
 
 if TYPE_CHECKING:
-    from sim.ocean.sea import Sea
+    from sim.ocean.tile.sea import Sea
 
 BREAKING_HEIGHT = 0.6  # Hs over the depth above which the waves of a sea break on the bottom
 # Lower bounds of forces 1 to 12 [m/s] (WMO No. 306) and the names of 0 to 12.

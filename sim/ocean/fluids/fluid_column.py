@@ -12,8 +12,8 @@ from collections.abc import Callable
 import numpy as np
 
 from sim.ocean.dispersion import damped_root, mode_ratios, omega, two_layer, viscous_two_layer
-from sim.ocean.emulsions import MIXTURE_LAWS
-from sim.ocean.fluids import Fluid, fluids, mixed
+from sim.ocean.fluids.emulsions import MIXTURE_LAWS
+from sim.ocean.fluids.fluids import Fluid, fluids, mixed
 from sim.validation import argument_error, check_choice, check_not_negative, check_positive, check_within
 
 CONTINUOUS = ("plentiful", "oil", "water")

@@ -58,7 +58,7 @@ def draw_waves(spectrum: Spectrum[Any], conditions: Conditions, count: int = 64,
     cells = S * (k**2)[:, None] * (math.log(k[1] / k[0]) * 2.0 * math.pi / BEARINGS)
     below = np.concatenate([[0.0], np.cumsum(0.5 * (cells.sum(axis=1)[1:] + cells.sum(axis=1)[:-1]))])
     m0 = float(below[-1])
-    phase = random.uniform(size=count)
+    phase = 2.0 * math.pi * random.uniform(size=count)
     if m0 <= 0.0:
         k = np.full(count, peak_wavenumber(spectrum, conditions))
         return waves_under(conditions, k, np.zeros(count), np.zeros(count), phase)

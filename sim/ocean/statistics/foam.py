@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from sim.validation import check_not_negative
 
 if TYPE_CHECKING:
-    from sim.ocean.sea import Sea
+    from sim.ocean.tile.sea import Sea
 
 MAX_COVER = 0.6  # largest fraction of foam, reached at 33 m/s: the law is measured up to about 25 m/s, and would pass 1
 

@@ -1,6 +1,6 @@
 """Fluids: water, oils and mixtures of two, with their reflectance.
 
-Viscosity of mixtures: `sim.ocean.emulsions`. Oil data and their source: oils.csv.
+Viscosity of mixtures: `sim.ocean.fluids.emulsions`. Oil data and their source: oils.csv.
 """
 
 import csv
@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.ocean.emulsions import MIXTURE_LAWS
+from sim.ocean.fluids.emulsions import MIXTURE_LAWS
 from sim.validation import argument_error, as_array, check_positive, check_within
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.ocean import Sea
-from sim.ocean.wave_record import ZeroCrossings, zero_crossings
+from sim.ocean.records.wave_record import ZeroCrossings, zero_crossings
 
 if TYPE_CHECKING:
     from sim.ocean.nonlinear import NonlinearSea

@@ -25,20 +25,20 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped
-from sim.ocean.amplitudes import KINDS, resolved, unit_amplitudes, with_line
 from sim.ocean.any_sea import AnySea
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.medium import Medium, medium_of
-from sim.ocean.query import query
-from sim.ocean.ripples import Ripples
-from sim.ocean.slope_spectrum import SlopeSpectrum
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.fluids.medium import Medium, medium_of
 from sim.ocean.spectra import PARAMETERS, SPECTRA, Conditions, Spectrum
-from sim.ocean.surface import Surface
-from sim.ocean.tile_heights import TileHeights
-from sim.ocean.tile_surface import TileSurface
-from sim.ocean.tile_waves import DrawnWaves, TileWaves
-from sim.ocean.transforms import PRECISIONS, Transforms
-from sim.ocean.wavenumbers import Wavenumbers
+from sim.ocean.statistics.slope_spectrum import SlopeSpectrum
+from sim.ocean.tile.amplitudes import KINDS, resolved, unit_amplitudes, with_line
+from sim.ocean.tile.query import query
+from sim.ocean.tile.ripples import Ripples
+from sim.ocean.tile.surface import Surface
+from sim.ocean.tile.tile_heights import TileHeights
+from sim.ocean.tile.tile_surface import TileSurface
+from sim.ocean.tile.tile_waves import DrawnWaves, TileWaves
+from sim.ocean.tile.transforms import PRECISIONS, Transforms
+from sim.ocean.tile.wavenumbers import Wavenumbers
 from sim.parameters import similar
 from sim.validation import (
     argument_error,

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from sim.ocean.evolve import set_heights, weighted_energy
-from sim.ocean.ripples import Ripples
-from sim.ocean.surface import Surface
-from sim.ocean.tile_waves import TileWaves
-from sim.ocean.transforms import Transforms
+from sim.ocean.tile.evolve import set_heights, weighted_energy
+from sim.ocean.tile.ripples import Ripples
+from sim.ocean.tile.surface import Surface
+from sim.ocean.tile.tile_waves import TileWaves
+from sim.ocean.tile.transforms import Transforms
 
 
 class TileHeights:

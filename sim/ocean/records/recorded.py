@@ -17,9 +17,10 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.ocean.fluid_column import FluidColumn
-from sim.ocean.gerstner import MAX_WAVES
+from sim.ocean.fluids.fluid_column import FluidColumn
+from sim.ocean.radial.gerstner import MAX_WAVES
 from sim.ocean.spectra import Conditions
+from sim.turns import within_half_turn
 from sim.validation import argument_error, as_array, check_angle, check_kind, check_vector, check_within
 from sim.water import Water
 from sim.waves import Waves
@@ -86,9 +87,9 @@ def recorded_waves(
     omega = 2.0 * math.pi * f[kept]
     k = wavenumber(omega, water)
     kx, ky = k * math.cos(direction), k * math.sin(direction)
-    phase = (omega * times[0] - np.angle(X[kept]) - kx * x - ky * y) / (2.0 * math.pi)
+    phase = within_half_turn(omega * times[0] - np.angle(X[kept]) - kx * x - ky * y)
     own = water.water if isinstance(water, Conditions) else Water(math.inf, water.gravity, water.surface.density)
-    return Waves(kx, ky, amplitude[kept], phase - np.rint(phase), omega, own)
+    return Waves(kx, ky, amplitude[kept], phase, omega, own)
 
 
 def wavenumber(omega: np.ndarray, water: FluidColumn | Conditions) -> np.ndarray:

@@ -1,0 +1,1 @@
+"""Fluids under and on the waves: oils, mixtures, layers, films and slicks."""

@@ -1,0 +1,1 @@
+"""Statistics of seas: heights and periods, high crests, slopes and foam."""

@@ -1,0 +1,1 @@
+"""The periodic tile of linear waves: `Sea`, its surface, its rings and its transforms."""

@@ -41,7 +41,16 @@ def grid_matrix(rows, cols, pinned, tile=dissection.TILE):
 
 @pytest.mark.parametrize(
     ("rows", "cols", "pinned"),
-    [(1, 1, []), (1, 7, [0]), (2, 2, []), (4, 5, [3, 19]), (13, 17, [0, 100]), (9, 2, []), (1, 300, [299]), (3, 270, [])],
+    [
+        (1, 1, []),
+        (1, 7, [0]),
+        (2, 2, []),
+        (4, 5, [3, 19]),
+        (13, 17, [0, 100]),
+        (9, 2, []),
+        (1, 300, [299]),
+        (3, 270, []),
+    ],
 )
 def test_the_factors_solve_with_the_matrix_on_the_grid(rows, cols, pinned):
     """To single precision; a grid of more than a tile's columns without the coupling of its tiles."""

@@ -77,7 +77,8 @@ def set_direction(d, beta, z):
 def solve_conjugate_gradients(points, links, coupled, grid, r, reduction, most, p, f, z, d, q, u):
     """Solve A u = r until r has shrunk to `reduction` of itself in the preconditioner's norm; r is overwritten.
 
-    grid: factors of `sim.springs.integrators.implicit.dissection`. f, z, d, q: scratch. Returns the iterations, at most `most`.
+    grid: factors of `sim.springs.integrators.implicit.dissection`. f, z, d, q: scratch.
+    Returns the iterations, at most `most`.
     """
     solve(grid, r, z)
     for j in range(u.shape[0]):

@@ -24,7 +24,7 @@ FINEST_MIDPOINT = 64
 PATIENCE = 12  # corrections of a midpoint, after which halves are quicker than going on
 # Of the solver for nets. Implicit Euler damps what is left of an error, the midpoint keeps it and energy with it.
 EXACTNESS = (
-    Exactness(share=5e-3, usable=0.1, most=8),
+    Exactness(share=5e-3, usable=0.1, most=5),
     Exactness(share=0.0, usable=0.0, most=PATIENCE),
     Exactness(share=5e-4, usable=1e-3, most=MOST),
 )

@@ -60,18 +60,47 @@ def set_point_blocks(x, v, t, g, p, points):
     add_blocks(x, v, t, g, p, points)
 
 
-@each_link(noalias=True)
-def add_links_to_points(link, p, links, points):
-    """Each link's block onto the blocks of both its ends: the matrix's own diagonal, of a net."""
-    n = p.rows * p.cols
-    at = SYMMETRIC * n * link.family + link.a
-    qx, qy, qz = links[at + n], links[at + 2 * n], links[at + 3 * n]
-    xx, yy, zz = links[at] + qx * qx, links[at] + qy * qy, links[at] + qz * qz
-    xy, xz, yz = qx * qy, qx * qz, qy * qz
-    for m in (link.a, link.b):
-        points[m] += xx
-        points[n + m] += xy
-        points[2 * n + m] += xz
-        points[3 * n + m] += yy
-        points[4 * n + m] += yz
-        points[5 * n + m] += zz
+@kernel(inline=True)
+def add_six(out, o, xx, xy, xz, yy, yz, zz):
+    out[o] += xx
+    out[o + 1] += xy
+    out[o + 2] += xz
+    out[o + 3] += yy
+    out[o + 4] += yz
+    out[o + 5] += zz
+
+
+@kernel(allocates=False)
+def set_near_blocks(p, links, coupled, points, diagonal, beside):
+    """The matrix with links between neighbours on the grid alone, for `sim.springs.integrators.implicit.dissection`.
+
+    A link that passes over particles along a line of the grid stands on each step of that line: it resists no less than
+    it does, as one step cannot give way without it. Other links and what couples particles otherwise stand at their
+    ends alone. diagonal: (n, 6) flat. beside: (n, 4, 6) flat.
+    """
+    n, cols = p.rows * p.cols, p.cols
+    for j in range(beside.shape[0]):
+        beside[j] = 0.0
+    add_coupled(p, coupled, points)
+    for j in range(n):
+        for e in range(6):
+            diagonal[6 * j + e] = points[e * n + j]
+    for r in range(p.offsets.shape[0]):
+        di, dj = p.offsets[r, 0], p.offsets[r, 1]
+        steps = max(abs(di), abs(dj))
+        near = di % steps == 0 and dj % steps == 0
+        si, sj = (di // steps, dj // steps) if near else (di, dj)
+        way = 0 if si == 0 else 1 if sj == 0 else 2 if sj > 0 else 3
+        for i in range(p.rows - di):
+            for j in range(max(0, -dj), cols - max(0, dj)):
+                a = i * cols + j
+                at = SYMMETRIC * n * r + a
+                c, qx, qy, qz = links[at], links[at + n], links[at + 2 * n], links[at + 3 * n]
+                xx, xy, xz, yy, yz, zz = c + qx * qx, qx * qy, qx * qz, c + qy * qy, qy * qz, c + qz * qz
+                for _ in range(steps if near else 1):
+                    b = a + si * cols + sj
+                    add_six(diagonal, 6 * a, xx, xy, xz, yy, yz, zz)
+                    add_six(diagonal, 6 * b, xx, xy, xz, yy, yz, zz)
+                    if near:
+                        add_six(beside, 6 * (4 * a + way), xx, xy, xz, yy, yz, zz)
+                    a = b

@@ -1,14 +1,14 @@
-"""Conjugate gradients for a net's implicit step, preconditioned by each particle's own 3 x 3 block (block Jacobi)."""
+"""Conjugate gradients for a net's implicit step, preconditioned by the factors of its links between neighbours."""
 
 import numpy as np
 
 from sim.jit import is_stopped, kernel
 from sim.springs.acceleration import add_row
 from sim.springs.integrators.implicit.blocks import SYMMETRIC, multiply_coupled
+from sim.springs.integrators.implicit.dissection import solve
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled
 
-MOST = 500
 UNASKED = 4  # iterations between two looks at whether the solve is to end
 
 
@@ -67,67 +67,33 @@ def set_matrix_product(points, links, coupled, u, p, f, q):
         hold_pinned(p.inverse_masses, q, np.uint64(e) * n, n)
 
 
-@kernel(noalias=True, allocates=False)
-def factorise(blocks, n):
-    """Each particle's block (6, n) flat into its L and reciprocal D, in place."""
-    for j in range(n):
-        sxx, sxy, sxz = blocks[j], blocks[n + j], blocks[2 * n + j]
-        syy, syz, szz = blocks[3 * n + j], blocks[4 * n + j], blocks[5 * n + j]
-        d0 = 1.0 / sxx
-        l10, l20 = sxy * d0, sxz * d0
-        d1 = 1.0 / (syy - l10 * sxy)
-        e21 = syz - l20 * sxy
-        l21 = e21 * d1
-        blocks[j], blocks[n + j], blocks[2 * n + j] = l10, l20, l21
-        blocks[3 * n + j], blocks[4 * n + j], blocks[5 * n + j] = d0, d1, 1.0 / (szz - l20 * sxz - l21 * e21)
-
-
-@kernel(inline=True)
-def solve_block(l10, l20, l21, d0, d1, d2, x, y, z):
-    """u of L D L^T u = (x, y, z), with the reciprocals d of D."""
-    y -= l10 * x
-    z -= l20 * x + l21 * y
-    z *= d2
-    y = y * d1 - l21 * z
-    x = x * d0 - l10 * y - l20 * z
-    return x, y, z
-
-
-@kernel(noalias=True, inline=True)
-def precondition(factors, r, n, z):
-    for j in range(n):
-        z[j], z[n + j], z[n + n + j] = solve_block(
-            factors[j], factors[n + j], factors[n + n + j], factors[n * 3 + j], factors[n * 4 + j], factors[n * 5 + j],
-            r[j], r[n + j], r[n + n + j],
-        )  # fmt: skip
-
-
 @kernel(noalias=True, inline=True)
 def set_direction(d, beta, z):
     for j in range(d.shape[0]):
         d[j] = z[j] + beta * d[j]
 
 
-@kernel(noalias=True, allocates=False)
-def solve_conjugate_gradients(points, links, coupled, factors, r, reduction, p, f, z, d, q, u):
+@kernel(allocates=False)
+def solve_conjugate_gradients(points, links, coupled, grid, r, reduction, most, p, f, z, d, q, u):
     """Solve A u = r until r has shrunk to `reduction` of itself in the preconditioner's norm; r is overwritten.
 
-    factors: `factorise` of A's diagonal. f, z, d, q: scratch.
+    grid: factors of `sim.springs.integrators.implicit.dissection`. f, z, d, q: scratch.
+    Returns the iterations, at most `most`.
     """
-    n = np.uint64(p.rows * p.cols)
-    precondition(factors, r, n, z)
+    solve(grid, r, z)
     for j in range(u.shape[0]):
         u[j], d[j] = 0.0, z[j]
     rho = dot(r, z)
     goal = reduction * reduction * rho
-    for count in range(MOST):
-        if rho <= goal or (count % UNASKED == UNASKED - 1 and is_stopped(p.stop)):
+    for count in range(most):
+        # A NaN ends the solve too.
+        if not rho > goal or (count % UNASKED == UNASKED - 1 and is_stopped(p.stop)):
             return count
         set_matrix_product(points, links, coupled, d, p, f, q)
         alpha = rho / dot(d, q)
         add_scaled(u, alpha, d)
         add_scaled(r, -alpha, q)
-        precondition(factors, r, n, z)
+        solve(grid, r, z)
         before, rho = rho, dot(r, z)
         set_direction(d, rho / before, z)
-    return MOST
+    return most

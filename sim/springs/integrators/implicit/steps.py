@@ -15,13 +15,19 @@ import numpy as np
 from sim.jit import is_stopped, kernel
 from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import add_power
-from sim.springs.integrators.implicit.newton import MOST, make_work, solve_stage
+from sim.springs.integrators.implicit.newton import MOST, Exactness, forget_factors, make_work, solve_stage
 
 EULER, MIDPOINT, TR_BDF2 = 0, 1, 2
 
 FINEST = 16  # parts of a step, which are taken as they are
 FINEST_MIDPOINT = 64
 PATIENCE = 12  # corrections of a midpoint, after which halves are quicker than going on
+# Of the solver for nets. Implicit Euler damps what is left of an error, the midpoint keeps it and energy with it.
+EXACTNESS = (
+    Exactness(share=5e-3, usable=0.1, most=5),
+    Exactness(share=0.0, usable=0.0, most=PATIENCE),
+    Exactness(share=5e-4, usable=1e-3, most=MOST),
+)
 GAMMA = 2.0 - math.sqrt(2.0)  # part of a step of TR-BDF2 that its first stage takes
 W = math.sqrt(2.0) / 4.0  # weights of the quadrature of TR-BDF2: W, W, GAMMA/2
 
@@ -30,6 +36,7 @@ W = math.sqrt(2.0) / 4.0  # weights of the quadrature of TR-BDF2: W, W, GAMMA/2
 def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
     """`advance` of an integrator, by the method EULER, MIDPOINT or TR_BDF2."""
     finest, most = (FINEST_MIDPOINT, PATIENCE) if method == MIDPOINT else (FINEST, MOST)
+    exactness = EXACTNESS[method]
     work = make_work(p, method == MIDPOINT)
     f = make_scratch(p)
     a = np.empty_like(x)
@@ -41,6 +48,7 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
     evals = 0
     for s in range(steps):
         done, size = 0, finest
+        forget_factors(work.solver, p)
         while done < finest:
             if is_stopped(p.stop):
                 return evals
@@ -65,8 +73,8 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
                     v0[j] += g * a[j]
             hardest, stage, last = 0, 0, 1 if method == TR_BDF2 else 0
             while True:
-                taken, settled, usable = solve_stage(x0, v0, g, then, p, xs, vs, work, most)
-                evals += taken
+                taken, asked, settled, usable = solve_stage(x0, v0, g, then, exactness, p, xs, vs, work, most)
+                evals += asked
                 hardest = max(hardest, taken)
                 is_taken = size == 1 or (settled if method == MIDPOINT else usable)
                 if stage == last or not is_taken:

@@ -344,9 +344,10 @@ def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = 
         params = with_mooring(params, arguments.mooring, setup.values)
     if arguments.spectrum is not None:
         params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in setup.values)
-    file = arguments.mooring or arguments.spectrum
-    for note in scene.notes(params) if file is not None else ():
-        say_on_error_stream(f"{file.name}: {note}")
+    file: Path | None = arguments.mooring or arguments.spectrum
+    if file is not None:
+        for note in scene.notes(params):
+            say_on_error_stream(f"{file.name}: {note}")
     return params
 
 

@@ -190,7 +190,7 @@ def spectrum_of(
     notes = [f"place {number} of {len(head.places)}, at {x:g}, {y:g}"] if len(head.places) > 1 else []
     there = np.isfinite(block).all(axis=1) if head.directions is not None else np.isfinite(block[:, 0])
     if not there.all():
-        notes.append(f"left out, as they have no value: {int((~there).sum())} of {len(there)} frequencies")
+        notes.append(f"left out, as they have no value: {int((~there).sum())} of {there.size} frequencies")
     f, block = head.frequency[there], block[there]
     if head.directions is not None:
         theta, S = unrepeated(head.directions, block * scale)

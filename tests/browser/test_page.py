@@ -110,8 +110,8 @@ def test_one_file_with_an_error_is_named_and_the_others_work(chromium: Any, monk
     try:
         viewer.open("rope")
         page.goto(f"http://127.0.0.1:{viewer.port}/", wait_until="commit")
-        page.wait_for_selector("#springtide-notice", timeout=10_000)
-        notice = page.inner_text("#springtide-notice")
+        page.wait_for_selector("#springtide-missing", timeout=10_000)
+        notice = page.inner_text("#springtide-missing")
         assert "A part of this page did not start: charts, share. The rest works." in notice
         wait_for(page, lambda words: words == "")
         page.get_by_role("button", name="Close", exact=True).click()

@@ -64,7 +64,6 @@ function update() {
   [line.min, line.max] = [state.low, state.high];
   line.value = state.shown ?? state.high;
   say(isPast);
-  place();
 }
 
 function sendMoment() {
@@ -110,8 +109,11 @@ function place() {
     else left = Math.max(left, box.right);
   }
   const edges = { left, right: innerWidth - right, foot: innerHeight - bottom, bar: high };
-  for (const [name, value] of Object.entries(edges))
-    document.documentElement.style.setProperty(`--springtide-${name}`, `${Math.round(value)}px`);
+  const { style } = document.documentElement;
+  for (const [name, value] of Object.entries(edges)) {
+    const [property, size] = [`--springtide-${name}`, `${Math.round(value)}px`];
+    if (style.getPropertyValue(property) !== size) style.setProperty(property, size);
+  }
 }
 
 bar.hidden = true;

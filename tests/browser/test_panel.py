@@ -121,6 +121,30 @@ def test_the_preset_that_is_shown_is_chosen_again_and_begins_again(shown: tuple[
     assert not tab.errors
 
 
+def test_a_slow_drag_of_a_slider_is_one_change_for_undo(shown: tuple[Viewer, Tab]) -> None:
+    """Press, move, wait longer than changes of a number may be apart, move on, release; then undo it."""
+    lab, tab = shown
+    settings, thumb = lab.settings, tab.page.get_by_role("slider", name="Stiffness [N/m]")
+    tab.wait(thumb.count)
+    thumb.scroll_into_view_if_needed()
+    before, count = vars(settings.params)["stiffness"], len(settings.history.settings)
+    box = thumb.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    tab.page.mouse.move(x, y)
+    tab.page.mouse.down()
+    for step in (1, 2):
+        last = vars(settings.params)["stiffness"]
+        tab.page.mouse.move(x + 12 * step, y, steps=3)
+        tab.wait(lambda last=last: vars(settings.params)["stiffness"] != last, 10)
+        tab.page.wait_for_timeout(1500)
+    assert settings.history.hands
+    tab.page.mouse.up()
+    tab.wait(lambda: not settings.history.hands, 10)
+    assert len(settings.history.settings) == count + 1
+    tab.page.keyboard.press("u")
+    tab.wait(lambda: vars(settings.params)["stiffness"] == before, 10)
+
+
 def test_keys_go_to_the_lab_after_a_list_was_used(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     number = lab.loop.run.identity.number

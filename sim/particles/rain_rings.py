@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from sim.particles.rain import EARTH, drop_sizes, terminal_speed
 from sim.validation import check_positive
+from sim.water import SEA_DENSITY
 
 SMALLEST_RING_DROP = 2e-3  # [m] drops below it make rings too low to be seen
 
@@ -21,7 +22,7 @@ class RingWave(NamedTuple):
     speed: float  # [m/s]
 
 
-def ring_wave(gravity: float, tension: float = 0.0728, density: float = 1025.0) -> RingWave:
+def ring_wave(gravity: float, tension: float = 0.0728, density: float = SEA_DENSITY) -> RingWave:
     """The slowest wave on deep fluid; gravity [m/s2], tension [N/m], density [kg/m3], that of sea water.
 
     Raises ValueError where one is not above 0.

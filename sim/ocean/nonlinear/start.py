@@ -44,7 +44,7 @@ def started(start: Any, size: Any, length: Any, water: dict[str, Any], time: flo
     elif isinstance(start, Waves):
         waves, own = start, dataclasses.asdict(start.water)
     else:
-        return of_fields(start, size, length, {"density": 1025.0} | given, time)
+        return of_fields(start, size, length, given, time)
     for name, value in {**given, "length": length}.items():
         if name in own and value not in (own[name], (own[name],) * 2):
             raise argument_error(name, value, f"that of the waves it starts from, {own[name]:g}")

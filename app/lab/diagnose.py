@@ -26,7 +26,7 @@ from app.lab.student_function import TASK_LIMIT, StudentFunction, Trial
 
 SEED = 20150130
 FRESH_SEED = 20261127
-FRESH = 12  # inputs that are not used to find an explanation
+FRESH = 24  # inputs that are not used to find an explanation
 TERM_SAMPLES = 16  # random inputs at which terms are compared
 MAX_DRAWS = 200  # of inputs, to find so many
 MAX_REPAIRS = 20  # that are right at one input, and are tried at the others

@@ -26,7 +26,7 @@ from app.lab.student_function import TASK_LIMIT, StudentFunction, Trial
 
 SEED = 20150130
 FRESH_SEED = 20261127
-FRESH = 12  # inputs that are not used to find an explanation
+FRESH = 24  # inputs that are not used to find an explanation
 TERM_SAMPLES = 16  # random inputs at which terms are compared
 MAX_DRAWS = 200  # of inputs, to find so many
 MAX_REPAIRS = 20  # that are right at one input, and are tried at the others
@@ -81,7 +81,7 @@ def rounds_down(student: StudentFunction) -> bool:
 
 
 def in_units(student: StudentFunction, why: Explanation, trials: Sequence[Trial]) -> Explanation:
-    """An explanation by a constant factor, with what it means in this task."""
+    """An explanation by a constant factor, with its meaning in this task."""
     if why.mistake == "another constant" and (said := getattr(student.task.check, "CONSTANT", "")):
         return why._replace(text=f"{why.text} {said}")
     unit = UNIT.search(student.task.function.__doc__ or "")
@@ -128,7 +128,7 @@ def explain(student: StudentFunction) -> Explanation | None:
 
 
 def repair(student: StudentFunction, trials: Sequence[Trial], of: str = "") -> Explanation | None:
-    """The edit of the student's own function with which it is right at all inputs, or None. of: what it takes away."""
+    """The edit of the student's own function that makes it right at all inputs, or None. of: text that it removes."""
     runner = student.runner
     calls_back = any(callable(argument) for argument in trials[0].sample)  # for each edit: too slow on a busy machine
     if calls_back or runner.effort - student.effort > TASK_LIMIT / 2.0:
@@ -214,7 +214,7 @@ def in_special_case(student: StudentFunction, trials: Sequence[Trial]) -> Explan
 
 
 def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
-    """Where a function differs, after what its behaviour tells. Raises RunError or Wrong."""
+    """The place where a function differs, after a fault of its behaviour. Raises RunError or Wrong."""
     check = student.task.check
     wrong = next(trial for trial in trials if not trial.is_right)
     compared = compared_parts(trials)
@@ -236,7 +236,7 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
     return found
 
 
-def compared_parts(trials: Sequence[Trial]) -> list[where.Trial] | None:
+def compared_parts(trials: Sequence[Trial]) -> list[where.Difference] | None:
     """The trials with their differences; None where results have other shapes."""
     if not all(same_shape(trial.found, trial.right) for trial in trials):
         return None

@@ -1,4 +1,4 @@
-"""What a function does besides its result: it changes an argument, keeps something from call to call, writes a file.
+"""Side effects of a function: it changes an argument, keeps something from call to call, writes a file.
 
 The process of a student's functions calls `watched`. It compares the arguments, the state of the student's modules and
 the settings of Python and numpy before and after a call, and finds the line of a change by a second, traced call.
@@ -48,7 +48,7 @@ class Effect(Exception):  # noqa: N818 - a judgement on a function, not an error
         self.kind, self.text, self.file, self.line = kind, text, file, line
 
 
-class Place(NamedTuple):
+class CodeLine(NamedTuple):
     """A line of a student's that runs."""
 
     path: str
@@ -107,14 +107,14 @@ def watched(
     return value
 
 
-def argument_effect(function: Callable[..., Any], names: Sequence[str], place: Place | None) -> Effect:
+def argument_effect(function: Callable[..., Any], names: Sequence[str], place: CodeLine | None) -> Effect:
     """The effect of a function that changes its arguments of these names."""
     which = f"its argument {names[0]}" if len(names) == 1 else f"its arguments {' and '.join(names)}"
     text = f"it changes {which}{in_line(function, place)}. {advice(function, names[0], place)}"
     return Effect(ARGUMENT, text, *file_and_line(place))
 
 
-def advice(function: Callable[..., Any], name: str, place: Place | None) -> str:
+def advice(function: Callable[..., Any], name: str, place: CodeLine | None) -> str:
     """How to leave an argument as it is."""
     statement = statement_at(place)
     if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
@@ -132,7 +132,7 @@ def advice(function: Callable[..., Any], name: str, place: Place | None) -> str:
 def state_effect(
     anew: Anew, kept: Sequence[str], arguments: Sequence[Any], folder: Path, *, alternates: bool, differs: bool
 ) -> Effect:
-    """The effect of a function that changes what is outside of it. kept: what, in words."""
+    """The effect of a function that changes things outside of it. kept: their names in words."""
     if not kept:
         return Effect(STATE, f"two calls with the same arguments give different results{turns(alternates)}: {HIDDEN}")
     function, modules = anew()
@@ -156,7 +156,7 @@ def turns(alternates: bool) -> str:
     return ", in turns from call to call" if alternates else ""
 
 
-def in_line(function: Callable[..., Any], place: Place | None) -> str:
+def in_line(function: Callable[..., Any], place: CodeLine | None) -> str:
     """The line of an effect in words, and the function in it where that is another one."""
     if place is None:
         return ""
@@ -167,12 +167,12 @@ def in_line(function: Callable[..., Any], place: Place | None) -> str:
     return f" (line {place.line}{other}{shown})"
 
 
-def file_and_line(place: Place | None) -> tuple[str, int | None]:
+def file_and_line(place: CodeLine | None) -> tuple[str, int | None]:
     """A place as `Effect` takes it."""
     return ("", None) if place is None else (Path(place.path).name, place.line)
 
 
-def statement_at(place: Place | None) -> ast.stmt | None:
+def statement_at(place: CodeLine | None) -> ast.stmt | None:
     """The innermost statement on a line; None where it holds others, or the file cannot be read."""
     if place is None:
         return None
@@ -230,7 +230,7 @@ def digest(value: Any, depth: int = MAX_DEPTH) -> Any:
 
 
 def state_of(modules: Sequence[ModuleType]) -> dict[str, Any]:
-    """What functions of modules may keep something in: names in words, with digests. The first module goes unnamed."""
+    """The state that functions of modules may keep: names in words, with digests. The first module goes unnamed."""
     found: dict[str, Any] = {}
     for module in modules:
         inside = "" if module is modules[0] else f"{module.__name__}."
@@ -249,7 +249,7 @@ def state_of(modules: Sequence[ModuleType]) -> dict[str, Any]:
 
 
 def state_of_function(name: str, function: types.FunctionType) -> Mapping[str, Any]:
-    """What a function itself holds: attributes, values of defaults, names around it."""
+    """The state that a function itself holds: attributes, values of defaults, names around it."""
     found = {f"{name}.{key}": digest(value) for key, value in vars(function).items()}
     code = function.__code__
     arguments = code.co_varnames[: code.co_argcount]
@@ -297,13 +297,13 @@ def shake() -> None:
 
 def traced(
     function: Callable[..., Any], arguments: tuple[Any, ...], folder: Path, has_changed: Callable[[Sequence[Any]], bool]
-) -> Place | None:
+) -> CodeLine | None:
     """The line of a student's that changes something, by a call at these arguments; None where it is not found.
 
     has_changed: from the arguments.
     """
-    last: Place | None = None
-    found: Place | None = None
+    last: CodeLine | None = None
+    found: CodeLine | None = None
 
     def trace(frame: FrameType, event: str, _: Any) -> Any:
         nonlocal last, found
@@ -329,12 +329,12 @@ def traced(
     return found
 
 
-def place_of(frame: FrameType) -> Place:
+def place_of(frame: FrameType) -> CodeLine:
     """The line that a frame is at."""
-    return Place(frame.f_code.co_filename, frame.f_lineno, frame.f_code.co_name)
+    return CodeLine(frame.f_code.co_filename, frame.f_lineno, frame.f_code.co_name)
 
 
-Written: TypeAlias = list[tuple[str, Place | None]]
+Written: TypeAlias = list[tuple[str, CodeLine | None]]
 
 
 class WrittenFiles:

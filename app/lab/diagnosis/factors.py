@@ -1,4 +1,4 @@
-"""Factors that tell what was forgotten: small fractions, powers of 2 and 10, pi, units."""
+"""Factors of common mistakes: small fractions, powers of 2 and 10, pi, units."""
 
 import math
 from fractions import Fraction

@@ -482,7 +482,7 @@ def factor_between(left: np.ndarray, form: ChangedForm) -> float:
 
 
 def may_be_told(unit: Unit, form: ChangedForm, factor: float) -> bool:
-    """True for a factor that tells what is wrong: a simple one, or a constant that is slightly off."""
+    """True for a factor that names the mistake: a simple one, or a constant that is slightly off."""
     return is_simple(factor) or (unit.name == WHOLE and not form.text and abs(factor - 1.0) <= SMALL_CHANGE)
 
 

@@ -1,4 +1,4 @@
-"""Says where a function differs from the right one: at which inputs, in which part of the result, by what values."""
+"""Differences of a function from the right one: inputs, parts of the result, values."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
@@ -20,7 +20,7 @@ class Case(NamedTuple):
     holds: Callable[..., Any]
 
 
-class Trial(NamedTuple):
+class Difference(NamedTuple):
     """One input with the student's result and the right one, as arrays of equal shapes."""
 
     arguments: tuple[Any, ...]
@@ -34,7 +34,7 @@ class Trial(NamedTuple):
         return any(part.any() for part in self.wrong)
 
 
-def compared(arguments: tuple[Any, ...], found: Sequence[np.ndarray], right: Sequence[np.ndarray]) -> Trial:
+def compared(arguments: tuple[Any, ...], found: Sequence[np.ndarray], right: Sequence[np.ndarray]) -> Difference:
     """A trial from the parts of two results."""
     wrong = []
     for a, b in zip(found, right, strict=True):
@@ -44,13 +44,13 @@ def compared(arguments: tuple[Any, ...], found: Sequence[np.ndarray], right: Seq
         with np.errstate(all="ignore"):
             scale = np.abs(b[np.isfinite(b)]).max(initial=0.0)
             wrong.append(~((np.abs(a - b) <= TOLERANCE * scale + 1e-12) | (a == b) | (np.isnan(a) & np.isnan(b))))
-    return Trial(arguments, tuple(found), tuple(right), tuple(wrong))
+    return Difference(arguments, tuple(found), tuple(right), tuple(wrong))
 
 
 def explain_where(
-    trials: Sequence[Trial], names: Sequence[str], parts: Sequence[str], cases: Sequence[Case]
+    trials: Sequence[Difference], names: Sequence[str], parts: Sequence[str], cases: Sequence[Case]
 ) -> Explanation:
-    """Where a function differs, and the first input at which it does.
+    """The place where a function differs, and the first input at which it does.
 
     names: of the arguments. parts: of the result, where it has more than one.
     """
@@ -62,7 +62,7 @@ def explain_where(
     return Explanation(mistake, where + example(wrong[0], names, parts))
 
 
-def case_of(trials: Sequence[Trial], cases: Sequence[Case]) -> str:
+def case_of(trials: Sequence[Difference], cases: Sequence[Case]) -> str:
     """The case that all wrong inputs are of, where some are not of it."""
     for case in cases:
         holds = [bool(case.holds(*trial.arguments)) for trial in trials]
@@ -71,13 +71,13 @@ def case_of(trials: Sequence[Trial], cases: Sequence[Case]) -> str:
     return ""
 
 
-def part_of(wrong: Sequence[Trial], parts: Sequence[str]) -> str:
+def part_of(wrong: Sequence[Difference], parts: Sequence[str]) -> str:
     """The part of a result that is wrong, where others are right."""
     found = {i for trial in wrong for i, part in enumerate(trial.wrong) if part.any()}
     return f"in the {parts[found.pop()]}" if len(parts) > 1 and len(found) == 1 else ""
 
 
-def entries_of(wrong: Sequence[Trial]) -> str:
+def entries_of(wrong: Sequence[Difference]) -> str:
     """The rows or components that are wrong, in words; "" where all are, or no rule is seen."""
     tables = [part for trial in wrong for part in trial.wrong if part.ndim == 2 and part.shape[1] == 3 and part.any()]
     vectors = [part for trial in wrong for part in trial.wrong if part.shape == (3,) and part.any()]
@@ -105,12 +105,12 @@ def entries_of(wrong: Sequence[Trial]) -> str:
     return ""
 
 
-def is_held(wrong: Sequence[Trial]) -> bool:
+def is_held(wrong: Sequence[Difference]) -> bool:
     """True if the first point has nothing to be wrong: it is held."""
     return all(not part[0].any() for trial in wrong for part in trial.right)
 
 
-def example(trial: Trial, names: Sequence[str], parts: Sequence[str]) -> str:
+def example(trial: Difference, names: Sequence[str], parts: Sequence[str]) -> str:
     """One input, and both values there: the first number that differs, or the few of them."""
     i = next(i for i, part in enumerate(trial.wrong) if part.any())
     found, right, wrong = trial.found[i], trial.right[i], trial.wrong[i]

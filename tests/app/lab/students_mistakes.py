@@ -248,7 +248,7 @@ CASES: tuple[tuple[str, str, str], ...] = (
     ),
     (
         "reflectance",
-        "(s + p) in place of 0.5 * (s - p)",
+        "s + p in place of s - p",
         """
             c, t = np.cos(angle), np.sqrt(1 - (np.sin(angle) / index) ** 2)
             s, p = ((c - index * t) / (c + index * t)) ** 2, ((index * c - t) / (index * c + t)) ** 2

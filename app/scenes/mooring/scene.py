@@ -72,7 +72,7 @@ def warnings(scene: LineScene) -> list[str]:
 
 
 def file_facts(params: MooringParams) -> FileFacts | None:
-    """What a MoorDyn file holds, and the parameters that it replaces."""
+    """Facts of the MoorDyn file, and the parameters that it replaces."""
     if not params.moordyn_file:
         return None
     system = mooring_of(params.moordyn_file).system

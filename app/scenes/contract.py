@@ -14,7 +14,7 @@ The folder is found by being here: command line, panel, sweeps, benchmarks and t
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -228,10 +228,10 @@ class FramePacking(NamedTuple):
 
 
 class FileFacts(NamedTuple):
-    """What a file holds that a scene runs."""
+    """Facts of a file that a scene runs."""
 
     name: str  # what it is
-    facts: dict[str, Any]  # as JSON holds them, in SI units
+    facts: Mapping[str, object]  # as JSON holds them, in SI units
     unused: frozenset[str]  # names of the parameters that mean nothing with it
 
 

@@ -86,7 +86,7 @@ def shared_values(params: BaseParams) -> dict[str, Value]:
 
 
 def described(kind: AnyKind, params: BaseParams) -> dict[str, Any]:
-    """What a file of a run says of it: the scene, its parameters, and what a file holds that they name."""
+    """Entries on a run for its file: the scene, its parameters, and the facts of a file that they name."""
     values, file = shared_values(params), kind.file_facts(params)
     if file is None:
         return {"scene": kind.name, "parameters": values}

@@ -151,7 +151,7 @@ def balance_at(loaded: Loaded, rotation: Quaternion) -> Balance:
     if A > 0.0:
         Axx, Ayy, Axy = Axx - Ax * Ax / A, Ayy - Ay * Ay / A, Axy - Ax * Ay / A
     restoring = np.array([[Mz + Ayy, -Axy], [-Axy, Mz + Axx]]) / weight
-    return Balance(rotation, -level, np.array([-My, Mx]) / weight, restoring)
+    return Balance(rotation, -level, np.array([0.0 - My, Mx]) / weight, restoring)
 
 
 def is_stable(hull: Hull, rest: Balance) -> bool:

@@ -1,4 +1,4 @@
-"""Forces of lines on what holds their ends, as MoorDyn's tensions at anchors and fairleads have them.
+"""Forces of lines on the holders of their ends, as MoorDyn's tensions at anchors and fairleads have them.
 
 The first or last link, with the weight of half a segment and the forces of water, bed and bending on it; the inertia of
 that half is left out. Where an end lies on the bed, the bed bears the weight of that half.

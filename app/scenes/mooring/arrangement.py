@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from app.messages import Vector, vector_of
 from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.rows import LineRows
+from app.scenes.mooring.rows import LineRows, ends_of
 from sim import floating
 from sim.mooring import Line, LineType, MooredBody, Point, System, moored
 from sim.ocean.radial.gerstner import draw_waves, waves_under
@@ -217,6 +217,6 @@ def rows_of(system: System, params: MooringParams) -> LineRows:
         chains = [system.nodes_of[one] for one in ids]
         nodes.append(np.concatenate([chains[0], *(chain[1:] for chain in chains[1:])]))
         links.append(np.concatenate([np.arange(system.links_of[one].start, system.links_of[one].stop) for one in ids]))
-    at, lengths = np.array(nodes), np.full(params.lines, params.length)
+    at, of, lengths = np.array(nodes), np.array(links), np.full(params.lines, params.length)
     held = tuple((i, -1) for i in range(params.lines))
-    return LineRows(at, at, np.zeros((*at.shape, 1)), np.array(links), lengths, held)
+    return LineRows(at, at, np.zeros((*at.shape, 1)), of, lengths, held, ends_of(system, at, at, of))

@@ -1,5 +1,6 @@
 """Frames and readings of the mooring for its view and the panel, immutable."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -39,6 +40,7 @@ class EndStatistics(NamedTuple):
     mean: float  # [N]
     largest: float  # [N]
     deviation: float  # [N] standard deviation
+    expected: float = math.nan  # [N] largest one expected in three hours, see `Peaks`; NaN: too few peaks
 
 
 class LineReading(NamedTuple):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.messages import Vector, vector_of
-from app.scenes.mooring.rows import LineRows
+from app.scenes.mooring.rows import LineRows, ends_of
 from sim.mooring import System, read_moordyn
 
 LEAST_EXTENT = 1e-3  # [m]
@@ -85,7 +85,8 @@ def rows_of_lines(system: System, reverse: list[bool], held: tuple[tuple[int, in
             numbers[np.minimum((np.arange(pieces) + 0.5) * line.segments / pieces, line.segments - 1).astype(int)]
         )
     lengths = np.array([line.length for line in system.lines])
-    return LineRows(np.array(before), np.array(after), np.array(fraction)[..., None], np.array(links), lengths, held)
+    at, to, of = np.array(before), np.array(after), np.array(links)
+    return LineRows(at, to, np.array(fraction)[..., None], of, lengths, held, ends_of(system, at, to, of))
 
 
 def slack_of(system: System) -> tuple[float, float] | None:

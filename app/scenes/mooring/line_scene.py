@@ -88,7 +88,6 @@ class LineScene(abc.ABC):
         self.start = MooringStart.of(rest, stretch, self.fault_of(stretch, failure), failure)
         self.assess_stability()
         self.tensions = Tensions(len(self.rows.lengths))
-        self.ends = self.rows.ends(self.system)
         self.measure()
         self.plot_rows.restart()
         self.last_moments.clear()
@@ -229,10 +228,9 @@ class LineScene(abc.ABC):
         v = velocities(self.system, state)
         set_line_tensions(state.x.reshape(-1), v.reshape(-1), p, tension)
         self.tension, self.points = tension[self.rows.links], self.rows.points(state.x)
-        self.end_forces = self.ends.forces(state.x, v, state.t, p).reshape(2, -1, 3)
         if self.is_dragged:
             self.tensions.leave_out(state.t, self.params.wave_period)
-        self.tensions.measure(state.t, self.tension, *self.end_forces)
+        self.tensions.measure(state.t, self.tension, *self.rows.end_forces(state.x, v, state.t, p))
         self.excursion.measure(state.t, self.body_place(), counts=self.tensions.counts)
 
     def add_plot_row(self) -> None:

@@ -62,6 +62,11 @@ QUANTITIES: Quantities = {
         "Largest standard deviation of the tension at a fairlead",
         over_lines(max, lambda line: line.at_fairlead.deviation),
     ),
+    "expected_tension": Quantity(
+        "N",
+        "Largest tension at a fairlead expected in three hours",
+        over_lines(max, lambda line: line.at_fairlead.expected),
+    ),
     "breaking_load_use": Quantity(
         "1",
         "Largest tension at a fairlead over the breaking load",

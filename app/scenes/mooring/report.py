@@ -14,8 +14,10 @@ from app.scenes.mooring.quantities import QUANTITIES, load_use
 from app.scenes.mooring.start_check import BLAMED, Fault, raised_points
 from app.scenes.quantities import read, written
 from app.scenes.springs.html import colour_scale, step_mark
+from sim.extreme_values import LEAST_PEAKS
 
 TENSIONS = "Tensions"  # heading
+EXPECTED = f"3 h: largest tension expected in three hours, by a Weibull distribution of at least {LEAST_PEAKS} peaks."
 COLOURS = "Brown parts of a line lie on the bed. A red anchor is pulled upwards."
 
 
@@ -52,11 +54,16 @@ def slack_text(found: LineReading, now: float) -> Html:
     return coloured(f"since {seconds(now - found.slack_since)}", ERROR_COLOUR)
 
 
+def expected_text(force: float) -> str:
+    """An expected largest tension [N] in kN; a dash for too few peaks."""
+    return "–" if math.isnan(force) else kilonewtons(force)
+
+
 def tension_table(name: str, ends: Sequence[tuple[float, EndStatistics]], params: MooringParams) -> Html:
     """Tensions at one end of all lines: now, and their statistics, with their use if the breaking load is known."""
-    columns = [(name, ""), *((word, "kN") for word in ("now", "min", "mean", "max", "SD"))]
+    columns = [(name, ""), *((word, "kN") for word in ("now", "min", "mean", "max", "SD", "3 h"))]
     rows = [
-        [i + 1, *map(kilonewtons, (now, of.least, of.mean, of.largest, of.deviation))]
+        [i + 1, *map(kilonewtons, (now, of.least, of.mean, of.largest, of.deviation)), expected_text(of.expected)]
         for i, (now, of) in enumerate(ends)
     ]
     if params.breaking_load > 0.0:
@@ -85,7 +92,7 @@ def statistics_text(snapshot: Snapshot) -> Html:
         pause = "" if snapshot.readings.counts else ", which are left out until three wave periods have gone by"
         words = fill("{}, without drags{}; while dragged: {} kN", words, pause, bold(kilonewtons(dragged)))
     use = "largest tension over the breaking load" if snapshot.params.breaking_load > 0.0 else "set the breaking load"
-    return fill("<div>{}</div>{}", words, faint(fill("SD: standard deviation. Use: {}.", use)))
+    return fill("<div>{}</div>{}", words, faint(fill("SD: standard deviation. {} Use: {}.", EXPECTED, use)))
 
 
 def bed_table(snapshot: Snapshot) -> Html:

@@ -1,12 +1,15 @@
 """Lines as rows of equally many pieces, whatever numbers of segments they have."""
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring import System
 from sim.mooring.end_forces import LineEnds
+from sim.springs.line_arrays import LineArrays
+
+Ends: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 class LineRows(NamedTuple):
@@ -18,11 +21,12 @@ class LineRows(NamedTuple):
     links: NDArray[np.int64]  # (lines, n) link of each piece
     lengths: NDArray[np.float64]  # (lines,) [m] unstretched
     held: tuple[tuple[int, int], ...]  # (line, 0 or -1) of each end at the body or vessel
+    ends: LineEnds  # the anchors of all lines, then their fairleads
 
-    def ends(self, system: System) -> LineEnds:
-        """The anchors of all lines, then their fairleads."""
-        nodes = np.concatenate((self.before[:, 0], self.after[:, -1]))
-        return LineEnds.of(system.kernel_view(1.0), nodes, np.concatenate((self.links[:, 0], self.links[:, -1])))
+    def end_forces(self, x: NDArray[np.float64], v: NDArray[np.float64], t: float, p: LineArrays) -> Ends:
+        """Forces (lines, 3) [N] on the holders of all anchors and of all fairleads, of nodes x, v (3, nodes)."""
+        at_anchor, at_fairlead = self.ends.forces(x, v, t, p).reshape(2, -1, 3)
+        return at_anchor, at_fairlead
 
     def points(self, x: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points (lines, n + 1, 3) [m] of nodes x (3, nodes)."""
@@ -46,3 +50,9 @@ class LineRows(NamedTuple):
             way = points[line, 1 if end == 0 else -2] - points[line, end]
             found += tension[line, end] * way[:2] / max(float(np.linalg.norm(way)), 1e-12)
         return found
+
+
+def ends_of(system: System, before: NDArray[np.int64], after: NDArray[np.int64], links: NDArray[np.int64]) -> LineEnds:
+    """`LineRows.ends` of its fields."""
+    nodes, at = np.concatenate((before[:, 0], after[:, -1])), np.concatenate((links[:, 0], links[:, -1]))
+    return LineEnds.of(system.kernel_view(1.0), nodes, at)

@@ -77,7 +77,7 @@ def notes(params: MooringParams) -> tuple[str, ...]:
 
 
 def file_facts(params: MooringParams) -> FileFacts | None:
-    """What a MoorDyn file holds, and the parameters that it replaces."""
+    """Facts of the MoorDyn file, and the parameters that it replaces."""
     if not params.moordyn_file:
         return None
     system = mooring_of(params.moordyn_file).system

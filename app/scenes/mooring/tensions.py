@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.scenes.mooring.frame import EndStatistics, LineReading
+from sim.extreme_values import Peaks
 
+LONG = 10800.0  # [s] in which a largest tension is expected: the usual length of a sea state
 SETTLING_PERIODS = 3.0  # of the waves after a drag, until its motion has died down
 
 Array = NDArray[np.float64]
@@ -39,6 +41,15 @@ class RunningStatistics:
         return [EndStatistics(*row) for row in rows.tolist()]
 
 
+def with_expected(rows: list[EndStatistics], peaks: Peaks) -> list[EndStatistics]:
+    """The statistics of each number with the largest one that is expected in `LONG`."""
+    expected = peaks.expected_largest(LONG).tolist()
+    # one NaN, so that equal statistics are equal
+    return [
+        row._replace(expected=math.nan if math.isnan(one) else one) for row, one in zip(rows, expected, strict=True)
+    ]
+
+
 class Tensions:
     """Tensions and uplift of so many lines, since the statistics began."""
 
@@ -53,6 +64,7 @@ class Tensions:
         lines = len(self.fairlead)
         self.since = self.time  # [s]
         self.at_fairlead, self.at_anchor = RunningStatistics(lines), RunningStatistics(lines)
+        self.fairlead_peaks, self.anchor_peaks = Peaks(lines), Peaks(lines)
         self.most_uplift, self.slack_time = np.zeros((2, lines))  # [N], [s]
         self.most_at = (0, self.time)  # line, and time [s], of the largest tension
         self.dragged = math.nan  # [N] largest tension at a fairlead while it was dragged, and until that died down
@@ -67,7 +79,7 @@ class Tensions:
         return self.time >= self.counted_from
 
     def measure(self, t: float, tension: Array, at_anchor: Array, at_fairlead: Array) -> None:
-        """Take tensions at time t [s]: (lines, segments) [N], and forces (lines, 3) [N] on what holds both ends."""
+        """Take the tensions (lines, segments) and the forces (lines, 3) at both ends [N], at time t [s]."""
         duration, self.time = t - self.time, t
         self.anchor, self.fairlead = (np.linalg.norm(force, axis=1) for force in (at_anchor, at_fairlead))
         self.uplift = np.maximum(at_anchor[:, 2], 0.0)
@@ -81,6 +93,8 @@ class Tensions:
             self.most_at = line, t
         self.at_fairlead.add(self.fairlead, duration)
         self.at_anchor.add(self.anchor, duration)
+        self.fairlead_peaks.add(self.fairlead, duration)
+        self.anchor_peaks.add(self.anchor, duration)
         self.most_uplift = np.maximum(self.most_uplift, self.uplift)
         self.slack_time = self.slack_time + np.where(is_slack, duration, 0.0)
 
@@ -88,7 +102,7 @@ class Tensions:
         """Each line. lying: (lines,) [m] of each on the bed."""
         fraction = self.slack_time / max(self.at_fairlead.duration, 1e-9)
         columns = self.uplift, self.most_uplift, lying, self.slack_since, fraction
-        ends = zip(
-            self.fairlead.tolist(), self.anchor.tolist(), self.at_fairlead.each(), self.at_anchor.each(), strict=True
-        )
+        both = (self.at_fairlead, self.fairlead_peaks), (self.at_anchor, self.anchor_peaks)
+        at_fairlead, at_anchor = (with_expected(statistics.each(), peaks) for statistics, peaks in both)
+        ends = zip(self.fairlead.tolist(), self.anchor.tolist(), at_fairlead, at_anchor, strict=True)
         return tuple(LineReading(*end, *row) for end, row in zip(ends, np.stack(columns, axis=1).tolist(), strict=True))

@@ -186,7 +186,7 @@ def energy(x, t, p):
 
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
-    """The drag takes; the water puts in what it does beyond buoyancy in still water, prescribed nodes against that."""
+    """Drag takes; waves and current put in their work, and prescribed nodes that against buoyancy in still water."""
     n, lost, work = p.cols, 0.0, 0.0
     for i in range(p.places.shape[0]):
         j = p.places[i, 0]

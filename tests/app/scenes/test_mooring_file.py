@@ -75,7 +75,7 @@ def test_a_line_that_begins_at_the_vessel_is_shown_the_other_way_round(tmp_path)
         (one.readings().lines[0], one.readings().lines[0].at_fairlead) for one in (turned, there)
     )
     assert now[:2] + now[4:] == pytest.approx(same[:2] + same[4:], rel=1e-6, nan_ok=True)
-    assert end == pytest.approx(other, rel=1e-6)
+    assert end[:4] == pytest.approx(other[:4], rel=1e-6)
     assert turned.force_of_lines() == pytest.approx(there.force_of_lines(), rel=1e-6, abs=1e-3)
 
 

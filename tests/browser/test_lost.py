@@ -12,8 +12,8 @@ from PIL import Image
 
 from app.messages import Pause
 from app.render import surroundings
-from app.server.web import page as served_page
 from app.server.viewer import Viewer
+from app.server.web import page as served_page
 from tests.browser.conftest import Tab, new_page
 from tests.browser.slow_line import slow_line
 

@@ -1,6 +1,6 @@
 """Implicit steps of a stiff cloth of 64 x 64 particles, hanging and draped: the share of a core that real time takes.
 
-The presets of the cloth scene, in a steady wind, at steps of 1/60 s and with stiffer structural springs. A correction of
+The presets of the cloth scene, in a steady wind, at steps of 1/60 s, with stiffer structural springs. A correction of
 Newton's method is one linear solve and one or two force evaluations.
 """
 

@@ -4,8 +4,8 @@ The matrix couples each particle by 3 x 3 blocks to its eight neighbours on the 
 particles separates a rectangle into two that do not couple; eliminated after both, it keeps the factors small: they
 hold O(n log n) numbers of n particles, and take O(n^1.5) operations. Each part of the grid, a separating line or a
 rectangle of few particles, is eliminated in a dense matrix of its own, its front, which holds the particles around its
-rectangle too and hands what is left of them to the front of the line that is eliminated next (the multifrontal method,
-Duff and Reid 1983).
+rectangle too and hands their rest, the Schur complement, to the front of the line that is eliminated next (the
+multifrontal method, Duff and Reid 1983).
 
 The factors are a preconditioner: single precision is enough, and twice as fast. A net of more than TILE rows or columns
 is cut into tiles, whose coupling is left out, as its factors would fill the memory.
@@ -39,7 +39,7 @@ class Dissection(NamedTuple):
     place: NDArray[np.int64]  # (rows cols,) in the front at hand
     held: NDArray[np.int64]  # (parts,) a stack of the parts whose rests are held
     front: NDArray[np.float32]  # the front at hand
-    rests: NDArray[np.float32]  # a stack of what is left of fronts
+    rests: NDArray[np.float32]  # a stack of the rests of fronts
     factors: NDArray[np.float32]  # rows of all factors, with the reciprocals of their diagonals
     vector: NDArray[np.float32]  # (3 rows cols,) x, y, z of each particle in turn
     part: NDArray[np.float32]  # of a front
@@ -56,6 +56,60 @@ def around(r0, r1, c0, c1, rows, cols):
     """The rectangle with the particles around it, within its tile."""
     r, c = r0 // TILE * TILE, c0 // TILE * TILE
     return max(r, r0 - 1), min(rows, r + TILE, r1 + 1), max(c, c0 - 1), min(cols, c + TILE, c1 + 1)
+
+
+@kernel(inline=True)
+def rest_size(count):
+    """Numbers in the rest of a front, of `count` particles that are not eliminated."""
+    return 9 * count * count
+
+
+@kernel
+def stack_size(nodes):
+    """The highest that the stack of rests grows: each part takes its children's rests and leaves its own."""
+    parts = nodes.shape[0]
+    depth, deepest, held, top = 0, 0, np.zeros(parts, np.int64), 0
+    for q in range(parts - 1, -1, -1):
+        for _ in range(nodes[q, 4]):
+            top -= 1
+            depth -= held[top]
+        held[top] = rest_size(nodes[q, 2] - nodes[q, 1])
+        depth += held[top]
+        top += 1
+        deepest = max(deepest, depth)
+    return deepest
+
+
+@kernel
+def list_fronts(nodes, rectangles, order, sequence, rows, cols):
+    """Particles of all fronts, numbers in all factors, in the largest front, and in its longest row.
+
+    Sets in `nodes` where a part's front and factor begin. sequence: the particles in the order of elimination.
+    """
+    fronts = np.zeros(np.sum(nodes[:, 2]), np.int64)
+    at, size, largest, longest, left = 0, 0, 0, 0, sequence.shape[0]
+    for q in range(nodes.shape[0]):
+        count, whole = nodes[q, 1], nodes[q, 2]
+        nodes[q, 0], nodes[q, 3] = at, size
+        left -= count
+        for k in range(count):
+            fronts[at + k] = left + k
+        r0, r1, c0, c1 = rectangles[q, 0], rectangles[q, 1], rectangles[q, 2], rectangles[q, 3]
+        a0, a1, b0, b1 = around(r0, r1, c0, c1, rows, cols)
+        k = at + count
+        for i in range(a0, a1):
+            for j in range(b0, b1):
+                if not (r0 <= i < r1 and c0 <= j < c1):
+                    fronts[k] = order[i * cols + j]
+                    k += 1
+        fronts[at + count : k].sort()
+        for e in range(at, k):
+            fronts[e] = sequence[fronts[e]]
+        at = k
+        longest = max(longest, padded(whole))
+        largest = max(largest, 3 * whole * padded(whole))
+        size += 3 * count * padded(whole)
+    return fronts, size, largest, longest
 
 
 @kernel
@@ -104,50 +158,13 @@ def dissect(rows, cols):
         nodes[parts, 1] = count
         nodes[parts, 2] = count + (a1 - a0) * (b1 - b0) - height * width
         parts += 1
-    fronts = np.zeros(np.sum(nodes[:parts, 2]), np.int64)
-    at, size, largest, longest, left = 0, 0, 0, 0, n
-    for q in range(parts):
-        count, whole = nodes[q, 1], nodes[q, 2]
-        nodes[q, 0], nodes[q, 3] = at, size
-        left -= count
-        for k in range(count):
-            fronts[at + k] = left + k
-        r0, r1, c0, c1 = rectangles[q, 0], rectangles[q, 1], rectangles[q, 2], rectangles[q, 3]
-        a0, a1, b0, b1 = around(r0, r1, c0, c1, rows, cols)
-        k = at + count
-        for i in range(a0, a1):
-            for j in range(b0, b1):
-                if not (r0 <= i < r1 and c0 <= j < c1):
-                    fronts[k] = order[i * cols + j]
-                    k += 1
-        fronts[at + count : k].sort()
-        for e in range(at, k):
-            fronts[e] = sequence[fronts[e]]
-        at = k
-        longest = max(longest, padded(whole))
-        largest = max(largest, 3 * whole * padded(whole))
-        size += 3 * count * padded(whole)
-    # The highest that the stack grows: each part takes its children's rests and leaves its own.
-    depth, deepest, held, top = 0, 0, np.zeros(parts, np.int64), 0
-    for q in range(parts - 1, -1, -1):
-        for _ in range(nodes[q, 4]):
-            top -= 1
-            depth -= held[top]
-        held[top] = rest_size(nodes[q, 2] - nodes[q, 1])
-        depth += held[top]
-        top += 1
-        deepest = max(deepest, depth)
+    fronts, size, largest, longest = list_fronts(nodes[:parts], rectangles, order, sequence, rows, cols)
+    deepest = stack_size(nodes[:parts])
     return Dissection(
         rows, cols, nodes[:parts].copy(), fronts, order, np.zeros(n, np.int64), np.zeros(parts, np.int64),
         np.empty(largest, np.float32), np.empty(deepest, np.float32), np.empty(size, np.float32),
         np.empty(3 * n, np.float32), np.empty(longest, np.float32),
     )  # fmt: skip
-
-
-@kernel(inline=True)
-def rest_size(count):
-    """Numbers of what is left of a front in which `count` particles are not eliminated."""
-    return 9 * count * count
 
 
 # Indices are unsigned throughout the loops over rows, sums of them included: with a signed one each could be negative,
@@ -237,7 +254,7 @@ def factorise_panel(u, w, o, first, width, row, least):
 
 @kernel(noalias=True, allocates=False)
 def subtract_rows(u, w, o, first, width, count, row):
-    """What `width` rows of a factor from `first` on leave of the rows of w after them, up to `count`."""
+    """Subtract the products of a factor's `width` rows from `first` on from the rows of w after them, up to `count`."""
     row, lanes, three = np.uint64(row), np.uint64(LANES), np.uint64(3)
     p = np.uint64(o) + np.uint64(first) * row
     for i in range(np.uint64(first + width), np.uint64(count)):
@@ -252,7 +269,7 @@ def subtract_rows(u, w, o, first, width, count, row):
 
 @kernel(noalias=True, allocates=False)
 def add_rest(rests, o, fronts, at, end, place, w, row):
-    """Add what is left of a child's front, in `rests` from o, at the particles of `fronts` from `at` on."""
+    """Add the rest of a child's front, in `rests` from o, at the particles of `fronts` from `at` on."""
     one, two = np.uint64(1), np.uint64(2)
     count, row = end - at, np.uint64(row)
     for p in range(count):
@@ -269,7 +286,7 @@ def add_rest(rests, o, fronts, at, end, place, w, row):
 
 @kernel(noalias=True, allocates=False)
 def keep_rest(w, rests, o, first, count, row):
-    """Copy what is left of a front, rows and columns `first` to `count`, to `rests` from o."""
+    """Copy the rest of a front, rows and columns `first` to `count`, to `rests` from o."""
     row, left = np.uint64(row), np.uint64(count - first)
     for i in range(left):
         source, target = (np.uint64(first) + i) * row + np.uint64(first), np.uint64(o) + i * left

@@ -5,6 +5,7 @@ import { makeJudge } from "./js/shading/judge.js";
 const FAST = 16.7, MIDDLING = 30, SLOW = 60, VERY_SLOW = 300; // [ms]
 
 // The step after each list of [length, number] of frames.
+/** @param {[length: number, count: number, compiled?: boolean][][]} lists */
 function judged(...lists) {
   const judge = makeJudge();
   return lists.map((list) => {

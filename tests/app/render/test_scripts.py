@@ -10,7 +10,7 @@ from urllib.parse import unquote
 import pytest
 
 from app.render import scripts
-from app.render.scripts import IMPORTED, PAGE, ROOMS, SCENE, import_map, modules
+from app.render.scripts import IMPORTED, PAGE, ROOMS, SCENE, SHARED, import_map, modules
 
 ROOT = Path(__file__).parents[3]
 MAX_FILES = 16  # of code in a room
@@ -52,6 +52,11 @@ def test_every_module_is_started_by_an_entry() -> None:
     for path in reached:
         reached += [target for target in imports_of(path) if target not in reached]
     assert set(reached) == set(modules())
+
+
+def test_types_are_declared_of_all_constants_that_python_shares() -> None:
+    declared = (Path(scripts.__file__).parent / "js" / "shared.d.ts").read_text("utf-8")
+    assert re.findall(r"const (\w+):", declared) == list(SHARED)
 
 
 @pytest.mark.parametrize("room", [*ROOMS, "before"])

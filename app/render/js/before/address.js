@@ -10,6 +10,7 @@
   const NOT_FROM_LINKS = ["websocket", "playbackPath"];
   const replace = history.replaceState.bind(history);
 
+  /** @param {string | URL} address */
   function own(address) {
     const found = new URL(address, location.href);
     for (const name of NOT_FROM_LINKS) if (found.searchParams.has(name)) found.searchParams.delete(name);

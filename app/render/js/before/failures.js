@@ -12,6 +12,7 @@
     if (words && springtide.failure) words.textContent = springtide.failure;
   }
 
+  /** @param {string} text */
   function fail(text) {
     springtide.failure = springtide.failure || text;
     document.documentElement.setAttribute("data-springtide-failed", "");
@@ -46,6 +47,7 @@
     }
   }
 
+  /** @param {Event & { error?: Error, reason?: Error, message?: string }} event */
   function note(event) {
     var reason = event.error || event.reason;
     error = error || String((reason && reason.message) || event.message || "");

@@ -6,8 +6,10 @@
 
 (() => {
   "use strict";
+  /** @type {Worker[]} */
   const workers = [];
   window.Worker = class extends Worker {
+    /** @param {ConstructorParameters<typeof Worker>} all */
     constructor(...all) {
       super(...all);
       workers.push(this);

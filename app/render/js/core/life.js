@@ -2,6 +2,7 @@
 
 export class Life {
   #controller = new AbortController();
+  /** @type {(() => void)[]} */
   #disposals = [];
 
   get signal() {
@@ -9,17 +10,25 @@ export class Life {
   }
 
   // kinds: of events, one or several.
+  /**
+   * @template {keyof PageEvents} K
+   * @param {EventTarget} target @param {K | K[]} kinds @param {(event: PageEvents[K]) => void} call
+   * @param {AddEventListenerOptions} options
+   */
   listen(target, kinds, call, options = {}) {
-    for (const kind of [kinds].flat()) target.addEventListener(kind, call, { ...options, signal: this.signal });
+    const listener = /** @type {EventListener} */ (call);
+    for (const kind of [kinds].flat()) target.addEventListener(kind, listener, { ...options, signal: this.signal });
   }
 
   // interval: [ms]
+  /** @param {number} interval @param {() => void} call */
   every(interval, call) {
     const timer = setInterval(call, interval);
     this.own(() => clearInterval(timer));
   }
 
   // Call a function when this ends.
+  /** @param {() => void} dispose */
   own(dispose) {
     this.#disposals.push(dispose);
   }

@@ -5,22 +5,26 @@ import { page } from "./life.js";
 import { viewer } from "./viewer.js";
 import { onFrame } from "./watch.js";
 
+/** @typedef {(renderer: three.Renderer, scene: three.Scene, camera: three.Camera) => void} Part */
+/** @type {{ data: Part | null, camera: Part | null, materials: Part | null }} */
 const parts = { data: null, camera: null, materials: null }; // in the order in which they are called
 
 // stage: "data", "camera" or "materials". part(renderer, scene, camera).
+/** @param {keyof typeof parts} stage @param {Part} part */
 export function beforeRender(stage, part) {
   parts[stage] = part;
 }
 
-let hooked = null; // the scene; viser makes another one with a new canvas
+/** @type {three.Scene | null} */
+let hooked = null; // viser makes another one with a new canvas
 onFrame(() => {
-  const own = viewer()?.scene;
-  if (!own || hooked === own || !viewer().nodeRefFromName) return;
+  const now = viewer(), own = now?.scene;
+  if (!own || hooked === own || !now.nodeRefFromName) return;
   hooked = own;
   const earlier = own.onBeforeRender;
   own.onBeforeRender = function (renderer, scene, camera, target) {
     for (const part of page.signal.aborted ? [] : Object.values(parts)) part?.(renderer, scene, camera);
     earlier.call(this, renderer, scene, camera, target);
   };
-  viewer().requestRender();
+  now.requestRender();
 });

@@ -3,4 +3,5 @@
 // fail(words): show a failure on the cover (before/failures.js). isRecording: whether a clip is being made. quality, memory,
 // skiesDrawn, contexts: for tests. beside: on the page with the panes (beside.html).
 
+/** @type {Springtide} */
 export const springtide = (globalThis.__springtide ??= {});

@@ -1,7 +1,9 @@
 // The local storage of the browser, which may refuse: cookies are blocked, or another site shows the page in a frame.
 
+/** @type {Map<string, string>} */
 const unstored = new Map(); // what was refused, kept for as long as the page
 
+/** @param {string} key */
 export function stored(key) {
   try {
     return localStorage.getItem(key);
@@ -11,6 +13,7 @@ export function stored(key) {
 }
 
 // False where the browser refuses: it holds until the page is left.
+/** @param {string} key @param {string} text */
 export function store(key, text) {
   try {
     localStorage.setItem(key, text);

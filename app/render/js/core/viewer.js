@@ -2,7 +2,11 @@
 
 export const viewer = () => window.__viserMutable;
 
+// The same for code that runs only after viser's client has begun to draw.
+export const startedViewer = () => /** @type {viser.Started} */ (viewer());
+
 // Set the value of an element of viser's panel. False where there is no connection, or no such element.
+/** @param {string | undefined} uuid @param {unknown} value */
 export function send(uuid, value) {
   const post = viewer()?.sendMessage;
   if (!uuid || !post) return false;
@@ -10,7 +14,9 @@ export function send(uuid, value) {
   return true;
 }
 
-let connection = 0, sender = null;
+let connection = 0;
+/** @type {viser.Mutable["sendMessage"]} */
+let sender = null;
 
 // The number of the connection to the server. viser makes the function that sends anew with each. What mirrors the
 // server's knowledge of this browser holds for one connection: the next one is another client to the server.

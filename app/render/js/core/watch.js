@@ -9,12 +9,17 @@ const STATUS = ".springtide-panel, [data-springtide-time]"; // written anew in e
 const CONTROL = "button, label, [role]"; // what parts read the words of
 const LOOK_INTERVAL = 200; // [ms] between two looks at where things are
 
+/** @typedef {(now: number) => void} Part */
+/** @type {{ any: Part[], controls: Part[], values: Part[], frame: Part[], look: Part[] }} */
 const parts = { any: [], controls: [], values: [], frame: [], look: [] };
 
+/** @param {Node} node @returns {node is Element} */
 const isElement = (node) => node.nodeType === Node.ELEMENT_NODE;
+/** @type {(node: Node) => boolean} */
 const isStatus = (node) => isElement(node) && node.matches(STATUS);
 
 // Whether a change may be one of controls.
+/** @param {MutationRecord} change */
 function isOfControls({ type, target, addedNodes, removedNodes }) {
   const at = isElement(target) ? target : target.parentElement;
   if (type === "characterData") return Boolean(at?.closest(CONTROL));
@@ -23,8 +28,9 @@ function isOfControls({ type, target, addedNodes, removedNodes }) {
   return !(replaced.length && gone.length && replaced.every(isStatus) && gone.every(isStatus));
 }
 
-function call(names, ...given) {
-  for (const name of names) for (const part of parts[name]) part(...given);
+/** @param {(keyof typeof parts)[]} names @param {number} now */
+function call(names, now = 0) {
+  for (const name of names) for (const part of parts[name]) part(now);
 }
 
 const observer = new MutationObserver((changes) => {
@@ -40,6 +46,7 @@ observer.observe(document.documentElement, {
 page.own(() => observer.disconnect());
 
 let looked = -Infinity;
+/** @param {number} now */
 function tick(now) {
   call(["frame"], now);
   if (now - looked >= LOOK_INTERVAL) {
@@ -51,28 +58,31 @@ function tick(now) {
 requestAnimationFrame(tick);
 page.listen(window, "resize", () => call(["look"]));
 
+/** @param {keyof typeof parts} name @param {Part} part */
 function subscribe(name, part) {
   parts[name].push(part);
   page.own(() => parts[name].splice(parts[name].indexOf(part), 1));
 }
 
 // Call a function after each change of the page's elements and words, and now.
+/** @param {() => void} part */
 export function onChange(part) {
   subscribe("any", part);
   part();
 }
 
 // The same after those that may be changes of controls.
+/** @param {() => void} part */
 export function onControls(part) {
   subscribe("controls", part);
   part();
 }
 
 // The same after changes of values, places of sliders, and the colour scheme.
-export const onValues = (part) => subscribe("values", part);
+export const onValues = (/** @type {() => void} */ part) => subscribe("values", part);
 
 // Call a function before each frame of a page that is seen, with the time [ms].
-export const onFrame = (part) => subscribe("frame", part);
+export const onFrame = (/** @type {Part} */ part) => subscribe("frame", part);
 
 // Call a function a few times a second, and when the window changes its size.
-export const onLook = (part) => subscribe("look", part);
+export const onLook = (/** @type {() => void} */ part) => subscribe("look", part);

@@ -22,7 +22,9 @@ if (framed) {
   let had = hasFocus();
   document.hasFocus = hasFocus;
   page.every(FOCUS_INTERVAL, () => {
-    if (hasFocus() !== had) dispatchEvent(new Event((had = !had) ? "focus" : "blur"));
+    if (hasFocus() === had) return;
+    had = !had;
+    dispatchEvent(new Event(had ? "focus" : "blur"));
   });
 }
 

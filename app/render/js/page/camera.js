@@ -5,7 +5,7 @@
 // three's world has y up; the frame of a node has z up.
 
 import { beforeRender } from "../core/render_hook.js";
-import { viewer } from "../core/viewer.js";
+import { startedViewer, viewer } from "../core/viewer.js";
 import { onLook } from "../core/watch.js";
 import { without } from "./free_part.js";
 
@@ -17,6 +17,9 @@ const PANELS =
   "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root), " +
   ".mantine-Tabs-root:has(> [aria-label=\"Collapse panel Plots\"])";
 
+/** @type {(keyof Box)[]} */
+const SIDES = ["x", "y", "width", "height"];
+/** @type {Box | null} */
 let free = null; // the free part of the canvas: { x, y, width, height } [pixels] from its top left corner
 
 function measure() {
@@ -27,13 +30,15 @@ function measure() {
   const framed = document.documentElement.classList.contains("springtide-framed"); // beside.js
   for (const panel of framed ? [] : document.querySelectorAll(PANELS)) box = without(box, panel.getBoundingClientRect());
   const found = { x: box.x - canvas.left, y: box.y - canvas.top, width: box.width, height: box.height };
-  if (free && Object.keys(found).every((key) => Math.abs(free[key] - found[key]) < 1)) return;
+  const earlier = free;
+  if (earlier && SIDES.every((key) => Math.abs(earlier[key] - found[key]) < 1)) return;
   free = found;
   if (camera) centre(camera, drawn); // frames.js compares cameras before it draws
-  viewer().requestRender();
+  startedViewer().requestRender();
 }
 
 // Shift and scale the picture, so that the field of view spans the free rectangle.
+/** @param {three.Camera} camera @param {HTMLCanvasElement} canvas */
 function centre(camera, canvas) {
   const width = canvas.clientWidth, height = canvas.clientHeight;
   if (!free || !width || !height) return;
@@ -41,7 +46,7 @@ function centre(camera, canvas) {
   const full = [width * scale, height * scale];
   const offset = [full[0] / 2 - free.x - free.width / 2, full[1] / 2 - free.y - free.height / 2];
   const view = camera.view;
-  const wanted = [...full, ...offset, width, height];
+  const wanted = /** @type {Parameters<typeof camera.setViewOffset>} */ ([...full, ...offset, width, height]);
   const shown = view && view.enabled
     ? [view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height] : [];
   if (shown.length && shown.every((number, k) => Math.abs(number - wanted[k]) < 0.01)) return;
@@ -49,13 +54,15 @@ function centre(camera, canvas) {
   camera.setViewOffset(...wanted); // updates the projection
 }
 
+/** @param {string} name */
 const shownNode = (name) => {
-  const node = viewer().nodeRefFromName[name];
-  for (let parent = node; parent; parent = parent.parent) if (!parent.visible) return null;
+  const node = startedViewer().nodeRefFromName[name];
+  for (let parent = node ?? null; parent; parent = parent.parent) if (!parent.visible) return null;
   return node || null;
 };
 
 // Height [m] of the water at a point of its frame, from the vertices of its mesh; a square tile is repeated.
+/** @param {three.Mesh} mesh @param {three.Vector3} point */
 function waterHeight(mesh, point) {
   const numbers = mesh.geometry.attributes.position.array;
   const last = numbers.length - 3;
@@ -80,6 +87,7 @@ function waterHeight(mesh, point) {
 }
 
 // The lowest height that the camera may have: { always, now }, for good and above the wave that is there now.
+/** @param {three.Camera} camera */
 function lowest(camera) {
   const floor = shownNode("/floor"), sea = shownNode("/sea");
   let always = -Infinity, now = -Infinity;
@@ -95,8 +103,10 @@ function lowest(camera) {
   return { always, now };
 }
 
+/** @type {three.Vector3 | null} */
 let lastTarget = null;
 
+/** @param {three.Camera} camera @param {viser.CameraControls} controls */
 function keepAbove(camera, controls) {
   let { always, now } = lowest(camera);
   const target = controls.getTarget(camera.position.clone());
@@ -130,8 +140,9 @@ function keepAbove(camera, controls) {
 }
 
 // Before each frame: a canvas or a scene of viser's may be another one than before.
+/** @param {three.Camera} camera */
 function placeCamera(camera) {
-  const { cameraControl: controls, camera: own, canvas } = viewer();
+  const { cameraControl: controls, camera: own, canvas } = startedViewer();
   if (!controls || camera !== own) return; // the camera of a shadow or of an environment map
   keepAbove(camera, controls);
   centre(camera, canvas);
@@ -140,11 +151,12 @@ function placeCamera(camera) {
 }
 
 // viser's splats have a projection of their own, which knows nothing of the shift: they get that of the camera.
+/** @type {three.Mesh | null} */
 let splats = null; // the mesh of all splats
 
 function findSplats() {
   if (splats?.parent) return;
-  const { scene, camera } = viewer();
+  const { scene, camera } = startedViewer();
   splats = scene.children.find((child) => child.material?.uniforms?.projectionMatrixCustom) ?? null;
   // The vertices of splats have two numbers each. three would take a third one, and compute a bounding sphere of NaN.
   const center = camera.position.clone().set(0, 0, 0);

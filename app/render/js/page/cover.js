@@ -12,14 +12,15 @@ const ALIVE_INTERVAL = 2000; // [ms] between two questions whether the server is
 const RETRY_INTERVAL = 1000; // [ms] the same after a question without an answer
 const ANSWER_TIME = 5000; // [ms] after which a question counts as not answered
 const MAX_UNANSWERED = 3; // questions in a row: a laptop that wakes, or changes its network, misses one
-const cover = document.getElementById("springtide-cover");
-const words = document.getElementById("springtide-cover-words");
+const cover = /** @type {HTMLElement} */ (document.getElementById("springtide-cover"));
+const words = /** @type {HTMLElement} */ (document.getElementById("springtide-cover-words"));
 // A path is that of a proxy, such as a JupyterHub, or of a pane of several.
 const path = location.pathname.replace(/(pane\/\d+\/)?(index\.html)?$/, "");
 const restart = path === "/" ? "Start it again with the command: springtide" : "Reload this page to start it again.";
 let unanswered = 0;
 let server = ""; // what the server calls itself: another one has another name
 
+/** @param {string | null} text @param {boolean} hidden */
 function say(text, hidden) {
   if (text !== null && words.textContent !== text) words.textContent = text;
   cover.classList.toggle("springtide-hidden", hidden);

@@ -1,5 +1,6 @@
 // Starts the parts of the page. One that does not load, or ends with an error, is named; the others work.
 
+/** @type {Record<string, () => Promise<object>>} */
 const PARTS = {
   cover: () => import("./cover.js"),
   scene: () => import("../scene/main.js"),
@@ -17,7 +18,7 @@ const PARTS = {
 const names = Object.keys(PARTS);
 const ended = await Promise.allSettled(names.map((name) => PARTS[name]()));
 const missing = names.filter((_, k) => ended[k].status === "rejected");
-for (const { reason } of ended) if (reason) console.error(reason);
+for (const one of ended) if (one.status === "rejected") console.error(one.reason);
 if (missing.length > 0) {
   const { notice } = await import("../core/notice.js");
   notice("springtide-missing", `A part of this page did not start: ${missing.join(", ")}. The rest works. Load the page again to retry.`);

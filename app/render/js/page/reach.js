@@ -7,7 +7,7 @@
 // Of viser this file uses window.__viserMutable: nodeRefFromName, camera and canvas.
 
 import { page } from "../core/life.js";
-import { viewer } from "../core/viewer.js";
+import { startedViewer, viewer } from "../core/viewer.js";
 import { onFrame } from "../core/watch.js";
 
 const NAMES = /^\/(rope|cloth|race\/rope_\d+)$/;
@@ -15,19 +15,22 @@ const REACH = 25, TOUCH_REACH = 50; // [pixels]
 const MEMORY = 200; // [ms] for which a vertex is still taken where it was: a hand is that late
 const INTERVAL = 30; // [ms] between two moments that are remembered
 const FAR = 1e9; // [m]
-const moments = new WeakMap(); // mesh -> [{ until, version, points }], the latest first
+/** @type {WeakMap<three.Mesh, { until: number, version: number, points: Float32Array }[]>} */
+const moments = new WeakMap(); // the latest first
 const ring = document.createElement("div");
 ring.id = "springtide-ring";
 document.body.append(ring);
-let pointer = null; // { x, y, reach } [pixels] over the canvas while no button moves it
+/** @type {{ x: number, y: number, reach: number } | null} */
+let pointer = null; // [pixels] over the canvas while no button moves it
 
 function meshes() {
   const nodes = viewer()?.nodeRefFromName ?? {};
   const found = Object.keys(nodes).filter((name) => NAMES.test(name));
   const drawn = found.map((name) => nodes[name]?.children.find((child) => child.isMesh));
-  return drawn.filter((mesh) => mesh?.geometry.attributes.position);
+  return drawn.filter((mesh) => mesh !== undefined).filter((mesh) => mesh.geometry.attributes.position);
 }
 
+/** @param {three.Mesh} mesh @param {number} now */
 function remember(mesh, now) {
   const { array, version } = mesh.geometry.attributes.position;
   let kept = moments.get(mesh);
@@ -37,7 +40,7 @@ function remember(mesh, now) {
     mesh.raycast = (raycaster, hits) => {
       const before = hits.length;
       exact.call(mesh, raycaster, hits);
-      const near = hits.length === before && pointer && nearest(mesh);
+      const near = hits.length === before && pointer && nearest(mesh, pointer);
       if (near) hits.push({ object: mesh, point: near.place, distance: FAR + near.rank });
     };
   }
@@ -48,11 +51,13 @@ function remember(mesh, now) {
 
 // The vertex nearest to the pointer, now or else a moment before: { place, rank }, its place in the world [m] and its
 // distance on the screen [pixels], later where it was longer ago; null where none is within reach.
-function nearest(mesh) {
-  const { camera, canvas } = viewer(), now = mesh.geometry.attributes.position.array;
+/** @param {three.Mesh} mesh @param {{ x: number, y: number, reach: number }} pointer */
+function nearest(mesh, pointer) {
+  const { camera, canvas } = startedViewer(), now = mesh.geometry.attributes.position.array;
   const project = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse).multiply(mesh.matrixWorld);
   const m = project.elements, right = canvas.clientWidth / 2, down = canvas.clientHeight / 2;
-  const shown = [now, ...moments.get(mesh).map(({ points }) => points)].filter((one) => one.length === now.length);
+  const earlier = (moments.get(mesh) ?? []).map(({ points }) => points);
+  const shown = [now, ...earlier].filter((one) => one.length === now.length);
   for (const [age, points] of shown.entries()) {
     let found = -1, least = pointer.reach ** 2;
     for (let k = 0; k < points.length; k += 3) {
@@ -71,13 +76,14 @@ function nearest(mesh) {
   return null;
 }
 
+/** @param {number} now */
 function frame(now) {
   const all = meshes();
   for (const mesh of all) remember(mesh, now);
-  const near = pointer ? all.map(nearest).filter(Boolean) : [];
+  const at = pointer, near = at ? all.map((mesh) => nearest(mesh, at)).filter((one) => one !== null) : [];
   ring.hidden = !near.length;
   if (near.length) {
-    const { camera, canvas } = viewer(), box = canvas.getBoundingClientRect();
+    const { camera, canvas } = startedViewer(), box = canvas.getBoundingClientRect();
     const { place } = near.reduce((best, one) => (one.rank < best.rank ? one : best));
     place.project(camera);
     ring.style.left = `${box.left + (box.width * (1 + place.x)) / 2}px`;
@@ -86,9 +92,10 @@ function frame(now) {
 }
 
 // Before viser's client hears of it.
+/** @param {PointerEvent} event */
 function follow(event) {
   const canvas = viewer()?.canvas, moved = event.type === "pointermove" && event.buttons;
-  if (event.target !== canvas || !event.isPrimary || moved) return void (pointer = null);
+  if (!canvas || event.target !== canvas || !event.isPrimary || moved) return void (pointer = null);
   const box = canvas.getBoundingClientRect(), reach = event.pointerType === "touch" ? TOUCH_REACH : REACH;
   pointer = { x: event.clientX - box.left, y: event.clientY - box.top, reach };
 }

@@ -5,12 +5,15 @@ import { onControls, onValues } from "../core/watch.js";
 
 const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:first-child"; // the title of a folder
 // The button of viser's settings is hidden until they are shown; then it leads back.
+/** @type {Record<string, string>} */
 const ICON_NAMES = { "list-search": "Commands", "adjustments": "Back to the panel", "x": "Close" };
 
+/** @param {Element} element @param {string} name @param {string} value */
 function set(element, name, value) {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
+/** @param {HTMLElement} title */
 function describeFolder(title) {
   if (!title.querySelector("svg")) return;
   set(title, "role", "button");
@@ -19,12 +22,15 @@ function describeFolder(title) {
 }
 
 // The text field of a slider: in the row before its own.
+/** @param {HTMLElement} thumb */
 function fieldOf(thumb) {
+  /** @type {HTMLElement | null} */
   let row = thumb.closest(".multi-slider");
   while (row && !row.previousElementSibling?.querySelector?.("input")) row = row.parentElement;
   return row?.previousElementSibling?.querySelector("input") ?? null;
 }
 
+/** @param {HTMLElement} thumb */
 function describeThumb(thumb) {
   const field = fieldOf(thumb);
   set(thumb, "role", "slider");
@@ -36,6 +42,7 @@ function describeThumb(thumb) {
   if (field) set(thumb, "aria-valuetext", field.value);
 }
 
+/** @param {HTMLElement} button */
 function nameButton(button) {
   if (button.hasAttribute("aria-label") || button.textContent.trim()) return;
   const icon = button.querySelector("svg")?.getAttribute("class") ?? "";

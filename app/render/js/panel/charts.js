@@ -28,6 +28,7 @@ export const chartsOfPage = () => Object.values(window.__viserTestpoints?.uplots
 
 // Have uPlot see null where a column has NaN, before it makes the path of a line.
 const isWatched = new WeakSet(); // series
+/** @param {uplot.Chart} chart */
 function leaveGaps(chart) {
   const without = chart.series.filter((series, k) => k > 0 && !isWatched.has(series));
   for (const series of without) {
@@ -41,7 +42,9 @@ function leaveGaps(chart) {
   if (without.length) chart.redraw();
 }
 
+/** @param {uplot.Chart} chart */
 function placeCrosses(chart) {
+  /** @type {[left: number, label: string, stroke: unknown][]} */
   const wanted = [];
   chart.series.forEach(({ class: kind, label, _stroke, show }, k) => {
     if (kind !== CROSS || !show) return;
@@ -50,7 +53,7 @@ function placeCrosses(chart) {
     });
   });
   const marks = [...chart.over.querySelectorAll(`.${PLACED}`)];
-  while (marks.length > wanted.length) marks.pop().remove();
+  while (marks.length > wanted.length) marks.pop()?.remove();
   wanted.forEach(([left, label, stroke], n) => {
     let mark = marks[n];
     if (!mark) {
@@ -68,7 +71,9 @@ function placeCrosses(chart) {
 }
 
 // A drag across a chart zooms it, a double click ends that.
+/** @type {{ over: HTMLElement, x: number } | null} */
 let pressed = null; // where in a chart the mouse was pressed
+/** @param {uplot.Chart} chart */
 function watchZoom({ over }) {
   page.listen(over, "mousedown", (event) => (pressed = { over, x: event.clientX }));
   page.listen(over, "dblclick", () => delete over.dataset.springtideZoomed);
@@ -79,8 +84,9 @@ page.listen(window, "mouseup", (event) => {
   pressed = null;
 });
 
+/** @param {uplot.Chart} chart */
 function showWholeAxis(chart) {
-  const { x } = chart.scales, times = chart.data[0];
+  const { x } = chart.scales, times = /** @type {number[]} */ (chart.data[0]);
   if (!("springtideWatched" in chart.over.dataset)) watchZoom(chart);
   if ("springtideZoomed" in chart.over.dataset || !x.auto(chart, false)) return;
   const min = times[0], max = times[times.length - 1];
@@ -88,6 +94,7 @@ function showWholeAxis(chart) {
 }
 
 // Put the line of a chart where the moment is [s]; NaN, and a moment that the chart does not show, have none.
+/** @param {uplot.Chart} chart @param {number} moment */
 function placeMoment(chart, moment) {
   const { min, max } = chart.scales.x;
   const shown = chart.series[0].label === "t [s]" && moment >= min && moment <= max;
@@ -107,6 +114,7 @@ function placeMoment(chart, moment) {
 }
 
 // As many charts as fit share the height of a pane; one more is seen by scrolling.
+/** @param {uplot.Chart[]} charts */
 function fillPanes(charts) {
   for (const pane of document.querySelectorAll(PHONE.matches ? PHONE_PANES : PANES)) {
     const own = charts.filter(({ root }) => pane.contains(root) && root.offsetHeight);
@@ -125,11 +133,13 @@ function fillPanes(charts) {
 }
 
 // [pixels] between two charts of a pane.
+/** @param {uplot.Chart[]} charts */
 function gapOf([first, second]) {
   if (!second) return 0;
   return Math.max(0, second.root.getBoundingClientRect().top - first.root.getBoundingClientRect().bottom);
 }
 
+/** @param {uplot.Chart} chart */
 function nameAxis({ over, series }) {
   if (over.dataset.springtideAxis !== series[0].label) over.dataset.springtideAxis = series[0].label;
 }

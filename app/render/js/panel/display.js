@@ -9,9 +9,11 @@ import { connectionNumber, send } from "../core/viewer.js";
 import { onControls, onValues } from "../core/watch.js";
 
 const SCHEME = "data-mantine-color-scheme";
+/** @typedef {keyof typeof CHOICES} Choice */
 const CHOICES = { dark: "springtide-dark", large: "springtide-large" };
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
 
+/** @param {Choice} name */
 function chosen(name) {
   const choice = stored(CHOICES[name]);
   return choice === null ? name === "dark" && systemDark.matches : choice === "yes";
@@ -23,12 +25,12 @@ function apply() {
   document.documentElement.classList.toggle("springtide-dark", chosen("dark"));
   if (document.documentElement.getAttribute(SCHEME) !== scheme) document.documentElement.setAttribute(SCHEME, scheme);
   for (const button of document.querySelectorAll("[data-springtide-switch]")) {
-    const pressed = String(chosen(button.dataset.springtideSwitch));
+    const pressed = String(chosen(/** @type {Choice} */ (button.dataset.springtideSwitch)));
     if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
   }
   for (const label of document.querySelectorAll(".mantine-Switch-label")) {
     // viser's own, which would do nothing here.
-    if (label.textContent === "Dark Mode") label.closest(".mantine-Switch-root").style.display = "none";
+    if (label.textContent === "Dark Mode") label.closest(".mantine-Switch-root")?.style.setProperty("display", "none");
   }
   tellServer();
 }
@@ -52,12 +54,12 @@ page.listen(document, "click", (event) => {
   }
   const button = event.target instanceof Element && event.target.closest("[data-springtide-switch]");
   if (!button) return;
-  const name = button.dataset.springtideSwitch;
+  const name = /** @type {Choice} */ (button.dataset.springtideSwitch);
   store(CHOICES[name], chosen(name) ? "no" : "yes");
   apply();
 });
 page.listen(systemDark, "change", apply);
-page.listen(window, "storage", (event) => Object.values(CHOICES).includes(event.key) && apply());
+page.listen(window, "storage", (event) => Object.values(CHOICES).includes(event.key ?? "") && apply());
 // viser's client sets its own scheme when it starts; the switches come with each scene.
 onControls(apply);
 onValues(apply);

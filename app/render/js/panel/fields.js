@@ -11,16 +11,21 @@ import { stepped } from "./numbers.js";
 
 const FIELD = "input.mantine-TextInput-input";
 const NAMED = `${FIELD}, textarea, .mantine-Slider-thumb, .mantine-NumberInput-input`; // what viser gives no name
-const setText = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set;
-const before = new WeakMap(); // field -> its text when it was entered
-const drafts = new WeakMap(); // field -> what was typed since
+const ofValue = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value");
+const { set: setText } = /** @type {{ set(text: string): void }} */ (ofValue);
+/** @type {WeakMap<HTMLInputElement, string>} */
+const before = new WeakMap(); // its text when it was entered
+/** @type {WeakMap<HTMLInputElement, string>} */
+const drafts = new WeakMap(); // what was typed since
 const DRAGGED = 4; // [pixels] from which on a press with the mouse is a drag
 let sending = false;
 
+/** @param {Event} event */
 function fieldOf(event) {
   return event.target instanceof HTMLInputElement && event.target.matches(FIELD) ? event.target : null;
 }
 
+/** @param {HTMLInputElement} field @param {string} text */
 function send(field, text) {
   drafts.delete(field);
   before.set(field, text);
@@ -30,6 +35,7 @@ function send(field, text) {
   sending = false;
 }
 
+/** @param {HTMLInputElement} field */
 function commit(field) {
   const draft = drafts.get(field);
   if (draft === undefined) return;
@@ -47,8 +53,9 @@ page.listen(document, "click", ({ target }) => {
   for (const name of ["Reset", "Play"]) document.querySelector(`[data-springtide-icon="${name}"]`)?.click();
 }, { capture: true });
 
+/** @param {HTMLInputElement} field */
 function restore(field) {
-  if (drafts.has(field)) setText.call(field, before.get(field));
+  if (drafts.has(field)) setText.call(field, before.get(field) ?? "");
   drafts.delete(field);
 }
 
@@ -60,6 +67,7 @@ page.listen(document, "focusin", (event) => {
 });
 // WebKit puts the caret where the mouse is released in a field that it has just entered, so that what is typed would be added
 // to the old text. A text that the mouse was drawn over stays selected as it is.
+/** @type {{ field: HTMLInputElement, x: number } | null} */
 let entered = null; // the field that the press under way has brought the focus to, and where the press was
 page.listen(document, "pointerdown", (event) => {
   const field = fieldOf(event);
@@ -107,11 +115,12 @@ page.listen(document, "keydown", (event) => {
 page.listen(document, "click", (event) => {
   const used = event.target instanceof Element && event.target.closest("[role=option], button, input[type=checkbox]");
   // A click by keyboard has no detail: the focus stays where Tab has brought it.
-  if (used && event.detail > 0) document.activeElement?.blur();
+  if (used && event.detail > 0) /** @type {HTMLElement | null} */ (document.activeElement)?.blur();
 });
 
 // What a slider sets until it is let go is one change for Undo: the lab is told when it is held, and when no longer.
 let held = false;
+/** @param {boolean} now */
 function tellHeld(now) {
   const holder = document.querySelector("[data-springtide-held]");
   if (now === held || !holder) return;
@@ -133,10 +142,12 @@ function nameFields() {
 }
 
 // The block that stays in sight: the folder that says whether the lab plays. The tabs stand below it.
+/** @type {Record<string, string>} */
 const HINTS = {
   Play: "Play (space)", Pause: "Pause (space)", Step: "One step (N)", Reset: "Back to the start (R)",
   Camera: "Reset the camera (V)", Plots: "Open or close the plots (P)", Undo: "Undo the last change (U)",
 };
+/** @type {Record<string, string>} */
 const ARROWS = { "◀": "Previous task", "▶": "Next task" };
 function nameArrows() {
   for (const button of document.querySelectorAll(".mantine-Button-root")) {
@@ -156,13 +167,14 @@ const sizes = new ResizeObserver(([{ target }]) => {
 });
 function markLab() {
   const status = document.querySelector(".springtide-panel[data-state]"), lab = status?.closest(".mantine-Paper-root");
-  if (!lab) return;
+  if (!status || !lab) return;
   if (!lab.classList.contains("springtide-lab")) {
     lab.classList.add("springtide-lab");
     sizes.disconnect();
     sizes.observe(lab);
   }
-  const head = status.parentElement.parentElement;
+  const head = status.parentElement?.parentElement;
+  if (!head) return;
   head.classList.add("springtide-head");
   for (const button of head.querySelectorAll(".mantine-Button-root")) {
     const name = button.textContent;
@@ -184,8 +196,10 @@ function roveStops() {
     for (const one of group) if (one.tabIndex !== (one === first ? 0 : -1)) one.tabIndex = one === first ? 0 : -1;
   }
 }
+/** @type {Record<string, number>} */
+const STEPS = { ArrowRight: 1, ArrowLeft: -1 }; // along the buttons of the block
 page.listen(document, "keydown", (event) => {
-  const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+  const by = STEPS[event.key];
   if (!by || !(event.target instanceof HTMLElement) || !event.target.dataset.springtideIcon) return;
   const row = [...document.querySelectorAll("[data-springtide-icon]")];
   row[(row.indexOf(event.target) + by + row.length) % row.length].focus();
@@ -198,6 +212,7 @@ const CONTROL = "input, textarea, .mantine-Slider-thumb, button";
 page.listen(document, "keydown", (event) => {
   const typing = event.target instanceof Element && event.target.matches("input, textarea, select");
   if (event.key.toLowerCase() !== "c" || typing || event.ctrlKey || event.metaKey || event.altKey) return;
+  /** @type {NodeListOf<HTMLButtonElement>} */
   const controls = document.querySelectorAll(`[data-dock-area^="gui-tabs-"] :is(${CONTROL}), .mantine-Tabs-panel :is(${CONTROL})`);
   [...controls].find((one) => one.checkVisibility() && !one.disabled)?.focus();
   event.preventDefault();

@@ -1,6 +1,7 @@
 // Numbers as they are typed into fields: 0.5, 0,5, 1/60.
 
 // The number that a text says; null where it says none.
+/** @param {string} text */
 export function parse(text) {
   const [above, below, more] = text.replace(",", ".").split("/");
   const value = below === undefined ? Number(above) : Number(above) / Number(below);
@@ -9,6 +10,7 @@ export function parse(text) {
 
 // The text of the next number up or down, by one in its second digit; of a whole number by one at least. null where the
 // text says no number.
+/** @param {string} text @param {boolean} up */
 export function stepped(text, up) {
   const value = parse(text);
   if (value === null) return null;

@@ -8,7 +8,7 @@
 import { page } from "../core/life.js";
 import { notice } from "../core/notice.js";
 import { springtide } from "../core/springtide.js";
-import { PAGE, send as sendToLab, viewer } from "../core/viewer.js";
+import { PAGE, send as sendToLab, startedViewer } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { chartsOfPage } from "./charts.js";
 
@@ -30,13 +30,15 @@ let query = ["scene", "task", "compare"].some((name) => asked.has(name)) ? locat
 let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
 let pressed = -Infinity;
 
+/** @param {string} text */
 function send(text) {
   return sendToLab(document.querySelector("[data-springtide-inbox]")?.dataset.springtideInbox, `${PAGE}\n${text}`);
 }
 
 // Have the server make a file, by a hidden button of the panel.
+/** @param {string} value */
 function make(value) {
-  sendToLab(document.querySelector("[data-springtide-makers]").dataset.springtideMakers, value);
+  sendToLab(document.querySelector("[data-springtide-makers]")?.dataset.springtideMakers, value);
 }
 
 const own = `[data-springtide-changer="${PAGE}"]`, sentences = document.createElement("style");
@@ -45,6 +47,7 @@ sentences.textContent =
 document.head.append(sentences);
 
 // What viser's client itself takes from an address is not for the lab.
+/** @param {string} search */
 function ofLab(search) {
   const found = new URLSearchParams(search);
   for (const name of [...found.keys()]) if (VISER_NAMES.has(name)) found.delete(name);
@@ -52,11 +55,12 @@ function ofLab(search) {
 }
 
 // Copy a link to the clipboard. A browser that refuses, or a page without encryption, has it selected.
+/** @param {HTMLAnchorElement} link */
 async function copy(link) {
   try {
     await navigator.clipboard.writeText(link.href);
   } catch {
-    getSelection().selectAllChildren(link);
+    getSelection()?.selectAllChildren(link);
     const hint = document.createElement("div");
     hint.setAttribute("role", "status");
     hint.textContent = `Press ${/Mac|iP/.test(navigator.platform) ? "⌘C" : "Ctrl+C"} to copy this link.`;
@@ -65,7 +69,9 @@ async function copy(link) {
 }
 
 function completeLinks() {
-  for (const link of document.querySelectorAll("[data-springtide-link]:not([data-springtide-done])")) {
+  /** @type {NodeListOf<HTMLAnchorElement>} */
+  const links = document.querySelectorAll("[data-springtide-link]:not([data-springtide-done])");
+  for (const link of links) {
     link.dataset.springtideDone = "";
     link.href = location.origin + location.pathname.replace(/pane\/\d\/[^/]*$/, "") + link.dataset.springtideLink;
     link.textContent = link.href;
@@ -78,11 +84,15 @@ function update() {
   completeLinks();
   if (showsLab) {
     const found = [...document.querySelectorAll('[role="tab"]')].find((one) => one.textContent.trim() === "Lab");
-    const press = (kind) => found.dispatchEvent(new PointerEvent(kind, { bubbles: true, isPrimary: true, pointerId: 1 }));
-    if (found && found.ariaSelected !== "true") ["pointerdown", "pointerup"].forEach(press); // viser hears no click
+    if (found && found.ariaSelected !== "true") {
+      for (const kind of ["pointerdown", "pointerup"]) { // viser hears no click
+        found.dispatchEvent(new PointerEvent(kind, { bubbles: true, isPrimary: true, pointerId: 1 }));
+      }
+    }
   }
 }
 
+/** @param {Blob} content @param {string} name */
 function download(content, name) {
   const link = document.createElement("a");
   link.href = URL.createObjectURL(content);
@@ -91,7 +101,9 @@ function download(content, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
+/** @type {MediaRecorder | null} */
 let clip = null; // the recorder of the clip that is being made
+/** @param {HTMLElement} button */
 function toggleClip(button) {
   if (clip) {
     clip.stop();
@@ -102,31 +114,35 @@ function toggleClip(button) {
     notice("springtide-clips", "This browser records no clips. Choose “As pictures” instead, or another browser.");
     return;
   }
-  const parts = [], started = performance.now();
-  clip = new MediaRecorder(viewer().canvas.captureStream(CLIP_RATE), {
+  /** @type {Blob[]} */
+  const parts = [];
+  const started = performance.now();
+  const made = new MediaRecorder(startedViewer().canvas.captureStream(CLIP_RATE), {
     mimeType: type, videoBitsPerSecond: CLIP_BITS,
   });
+  clip = made;
   const show = () => {
     const seconds = (performance.now() - started) / 1000;
     button.textContent = `Stop clip (${seconds.toFixed(0)} s)`;
-    if (seconds >= MAX_CLIP) clip.stop();
+    if (seconds >= MAX_CLIP) made.stop();
   };
   springtide.isRecording = true; // the quality of the picture stays while it is recorded
   const timer = setInterval(show, 500);
-  clip.ondataavailable = (event) => parts.push(event.data);
-  clip.onstop = () => {
+  made.ondataavailable = (event) => parts.push(event.data);
+  made.onstop = () => {
     clearInterval(timer);
-    for (const track of clip.stream.getTracks()) track.stop();
+    for (const track of made.stream.getTracks()) track.stop();
     clip = null;
     springtide.isRecording = false;
     button.textContent = "Record";
     download(new Blob(parts, { type }), type.startsWith("video/mp4") ? "springtide.mp4" : "springtide.webm");
   };
-  clip.start(1000);
+  made.start(1000);
   show();
 }
 
 // All charts below each other, each with its title above and the names of its lines below.
+/** @param {HTMLElement} button */
 function saveCharts(button) {
   const charts = chartsOfPage();
   if (!charts.length) {
@@ -135,7 +151,8 @@ function saveCharts(button) {
     return;
   }
   const ratio = devicePixelRatio, line = 26 * ratio;
-  const sheet = document.createElement("canvas"), pen = sheet.getContext("2d");
+  const sheet = document.createElement("canvas");
+  const pen = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
   const width = Math.max(...charts.map((chart) => chart.ctx.canvas.width));
   // The names of a chart's lines, in as many rows as they need: [row, left, name, colour] of each.
   const keys = charts.map((chart) => {
@@ -148,13 +165,16 @@ function saveCharts(button) {
         left = 8 * ratio;
       }
       left += size;
-      return [row, left - size, `— ${label}`, typeof stroke === "string" ? stroke : "#888888"];
+      /** @type {[row: number, left: number, name: string, colour: string]} */
+      const key = [row, left - size, `— ${label}`, typeof stroke === "string" ? stroke : "#888888"];
+      return key;
     });
   });
   const rows = keys.map((key) => 1 + Math.max(0, ...key.map(([row]) => row)));
   sheet.width = width;
   sheet.height = charts.reduce((sum, chart, i) => sum + chart.ctx.canvas.height + (1 + rows[i]) * line, 0);
-  pen.fillStyle = getComputedStyle(charts[0].root.parentElement).getPropertyValue("--mantine-color-body") || "#ffffff";
+  const around = getComputedStyle(charts[0].root.parentElement ?? charts[0].root);
+  pen.fillStyle = around.getPropertyValue("--mantine-color-body") || "#ffffff";
   pen.fillRect(0, 0, sheet.width, sheet.height);
   pen.textBaseline = "middle";
   let top = 0;
@@ -177,26 +197,28 @@ function saveCharts(button) {
     }
     top += rows[i] * line;
   });
-  sheet.toBlob((content) => download(content, "springtide-plots.png"));
+  sheet.toBlob((content) => content && download(content, "springtide-plots.png"));
 }
 
-for (const kind of ["pointerdown", "keydown"])
-  page.listen(document, kind, ({ isTrusted, target }) => {
-    if (isTrusted && target.closest?.('[role="tab"]')) showsLab = false;
-  }, { capture: true });
+page.listen(document, ["pointerdown", "keydown"], ({ isTrusted, target }) => {
+  if (isTrusted && target instanceof Element && target.closest('[role="tab"]')) showsLab = false;
+}, { capture: true });
+// What is chosen in a list of the panel, if it is there.
+/** @param {string} selector */
+const choiceOf = (selector) => /** @type {HTMLSelectElement | null} */ (document.querySelector(selector))?.value;
 page.listen(document, "click", (event) => {
   const button = event.target instanceof Element && event.target.closest("button");
   if (!button) return;
   if (button.textContent === "Copy link") pressed = performance.now();
-  const film = document.querySelector("[data-springtide-film]")?.value;
+  const film = choiceOf("[data-springtide-film]");
   if ("springtideClip" in button.dataset) clip || !film ? toggleClip(button) : make(film);
   if (!("springtideCharts" in button.dataset)) return;
-  const form = document.querySelector("[data-springtide-plots]").value;
+  const form = choiceOf("[data-springtide-plots]");
   form === "PNG" ? saveCharts(button) : make(`Plots as ${form}`);
 }, { capture: true });
 page.listen(document, "change", async (event) => {
   const field = event.target;
-  if (!(field instanceof HTMLInputElement) || !("springtideLoad" in field.dataset) || !field.files.length) return;
+  if (!(field instanceof HTMLInputElement) || !("springtideLoad" in field.dataset) || !field.files?.length) return;
   const file = field.files[0];
   let text = await file.slice(0, 4 * MAX_LENGTH).text();
   if (text.trimStart().startsWith("<") && file.size <= MAX_REPLAY) {

@@ -20,19 +20,34 @@ bar.innerHTML = `<div class="springtide-past springtide-switches"><output></outp
     <button type="button" data-act="live" title="Back to the present">Live</button>
     <button type="button" data-act="continue"><b>Continue from here</b></button></div>
   <button type="button" data-act="play"></button><input type="range" step="any" aria-label="Time of the recording"><span></span>`;
-const [back, speed, line, moment] = ["output", "select", "input", "span"].map((name) => bar.querySelector(name));
-const button = (act) => bar.querySelector(`[data-act=${act}]`);
-let state = null, told = "", count = 0, held = false, sentAt = 0, waiting = 0;
+/** @template {"output" | "select" | "input" | "span"} K @param {K} name @returns {HTMLElementTagNameMap[K]} */
+const part = (name) => /** @type {HTMLElementTagNameMap[K]} */ (bar.querySelector(name));
+const back = part("output"), speed = part("select"), line = part("input"), moment = part("span");
+/** @param {string} act @returns {HTMLButtonElement} */
+const button = (act) => /** @type {HTMLButtonElement} */ (bar.querySelector(`[data-act=${act}]`));
+/**
+ * What the panel says: times are in seconds; shown: null at the present.
+ * @typedef {{ inbox: string, run: number, low: number, high: number, shown: number | null, rate: number,
+ *   rates: number[], loops: boolean, playing: boolean, resumable: boolean, size: string }} State
+ */
+/** @type {State} */
+let state;
+let told = "", count = 0, held = false, sentAt = 0;
+/** @type {ReturnType<typeof setTimeout> | 0} */
+let waiting = 0;
 
+/** @param {string} act @param {string | number} number */
 function send(act, number) {
   sendToLab(state.inbox, `${PAGE}${++count} ${act} ${number} ${state.run}`);
 }
 
+/** @param {Element} element @param {string} text */
 function put(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
 // Say the moment that the bar shows: under a hand it is the hand's.
+/** @param {boolean} isPast */
 function say(isPast) {
   const at = Number(line.value);
   put(moment, isPast ? `t = ${at.toFixed(2)} s` : "Live");
@@ -48,10 +63,12 @@ function update() {
   if (!now) return;
   state = JSON.parse(now);
   const isPast = state.shown !== null;
-  bar.dataset.moment = state.shown ?? ""; // for the charts
+  bar.dataset.moment = String(state.shown ?? ""); // for the charts
   bar.classList.toggle("springtide-is-past", isPast);
-  if (speed.options.length !== state.rates.length) speed.replaceChildren(...state.rates.map((rate) => new Option(`×${rate}`, rate)));
-  speed.value = state.rate;
+  if (speed.options.length !== state.rates.length) {
+    speed.replaceChildren(...state.rates.map((rate) => new Option(`×${rate}`, String(rate))));
+  }
+  speed.value = String(state.rate);
   button("loop").ariaPressed = String(state.loops);
   put(button("play"), state.playing ? "❚❚" : "▶");
   button("play").ariaLabel = button("play").title = state.playing ? "Stop playing the recording" : "Play the recording";
@@ -61,8 +78,8 @@ function update() {
   line.disabled = !(state.high > state.low);
   line.title = `Recorded: ${(state.high - state.low).toFixed(0)} s, ${state.size}. Drag to look back`;
   if (held) return;
-  [line.min, line.max] = [state.low, state.high];
-  line.value = state.shown ?? state.high;
+  [line.min, line.max] = [String(state.low), String(state.high)];
+  line.value = String(state.shown ?? state.high);
   say(isPast);
 }
 

@@ -5,7 +5,7 @@
 // The photograph is read once, beside the page: to wait for it would be to wait for all that is drawn before. Without float
 // targets, or if the program does not link, three's own lookups stay.
 
-import { viewer } from "../core/viewer.js";
+import { startedViewer } from "../core/viewer.js";
 import { drawTable, makeTable, TARGET_VERTEX } from "../sea/sky_table.js";
 import { contextNumber } from "../shading/context.js";
 import { keyWithDetails, QUALITY, withDetails } from "../shading/quality.js";
@@ -53,11 +53,14 @@ const MATT_GLSL = `
   #define RE_IndirectDiffuse(irradiance, place, normal, view, coat, material, found) \\
     found.indirectDiffuse += irradiance * BRDF_Lambert(diffuseColor.rgb)`;
 
+/** @type {{ value: three.Vector3[] | null }} */
 export const skyTerms = { value: null }; // the nine terms, and the least light of all directions
 const LIKELY_SKY = [0.7, 0.75, 0.8]; // until the photograph is read
 export let skiesRead = 0; // frames.js draws when it changes
+/** @type {Table | null} */
 let samples = null; // the table with which the photograph is read
 
+/** @param {three.Shader} shader */
 export function addAmbient(shader) {
   Object.assign(shader.uniforms, { skyTerms });
   insertAfter(shader, "fragmentShader", "envmap_physical_pars_fragment", AMBIENT_GLSL);
@@ -66,30 +69,34 @@ export function addAmbient(shader) {
 }
 
 // The terms of the polynomial in a direction.
+/** @param {number} x @param {number} y @param {number} z */
 function termsOf(x, y, z) {
   return [1, x, y, z, x * y, y * z, z * x, x * x - y * y, 3 * z * z - 1];
 }
 
 // Read the photograph if it is another one, or is turned.
+/** @param {three.Renderer} renderer @param {three.Scene} scene @param {three.Mesh} mesh */
 function readSky(renderer, scene, mesh) {
   const photograph = scene.environment, Target = photograph?.renderTarget?.constructor;
   if (!Target || !renderer.extensions.has("EXT_color_buffer_float")) return;
   const key = [contextNumber(), photograph.uuid, photograph.version, ...scene.environmentRotation.toArray()].join();
   if (samples?.key === key) return;
   const how = { type: FLOAT, format: RGBA, minFilter: NEAREST, magFilter: NEAREST, depthBuffer: false };
-  samples ??= makeTable({ geometry: mesh.geometry, mesh }, new Target(DIRECTIONS, 1, how));
-  const isDrawn = drawTable(renderer, scene, samples, key, "springtide-sky-samples", (shader) => {
+  const table = (samples ??= makeTable({ geometry: mesh.geometry, mesh }, new Target(DIRECTIONS, 1, how)));
+  const isDrawn = drawTable(renderer, scene, table, key, "springtide-sky-samples", (shader) => {
     shader.vertexShader = TARGET_VERTEX;
     shader.fragmentShader = SKY_SAMPLES_FRAGMENT;
   });
   if (!isDrawn) return;
   skyTerms.value ??= [...MEAN_SQUARES, 0].map((_, i) => mesh.position.clone().fromArray(i === 0 ? LIKELY_SKY : [0, 0, 0]));
-  const numbers = new Float32Array(4 * DIRECTIONS), asked = [samples.target, 0, 0, DIRECTIONS, 1, numbers];
+  const numbers = new Float32Array(4 * DIRECTIONS);
+  /** @type {three.ReadTarget} */
+  const asked = [table.target, 0, 0, DIRECTIONS, 1, numbers];
   const take = () => {
-    if (samples.key !== key) return;
+    if (table.key !== key) return;
     setTerms(numbers);
     skiesRead += 1;
-    viewer().requestRender();
+    startedViewer().requestRender();
   };
   if (QUALITY.isWhole()) {
     renderer.readRenderTargetPixels(...asked);
@@ -98,12 +105,13 @@ function readSky(renderer, scene, mesh) {
 }
 
 // The terms of a sky with these colours in DIRECTIONS, red, green, blue and one more number each.
+/** @param {ArrayLike<number>} numbers */
 export function setTerms(numbers) {
   const directions = Array.from({ length: DIRECTIONS }, (_, k) => {
     const z = 1 - (2 * k + 1) / DIRECTIONS, level = Math.sqrt(1 - z * z), a = GOLDEN_ANGLE * k;
     return termsOf(level * Math.cos(a), level * Math.sin(a), z);
   });
-  const terms = skyTerms.value.slice(0, -1), least = skyTerms.value.at(-1), color = least.clone();
+  const all = skyTerms.value ?? [], terms = all.slice(0, -1), least = all[terms.length], color = least.clone();
   for (const [i, term] of terms.entries()) {
     term.set(0, 0, 0);
     for (const [k, direction] of directions.entries()) {
@@ -120,19 +128,23 @@ export function setTerms(numbers) {
 }
 
 // Whether a material is lit so. At the lowest quality everything is.
+/** @param {three.Material} material */
 export const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0;
 
 // Light viser's own meshes so; those with a shader of ours ask for it themselves.
+/** @param {three.Renderer} renderer @param {three.Scene} scene */
 export function lightMeshes(renderer, scene) {
+  /** @type {three.Material[]} */
   const lit = [];
-  let plain = null; // an ordinary mesh, not an instanced one: its class makes the triangle
+  /** @type {three.Mesh[]} */
+  const plain = []; // ordinary meshes, not instanced ones: their class makes the triangle
   scene.traverseVisible((object) => {
     if (!object.isMesh || object.layers.mask === 0) return;
     lit.push(...[object.material].flat().filter((one) => one.isMeshStandardMaterial && !one.isMeshPhysicalMaterial));
     const isPlain = Object.getPrototypeOf(object.constructor) === Object.getPrototypeOf(scene.constructor);
-    if (isPlain && object.material.isMeshStandardMaterial) plain ??= object;
+    if (isPlain && object.material.isMeshStandardMaterial) plain.push(object);
   });
-  if (plain) readSky(renderer, scene, plain);
+  if (plain.length > 0) readSky(renderer, scene, plain[0]);
   for (const one of skyTerms.value ? lit : []) {
     const { springtide } = one.userData;
     if (springtide && !springtide.startsWith(AMBIENT)) continue;

@@ -1,7 +1,7 @@
 // The contact shadow of "<name>" where there is a "<name>/contact_shadow": its mesh once more, flattened on the floor and
 // dark where it is near to it. The floor's own shadow is equally dark at every height.
 
-import { viewer } from "../core/viewer.js";
+import { startedViewer } from "../core/viewer.js";
 import { meshOf, replaceShader } from "../shading/shaders.js";
 
 const CONTACT_VERTEX = `
@@ -18,34 +18,38 @@ const CONTACT_FRAGMENT = `
   varying float vDark;
   void main() { gl_FragColor = vec4(0.0, 0.0, 0.0, vDark); }`;
 
+/** @type {Map<string, { mesh: three.Mesh, shadow: three.Mesh }>} */
 const contacts = new Map(); // name of the node -> { mesh, shadow }: viser's mesh and the one on the floor
 
-function removeContact(base) {
-  const { shadow } = contacts.get(base);
+/** @param {string} base @param {three.Mesh} shadow */
+function removeContact(base, shadow) {
   shadow.removeFromParent();
   shadow.material.dispose(); // the geometry is viser's
   contacts.delete(base);
 }
 
+/** @type {NodeShader} */
 export const contact = {
   suffix: "/contact_shadow",
   removeUnused() {
-    for (const [base, { mesh }] of contacts) if (meshOf(base) !== mesh) removeContact(base);
+    for (const [base, { mesh, shadow }] of contacts) if (meshOf(base) !== mesh) removeContact(base, shadow);
   },
   update({ base, mesh }) {
-    if (contacts.get(base)?.mesh !== mesh) {
-      if (contacts.has(base)) removeContact(base);
+    let known = contacts.get(base);
+    if (known?.mesh !== mesh) {
+      if (known) removeContact(base, known.shadow);
       const shadow = mesh.clone(false);
       shadow.material = new mesh.material.constructor();
       shadow.material.transparent = true;
       shadow.material.depthWrite = shadow.castShadow = shadow.receiveShadow = shadow.frustumCulled = false;
       shadow.raycast = () => {};
-      mesh.parent.add(shadow);
-      contacts.set(base, { mesh, shadow });
+      mesh.parent?.add(shadow);
+      known = { mesh, shadow };
+      contacts.set(base, known);
     }
-    const { shadow } = contacts.get(base);
+    const { shadow } = known;
     shadow.geometry = mesh.geometry;
-    shadow.visible = Boolean(viewer().nodeRefFromName["/floor"]?.visible);
+    shadow.visible = Boolean(startedViewer().nodeRefFromName["/floor"]?.visible);
     replaceShader(shadow.material, "springtide-contact", (shader) => {
       shader.vertexShader = CONTACT_VERTEX;
       shader.fragmentShader = CONTACT_FRAGMENT;

@@ -21,6 +21,11 @@ const SMALL = 16384; // numbers up to which a texture is compared itself: viser 
 const LONG_FRAME = 100; // [ms] from which on a frame leaves time for the panel
 const FRAMES_LEFT = 2; // to the panel after its user has pressed something in it
 
+/** @typedef {unknown[] & { textures: Set<object> }} Inputs */
+
+const isNumbers = /** @type {(value: unknown) => value is Float32Array} */ (ArrayBuffer.isView);
+
+/** @param {Inputs} list @param {any} value of any kind */
 function addValue(list, value) {
   if (value?.isTexture) {
     const numbers = value.image?.data;
@@ -30,18 +35,20 @@ function addValue(list, value) {
     if (numbers?.length <= SMALL) for (const number of numbers) list.push(number);
     else list.push(value.enqueueUpdate ? {} : value.version, numbers); // of instances: its version does not tell
   } else if (value?.toArray) for (const number of value.toArray()) list.push(number);
-  else if (Array.isArray(value) || (ArrayBuffer.isView(value) && value.length <= SMALL)) {
+  else if (Array.isArray(value) || (isNumbers(value) && value.length <= SMALL)) {
     for (const one of value) addValue(list, one);
   } else list.push(value);
 }
 
 // An attribute of a geometry. Its own writes (packed.js) follow from data that is in the list.
+/** @param {Inputs} list @param {three.Attribute | undefined} attribute */
 function addAttribute(list, attribute) {
   if (!attribute || attribute.springtide) return;
   const { array, version, springtideWrites = 0 } = attribute.data ?? attribute;
   list.push(array, version - springtideWrites);
 }
 
+/** @param {Inputs} list @param {any} object of any class */
 function addObject(list, object) {
   if (object.userData.springtideDerived) return; // it follows from the others
   const { geometry, material } = object;
@@ -81,27 +88,34 @@ function addObject(list, object) {
 }
 
 // All that a frame of the page depends on, as a list of numbers and objects.
+/** @param {three.Renderer} renderer @param {three.Scene} scene @param {three.Camera} camera */
 function inputsOf(renderer, scene, camera) {
   const { domElement: canvas, toneMapping, toneMappingExposure, outputColorSpace, shadowMap } = renderer;
   const { details, pixels } = QUALITY.now();
-  const list = [
+  const own = [
     isDark(), devicePixelRatio, details, pixels, canvas.width, canvas.height, canvas.clientWidth, canvas.clientHeight,
     toneMapping, toneMappingExposure, outputColorSpace, shadowMap.enabled, scene.environmentIntensity,
     scene.backgroundIntensity, scene.backgroundBlurriness, scene.fog, camera, awaitsSky(scene), skiesRead, programsReady,
   ];
-  list.textures = new Set();
-  for (const part of ["background", "environment", "environmentRotation", "backgroundRotation", "overrideMaterial"]) {
-    addValue(list, scene[part]);
+  /** @type {Inputs} */
+  const list = Object.assign(own, { textures: new Set() });
+  const { background, environment, environmentRotation, backgroundRotation, overrideMaterial } = scene;
+  const { position, quaternion, projectionMatrix } = camera;
+  for (const value of [background, environment, environmentRotation, backgroundRotation, overrideMaterial]) {
+    addValue(list, value);
   }
-  for (const part of ["position", "quaternion", "projectionMatrix"]) addValue(list, camera[part]);
+  for (const value of [position, quaternion, projectionMatrix]) addValue(list, value);
   scene.traverse((object) => addObject(list, object));
   return list;
 }
 
 // life: of the renderer.
+/** @param {three.Renderer} renderer @param {import("../core/life.js").Life} life */
 export function paceFrames(renderer, life) {
   const gl = renderer.getContext(), keepsPixels = gl.getContextAttributes()?.preserveDrawingBuffer;
+  /** @type {Inputs | null} */
   let last = null; // the inputs of the frame that the canvas shows
+  /** @type {{ fence: WebGLSync | null, compiled: boolean } | null} */
   let drawing = null; // of that frame while it is being drawn: its fence, and whether it had a new program
   let length = 0; // [ms] of it
   let started = 0, pressed = 0, left = 0; // when it began, when something in the panel was pressed, frames left to the panel
@@ -119,6 +133,7 @@ export function paceFrames(renderer, life) {
   }
 
   // The graphics process draws on its own: without waiting for it, the panel would stand behind several frames.
+  /** @param {boolean} compiled */
   function awaitEnd(compiled) {
     if (drawing) gl.deleteSync(drawing.fence); // a new size is drawn at once
     const mine = (drawing = { fence: gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0), compiled });
@@ -140,19 +155,19 @@ export function paceFrames(renderer, life) {
   let knownPrograms = ""; // with the last frame
   const programs = () => `${renderer.info.programs?.at(-1)?.id} ${programsReady}`;
 
-  wrapMethod(life, renderer, "render", (earlier) => function (scene, camera) {
+  wrapMethod(life, renderer, "render", (earlier) => /** @this {three.Renderer} */ function (scene, camera) {
     const { scene: own, camera: eye, requestRender } = viewer() ?? {};
-    if (scene !== own || renderer.getRenderTarget()) return void earlier.call(this, scene, camera);
+    if (!own || scene !== own || renderer.getRenderTarget()) return void earlier.call(this, scene, camera);
     if (gl.isContextLost()) return;
-    makeOpaque(renderer, scene);
+    makeOpaque(renderer, own);
     if (camera !== eye || QUALITY.isCapturing() || springtide.isRecording || !keepsPixels) {
       last = null;
       return void earlier.call(this, scene, camera);
     }
     if (document.visibilityState === "hidden") return;
-    const inputs = inputsOf(renderer, scene, camera);
-    if (last?.length === inputs.length && inputs.every((input, k) => Object.is(input, last[k]))) return;
-    if (last && hasToWait()) return void requestRender();
+    const inputs = inputsOf(renderer, own, camera), shown = last;
+    if (shown?.length === inputs.length && inputs.every((input, k) => Object.is(input, shown[k]))) return;
+    if (shown && hasToWait()) return void requestRender?.();
     [started, left] = [performance.now(), 0];
     earlier.call(this, scene, camera);
     last = inputs;
@@ -161,19 +176,20 @@ export function paceFrames(renderer, life) {
     knownPrograms = known;
   });
   // It clears the canvas.
-  wrapMethod(life, renderer, "setSize", (earlier) => function (...size) {
+  wrapMethod(life, renderer, "setSize", (earlier) => /** @this {three.Renderer} */ function (...size) {
     last = null;
     earlier.apply(this, size);
   });
   // The fence is lost with the context.
   life.listen(renderer.domElement, "webglcontextrestored", () => ([last, drawing] = [null, null]));
-  const press = ({ target }) => {
+  const press = (/** @type {Event} */ { target }) => {
     if (target !== renderer.domElement) pressed = performance.now();
   };
   life.listen(document, ["pointerdown", "keydown", "input"], press, { capture: true, passive: true });
 }
 
 // viser fades the canvas in over the first frames after its sky is there: many seconds where frames are slow.
+/** @param {three.Renderer} renderer @param {three.Scene} scene */
 export function makeOpaque(renderer, scene) {
   if (scene.environment) renderer.domElement.style.opacity = "1";
 }

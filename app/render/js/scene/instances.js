@@ -4,20 +4,23 @@
 
 import { contextNumber } from "../shading/context.js";
 
+/** @type {{ renderer: three.Renderer | null, context: number }} */
 let last = { renderer: null, context: 0 };
 
+/** @param {three.Renderer} renderer @param {three.Scene} scene */
 export function renewInstances(renderer, scene) {
   const now = { renderer, context: contextNumber() }, isRestored = last.renderer === renderer && last.context !== now.context;
   last = now;
   if (!isRestored) return;
   const gl = renderer.getContext();
-  scene.traverse((mesh) => {
-    const { instanceIndex } = mesh;
+  scene.traverse((object) => {
+    const mesh = /** @type {viser.InstancedMesh} */ (object), { instanceIndex } = mesh;
     if (!instanceIndex?.setBuffer || !mesh.patchMaterial) return;
     instanceIndex.setBuffer(gl.createBuffer());
     gl.bindBuffer(gl.ARRAY_BUFFER, instanceIndex.buffer);
     gl.bufferData(gl.ARRAY_BUFFER, instanceIndex.array, gl.DYNAMIC_DRAW);
-    for (const material of [mesh.material, mesh.customDepthMaterial, mesh.customDistanceMaterial].flat().filter(Boolean)) {
+    const materials = [mesh.material, mesh.customDepthMaterial, mesh.customDistanceMaterial].flat();
+    for (const material of materials.filter((one) => one !== undefined)) {
       mesh.patchMaterial(renderer, material);
       const remembered = renderer.properties.get(material);
       for (const name of Object.keys(remembered)) delete remembered[name];

@@ -10,15 +10,14 @@
 
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
-import { viewer } from "../core/viewer.js";
+import { startedViewer } from "../core/viewer.js";
 import { followContext } from "../shading/context.js";
 import { isDark } from "../shading/dark.js";
 import { QUALITY } from "../shading/quality.js";
 import { replaceShader } from "../shading/shaders.js";
+import { raises } from "./label_layout.js";
 
 const LABEL_TEXTURE = 4096; // [pixels] width of viser's texture of places
-const LABEL_GAP = 0.15; // between two labels, in heights of a label
-const MAX_RAISE = 12; // [heights of a label] by which one is raised: one that had to be higher is hidden
 const MAX_LEADERS = 64; // lines from raised labels to their places
 const LEADER_WIDTH = 0.1; // of such a line, in heights of a label
 const LEADER_FRAGMENT = "void main() { gl_FragColor = vec4(0.45, 0.49, 0.54, 1.0); }";
@@ -28,22 +27,31 @@ const LABEL_COLOURS = [
   ["gl_FragColor = vec4(1.0, 1.0, 1.0, 0.85 * vAlpha);", "gl_FragColor = vec4(0.10, 0.12, 0.15, 0.85 * vAlpha);"],
 ];
 
+/** @type {three.Object3D | null} */
 let labelGroup = null; // of viser's meshes
+/** @type {three.Mesh | null} */
 let leaders = null; // the mesh of all lines
+/** @type {three.Renderer | false | null} */
 let overlay = null; // the renderer of the canvas over the picture; false where the browser gives none
+/** @type {Map<number, [from: number[], to: number[]]>} */
 let raised = new Map(); // index of a raised label -> where viser has it, and where it is drawn, [x, y, z] each
 
+/** @param {three.Scene} scene */
 function findLabels(scene) {
   if (!labelGroup?.parent) {
-    labelGroup = leaders = null;
+    /** @type {three.Mesh[]} */
+    const found = [];
     scene.traverse((object) => {
-      if (object.material?.uniforms?.uLabelData) labelGroup ??= object.parent;
+      if (object.material?.uniforms?.uLabelData) found.push(object);
     });
+    leaders = null;
+    labelGroup = found[0]?.parent ?? null;
     labelGroup?.getObjectByName("springtide-leaders")?.removeFromParent(); // of an earlier connection
   }
   return labelGroup ? labelGroup.children.filter((mesh) => mesh !== leaders) : [];
 }
 
+/** @param {three.Mesh[]} meshes */
 function darkenLabels(meshes) {
   const dark = isDark();
   for (const { material } of meshes) {
@@ -55,6 +63,7 @@ function darkenLabels(meshes) {
 }
 
 // The rectangles of the visible labels with a size on the screen, in coordinates from -1 to 1 across the picture.
+/** @param {three.Mesh} mesh @param {three.Camera} camera */
 function labelBoxes({ geometry, material }, camera) {
   const { aLabelIndex, aRect, aParams } = geometry.attributes;
   const { uLabelData, uFovScale, uViewportHeight } = material.uniforms;
@@ -79,22 +88,16 @@ function labelBoxes({ geometry, material }, camera) {
 }
 
 // Raise labels, the lowest first, until none covers another.
+/** @param {three.Mesh} mesh @param {three.Camera} camera */
 function arrangeLabels(mesh, camera) {
   const { value: texture } = mesh.material.uniforms.uLabelData, numbers = texture.image.data;
-  const boxes = labelBoxes(mesh, camera).sort((a, b) => a.y - b.y || a.index - b.index), placed = [], lines = [];
+  const boxes = labelBoxes(mesh, camera).sort((a, b) => a.y - b.y || a.index - b.index), lines = [];
   const up = camera.position.clone().setFromMatrixColumn(camera.matrixWorld, 1);
   raised = new Map();
-  for (const box of boxes) {
-    const gap = LABEL_GAP * box.height, start = box.bottom;
-    const covered = (other) => box.left < other.right && box.right > other.left &&
-      box.bottom < other.bottom + other.height + gap && box.bottom + box.height + gap > other.bottom;
-    for (let other = placed.find(covered); other; other = placed.find(covered)) {
-      box.bottom = other.bottom + other.height + 1.01 * gap;
-    }
-    const raise = (box.bottom - start) / box.height; // [heights of the label]
-    if (raise > MAX_RAISE) numbers[box.at + 3] = 0;
-    else placed.push(box);
-    if (raise === 0 || raise > MAX_RAISE) continue;
+  for (const [n, raise] of raises(boxes).entries()) {
+    const box = boxes[n];
+    if (raise === null) numbers[box.at + 3] = 0;
+    if (!raise) continue;
     const from = box.place.toArray();
     box.place.addScaledVector(up, raise * box.rows * box.unit).toArray(numbers, box.at);
     raised.set(box.index, [from, Array.from(numbers.subarray(box.at, box.at + 3))]);
@@ -105,20 +108,21 @@ function arrangeLabels(mesh, camera) {
 }
 
 // A line is a narrow rectangle below the place of a label, as viser's vertex shader draws them.
+/** @param {three.Mesh} mesh @param {{ k: number, index: number, rows: number, length: number }[]} lines */
 function drawLeaders({ geometry, material, renderOrder, constructor }, lines) {
-  if (!leaders && !lines.length) return;
+  if (!leaders && (!lines.length || !labelGroup)) return;
   if (!leaders) {
     const made = new geometry.constructor(), { vertexShader, uniforms } = material;
     made.index = geometry.index.clone();
     made.setAttribute("position", geometry.attributes.position.clone());
-    for (const [name, size] of [["aLabelIndex", 1], ["aParams", 2], ["aRect", 4]]) {
+    for (const [name, size] of /** @type {const} */ ([["aLabelIndex", 1], ["aParams", 2], ["aRect", 4]])) {
       made.setAttribute(name, new geometry.attributes[name].constructor(new Float32Array(size * MAX_LEADERS), size));
     }
     const how = { vertexShader, uniforms, fragmentShader: LEADER_FRAGMENT, depthTest: false, depthWrite: false };
     leaders = new constructor(made, new material.constructor({ ...how, transparent: true }));
     Object.assign(leaders, { name: "springtide-leaders", frustumCulled: false, renderOrder });
     leaders.userData.springtideDerived = true;
-    labelGroup.add(leaders);
+    labelGroup?.add(leaders);
   }
   const { aLabelIndex, aParams, aRect } = leaders.geometry.attributes;
   lines.forEach(({ k, index, rows, length }, line) => {
@@ -132,9 +136,11 @@ function drawLeaders({ geometry, material, renderOrder, constructor }, lines) {
 }
 
 // The renderer of the canvas over the picture, of the same size; null where the browser gives none.
+/** @param {three.Renderer} renderer */
 function overlayOf(renderer) {
   const picture = renderer.domElement, { clientWidth: width, clientHeight: height } = picture;
-  overlay ??= document.getElementById("springtide-labels")?.springtideRenderer ?? makeOverlay(renderer);
+  const earlier = /** @type {HTMLCanvasElement | null} */ (document.getElementById("springtide-labels"));
+  overlay ??= earlier?.springtideRenderer ?? makeOverlay(renderer);
   if (!overlay || !width || !height) return null;
   const { domElement: canvas } = overlay;
   if (canvas.previousSibling !== picture) picture.after(canvas);
@@ -143,25 +149,29 @@ function overlayOf(renderer) {
   return overlay;
 }
 
+/** @param {three.Renderer} renderer */
 function makeOverlay(renderer) {
   const canvas = document.createElement("canvas");
   canvas.id = "springtide-labels";
   canvas.style.cssText = "position:absolute;top:0;left:0;pointer-events:none";
+  let made;
   try {
     const reversedDepthBuffer = renderer.state.buffers.depth.getReversed();
-    canvas.springtideRenderer = new renderer.constructor({ canvas, alpha: true, depth: false, reversedDepthBuffer });
+    made = new renderer.constructor({ canvas, alpha: true, depth: false, reversedDepthBuffer });
   } catch {
     return false;
   }
   canvas.removeAttribute("data-engine"); // by which one finds the canvas of the picture
-  followContext(canvas.springtideRenderer, page);
-  return canvas.springtideRenderer;
+  canvas.springtideRenderer = made;
+  followContext(made, page);
+  return made;
 }
 
 // Called before each frame is drawn.
+/** @param {three.Renderer} renderer @param {three.Scene} scene @param {three.Camera} camera */
 export function dressLabels(renderer, scene, camera) {
   const meshes = findLabels(scene);
-  if (!meshes.length) return;
+  if (!labelGroup || !meshes.length) return;
   // A smaller texture (Firefox that resists fingerprinting) is shrunk by three, and labels would stand anywhere.
   labelGroup.visible = renderer.capabilities.maxTextureSize >= LABEL_TEXTURE;
   if (!labelGroup.visible) return;
@@ -169,7 +179,7 @@ export function dressLabels(renderer, scene, camera) {
   const backgrounds = meshes.find(({ material }) => !material.uniforms.uAtlas && !material.depthTest);
   if (backgrounds?.geometry.attributes.aRect) arrangeLabels(backgrounds, camera);
   labelGroup.visible = true;
-  if (QUALITY.isCapturing() || camera !== viewer().camera) return;
+  if (QUALITY.isCapturing() || camera !== startedViewer().camera) return;
   const used = !springtide.isRecording && meshes.some(({ geometry }) => geometry.instanceCount > 0);
   const over = used ? overlayOf(renderer) : null;
   over?.render(labelGroup, camera);

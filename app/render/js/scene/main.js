@@ -8,7 +8,7 @@
 import { Life, page } from "../core/life.js";
 import { beforeRender } from "../core/render_hook.js";
 import { springtide } from "../core/springtide.js";
-import { connectionNumber, PAGE, send, viewer } from "../core/viewer.js";
+import { connectionNumber, PAGE, send, startedViewer } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { openWater } from "../sea/open_water.js";
 import { rain } from "../sea/rain.js";
@@ -30,6 +30,7 @@ import { vertexColors } from "./vertex_colors.js";
 // Each shader: { suffix, unpack(node), update(context), removeUnused() }. `unpack` (optional) brings the vertices up to
 // date before the camera of the frame is placed. `update` is called for each node with that suffix. It
 // returns the material that has the shader, or null. `removeUnused` (optional) disposes of what removed nodes left.
+/** @type {NodeShader[]} */
 const SHADERS = [vertexColors, openWater, contact, water, rain];
 
 let drawn = "", reported = "";
@@ -44,8 +45,9 @@ function report() {
 }
 
 // Call a function for each shader and node that asks for it: { base, mesh, data }.
+/** @param {(shader: NodeShader, node: ShadedNode) => void} call */
 function forEachShaded(call) {
-  const nodes = viewer().nodeRefFromName;
+  const nodes = startedViewer().nodeRefFromName;
   for (const name of Object.keys(nodes)) {
     for (const shader of SHADERS) {
       if (!name.endsWith(shader.suffix) || !nodes[name]) continue;
@@ -55,8 +57,10 @@ function forEachShaded(call) {
   }
 }
 
+/** @type {{ renderer: three.Renderer, life: Life } | null} */
 let current = null; // the renderer, and the life of what is made for it
 
+/** @param {three.Renderer} renderer @param {three.Scene} scene */
 function follow(renderer, scene) {
   current?.life.end();
   current = { renderer, life: new Life() };
@@ -68,6 +72,7 @@ function follow(renderer, scene) {
   paceFrames(renderer, current.life);
 }
 
+/** @param {three.Renderer} renderer @param {three.Scene} scene @param {three.Camera} camera */
 function dressScene(renderer, scene, camera) {
   if (isPlain() || renderer.getContext().isContextLost()) return; // no program links without a context
   if (current?.renderer !== renderer) follow(renderer, scene);
@@ -76,6 +81,7 @@ function dressScene(renderer, scene, camera) {
   renewInstances(renderer, scene);
   preparePhotograph(renderer, scene);
   drawOneLightOfEachSun(scene);
+  /** @type {string[]} */
   const active = [];
   forEachShaded((shader, node) => {
     const material = shader.update({ ...node, renderer, scene, camera });

@@ -11,16 +11,22 @@ import { FLOAT, HALF_FLOAT, LINEAR } from "../shading/three.js";
 
 const SMALL_SKY = 256; // [pixels] width of the copy; the table of the sky has as many columns
 const KEPT_SKY = 512; // [pixels] width, at most, of what is made again
+/** @type {WeakMap<three.Texture, three.Texture | null>} */
 const halves = new WeakMap(); // photograph or copy -> copy of half its width; null where it cannot be made
-// Photograph or copy -> { context: number of the one that it was drawn in, kept: { numbers, width, height } or null, again: the
-// texture made of them }.
+/**
+ * Of a photograph or copy. context: number of the one that it was drawn in; again: the texture made of what is kept.
+ * @typedef {{ numbers: Uint16Array, width: number, height: number }} Kept
+ * @typedef {{ context: number, kept: Kept | null, again: three.Texture | null }} State
+ */
+/** @type {WeakMap<three.Texture, State>} */
 const known = new WeakMap();
 
 // A copy of half the width, in another target. Of three this uses the frame buffer of a target, which is missing if another
 // renderer has drawn it: then it is null.
+/** @param {three.Renderer} renderer @param {three.Texture} larger @param {number} type */
 function halve(renderer, larger, type = larger.type) {
   const { renderTarget, image, mapping, format } = larger, gl = renderer.getContext();
-  const framebufferOf = (target) => renderer.properties.get(target).__webglFramebuffer;
+  const framebufferOf = (/** @type {three.Target} */ target) => renderer.properties.get(target).__webglFramebuffer;
   if (!renderTarget || !framebufferOf(renderTarget)) return null;
   const [width, height] = [image.width >> 1, image.height >> 1], before = renderer.getRenderTarget();
   const how = { type, format, minFilter: LINEAR, magFilter: LINEAR, depthBuffer: false };
@@ -40,20 +46,24 @@ function halve(renderer, larger, type = larger.type) {
 }
 
 // Read the numbers of a photograph, at half its width at most.
+/** @param {three.Renderer} renderer @param {three.Texture} photograph @param {State} state */
 function keepNumbers(renderer, photograph, state) {
   const limit = QUALITY.isSoftware() ? SMALL_SKY : KEPT_SKY;
+  /** @type {three.Texture | null} */
   let small = photograph;
   while (small && (small === photograph || small.image.width > limit)) small = halve(renderer, small, FLOAT);
-  if (!small) return;
+  const target = small?.renderTarget;
+  if (!small || !target) return;
   const { width, height } = small.image, floats = new Float32Array(4 * width * height);
   const take = () => {
     state.kept = { numbers: Uint16Array.from(floats, toHalf), width, height };
-    small.renderTarget.dispose();
+    target.dispose();
   };
   // It fails where the context is lost.
-  renderer.readRenderTargetPixelsAsync(small.renderTarget, 0, 0, width, height, floats).then(take, () => {});
+  renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height, floats).then(take, () => {});
 }
 
+/** @param {three.Texture} photograph @param {Kept} kept */
 function textureOf(photograph, { numbers, width, height }) {
   const made = photograph.clone();
   made.source = new photograph.source.constructor({ data: numbers, width, height });
@@ -64,25 +74,29 @@ function textureOf(photograph, { numbers, width, height }) {
 }
 
 // Put one texture in the place of another wherever the scene has it.
+/** @param {three.Scene} scene @param {three.Texture} photograph @param {three.Texture} other */
 function replace(scene, photograph, other) {
-  for (const [holder, name] of [[scene, "environment"], [scene, "background"], [scene.userData, "photograph"]]) {
-    if (holder[name] === photograph) holder[name] = other;
-  }
+  if (scene.environment === photograph) scene.environment = other;
+  if (scene.background === photograph) scene.background = other;
+  if (scene.userData.photograph === photograph) scene.userData.photograph = other;
 }
 
+/** @param {three.Renderer} renderer @param {three.Texture} photograph */
 function stateOf(renderer, photograph) {
-  if (!known.has(photograph)) {
-    const state = { context: contextNumber(), kept: null, again: null };
+  let state = known.get(photograph);
+  if (!state) {
+    state = { context: contextNumber(), kept: null, again: null };
     known.set(photograph, state);
     if (renderer.extensions.has("EXT_color_buffer_float")) keepNumbers(renderer, photograph, state);
   }
-  return known.get(photograph);
+  return state;
 }
 
 // Give the scene the smaller copy, the same at all qualities, since another size would need other programs; and the one that
 // is made again where the photograph is lost.
+/** @param {three.Renderer} renderer @param {three.Scene} scene */
 export function preparePhotograph(renderer, scene) {
-  while (QUALITY.isSoftware() && scene.environment?.image?.width > SMALL_SKY) {
+  while (QUALITY.isSoftware() && scene.environment && scene.environment.image?.width > SMALL_SKY) {
     const larger = scene.environment;
     if (!halves.has(larger)) halves.set(larger, halve(renderer, larger));
     const smaller = halves.get(larger);

@@ -46,14 +46,17 @@ const SPLAT_PLACE = "vPosition = position.xy;", SPLAT_SIDES = ["position.x * v1"
 const SMALLER = { plain: "0.5 * sqrt(clamp(log(100.0 * vRgba.a), 0.0, 4.0))", eroded: "0.85" }; // factors on its half side of 2
 const SPLAT_AXES = ["vec2 diagonalVector", "mat4 T_camera_group"]; // the first axis on the screen; from sea to camera
 
+/** @type {three.Mesh | null} */
 let splats = null; // the mesh
 
 // The text of their vertex shader, with squares scaled by a factor, and further outputs for the fragments.
+/** @param {string} vertexShader @param {string} factor @param {string} more */
 function smallerSplats(vertexShader, factor, more = "") {
   for (const side of SPLAT_SIDES) vertexShader = vertexShader.replace(side, side.replace("position", "vPosition"));
   return vertexShader.replace(SPLAT_PLACE, `vPosition = position.xy * ${factor};${more}`);
 }
 
+/** @param {three.Scene} scene */
 export function dressSmoke(scene) {
   if (!splats || !splats.parent) {
     splats = scene.children.find((child) => child.material?.uniforms?.textureT_camera_groups) ?? null;

@@ -5,9 +5,11 @@
 // Of viser this file uses that the lights of one sun are children of the scene and share one colour object; where a new
 // viser makes others, they are drawn as viser draws them.
 
+/** @param {three.Scene} scene */
 export function drawOneLightOfEachSun(scene) {
+  /** @type {Map<three.Color, three.Light[]>} */
   const suns = new Map(); // colour object -> its lights, from the one of the nearest shadow
-  for (const light of scene.children) {
+  for (const light of /** @type {three.Light[]} */ (/** @type {three.Object3D[]} */ (scene.children))) {
     if (!light.isDirectionalLight || !light.castShadow || !light.visible) continue;
     suns.set(light.color, [...(suns.get(light.color) ?? []), light]);
   }

@@ -9,13 +9,14 @@ import { keyWithDetails } from "../shading/quality.js";
 import { insertAfter, replaceShader } from "../shading/shaders.js";
 import { addAmbient, isRough, skyTerms } from "./ambient.js";
 
+/** @type {NodeShader} */
 export const vertexColors = {
   suffix: "/vertex_colors",
   update({ base, mesh, data }) {
     if (!applyPacked(mesh, data, "vertexColor", null)) return null;
     const dark = isDark(), underwater = underwaterOf(base, mesh), open = openPartOf(base, underwater);
     const isAmbient = skyTerms.value && isRough(mesh.material);
-    const edit = (shader) => {
+    const edit = (/** @type {three.Shader} */ shader) => {
       if (open) shader.fragmentShader = OPEN_BASE[open];
       insertAfter(shader, "vertexShader", "common", "attribute vec3 vertexColor; varying vec3 vVertexColor;");
       insertAfter(shader, "vertexShader", "begin_vertex", `

@@ -1,6 +1,7 @@
 // Meshes that are drawn for a sea beside viser's own.
 
 // A triangle that covers the view.
+/** @param {Beside} sea */
 export function makeDome(sea) {
   const geometry = new sea.geometry.constructor();
   const Attribute = sea.geometry.attributes.position.constructor;
@@ -11,11 +12,12 @@ export function makeDome(sea) {
   dome.frustumCulled = false;
   dome.renderOrder = 1e6;
   dome.raycast = () => {};
-  sea.mesh.parent.add(dome);
+  sea.mesh.parent?.add(dome);
   return dome;
 }
 
 // A mesh for the polar grid, which has its geometry.
+/** @param {Sea} sea */
 export function makeGrid(sea) {
   const grid = makeDome(sea);
   grid.renderOrder = 0;

@@ -59,6 +59,7 @@ const LIGHT_FRAGMENT = `
   }`;
 // A pixel, those beside, below and above it, and the corners; their columns and rows as digits of base 4, counted from -1.
 const AROUND = [[0, 0], [-1, 0], [0, -1], [1, 0], [0, 1], [1, -1], [-1, -1], [1, 1], [-1, 1]];
+/** @param {number} axis */
 const digitsOf = (axis) => AROUND.reduce((sum, offset, k) => sum + (offset[axis] + 1) * 4 ** k, 0);
 // A pixel on the edge of a wave has the light of what its middle shows, which may be another wave or the sky: the edge
 // takes the light of the neighbour that shows the same wave.
@@ -89,6 +90,7 @@ export const LIT_FRAGMENT = `
   }`;
 
 // Resources of a lit sea: the grid with a second material, a triangle, tiles, and their render targets.
+/** @param {Sea} sea @returns {LitSea} */
 function makeLit(sea) {
   const grid = makeGrid(sea), [corners, triangle, light] = [makeDome(sea), makeDome(sea), makeDome(sea)];
   const targets = { vertices: null, places: null, counts: null, lights: null };
@@ -100,6 +102,7 @@ function makeLit(sea) {
 }
 
 // Two triangles for each tile: its column, its row, and which of its corners.
+/** @param {Sea} sea @param {number} columns @param {number} rows */
 function makeTiles(sea, columns, rows) {
   const count = columns * rows, numbers = new Float32Array(12 * count), index = new Uint32Array(6 * count);
   for (let k = 0; k < 4 * count; k++) {
@@ -113,10 +116,12 @@ function makeTiles(sea, columns, rows) {
   return tiles;
 }
 
+/** @param {LitSea} lit */
 function disposeTargets(lit) {
   for (const one of [lit.tiles, lit.vertices, lit.places, lit.counts, lit.lights]) one?.dispose();
 }
 
+/** @param {Sea} sea */
 export function disposeLit(sea) {
   const { lit } = sea;
   if (!lit) return;
@@ -126,13 +131,16 @@ export function disposeLit(sea) {
   sea.lit = null;
 }
 
-function resizeLit(base, sea, width, height) {
-  const { lit, uniforms } = sea, columns = Math.ceil(width / TILE), rows = Math.ceil(height / TILE);
-  const { rings, spokes } = POLAR[sea.polar.userData.fineness], size = [width, height, rings].join();
+/** @param {string} base @param {GriddedSea} sea @param {LitSea} lit @param {number} width @param {number} height */
+function resizeLit(base, sea, lit, width, height) {
+  const { uniforms } = sea, columns = Math.ceil(width / TILE), rows = Math.ceil(height / TILE);
+  const { rings, spokes } = POLAR[sea.polar.userData.fineness ?? 0], size = [width, height, rings].join();
   if (lit.size === size) return;
   lit.size = size;
   disposeTargets(lit);
-  const Target = skyTables.get(base).target.constructor, how = { format: RGBA, minFilter: NEAREST, magFilter: NEAREST };
+  const table = skyTables.get(base);
+  if (!table) return;
+  const Target = table.target.constructor, how = { format: RGBA, minFilter: NEAREST, magFilter: NEAREST };
   lit.vertices = new Target(2 * spokes, rings + DOUBLED, { ...how, type: FLOAT, depthBuffer: false });
   lit.places = new Target(width, height, { ...how, type: FLOAT, count: 2 });
   lit.counts = new Target(columns, rows, { ...how, depthBuffer: false });
@@ -144,13 +152,18 @@ function resizeLit(base, sea, width, height) {
 }
 
 // Find the light of every pixel of the sea: false where this browser cannot, null while it compiles the programs.
+/**
+ * @param {string} base @param {GriddedSea} sea @param {three.Renderer} renderer
+ * @param {three.Scene} scene @param {three.Camera} camera @param {Variant} shape @param {Variant} light
+ */
 export function lightSea(base, sea, renderer, scene, camera, shape, light) {
   const { uniforms } = sea;
   if (!uniforms.skyTable.value || sea.isUnlit) return false;
   const lit = (sea.lit ??= makeLit(sea)), before = renderer.getRenderTarget(), gl = renderer.getContext();
-  resizeLit(base, sea, before?.width ?? gl.drawingBufferWidth, before?.height ?? gl.drawingBufferHeight);
+  resizeLit(base, sea, lit, before?.width ?? gl.drawingBufferWidth, before?.height ?? gl.drawingBufferHeight);
   Object.assign(lit.grid, { geometry: sea.polar.geometry, visible: sea.polar.visible });
   litBy(lit.light, scene);
+  /** @type {[three.Target | null, three.Mesh, string, string, string][]} */
   const passes = [
     [lit.vertices, lit.corners, `${shape.key} vertices`, TARGET_VERTEX, shape.defines + VERTICES_FRAGMENT],
     [lit.places, lit.grid, `${shape.key} places`, PLACED + WATER_VERTEX, shape.defines + PLACES_FRAGMENT],

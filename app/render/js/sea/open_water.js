@@ -132,15 +132,20 @@ export const OPEN_BASE = {
   }`,
 };
 
-const openUniforms = { openWater: { value: null }, openTime: { value: 0 }, farDepth: { value: 1 } };
+/** @type {three.Uniform<three.Vector3[] | null>} */
+const openWaterUniform = { value: null };
+const openUniforms = { openWater: openWaterUniform, openTime: { value: 0 }, farDepth: { value: 1 } };
+/** @type {{ mesh: three.Mesh, dome: three.Mesh } | null} */
 let openDome = null; // { mesh of the surface, dome }
 
 // What a mesh with colours at its vertices has to do with open water: "surface", "bed" or "".
+/** @param {string} base @param {object | null} underwater */
 export function openPartOf(base, underwater) {
   if (meshOf(`${base}/open_water`)) return "surface";
   return underwater && meshOf("/water/open_water") ? "bed" : "";
 }
 
+/** @param {three.Shader} shader @param {"surface" | "bed"} part */
 export function addOpenWater(shader, part) {
   Object.assign(shader.uniforms, openUniforms);
   insertAfter(shader, "fragmentShader", "common", OPEN_GLSL);
@@ -149,12 +154,13 @@ export function addOpenWater(shader, part) {
 }
 
 function removeOpenDome() {
-  openDome.dome.removeFromParent();
-  openDome.dome.geometry.dispose();
-  openDome.dome.material.dispose();
+  openDome?.dome.removeFromParent();
+  openDome?.dome.geometry.dispose();
+  openDome?.dome.material.dispose();
   openDome = null;
 }
 
+/** @type {NodeShader} */
 export const openWater = {
   suffix: "/open_water",
   removeUnused() {
@@ -162,8 +168,8 @@ export const openWater = {
   },
   update({ mesh, data, renderer }) {
     const numbers = data.geometry.attributes.position.array;
-    openUniforms.openWater.value ??= [0, 1, 2].map(() => mesh.position.clone());
-    openUniforms.openWater.value.forEach((vector, k) => vector.fromArray(numbers, 3 * k));
+    const vectors = (openUniforms.openWater.value ??= [0, 1, 2].map(() => mesh.position.clone()));
+    vectors.forEach((vector, k) => vector.fromArray(numbers, 3 * k));
     openUniforms.openTime.value = WEB_STEP * mesh.geometry.attributes.position.version;
     openUniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     if (openDome?.mesh !== mesh) {

@@ -20,12 +20,14 @@ export const POLAR = [
 ];
 
 // How fine the grid is for a canvas and details of the shaders, 0 to 2: a triangle of a few pixels costs as much as one of many.
+/** @param {WebGL2RenderingContext} canvas @param {number} details */
 export function finenessOf({ drawingBufferWidth, drawingBufferHeight }, details) {
   if (details === 0) return 0;
   return drawingBufferWidth * drawingBufferHeight > MANY_PIXELS ? 2 : 1;
 }
 
 // Make the mesh of a sea as coarse or fine as this.
+/** @param {GriddedSea} sea @param {number} fineness */
 export function setFineness(sea, fineness) {
   const { rings, spokes } = POLAR[fineness], rows = rings + DOUBLED;
   const numbers = new Float32Array(3 * rows * spokes), index = new Uint32Array(6 * (rows - 1) * (spokes - 1));
@@ -47,6 +49,7 @@ export function setFineness(sea, fineness) {
 }
 
 // The border of what a camera sees as directions in the frame of the sea, up to HIGHEST, and where it meets the horizon.
+/** @param {Sea} sea @param {three.Camera} camera */
 function viewBorder(sea, camera) {
   const v = sea.mesh.position.clone(), border = [], found = [];
   for (let k = 0; k < 4 * EDGE_SAMPLES; k++) {
@@ -67,11 +70,13 @@ function viewBorder(sea, camera) {
 }
 
 // Place the grid for a camera, and draw as many of its rings as are needed.
+/** @param {GriddedSea} sea @param {three.Camera} camera */
 export function aimPolar(sea, camera) {
-  const { polar, uniforms } = sea, { rings, spokes, step } = POLAR[polar.userData.fineness];
+  const { polar, uniforms } = sea, { rings, spokes, step } = POLAR[polar.userData.fineness ?? 0];
   const v = sea.mesh.position.clone(), e = camera.matrixWorld.elements;
   const eye = v.setFromMatrixPosition(camera.matrixWorld).applyMatrix4(uniforms.toSea.value).toArray();
   uniforms.eye.value = eye;
+  /** @type {(x: number, y: number, z: number) => number[]} */
   const turned = (x, y, z) => v.set(x, y, z).transformDirection(uniforms.toSea.value).toArray();
   const up = turned(e[4], e[5], e[6]), ahead = turned(-e[8], -e[9], -e[10]);
   // Ahead, and where the camera looks steeply up or down, what is up in its picture.
@@ -97,7 +102,7 @@ export function aimPolar(sea, camera) {
   const radii = moved.map(([u, v]) => Math.hypot(u + back, v));
   const nearest = Math.max(0.95 * Math.min(...radii) - sea.widest, 0);
   const height = Math.max(eye[2], (LEAST_STEP * sea.cell) / step);
-  const ringOf = (radius) => Math.asinh((radius - back) / height);
+  const ringOf = (/** @type {number} */ radius) => Math.asinh((radius - back) / height);
   const withWaves = Math.min(Math.max(...radii) + sea.widest, back + MAX_WAVES);
   const span = Math.max(ringOf(withWaves) - ringOf(nearest), step);
   const wide = Math.max(step, span / (rings - 2));

@@ -73,6 +73,7 @@ const RAIN_FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
+/** @type {NodeShader} */
 export const rain = {
   suffix: "/rain_material",
   update({ base, mesh, data }) {
@@ -81,7 +82,7 @@ export const rain = {
     mesh.frustumCulled = false; // drops around the camera are nowhere else
     const uniforms = (mesh.userData.rain ??= makeUniforms(mesh, RAIN_UNIFORMS));
     readUniforms(uniforms, RAIN_UNIFORMS, data);
-    const edit = (shader) => {
+    const edit = (/** @type {three.Shader} */ shader) => {
       Object.assign(shader.uniforms, sea.uniforms, uniforms);
       shader.vertexShader = RAIN_VERTEX;
       shader.fragmentShader = withSky(RAIN_FRAGMENT, sea.uniforms);

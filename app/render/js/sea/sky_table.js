@@ -2,7 +2,7 @@
 // It is drawn anew when the photograph or a uniform that it depends on changes. A browser that cannot draw into half
 // floats, or does not link the table's program, has no table: there each pixel looks at the photograph itself.
 
-import { viewer } from "../core/viewer.js";
+import { startedViewer } from "../core/viewer.js";
 import { contextNumber } from "../shading/context.js";
 import { withDetails } from "../shading/quality.js";
 import { dress, isLinked, refused } from "../shading/shaders.js";
@@ -41,6 +41,7 @@ const SKY_PATIENCE = 3000; // [ms] for which a sea waits for its photograph
 let skyWanted = Infinity; // [ms] when it began to
 
 // Whether a sea still waits for the photograph of the sky: without it its programs are others, which compile for seconds.
+/** @param {three.Scene} scene */
 export function awaitsSky(scene) {
   return !scene.environment && performance.now() < skyWanted + SKY_PATIENCE;
 }
@@ -48,13 +49,15 @@ export function awaitsSky(scene) {
 export function wantSky() {
   if (skyWanted < Infinity) return;
   skyWanted = performance.now();
-  setTimeout(() => viewer().requestRender(), SKY_PATIENCE);
+  setTimeout(() => startedViewer().requestRender(), SKY_PATIENCE);
 }
 
+/** @type {Map<string, Table>} */
 export const skyTables = new Map(); // name of the node -> { target, dome, key }, kept for good as its uniforms
 export let skiesDrawn = 0; // tests read it
 
 // Let the materials of an object that is drawn outside of the scene have its photograph of the sky.
+/** @param {three.Mesh} object @param {three.Scene} scene */
 export function litBy(object, { environment, environmentIntensity, environmentRotation }) {
   for (const material of object.userData.materials?.values() ?? [object.material]) {
     Object.assign(material, { envMap: environment, envMapIntensity: environmentIntensity });
@@ -63,6 +66,7 @@ export function litBy(object, { environment, environmentIntensity, environmentRo
 }
 
 // A triangle that covers a target, and the target.
+/** @param {Beside} sea @param {three.Target} target */
 export function makeTable(sea, target) {
   const dome = makeDome(sea);
   dome.removeFromParent();
@@ -72,8 +76,12 @@ export function makeTable(sea, target) {
 
 // Draw a table if it is not the one with this key, with the shader that `edit` makes. Returns whether it is drawn: false if
 // it did not link, null while its program is not compiled.
+/**
+ * @param {three.Renderer} renderer @param {three.Scene} scene @param {Table} table
+ * @param {string} key @param {string} name @param {(shader: three.Shader) => void} edit
+ */
 export function drawTable(renderer, scene, table, key, name, edit) {
-  const { target, dome } = table, { camera } = viewer();
+  const { target, dome } = table, { camera } = startedViewer();
   if (refused.has(dome.material)) return false;
   if (table.key === key) return true;
   litBy(dome, scene);
@@ -88,17 +96,21 @@ export function drawTable(renderer, scene, table, key, name, edit) {
 }
 
 // Draw the table of the sea `base` if it is not that of this photograph and these uniforms. False while it is not compiled.
+/** @param {string} base @param {Sea} sea @param {three.Renderer} renderer @param {three.Scene} scene */
 export function drawSkyTable(base, sea, renderer, scene) {
   const photograph = scene.environment, Target = photograph?.renderTarget?.constructor;
   if (!Target || !renderer.extensions.has("EXT_color_buffer_float")) return true;
   const { uniforms } = sea, { environmentIntensity, environmentRotation } = scene;
   const numbers = [...SKY_UNIFORMS, "fromSea"].flatMap((name) => uniforms[name].value.toArray());
   const key = [contextNumber(), photograph.uuid, photograph.version, environmentIntensity, ...environmentRotation.toArray(), ...numbers].join();
-  if (!skyTables.has(base)) {
+  let table = skyTables.get(base);
+  if (!table) {
     const how = { type: HALF_FLOAT, format: RGBA, minFilter: LINEAR, magFilter: LINEAR, wrapS: REPEAT, wrapT: CLAMP };
-    skyTables.set(base, makeTable(sea, new Target(SKY_COLUMNS, (SKY_BLUR.length + 1) * SKY_ROWS + 3, { ...how, depthBuffer: false })));
+    const rows = (SKY_BLUR.length + 1) * SKY_ROWS + 3;
+    table = makeTable(sea, new Target(SKY_COLUMNS, rows, { ...how, depthBuffer: false }));
+    skyTables.set(base, table);
   }
-  const table = skyTables.get(base), isNew = table.key !== key;
+  const isNew = table.key !== key;
   const isDrawn = drawTable(renderer, scene, table, key, "springtide-sky-table", (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = TARGET_VERTEX;
@@ -110,6 +122,7 @@ export function drawSkyTable(base, sea, renderer, scene) {
 }
 
 // The text of a fragment shader that shows the sky of these uniforms.
+/** @param {string} source @param {three.Uniforms} uniforms */
 export function withSky(source, uniforms) {
   return withDetails(uniforms.skyTable.value ? `${SKY_TABLE}\n${source}` : source);
 }

@@ -5,8 +5,10 @@
 import { insertAfter, meshOf } from "../shading/shaders.js";
 
 // The place [m] that is drawn, y up from the mean level of the sea.
+/** @param {three.Shader} shader */
 export function addPlace(shader) {
-  for (const stage of ["vertexShader", "fragmentShader"]) insertAfter(shader, stage, "common", "varying vec3 vPlace;");
+  insertAfter(shader, "vertexShader", "common", "varying vec3 vPlace;");
+  insertAfter(shader, "fragmentShader", "common", "varying vec3 vPlace;");
   insertAfter(shader, "vertexShader", "begin_vertex", "vPlace = (modelMatrix * vec4(position, 1.0)).xyz;");
 }
 
@@ -33,16 +35,19 @@ export const UNDERWATER_GLSL = `
     return color * (1.0 + water * light) + water * 0.10 * exp(-0.5 * depth) * particles(9.0 * vPlace / underwater.y);
   }`;
 
+/** @type {Map<string, three.Uniform<three.Vector3>>} */
 const underwaters = new Map(); // name of the node -> its uniform, kept for good as those of seas
 
 export const WEB_STEP = 1 / 30; // [s] by which the webs move on with each frame of the water
 
 // The uniform of a node that has the child, else null.
+/** @param {string} base @param {three.Mesh} mesh */
 export function underwaterOf(base, mesh) {
   const data = meshOf(`${base}/underwater`);
   if (!data) return null;
-  if (!underwaters.has(base)) underwaters.set(base, { value: mesh.position.clone() });
-  const uniform = underwaters.get(base), moving = meshOf("/water") || mesh; // a bed does not move
+  const uniform = underwaters.get(base) ?? { value: mesh.position.clone() };
+  const moving = meshOf("/water") || mesh; // a bed does not move
+  underwaters.set(base, uniform);
   uniform.value.fromArray(data.geometry.attributes.position.array);
   uniform.value.z = WEB_STEP * moving.geometry.attributes.position.version;
   return uniform;

@@ -18,24 +18,30 @@ import { aimPolar, finenessOf, setFineness } from "./polar_grid.js";
 import { awaitsSky, drawSkyTable, wantSky, withSky } from "./sky_table.js";
 import { DOME_FRAGMENT, DOME_VERTEX, PLAIN_FRAGMENT, WATER_FRAGMENT, WATER_VERTEX } from "./water_shader.js";
 
+/** @type {Map<string, Sea>} */
 export const seas = new Map(); // name of the node -> what this file has made for it
 // Name of the node -> its uniforms. They are kept for good, because viser may keep a material for a new geometry.
+/** @type {Map<string, three.Uniforms>} */
 export const uniformsByName = new Map();
 
 // Uniforms of three numbers each. three's classes are not in scope, therefore vectors are copied from the mesh.
+/** @param {three.Mesh} mesh @param {string[]} names @returns {three.Uniforms} */
 export function makeUniforms(mesh, names) {
   return Object.fromEntries(names.map((name) => [name, { value: mesh.position.clone() }]));
 }
 
 // Read uniforms from the vertices of a hidden mesh.
+/** @param {three.Uniforms} uniforms @param {string[]} names @param {three.Mesh} data */
 export function readUniforms(uniforms, names, data) {
   const numbers = data.geometry.attributes.position.array;
   names.forEach((name, k) => uniforms[name].value.fromArray(numbers, 3 * k));
 }
 
+/** @param {string} base @param {three.Mesh} mesh */
 function uniformsOf(base, mesh) {
-  if (!uniformsByName.has(base)) {
-    const uniforms = makeUniforms(mesh, WATER_UNIFORMS);
+  let uniforms = uniformsByName.get(base);
+  if (!uniforms) {
+    uniforms = makeUniforms(mesh, WATER_UNIFORMS);
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
     const textures = ["wavePlaces", "waveSlopes", "skyTable", "seaVertices", "seaPlaces", "seaRest", "seaTiles", "seaLight"];
     for (const name of textures) uniforms[name] = { value: null };
@@ -45,18 +51,25 @@ function uniformsOf(base, mesh) {
     uniforms.waterlines = { value: new Float32Array(12 * MAX_WATERLINES) };
     uniformsByName.set(base, uniforms);
   }
-  return uniformsByName.get(base);
+  return uniforms;
 }
 
+/** @param {three.Mesh} mesh @param {three.Uniforms} uniforms @returns {Sea} */
 function makeSea(mesh, uniforms) {
   // widest, highest: greatest displacement [m] along the level and upwards; cell: of the simulated grid [m]
   const made = { polar: null, plain: null, lit: null, dome: null, triangle: null, isReady: false, isUnlit: false }, size = { widest: 0, highest: 0, cell: 1 };
   return { mesh, geometry: mesh.geometry, uniforms, filled: "", hasOil: false, hasHulls: false, ...made, ...size };
 }
 
+/** @typedef {{ isTexture: boolean, version: number, size: string }} FilledTexture */
+
 // Fill a texture with width x height x 4 half-precision numbers (half.js), and its smaller copies with their means where
 // it repeats both ways. three binds it but does not fill it: its own class is not in scope, and it takes any object with
 // this version for one whose data needs no upload.
+/**
+ * @param {three.Renderer} renderer @param {FilledTexture | null} texture @param {number} width @param {number} height
+ * @param {Uint16Array} halves @param {boolean} repeats
+ */
 function filledTexture(renderer, texture, width, height, halves, repeats) {
   const gl = renderer.getContext(), size = [width, height, repeats].join();
   texture ??= { isTexture: true, version: 0, size: "" };
@@ -74,9 +87,10 @@ function filledTexture(renderer, texture, width, height, halves, repeats) {
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, repeats ? gl.REPEAT : gl.CLAMP_TO_EDGE);
   }
-  const flags = { [gl.UNPACK_FLIP_Y_WEBGL]: false, [gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL]: false, [gl.UNPACK_ALIGNMENT]: 4 };
-  const before = Object.keys(flags).map((flag) => [flag, gl.getParameter(flag)]);
-  for (const flag in flags) gl.pixelStorei(flag, flags[flag]);
+  /** @type {[flag: number, value: number | boolean][]} */
+  const flags = [[gl.UNPACK_FLIP_Y_WEBGL, false], [gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false], [gl.UNPACK_ALIGNMENT, 4]];
+  const before = flags.map(([flag]) => [flag, gl.getParameter(flag)]);
+  for (const [flag, value] of flags) gl.pixelStorei(flag, value);
   gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGBA, gl.HALF_FLOAT, halves);
   for (const [flag, value] of before) gl.pixelStorei(flag, value);
   if (repeats) gl.generateMipmap(gl.TEXTURE_2D);
@@ -85,13 +99,16 @@ function filledTexture(renderer, texture, width, height, halves, repeats) {
 
 // The waves as the textures that the shader reads (WATER_GLSL.waves), where they have changed. The vertices of a tile are
 // rows and columns, of which the last ones close it; those of rings are the rings one after the other, and the middle.
+/** @param {Sea} sea @param {three.Renderer} renderer @param {Float32Array} rest */
 function fillWaves(sea, renderer, rest) {
-  const { position, slopeAndFoam } = sea.geometry.attributes, { grid, ringLaw, gridMiddle } = sea.uniforms;
+  const { position, slopeAndFoam } = sea.geometry.attributes;
+  const { grid, ringLaw, gridMiddle, wavePlaces, waveSlopes } = sea.uniforms;
   const [rows, columns, length] = grid.value.toArray(), isRings = ringLaw.value.y > 0;
   const filled = `${contextNumber()} ${slopeAndFoam.version}`;
   if (sea.filled === filled) return;
   sea.filled = filled;
   const [height, width] = isRings ? [rows, columns] : [rows - 1, columns - 1], middle = gridMiddle.value.toArray();
+  /** @type {(i: number, j: number) => number} */
   const vertexAt = isRings ? (i, j) => (i === 0 ? rest.length / 3 - 1 : (i - 1) * width + j) : (i, j) => i * columns + j;
   const [places, slopes] = [new Uint16Array(4 * width * height), new Uint16Array(4 * width * height)];
   let [widest, highest] = [0, 0];
@@ -110,18 +127,19 @@ function fillWaves(sea, renderer, rest) {
   // Pieces of a tile that are blended with the same variance may be higher than any of them.
   [sea.widest, sea.highest] = [1.5 * widest, (isRings ? 1 : 1.5) * highest];
   sea.cell = isRings ? ringLaw.value.y : length / (rows - 1);
-  for (const [name, halves] of [["wavePlaces", places], ["waveSlopes", slopes]]) {
-    const { uniforms } = sea;
-    uniforms[name].value = filledTexture(renderer, uniforms[name].value, width, height, halves, !isRings);
+  for (const [one, halves] of /** @type {const} */ ([[wavePlaces, places], [waveSlopes, slopes]])) {
+    one.value = filledTexture(renderer, one.value, width, height, halves, !isRings);
   }
 }
 
+/** @param {Sea} sea @param {three.Mesh} data */
 function readMaterial(sea, data) {
   readUniforms(sea.uniforms, WATER_UNIFORMS, data);
   sea.uniforms.fromSea.value.copy(sea.mesh.matrixWorld);
   sea.uniforms.toSea.value.copy(sea.mesh.matrixWorld).invert();
 }
 
+/** @param {Sea} sea */
 function disposeSea(sea) {
   disposeLit(sea);
   for (const drawn of [sea.polar, sea.plain, sea.dome]) {
@@ -135,6 +153,10 @@ function disposeSea(sea) {
 }
 
 // Give plain water its program: it is drawn while the browser compiles those of the sea. Returns whether it has one.
+/**
+ * @param {Sea} sea @param {three.Renderer} renderer @param {three.Camera} camera @param {three.Scene} scene
+ * @param {Variant} shape
+ */
 function dressPlain(sea, renderer, camera, scene, shape) {
   sea.plain ??= makeGrid(sea);
   return dress(renderer, sea.plain, `${shape.key} plain`, (shader) => {
@@ -145,6 +167,10 @@ function dressPlain(sea, renderer, camera, scene, shape) {
 }
 
 // Give a sea and its sky their programs. Returns whether they have them.
+/**
+ * @param {string} base @param {GriddedSea} sea @param {Pick<ShadedContext, "renderer" | "camera" | "scene">} context
+ * @param {{ shape: Variant, light: Variant, whole: Variant }} variants
+ */
 function dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole }) {
   const hasTable = drawSkyTable(base, sea, renderer, scene);
   const isLit = lightSea(base, sea, renderer, scene, camera, shape, light);
@@ -159,7 +185,8 @@ function dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole 
     sea.triangle = sea.dome.geometry;
   }
   if (!sea.dome) return hasTable && isLit !== null && hasSurface;
-  sea.dome.geometry = isLit ? sea.lit.tiles : sea.triangle;
+  const drawn = isLit ? sea.lit?.tiles : sea.triangle;
+  if (drawn) sea.dome.geometry = drawn;
   const hasDome = dress(renderer, sea.dome, keyWithDetails(`springtide-dome${isLit === false ? "" : " in tiles"}`), (shader) => {
     Object.assign(shader.uniforms, sea.uniforms);
     shader.vertexShader = isLit === false ? DOME_VERTEX : `#define TILES\n${DOME_VERTEX}`;
@@ -170,11 +197,13 @@ function dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole 
 
 // Until a sea's programs are compiled, and where its mesh is made anew, the photograph behind it would show its land. The
 // page's own sky is seen there instead. Without the shader the photograph is the sky.
+/** @param {three.Scene} scene @param {boolean} shown */
 function showPhotograph(scene, shown) {
   if (!shown && scene.background) [scene.userData.photograph, scene.background] = [scene.background, null];
   if (shown && !scene.background) scene.background = scene.userData.photograph || null;
 }
 
+/** @type {NodeShader & Required<Pick<NodeShader, "unpack">>} */
 export const water = {
   suffix: "/water_material",
   removeUnused() {
@@ -191,9 +220,10 @@ export const water = {
   },
   update({ base, mesh, data, renderer, scene, camera }) {
     if (refused.has(mesh.material)) {
-      if (seas.has(base)) disposeSea(seas.get(base));
+      const earlier = seas.get(base);
+      if (earlier) disposeSea(earlier);
       mesh.layers.mask = 1;
-      delete mesh.geometry.computeVertexNormals;
+      Reflect.deleteProperty(mesh.geometry, "computeVertexNormals"); // that of its class again
       showPhotograph(scene, true);
       return null;
     }
@@ -218,35 +248,37 @@ export const water = {
     sea.hasOil ||= slick.value.z > 0;
     sea.hasHulls ||= waterlines.value[6] > 0; // the corner of the first one
     const parts = { RINGS: ringLaw.value.y, CUTOUT: cutout.value.z, WIRE: wireframe, OIL: sea.hasOil, HULLS: sea.hasHulls };
+    /** @param {(keyof typeof parts)[]} names @returns {Variant} */
     const variantOf = (...names) => {
       const defined = names.filter((name) => parts[name] > 0);
       const defines = defined.map((name) => `#define ${name}\n`).join("");
       return { key: [`springtide-water${base}`, ...defined].join(" "), defines };
     };
     const shape = variantOf("RINGS", "CUTOUT", "WIRE"), light = variantOf("RINGS", "OIL", "HULLS");
-    const whole = variantOf(...Object.keys(parts));
+    const whole = variantOf("RINGS", "CUTOUT", "WIRE", "OIL", "HULLS");
     // viser asks three for a reversed depth buffer; a browser without clip control has none.
     sea.uniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     const fineness = finenessOf(renderer.getContext(), QUALITY.details());
-    sea.polar ??= makeGrid(sea);
-    if (sea.polar.userData.fineness !== fineness) setFineness(sea, fineness);
-    aimPolar(sea, camera);
-    const isInView = sea.polar.visible;
+    const polar = (sea.polar ??= makeGrid(sea)), gridded = /** @type {GriddedSea} */ (sea);
+    if (polar.userData.fineness !== fineness) setFineness(gridded, fineness);
+    aimPolar(gridded, camera);
+    const isInView = polar.visible;
     // Where only one program is compiled in a frame, that of plain water comes first.
     const hasPlain = sea.isReady || dressPlain(sea, renderer, camera, scene, shape);
-    sea.isReady = !awaitsSky(scene) && dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole });
-    if (sea.isReady && isLinked(renderer, sea.polar.material) === false) {
+    sea.isReady = !awaitsSky(scene) && dressSea(base, gridded, { renderer, camera, scene }, { shape, light, whole });
+    if (sea.isReady && isLinked(renderer, polar.material) === false) {
       refused.add(mesh.material);
       return this.update({ base, mesh, data, renderer, scene, camera });
     }
-    sea.polar.visible = isInView && sea.isReady;
-    Object.assign(sea.plain, { geometry: sea.polar.geometry, visible: isInView && hasPlain && !sea.isReady });
+    polar.visible = isInView && sea.isReady;
+    const showsPlain = isInView && hasPlain && !sea.isReady;
+    if (sea.plain) Object.assign(sea.plain, { geometry: polar.geometry, visible: showsPlain });
     if (sea.dome) sea.dome.visible = drawSky > 0 && sea.isReady;
     // The server may add meshes for browsers without this shader (Water._draw_plain); here they are hidden.
     for (const part of ["foam", "wire", "sea", "slick"]) {
       const plain = meshOf(`${base}/plain_${part}`);
       if (plain) plain.visible = false;
     }
-    return sea.isReady ? sea.polar.material : null;
+    return sea.isReady ? polar.material : null;
   },
 };

@@ -16,10 +16,12 @@ function next() {
 }
 
 // Follow the context of a renderer. life: of the renderer.
+/** @param {three.Renderer} renderer @param {import("../core/life.js").Life} life */
 export function followContext(renderer, life) {
   next();
   const { domElement: canvas } = renderer;
-  let timer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
   life.own(() => clearTimeout(timer));
   life.listen(canvas, "webglcontextlost", () => {
     const words = "The browser has taken the graphics away from this page. Load it again if the picture does not come back.";

@@ -22,11 +22,13 @@ const TRIAL = 10_000; // [ms] after a step up in which slow frames mean that it 
 
 // The step of "automatic", from the lengths of frames [ms] that `take` is given.
 export function makeJudge(step = 0) {
-  let frames = [], spent = 0, skipped = SKIPPED, slowWindows = 0, fast = 0, patience = PATIENCE, trial = 0, last = 0;
+  /** @type {number[]} */
+  let frames = [];
+  let spent = 0, skipped = SKIPPED, slowWindows = 0, fast = 0, patience = PATIENCE, trial = 0, last = 0;
   const forget = () => {
     [frames, spent, skipped, slowWindows, last] = [[], 0, SKIPPED, 0, 0];
   };
-  const change = (by) => {
+  const change = (/** @type {number} */ by) => {
     step = Math.min(Math.max(step + by, 0), STEPS.length - 1);
     fast = 0;
     forget();
@@ -35,6 +37,7 @@ export function makeJudge(step = 0) {
     step: () => step,
     forget,
     // compiled: whether programs were made for the frame, which says little about the others.
+    /** @param {number} length @param {boolean} compiled */
     take(length, compiled = false) {
       if (length > HOPELESS && last > HOPELESS && step < STEPS.length - 1) return void change(STEPS.length);
       last = length;

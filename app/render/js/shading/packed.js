@@ -3,11 +3,12 @@
 const BLOCK = 16, WIDTH_BITS = 5, WORD_BITS = 30; // as in app/formats/packing.py
 
 // { count, offsets, fields: one Float32Array each } of packed numbers.
+/** @param {Float32Array} numbers */
 export function unpack(numbers) {
   const words = new Uint32Array(numbers.buffer, numbers.byteOffset, numbers.length);
   const [count, columns, fields] = numbers;
   let at = 3 + 3 * fields, used = 0;
-  const read = (width) => {
+  const read = (/** @type {number} */ width) => {
     let value = words[at] >>> used;
     const got = WORD_BITS - used;
     if (got <= width) {
@@ -18,6 +19,7 @@ export function unpack(numbers) {
     return value & ((1 << width) - 1);
   };
   const q = new Int32Array(count);
+  /** @type {{ count: number, offsets: number[], fields: Float32Array[] }} */
   const found = { count, offsets: [], fields: [] };
   for (let field = 0; field < fields; field++) {
     const step = numbers[3 + 3 * field];
@@ -45,6 +47,9 @@ export function unpack(numbers) {
 // Write the first three fields into the positions of a mesh's vertices, added to where they rest (an array; null: 0), and
 // the next three into another attribute of three numbers. Does nothing where that has been done with this data.
 // False where the data is of another mesh. viser may at any time exchange the array of positions: then it is done again.
+/**
+ * @param {three.Mesh} mesh @param {three.Mesh} data @param {string} attribute @param {Float32Array | null} rest
+ */
 export function applyPacked(mesh, data, attribute, rest) {
   const packed = data.geometry.attributes.position;
   const position = mesh.geometry.attributes.position;

@@ -9,7 +9,7 @@
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
 import { store, stored } from "../core/storage.js";
-import { viewer } from "../core/viewer.js";
+import { startedViewer } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { makeJudge, STEPS } from "./judge.js";
 import { wrapMethod } from "./wrap.js";
@@ -18,10 +18,13 @@ const KEY = "springtide-quality"; // of the local storage
 const STEPS_KEY = "springtide-quality-steps"; // of the local storage: the last step of each renderer, by its name
 // Names of renderers without a graphics card of their own. Others are known by their time: WebKit says "Apple GPU" everywhere.
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|microsoft basic render|paravirtual/i;
+/** @type {Record<string, number>} */
 const FIXED = { high: 0, medium: 2, low: 4 }; // step of each choice but "automatic"
 let judge = makeJudge();
 const isFixed = new URLSearchParams(location.search).has("fixedDpr");
-let current = STEPS[0], dismissed = false, choice = "automatic", line = null;
+let current = STEPS[0], dismissed = false, choice = "automatic";
+/** @type {HTMLElement | null} */
+let line = null;
 let rendererName = "", valid = 0; // since when [ms] lengths of frames count
 
 function readChoice() {
@@ -30,6 +33,7 @@ function readChoice() {
 }
 
 // The last steps by name of the renderer.
+/** @returns {Record<string, number>} */
 function readSteps() {
   try {
     return JSON.parse(stored(STEPS_KEY) ?? "{}");
@@ -42,6 +46,7 @@ function keepStep() {
   store(STEPS_KEY, JSON.stringify({ ...readSteps(), [rendererName]: judge.step() }));
 }
 
+/** @param {three.Renderer} renderer */
 function nameOf(renderer) {
   const gl = renderer.getContext(), more = gl.getExtension("WEBGL_debug_renderer_info");
   return String(gl.getParameter(more ? more.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
@@ -52,15 +57,17 @@ function forget() {
   valid = performance.now();
 }
 
+/** @param {string} name */
 function choose(name) {
   store(KEY, name);
   choice = name;
   dismissed = false;
   forget();
   show();
-  viewer().requestRender();
+  startedViewer().requestRender();
 }
 
+/** @param {string} text @param {() => void} press */
 function button(text, press) {
   const made = document.createElement("button");
   made.type = "button";
@@ -104,16 +111,18 @@ function show() {
     line.remove();
     line = null;
   }
-  for (const select of document.querySelectorAll("[data-springtide-quality]")) {
+  /** @type {NodeListOf<HTMLSelectElement>} */
+  const selects = document.querySelectorAll("[data-springtide-quality]");
+  for (const select of selects) {
     if (select.value !== choice) select.value = choice;
-    const now = select.parentElement.querySelector("[data-springtide-quality-now]");
+    const now = select.parentElement?.querySelector("[data-springtide-quality-now]");
     const text = lowered ? `now ${current.quality}` : "";
     if (now && now.textContent !== text) now.textContent = text;
   }
 }
 
 function isCapturing() {
-  return viewer().getRenderRequestState === "capture";
+  return startedViewer().getRenderRequestState === "capture";
 }
 
 // Pixels that are drawn per pixel of the page.
@@ -128,7 +137,7 @@ page.listen(window, "storage", (event) => {
   if (event.key !== KEY) return;
   readChoice();
   show();
-  viewer().requestRender();
+  startedViewer().requestRender();
 });
 export const QUALITY = {
   choice: () => choice,
@@ -141,22 +150,25 @@ export const QUALITY = {
   details: () => (isFixed || isCapturing() ? 2 : current.details),
   // Begin with a renderer: at the step that it had when the page was last open, and at the last one if it has no
   // graphics card. The pixels are set here alone: viser's own monitor and its resizing set others.
+  /** @param {three.Renderer} renderer @param {import("../core/life.js").Life} life */
   start(renderer, life) {
     rendererName = nameOf(renderer);
     const kept = readSteps()[rendererName];
     judge = makeJudge(kept in Object.keys(STEPS) ? kept : this.isSoftware() ? STEPS.length - 1 : 0);
     show();
     if (isFixed) return;
-    wrapMethod(life, renderer, "setPixelRatio", (earlier) => function () {
+    wrapMethod(life, renderer, "setPixelRatio", (earlier) => /** @this {three.Renderer} */ function () {
       earlier.call(this, ratio());
     });
   },
   // Called before each frame is drawn: sets its pixels.
+  /** @param {three.Renderer} renderer */
   beforeRender(renderer) {
     if (isFixed) return;
     if (Math.abs(renderer.getPixelRatio() - ratio()) > 1e-3) renderer.setPixelRatio(ratio());
   },
   // A frame took so long [ms] from the time when it began; compiled: whether programs were made for it.
+  /** @param {number} length @param {number} began @param {boolean} compiled */
   take(length, began, compiled) {
     // A clip whose pictures change their size in the middle cannot be played.
     const measured = !isFixed && choice === "automatic" && document.visibilityState === "visible" && !springtide.isRecording;
@@ -167,16 +179,18 @@ export const QUALITY = {
     if (judge.step() === before) return;
     keepStep();
     show();
-    viewer().requestRender();
+    startedViewer().requestRender();
   },
 };
 // The control comes with each scene.
 onControls(show);
 
 // The text of a fragment shader, and the name of its program, with the details of this frame.
+/** @param {string} source */
 export function withDetails(source) {
   return `#define DETAILS ${QUALITY.details()}\n${source}`;
 }
+/** @param {string} key */
 export function keyWithDetails(key) {
   return QUALITY.details() === 2 ? key : `${key} with details ${QUALITY.details()}`;
 }

@@ -2,19 +2,24 @@
 //
 // Of three this file uses Material.onBeforeCompile and the renderer's property map, to see whether a program linked.
 
-import { viewer } from "../core/viewer.js";
+import { startedViewer } from "../core/viewer.js";
 import { QUALITY } from "./quality.js";
 
+/** @typedef {(shader: three.Shader) => void} Edit */
+
+/** @type {WeakSet<three.Material>} */
 export const refused = new WeakSet(); // materials with a program that did not link: they keep viser's own shader
 
 // The mesh of a node is the first child of its group; shadow meshes and child nodes come after it.
+/** @param {string} name @returns {three.Mesh | null} */
 export function meshOf(name) {
-  const group = viewer().nodeRefFromName[name];
+  const group = startedViewer().nodeRefFromName[name];
   return (group && group.children && group.children.find((child) => child.isMesh)) || null;
 }
 
 // Give a material another shader; false where its program did not link. viser makes a new material when wireframe,
 // opacity, flat shading or side change, so this is done in every frame. key: of the shader; edit(shader): changes it.
+/** @param {three.Material} material @param {string} key @param {Edit} edit */
 export function replaceShader(material, key, edit) {
   if (refused.has(material)) return false;
   if (material.userData.springtide !== key) {
@@ -27,6 +32,7 @@ export function replaceShader(material, key, edit) {
 }
 
 // Programs that the browser is still compiling. It does so beside the page where it has KHR_parallel_shader_compile.
+/** @type {Set<three.Program>} */
 const awaited = new Set();
 const LOOK_INTERVAL = 30; // [ms] between two looks at them
 export let programsReady = 0; // counts on with each of them; frames.js draws when it changes
@@ -45,21 +51,24 @@ function lookForPrograms() {
     programsReady += 1;
   }
   if (awaited.size > 0) setTimeout(lookForPrograms, LOOK_INTERVAL);
-  if (programsReady > before) viewer().requestRender();
+  if (programsReady > before) startedViewer().requestRender();
 }
 
 // Give an object a material with another shader as soon as its program is compiled; until then it keeps the one that it has.
 // Where the page waits for a program, only one is compiled in each frame. key: of the shader; edit(shader): changes it; scene:
 // whose lights it has. Returns whether the object has a material with some shader.
+/**
+ * @param {three.Renderer} renderer @param {three.Mesh} object @param {string} key @param {Edit} edit
+ * @param {three.Camera} camera @param {three.Object3D} scene
+ */
 export function dress(renderer, object, key, edit, camera, scene = object) {
   const { userData } = object, earlier = object.material;
-  userData.materials ??= new Map([["", earlier]]); // by key of their shader
-  const { materials } = userData, bare = materials.get("");
+  const materials = (userData.materials ??= new Map([["", earlier]])); // by key of their shader
+  const bare = materials.get("") ?? earlier, next = materials.get(key) ?? bare.clone();
   if (!materials.has(key)) {
-    materials.set(key, bare.clone());
-    replaceShader(materials.get(key), key, edit);
+    materials.set(key, next);
+    replaceShader(next, key, edit);
   }
-  const next = materials.get(key);
   if (next === earlier) return true;
   object.material = next;
   renderer.compile(object, camera, scene);
@@ -74,12 +83,14 @@ export function dress(renderer, object, key, edit, camera, scene = object) {
   return earlier !== bare;
 }
 
+/** @param {three.Mesh} object */
 export function disposeMaterials(object) {
   for (const material of object.userData.materials?.values() ?? [object.material]) material.dispose();
 }
 
 // Whether the program of a material linked; null where it has none yet. If a driver refuses it, the material gets viser's shader back, so that the
 // mesh is still drawn, and the server is not told that the shader is active.
+/** @param {three.Renderer} renderer @param {three.Material} material */
 export function isLinked(renderer, material) {
   const program = renderer.properties.get(material).currentProgram;
   if (!program) return null; // not drawn yet
@@ -96,6 +107,10 @@ export function isLinked(renderer, material) {
 }
 
 // Insert text after the include of one of three's shader chunks.
+/**
+ * @param {three.Shader} shader @param {"vertexShader" | "fragmentShader"} stage
+ * @param {string} chunk @param {string} text
+ */
 export function insertAfter(shader, stage, chunk, text) {
   shader[stage] = shader[stage].replace(`#include <${chunk}>`, `#include <${chunk}>\n${text}`);
 }

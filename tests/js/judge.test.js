@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { makeJudge } from "./js/shading/judge.js";
+import { firstStep, makeJudge, STEPS } from "./js/shading/judge.js";
 
 const FAST = 16.7, MIDDLING = 30, SLOW = 60, VERY_SLOW = 300; // [ms]
 
@@ -35,4 +35,13 @@ test("quality rises after 20 s of fast frames; where that was too much, after fo
 
 test("two frames of more than 2 s in a row are too slow, even if they compiled programs; one may be a long compilation", () => {
   assert.deepEqual(judged([[2500, 1, true]], [[900, 5, true]], [[2500, 1, true]], [[2500, 1, true]]), [0, 0, 0, 4]);
+});
+
+test("a renderer begins at the step that was kept of it, one without a graphics card else at the last", () => {
+  const last = STEPS.length - 1, card = "ANGLE (NVIDIA GeForce RTX 3060)", software = "Google SwiftShader";
+  const keptSteps = [undefined, 2, 0, last + 1, -1, "2", null];
+  assert.deepEqual(keptSteps.map((kept) => firstStep(kept, card)), [0, 2, 0, 0, 0, 0, 0]);
+  assert.deepEqual([undefined, 2, 0, last + 1].map((kept) => firstStep(kept, software)), [last, 2, 0, last]);
+  const others = ["llvmpipe (LLVM 15.0.6)", "Microsoft Basic Render Driver", "Apple GPU", "Mesa Intel(R) UHD Graphics"];
+  assert.deepEqual(others.map((name) => firstStep(null, name)), [last, last, 0, 0]);
 });

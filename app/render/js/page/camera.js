@@ -8,6 +8,7 @@ import { beforeRender } from "../core/render_hook.js";
 import { startedViewer, viewer } from "../core/viewer.js";
 import { onLook } from "../core/watch.js";
 import { without } from "./free_part.js";
+import { waterHeight } from "./water_height.js";
 
 const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor
 const WATER_CLEARANCE = 0.25; // [m] of the camera above the water
@@ -61,43 +62,19 @@ const shownNode = (name) => {
   return node || null;
 };
 
-// Height [m] of the water at a point of its frame, from the vertices of its mesh; a square tile is repeated.
-/** @param {three.Mesh} mesh @param {three.Vector3} point */
-function waterHeight(mesh, point) {
-  const numbers = mesh.geometry.attributes.position.array;
-  const last = numbers.length - 3;
-  let { x, y } = point;
-  // The last vertex of a square tile is its first one, a side farther along x and y.
-  const side = numbers[last] - numbers[0];
-  if (side > 0 && Math.abs(numbers[last + 1] - numbers[1] - side) < 1e-3 * side) {
-    x -= side * Math.floor(x / side);
-    y -= side * Math.floor(y / side);
-  }
-  let nearest = Infinity;
-  for (let k = 0; k <= last; k += 3) {
-    const d = (numbers[k] - x) ** 2 + (numbers[k + 1] - y) ** 2;
-    if (d < nearest) nearest = d;
-  }
-  let height = -Infinity;
-  for (let k = 0; k <= last; k += 3) {
-    const d = (numbers[k] - x) ** 2 + (numbers[k + 1] - y) ** 2;
-    if (d <= 2.5 * nearest && numbers[k + 2] > height) height = numbers[k + 2];
-  }
-  return height;
-}
-
 // The lowest height that the camera may have: { always, now }, for good and above the wave that is there now.
 /** @param {three.Camera} camera */
 function lowest(camera) {
   const floor = shownNode("/floor"), sea = shownNode("/sea");
   let always = -Infinity, now = -Infinity;
   if (floor) always = floor.getWorldPosition(camera.position.clone()).y + FLOOR_CLEARANCE;
-  const mesh = sea && sea.children.find((child) => child.isMesh);
-  if (mesh && mesh.geometry.attributes.position) {
+  const mesh = sea?.children.find((child) => child.isMesh);
+  const position = mesh?.geometry.attributes.position;
+  if (sea && mesh && position) {
     const mean = sea.getWorldPosition(camera.position.clone()).y;
     always = Math.max(always, mean + WATER_CLEARANCE);
     if (camera.position.y < mean + MAX_WAVE_HEIGHT) {
-      now = mean + waterHeight(mesh, mesh.worldToLocal(camera.position.clone())) + WATER_CLEARANCE;
+      now = mean + waterHeight(position.array, mesh.worldToLocal(camera.position.clone())) + WATER_CLEARANCE;
     }
   }
   return { always, now };

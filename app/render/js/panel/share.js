@@ -11,20 +11,16 @@ import { springtide } from "../core/springtide.js";
 import { PAGE, send as sendToLab, startedViewer } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { chartsOfPage } from "./charts.js";
+import { labAt, ofLab, setupIn } from "./links.js";
+import { rowsOf } from "./rows.js";
 
 const MAX_LENGTH = 5000; // [characters] that the lab takes
 const MAX_REPLAY = 2e8; // [bytes] of a replay that is read
-const BLOCK = '<script type="application/json" id="springtide-setup">'; // holds the set-up file in a replay
-const BLOCK_END = "</script>";
 const CLIP_TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/webm"];
 const CLIP_RATE = 30; // [1/s] pictures of a clip
 const CLIP_BITS = 12e6; // [bit/s]
 const MAX_CLIP = 300; // [s] after which a clip ends by itself
 const ASKED = 3000; // [ms] after a press of "Copy link" within which a link is copied to the clipboard
-const VISER_NAMES = new Set([
-  "darkMode", "dummyWindowDimensions", "dummyWindowTitle", "fixedDpr", "forceOrbitOriginTool", "hideViserLogo",
-  "initialCameraLookAt", "initialCameraPosition", "initialCameraUp", "logCamera", "playbackPath", "showStats", "websocket",
-]);
 const asked = new URLSearchParams(location.search);
 let query = ["scene", "task", "compare"].some((name) => asked.has(name)) ? location.search : "";
 let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
@@ -46,14 +42,6 @@ sentences.textContent =
   `${own} .springtide-others, [data-springtide-changer]:not(${own}) .springtide-own { display: none; }`;
 document.head.append(sentences);
 
-// What viser's client itself takes from an address is not for the lab.
-/** @param {string} search */
-function ofLab(search) {
-  const found = new URLSearchParams(search);
-  for (const name of [...found.keys()]) if (VISER_NAMES.has(name)) found.delete(name);
-  return `?${found}`;
-}
-
 // Copy a link to the clipboard. A browser that refuses, or a page without encryption, has it selected.
 /** @param {HTMLAnchorElement} link */
 async function copy(link) {
@@ -73,7 +61,7 @@ function completeLinks() {
   const links = document.querySelectorAll("[data-springtide-link]:not([data-springtide-done])");
   for (const link of links) {
     link.dataset.springtideDone = "";
-    link.href = location.origin + location.pathname.replace(/pane\/\d\/[^/]*$/, "") + link.dataset.springtideLink;
+    link.href = labAt(location) + link.dataset.springtideLink;
     link.textContent = link.href;
     if (performance.now() - pressed < ASKED) copy(link);
   }
@@ -154,23 +142,17 @@ function saveCharts(button) {
   const sheet = document.createElement("canvas");
   const pen = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
   const width = Math.max(...charts.map((chart) => chart.ctx.canvas.width));
-  // The names of a chart's lines, in as many rows as they need: [row, left, name, colour] of each.
+  // The names of a chart's lines, in as many rows as they need.
   const keys = charts.map((chart) => {
-    let row = 0, left = 8 * ratio;
     pen.font = `${11 * ratio}px sans-serif`;
-    return chart.series.slice(1).filter(({ show }) => show).map(({ label, _stroke: stroke }) => {
-      const size = pen.measureText(`— ${label}   `).width;
-      if (left + size > width && left > 8 * ratio) {
-        row += 1;
-        left = 8 * ratio;
-      }
-      left += size;
-      /** @type {[row: number, left: number, name: string, colour: string]} */
-      const key = [row, left - size, `— ${label}`, typeof stroke === "string" ? stroke : "#888888"];
-      return key;
+    const shown = chart.series.slice(1).filter(({ show }) => show);
+    const places = rowsOf(shown.map(({ label }) => pen.measureText(`— ${label}   `).width), 8 * ratio, width);
+    return shown.map(({ label, _stroke: stroke }, k) => {
+      const colour = typeof stroke === "string" ? stroke : "#888888";
+      return { ...places[k], name: `— ${label}`, colour };
     });
   });
-  const rows = keys.map((key) => 1 + Math.max(0, ...key.map(([row]) => row)));
+  const rows = keys.map((key) => 1 + Math.max(0, ...key.map(({ row }) => row)));
   sheet.width = width;
   sheet.height = charts.reduce((sum, chart, i) => sum + chart.ctx.canvas.height + (1 + rows[i]) * line, 0);
   const around = getComputedStyle(charts[0].root.parentElement ?? charts[0].root);
@@ -191,7 +173,7 @@ function saveCharts(button) {
     pen.textAlign = "left";
     top += line + chart.ctx.canvas.height;
     pen.font = `${11 * ratio}px sans-serif`;
-    for (const [row, left, name, colour] of keys[i]) {
+    for (const { row, left, name, colour } of keys[i]) {
       pen.fillStyle = colour;
       pen.fillText(name, left, top + (row + 0.5) * line);
     }
@@ -222,8 +204,7 @@ page.listen(document, "change", async (event) => {
   const file = field.files[0];
   let text = await file.slice(0, 4 * MAX_LENGTH).text();
   if (text.trimStart().startsWith("<") && file.size <= MAX_REPLAY) {
-    const page = await file.text(), start = page.lastIndexOf(BLOCK) + BLOCK.length;
-    if (start >= BLOCK.length) text = page.slice(start, page.indexOf(BLOCK_END, start));
+    text = setupIn(await file.text()) ?? text;
   }
   // What is too long is sent as far as the lab reads, so that the lab says what is wrong with it.
   send(text.slice(0, MAX_LENGTH) || " ");

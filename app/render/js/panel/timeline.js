@@ -7,6 +7,7 @@
 //
 import { PAGE, send as sendToLab } from "../core/viewer.js";
 import { onChange, onLook } from "../core/watch.js";
+import { footOf, wordsOf } from "./foot.js";
 
 const SEND_INTERVAL = 40; // [ms] between two moments that are sent while a hand moves along the bar
 const PANELS = "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root)";
@@ -49,9 +50,9 @@ function put(element, text) {
 // Say the moment that the bar shows: under a hand it is the hand's.
 /** @param {boolean} isPast */
 function say(isPast) {
-  const at = Number(line.value);
-  put(moment, isPast ? `t = ${at.toFixed(2)} s` : "Live");
-  put(back, `${(state.high - at).toFixed(1)} s back`);
+  const words = wordsOf(Number(line.value), state.high, isPast);
+  put(moment, words.moment);
+  put(back, words.back);
   line.setAttribute("aria-valuetext", `${moment.textContent}, ${back.textContent}`);
 }
 
@@ -116,15 +117,9 @@ bar.addEventListener("keydown", (event) => {
 function place() {
   const canvas = document.querySelector("canvas[data-engine]");
   if (bar.hidden || !canvas) return;
-  let { left, right, bottom } = canvas.getBoundingClientRect();
-  const middle = (left + right) / 2, high = bar.offsetHeight;
-  for (const panel of document.querySelectorAll(PANELS)) {
-    const box = panel.getBoundingClientRect();
-    if (!box.width || box.bottom < bottom - high - 12 || box.top > bottom) continue;
-    if (box.left < middle && box.right > middle) bottom = Math.min(bottom, box.top);
-    else if (box.left >= middle) right = Math.min(right, box.left);
-    else left = Math.max(left, box.right);
-  }
+  const panels = [...document.querySelectorAll(PANELS)].map((one) => one.getBoundingClientRect());
+  const high = bar.offsetHeight;
+  const { left, right, bottom } = footOf(canvas.getBoundingClientRect(), panels, high);
   const edges = { left, right: innerWidth - right, foot: innerHeight - bottom, bar: high };
   const { style } = document.documentElement;
   for (const [name, value] of Object.entries(edges)) {

@@ -20,6 +20,22 @@ const HOPELESS = 2000; // [ms] of two frames in a row, from which on the last st
 const PATIENCE = 20_000; // [ms] of fast frames before a step up; four times as long after a step up that was too much
 const TRIAL = 10_000; // [ms] after a step up in which slow frames mean that it was too much
 
+// Names of renderers without a graphics card of their own. Others are known by their time: WebKit says "Apple GPU"
+// everywhere.
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|microsoft basic render|paravirtual/i;
+
+// Whether there is no graphics card, as far as the name of the renderer tells.
+/** @param {string} renderer */
+export const isSoftware = (renderer) => SOFTWARE.test(renderer);
+
+// The step to begin with: the one that was kept of this renderer, else the finest, or the last one without a graphics
+// card.
+/** @param {unknown} kept @param {string} renderer */
+export function firstStep(kept, renderer) {
+  if (typeof kept === "number" && kept in STEPS) return kept;
+  return isSoftware(renderer) ? STEPS.length - 1 : 0;
+}
+
 // The step of "automatic", from the lengths of frames [ms] that `take` is given.
 export function makeJudge(step = 0) {
   /** @type {number[]} */

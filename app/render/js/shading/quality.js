@@ -11,13 +11,11 @@ import { springtide } from "../core/springtide.js";
 import { store, stored } from "../core/storage.js";
 import { startedViewer } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
-import { makeJudge, STEPS } from "./judge.js";
+import { firstStep, isSoftware, makeJudge, STEPS } from "./judge.js";
 import { wrapMethod } from "./wrap.js";
 
 const KEY = "springtide-quality"; // of the local storage
 const STEPS_KEY = "springtide-quality-steps"; // of the local storage: the last step of each renderer, by its name
-// Names of renderers without a graphics card of their own. Others are known by their time: WebKit says "Apple GPU" everywhere.
-const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|microsoft basic render|paravirtual/i;
 /** @type {Record<string, number>} */
 const FIXED = { high: 0, medium: 2, low: 4 }; // step of each choice but "automatic"
 let judge = makeJudge();
@@ -143,7 +141,7 @@ export const QUALITY = {
   choice: () => choice,
   now: () => ({ ...current, step: STEPS.indexOf(current), steps: STEPS.length }),
   isCapturing, // a picture that the server asked for
-  isSoftware: () => SOFTWARE.test(rendererName), // whether there is no graphics card, as far as is known
+  isSoftware: () => isSoftware(rendererName),
   // Whether this frame has to be as it says, however long that takes: it does not change afterwards.
   isWhole: () => isFixed || isCapturing() || springtide.isRecording === true,
   // How much detail the shaders of this frame have: 2 all, 1 less, 0 least.
@@ -153,8 +151,7 @@ export const QUALITY = {
   /** @param {three.Renderer} renderer @param {import("../core/life.js").Life} life */
   start(renderer, life) {
     rendererName = nameOf(renderer);
-    const kept = readSteps()[rendererName];
-    judge = makeJudge(kept in Object.keys(STEPS) ? kept : this.isSoftware() ? STEPS.length - 1 : 0);
+    judge = makeJudge(firstStep(readSteps()[rendererName], rendererName));
     show();
     if (isFixed) return;
     wrapMethod(life, renderer, "setPixelRatio", (earlier) => /** @this {three.Renderer} */ function () {

@@ -1,0 +1,22 @@
+// The foot of the scene, where the time line stands: as wide as panels leave it.
+
+const NEAR = 12; // [pixels] above a bar, up to which a panel is in its way
+
+// The edges of the foot of a canvas for a bar of this height. A panel over its middle has the bar above it, others beside.
+/** @param {Edges} canvas @param {Edges[]} panels @param {number} height */
+export function footOf(canvas, panels, height) {
+  let { left, right, bottom } = canvas;
+  const middle = (left + right) / 2;
+  for (const box of panels) {
+    if (box.right === box.left || box.bottom < bottom - height - NEAR || box.top > bottom) continue;
+    if (box.left < middle && box.right > middle) bottom = Math.min(bottom, box.top);
+    else if (box.left >= middle) right = Math.min(right, box.left);
+    else left = Math.max(left, box.right);
+  }
+  return { left, right, bottom };
+}
+
+// What the time line says of a moment [s] of a recording up to `high` [s]: the moment, and how far back it is.
+/** @param {number} at @param {number} high @param {boolean} isPast */
+export const wordsOf = (at, high, isPast) =>
+  ({ moment: isPast ? `t = ${at.toFixed(2)} s` : "Live", back: `${(high - at).toFixed(1)} s back` });

@@ -1,0 +1,27 @@
+// What stands in the address of the page, and in a replay, for the lab.
+
+const BLOCK = '<script type="application/json" id="springtide-setup">'; // holds the set-up file in a replay
+const BLOCK_END = "</script>";
+const VISER_NAMES = new Set([
+  "darkMode", "dummyWindowDimensions", "dummyWindowTitle", "fixedDpr", "forceOrbitOriginTool", "hideViserLogo",
+  "initialCameraLookAt", "initialCameraPosition", "initialCameraUp", "logCamera", "playbackPath", "showStats", "websocket",
+]);
+
+// The part of an address that is for the lab: what viser's client itself takes from it is not.
+/** @param {string} search */
+export function ofLab(search) {
+  const found = new URLSearchParams(search);
+  for (const name of [...found.keys()]) if (VISER_NAMES.has(name)) found.delete(name);
+  return `?${found}`;
+}
+
+// The address of the lab where this is the page's: a pane of several is below it.
+/** @param {{ origin: string, pathname: string }} page */
+export const labAt = ({ origin, pathname }) => origin + pathname.replace(/pane\/\d\/[^/]*$/, "");
+
+// The set-up file that a replay holds; null where it holds none.
+/** @param {string} replay */
+export function setupIn(replay) {
+  const start = replay.lastIndexOf(BLOCK);
+  return start < 0 ? null : replay.slice(start + BLOCK.length, replay.indexOf(BLOCK_END, start));
+}

@@ -1,0 +1,29 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { footOf, wordsOf } from "./js/panel/foot.js";
+
+const CANVAS = { left: 0, right: 900, top: 0, bottom: 600 }, HIGH = 40;
+/** @param {number} left @param {number} right @param {number} top @param {number} bottom */
+const box = (left, right, top, bottom) => ({ left, right, top, bottom });
+/** @param {Edges[]} panels */
+const foot = (...panels) => Object.values(footOf(CANVAS, panels, HIGH));
+
+test("the time line stands between the panels that reach the foot of the scene", () => {
+  assert.deepEqual(foot(), [0, 900, 600]);
+  assert.deepEqual(foot(box(600, 880, 20, 560)), [0, 600, 600]); // it ends just above the time line
+  assert.deepEqual(foot(box(600, 880, 20, 590), box(10, 200, 300, 600)), [200, 600, 600]);
+});
+
+test("a panel that is higher, below the scene, or empty is not in its way", () => {
+  assert.deepEqual(foot(box(600, 880, 20, 540), box(10, 200, 610, 700), box(600, 600, 0, 600)), [0, 900, 600]);
+});
+
+test("it stands above a sheet over the middle, and then beside what reaches so far down", () => {
+  assert.deepEqual(foot(box(0, 900, 400, 600)), [0, 900, 400]);
+  assert.deepEqual(foot(box(0, 900, 400, 600), box(700, 900, 0, 390)), [0, 700, 400]);
+});
+
+test("a moment is said in seconds, and how far back it is", () => {
+  assert.deepEqual(wordsOf(12.345, 20, true), { moment: "t = 12.35 s", back: "7.7 s back" });
+  assert.deepEqual(wordsOf(20, 20, false), { moment: "Live", back: "0.0 s back" });
+});

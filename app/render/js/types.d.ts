@@ -137,8 +137,8 @@ declare namespace viser {
   }
   interface InstancedMesh extends three.Mesh {
     instanceIndex?: { array: Uint32Array<ArrayBuffer>; buffer: WebGLBuffer; setBuffer?(buffer: WebGLBuffer): void };
-    customDepthMaterial?: three.Material;
-    customDistanceMaterial?: three.Material;
+    customDepthMaterial?: three.Material | null;
+    customDistanceMaterial?: three.Material | null;
     patchMaterial?(renderer: three.Renderer, material: three.Material): void;
     unpatchMaterial(renderer: three.Renderer, material: three.Material): void;
   }

@@ -20,7 +20,7 @@ export function renewInstances(renderer, scene) {
     gl.bindBuffer(gl.ARRAY_BUFFER, instanceIndex.buffer);
     gl.bufferData(gl.ARRAY_BUFFER, instanceIndex.array, gl.DYNAMIC_DRAW);
     const materials = [mesh.material, mesh.customDepthMaterial, mesh.customDistanceMaterial].flat();
-    for (const material of materials.filter((one) => one !== undefined)) {
+    for (const material of materials.filter((one) => !!one)) {
       mesh.patchMaterial(renderer, material);
       const remembered = renderer.properties.get(material);
       for (const name of Object.keys(remembered)) delete remembered[name];

@@ -4,9 +4,9 @@
 
 import viser
 
-from app.render.html import fill
-from app.render.viser_inside import uuid_of
-from app.render.viser_types import GuiHandle, ViserEvent
+from app.render.handles.viser_inside import uuid_of
+from app.render.handles.viser_types import GuiHandle, ViserEvent
+from app.render.markup.html import fill
 from app.scenes.contract import AnyView
 
 BRAND_COLOUR = (28, 106, 168)

@@ -5,10 +5,10 @@ from collections.abc import Callable
 import viser
 
 from app.messages import Command, Pause, Play, StepOnce
-from app.panel.remedy import Remedy
+from app.panel.controls.remedy import Remedy
 from app.panel.settings import SceneSettings
-from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
-from app.render.viser_types import ViserEvent
+from app.render.handles.viser_types import ViserEvent
+from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.scenes.contract import AnySnapshot, AnyView
 from sim.parameters import in_words
 

@@ -7,8 +7,8 @@ import viser
 
 from app.messages import StepOnce, TogglePlay
 from app.panel.settings import SceneSettings
-from app.render.html import Html
-from app.render.viser_types import ViserEvent
+from app.render.handles.viser_types import ViserEvent
+from app.render.markup.html import Html
 
 Key = Literal["space", "G", "N", "P", "R", "U", "1", "2", "3", "4", "5", "6", "7", "8", "9"]
 DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")

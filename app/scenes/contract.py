@@ -27,7 +27,7 @@ from sim.parameters import Value
 if TYPE_CHECKING:
     from viser import ClientHandle, ViserServer
 
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from sim.springs.net import Net
 
 FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames of a scene that asks for nothing else

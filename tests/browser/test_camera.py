@@ -5,8 +5,8 @@ import random
 import numpy as np
 import pytest
 
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
 from app.scenes import scene_named
 from app.server.viewer import Viewer
 from sim.parameters import check_record

@@ -32,7 +32,7 @@ from sim.springs.stability import Mode, gershgorin
 from sim.springs.state import State, energy
 
 if TYPE_CHECKING:
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from app.scenes.cloth.student_cloth import StudentCloth
 
 MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Gershgorin's bound is shown

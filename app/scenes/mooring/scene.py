@@ -5,9 +5,9 @@ from typing import Any
 from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import Advice, FileFacts, Pieces, SceneKind
 from app.scenes.mooring.body_scene import MooringScene
-from app.scenes.mooring.file_scene import FileScene
+from app.scenes.mooring.files.file_scene import FileScene
+from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.frame import MooringReadings
-from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, SERIES, LineScene
 from app.scenes.mooring.parameters import ABOUT, EXPLICIT, OF_NO_FILE, PRESETS, MooringParams, hidden
 from app.scenes.mooring.quantities import QUANTITIES

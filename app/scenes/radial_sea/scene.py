@@ -13,9 +13,10 @@ from app.scenes.contract import FramePacking, Pieces, SceneKind
 from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
-from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.drawn_surface import DrawnSurface, Foam, tile_of
 from app.scenes.radial_sea.frame import JetParcels, RadialFrame, RadialReadings, pack_frame, unpack_frame
+from app.scenes.radial_sea.oil.charts import BUDGET_LINES, budget_chart
+from app.scenes.radial_sea.oil.well_blowout import WellBlowout, slick_reach, wave_left
 from app.scenes.radial_sea.parameters import (
     ABOUT,
     PRESETS,
@@ -31,7 +32,6 @@ from app.scenes.radial_sea.parameters import (
 from app.scenes.radial_sea.quantities import QUANTITIES
 from app.scenes.radial_sea.radiated_waves import RadiatedWaves
 from app.scenes.radial_sea.wave_choice import draw, wave_choice_of
-from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach, wave_left
 from app.scenes.sea_parameters import notes_on_file
 from sim.floating import Body, Hull, MotionCoefficients, Shape, make_fleet, shape_from_file, step, still_water
 from sim.interruption import kept_whole
@@ -48,7 +48,7 @@ from sim.particles.jet import Jet
 from sim.validation import DivergenceError
 
 if TYPE_CHECKING:
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from app.scenes.radial_sea.student_sea import StudentRadialSea
 
 PLOTTED_BODIES = 3  # bodies with a plotted draft

@@ -30,7 +30,7 @@ from sim.springs.stability import critical_stiffness, top_modes
 from sim.springs.state import State, energy
 
 if TYPE_CHECKING:
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from app.scenes.rope.student_rope import StudentRope
 
 MIN_MOVE_TO_ASSESS = 1e-3  # of a link: a rope that has moved by less since the last assessment is as stable as it was

@@ -9,9 +9,9 @@ they are sent once and hit nothing.
 import numpy as np
 import viser
 
+from app.render.handles.viser_inside import set_arrays
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import RAIN_UNIFORMS
-from app.render.viser_inside import set_arrays
 from app.scenes.square_sea.parameters import RainSettings
 from app.scenes.square_sea.rainfall import MAX_SPLASHES, SPLASH_DURATION, RainFrame
 from sim.particles.rain import EARTH, rainfall, slope_parameter

@@ -4,7 +4,7 @@ import math
 
 from app.formats.formatting import count, fixed, metres, number, percent, seconds
 from app.messages import Snapshot
-from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, lines, table
+from app.render.markup.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, lines, table
 from app.scenes.measured_sea import measured_text
 from app.scenes.quantities import read, written
 from app.scenes.sea_parameters import chosen_spectrum

@@ -41,7 +41,7 @@ from sim.ocean.statistics.foam import whitecaps
 from sim.parameters import effect_of_change
 
 if TYPE_CHECKING:
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from app.scenes.square_sea.nonlinear import Marching
     from app.scenes.square_sea.student_sea import StudentSea
     from sim.ocean.nonlinear import NonlinearSea

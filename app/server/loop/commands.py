@@ -26,7 +26,7 @@ from app.messages import (
     Take,
     TogglePlay,
 )
-from app.scenes.compiling import Compiling, Job
+from app.scenes.ahead.compiling import Compiling, Job
 from app.scenes.contract import AnyKind
 from sim.parameters import EFFECTS, Effect, effect_of_change
 

@@ -12,7 +12,7 @@ import traceback
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 
-from app.lab.process import ON_HUB
+from app.lab.process.shared import ON_HUB
 from app.messages import (
     Advance,
     Ask,

@@ -30,7 +30,7 @@ import viser
 import websockets.asyncio.server
 from websockets.http11 import Request, Response
 
-from app.render.viser_inside import (
+from app.render.handles.viser_inside import (
     UNKNOWN,
     Handler,
     Taker,
@@ -41,7 +41,7 @@ from app.render.viser_inside import (
     refuse_requests,
     send_to_all,
 )
-from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
+from app.render.handles.viser_types import GuiHandle, ViserConnection, ViserMessage
 from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, refusal
 from app.server.web.pace import PACE, Pace, put_small_first
 from app.server.web.page import own_answer, with_cover

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.live_code import LiveCode
-from app.lab.live_net import CLOTH, ROPE, LiveNet
-from app.lab.live_tables import LiveTables
-from app.lab.task import load_tasks
-from app.lab.versions import Versions
+from app.lab.course.task import load_tasks
+from app.lab.student.live_code import LiveCode
+from app.lab.student.live_net import CLOTH, ROPE, LiveNet
+from app.lab.student.live_tables import LiveTables
+from app.lab.student.versions import Versions
 from app.messages import StudentAnswer
-from app.panel.code_panel import sea_texts
+from app.panel.workbook.code_panel import sea_texts
 from app.scenes.radial_sea.bodies import box_of
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.scene import RadialSeaScene
@@ -286,7 +286,7 @@ def test_an_error_of_the_lab_is_shown_and_the_next_version_runs(
 
     scene = SquareSeaScene(PHILLIPS, folder.live)
     with monkeypatch.context() as patch:
-        patch.setattr("app.lab.runner.Runner.table", fail)
+        patch.setattr("app.lab.process.runner.Runner.table", fail)
         folder.save(source("gravity"))
         wait_for(lambda: folder.tables.errors)
         assert "TypeError: not what was expected" in str(next(iter(folder.tables.errors.values())))

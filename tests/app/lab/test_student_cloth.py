@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.session import Session
-from app.lab.task import load_tasks
+from app.lab.course.task import load_tasks
+from app.lab.student.session import Session
 from app.messages import GrabTo, Place, StudentAnswer
-from app.panel.code_panel import code_lines, tables_of
+from app.panel.workbook.code_panel import code_lines, tables_of
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from tests.app.lab.test_session import save, taken, working_in

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from app.scenes import compiling
-from app.scenes.compiling import Compiling, Job
+from app.scenes.ahead import compiling
+from app.scenes.ahead.compiling import Compiling, Job
 from tests.fresh import noted
 
 ROOT = Path(__file__).parents[3]
@@ -86,7 +86,7 @@ def test_the_rest_is_compiled_by_another_worker(queue: Compiling, monkeypatch: p
 def test_a_worker_compiles_a_piece_that_the_next_process_only_loads(tmp_path: Path) -> None:
     folders = {"SPRINGTIDE_CACHE": str(tmp_path), "SPRINGTIDE_KERNELS": noted()}
     environment = {**os.environ, **folders, "PYTHONPATH": str(ROOT)}
-    worker = [sys.executable, "-m", "app.scenes.compile_worker", "--ahead"]
+    worker = [sys.executable, "-m", "app.scenes.ahead.compile_worker", "--ahead"]
 
     def ask(line: str) -> "subprocess.CompletedProcess[str]":
         return subprocess.run(
@@ -104,7 +104,7 @@ def test_a_worker_compiles_a_piece_that_the_next_process_only_loads(tmp_path: Pa
 
 
 def test_ctrl_c_leaves_a_worker_to_the_lab() -> None:
-    code = "import signal, sys; from app.scenes.compile_worker import main; main(); "
+    code = "import signal, sys; from app.scenes.ahead.compile_worker import main; main(); "
     told = "print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, file=sys.stderr)"
     command = [sys.executable, "-c", code + told]
     ended = subprocess.run(command, input="", cwd=ROOT, capture_output=True, text=True, timeout=60)

@@ -13,8 +13,8 @@ import pytest
 from app.commands.run import run_to_file
 from app.formats import formatting
 from app.messages import GrabTo, Place, Release
-from app.render.html import ERROR_COLOUR
-from app.render.line_chart import line_chart
+from app.render.markup.html import ERROR_COLOUR
+from app.render.markup.line_chart import line_chart
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.quantities import measured
 from app.scenes.race.charts import ERROR_TICKS, MAX_ROWS, RaceCharts, round_up

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.messages import Snapshot
-from app.render.html import WARNING_COLOUR, bold
+from app.render.markup.html import WARNING_COLOUR, bold
 from app.scenes import quantities
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.quantities import QUANTITIES, open_sea

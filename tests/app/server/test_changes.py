@@ -6,7 +6,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from app.panel.changes import SHOWN_TIME, UNDO, Change, Changes, Notice
+from app.panel.sharing.changes import SHOWN_TIME, UNDO, Change, Changes, Notice
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
@@ -34,7 +34,7 @@ def shown(lab: Viewer) -> str:
 
 def test_the_time_of_a_change_begins_in_the_scene_that_it_opened(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr("app.panel.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr("app.panel.sharing.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
     before = make_setup(scene_named("rope"))
     changes = Changes()
     changes.latest = Change("page", "cloth", make_setup(scene_named("cloth")), before)
@@ -60,7 +60,7 @@ def test_a_change_is_undone_once() -> None:
 
 def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr("app.panel.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr("app.panel.sharing.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
 
     async def follow_links() -> None:
         async with visitor(lab) as first:

@@ -14,7 +14,7 @@ from app.scenes.ahead import compiling
 from app.scenes.ahead.compiling import Compiling, Job
 from tests.fresh import noted
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 @pytest.fixture

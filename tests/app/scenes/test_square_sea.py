@@ -8,11 +8,11 @@ import pytest
 
 from app.messages import PointAlong, Reset
 from app.scenes.quantities import measured
-from app.scenes.square_sea import report
+from app.scenes.square_sea import SCENE, report
 from app.scenes.square_sea import scene as square_sea
 from app.scenes.square_sea.parameters import PRESETS, SquareSeaParams, conditions, rain_settings
 from app.scenes.square_sea.rainfall import RING_STEEPNESS, SeaRain
-from app.scenes.square_sea.scene import SCENE, SquareSeaScene
+from app.scenes.square_sea.scene import SquareSeaScene
 from app.scenes.square_sea.statistics import theory
 from app.server.loop.sim_loop import SimLoop
 from sim.ocean import Sea

@@ -34,7 +34,7 @@ from tests import coroutines
 from tests.app.server.test_viser_names import ROOT
 
 def try_lab(name):
-    path = ROOT / "app" / "render" / "viser_inside.py"
+    path = ROOT / "app" / "render" / "handles" / "viser_inside.py"
     source = re.sub(rf"\\b{name}\\b", f"{name}_changed", path.read_text("utf-8"))
     inside = types.ModuleType("app.render.handles.viser_inside")
     sys.modules[inside.__name__] = inside

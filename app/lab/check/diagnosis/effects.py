@@ -7,6 +7,7 @@ Only numpy is imported here, so that the process starts fast.
 
 import ast
 import contextlib
+import inspect
 import os
 import sys
 import threading
@@ -367,7 +368,7 @@ class WrittenFiles:
         if event == "open" and not is_writing(*how[:2]):
             return
         if isinstance(path, str | Path) and "__pycache__" not in str(path) and str(path) != os.devnull:
-            frame: FrameType | None = sys._getframe(1)
+            frame: FrameType | None = inspect.currentframe()
             while frame is not None and os.path.dirname(frame.f_code.co_filename) != self.folder:
                 frame = frame.f_back
             self.found.append((str(path), None if frame is None else place_of(frame)))

@@ -63,7 +63,7 @@ def reached_host(host: str, port: int) -> Generator[str]:
             taken.bind(("::1", port))
         except OSError as error:
             if error.errno in (errno.EADDRINUSE, errno.EACCES):
-                say(f"localhost:{port} may lead to another program.")
+                say(f"Another program also answers on localhost:{port}; use the address below.")
                 yield LOOPBACK
                 return
             # Without IPv6, localhost is 127.0.0.1.

@@ -241,4 +241,4 @@ class Comparing:
             if not isinstance(error, ValueError):
                 traceback.print_exc()
             for client in self.first.server.get_clients().values():
-                client.add_notification("Nothing was opened beside it", str(error), color="red")
+                client.add_notification("Couldn't open a second pane", str(error), color="red")

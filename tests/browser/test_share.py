@@ -67,13 +67,13 @@ def test_a_link_is_taken_shown_to_the_others_and_made_again(
     other = open_tab(lab.port, query=query)
     base = f"http://127.0.0.1:{lab.port}/"
     tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 2000.0, 60)
-    tab.wait(tab.page.get_by_text("Another browser opened Rope").is_visible, 20)
-    other.wait(other.page.get_by_text("You opened Rope").is_visible, 20)
-    assert not tab.page.get_by_text("You opened Rope").is_visible()
-    assert not other.page.get_by_text("Another browser opened Rope").is_visible()
+    tab.wait(tab.page.get_by_text("Someone else switched everyone to Rope").is_visible, 20)
+    other.wait(other.page.get_by_text("You switched everyone to Rope").is_visible, 20)
+    assert not tab.page.get_by_text("You switched everyone to Rope").is_visible()
+    assert not other.page.get_by_text("Someone else switched everyone to Rope").is_visible()
     tab.page.get_by_role("button", name=UNDO).click()
     tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 800.0, 20)
-    tab.wait(lambda: not tab.page.get_by_text("Another browser opened Rope").is_visible(), 20)
+    tab.wait(lambda: not tab.page.get_by_text("Someone else switched everyone to Rope").is_visible(), 20)
     other.page.reload()
     tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 2000.0, 60)
     assert vars(lab.settings.params)["time_step"] == 1 / 600

@@ -27,12 +27,12 @@ def conform(value: Any, like: Any) -> Any:
         raise Wrong("it returns nothing: the last line must be return ...", "returns nothing")
     if isinstance(value, Foreign | str):
         found = value.type_name if isinstance(value, Foreign) else "text"
-        raise Wrong(f"it returns a value of type {found}; expected is {form_of(like)}", "wrong type")
+        raise Wrong(f"it returns a value of type {found}; expected {form_of(like)}", "wrong type")
     if isinstance(like, tuple):
         if isinstance(value, np.ndarray):
             value = list(value) if value.ndim else [value]
         if not isinstance(value, tuple | list) or len(value) != len(like):
-            raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong shape")
+            raise Wrong(f"it returns {form_of(value)}; expected {form_of(like)}", "wrong shape")
         return tuple(conform(part, entry) for part, entry in zip(value, like, strict=True))
     try:
         array = np.asarray(value)
@@ -41,11 +41,11 @@ def conform(value: Any, like: Any) -> Any:
     if array.dtype.kind == "c":
         raise Wrong("it returns complex numbers: look for the root of a negative number", "wrong type")
     if array.dtype.kind not in "biuf":
-        raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong type")
+        raise Wrong(f"it returns {form_of(value)}; expected {form_of(like)}", "wrong type")
     array = array.astype(np.float64)
     if np.ndim(like) == 0:
         if array.size != 1:
-            raise Wrong(f"it returns {form_of(value)}; expected is {form_of(like)}", "wrong shape")
+            raise Wrong(f"it returns {form_of(value)}; expected {form_of(like)}", "wrong shape")
         return float(array.reshape(()))
     return array
 

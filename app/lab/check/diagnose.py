@@ -42,7 +42,7 @@ def diagnosed(student: StudentFunction, trials: Sequence[Trial]) -> Wrong:
     task = student.task
     for trial in trials:
         if [(p.ndim, p.shape[1:]) for p in parts(trial.found)] != [(p.ndim, p.shape[1:]) for p in parts(trial.right)]:
-            return Wrong(f"it returns {form_of(trial.found)}; expected is {form_of(trial.right)}", "wrong shape")
+            return Wrong(f"it returns {form_of(trial.found)}; expected {form_of(trial.right)}", "wrong shape")
     rng = np.random.default_rng(FRESH_SEED)
     fresh = [student.trial(tuple(task.check.inputs(rng))) for _ in range(FRESH)]  # type: ignore[union-attr]
     every = [*trials, *fresh]
@@ -222,7 +222,7 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
         found = Explanation("", text)
     elif compared is None:
         other = next(trial for trial in trials if not same_shape(trial.found, trial.right))
-        raise Wrong(f"it returns {form_of(other.found)}; expected is {form_of(other.right)}", "wrong shape")
+        raise Wrong(f"it returns {form_of(other.found)}; expected {form_of(other.right)}", "wrong shape")
     else:
         found = where.explain_where(compared, student.task.arguments, part_names(student, trials), ())
     if found.mistake:

@@ -138,7 +138,7 @@ class Workbook:
         Raises ValueError for one that is not allowed, OSError where the file cannot be written.
         """
         if question.key == PREDICTION and self.is_shown(task):
-            raise ValueError("The answer has been shown: the prediction stays as it is.")
+            raise ValueError("You have seen the answer, so the prediction can no longer be changed.")
         self.store(task.name, question.key, answer_of(question, text))
 
     def rename(self, text: str) -> None:
@@ -214,7 +214,7 @@ class Workbook:
             return
         first = next((q for q in task.questions if q.key == PREDICTION), None)
         if first is not None and self.verdict(task, first).state != "given":
-            raise ValueError("Write your prediction first: it is kept, and is neither right nor wrong.")
+            raise ValueError("Write your prediction first: it is saved but not graded.")
         if not self.is_shown(task):
             self.store(task.name, SHOWN, "yes")
 

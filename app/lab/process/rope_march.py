@@ -132,7 +132,7 @@ def not_a_number(name: str, function: Callable[..., Any]) -> Unfit:
 
 def fitting(name: str, value: Any, shape: tuple[int, ...], function: Callable[..., Any]) -> np.ndarray:
     """Result of the function of this name as an array of this shape; one entry is a number too. Raises Unfit."""
-    expected = f"expected is an array of shape {shape}" if shape else "expected is a number"
+    expected = f"expected an array of shape {shape}" if shape else "expected a number"
     if value is None:
         raise Unfit("returns nothing", f"{name} returns nothing: the last line must be return ...", function)
     try:

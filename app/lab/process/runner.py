@@ -360,8 +360,8 @@ class Runner:
             if state == BUSY_MACHINE:
                 text = f"{inner} got {limit.taken:.2g} s of the processor within {limit.wall:g} s"
                 raise RunError(BUSY, f"the machine is busy: {text}", where, line)
-            why = "it waits, and does not compute" if state == ASLEEP else "is there an endless loop?"
-            text = f"{inner} does not come to an end within {limit.seconds:g} s: {why}"
+            why = "it waits, and does not compute" if state == ASLEEP else "is there an infinite loop?"
+            text = f"{inner} did not finish within {limit.seconds:g} s: {why}"
             raise RunError("endless", text, where, line, loading=loading)
         if answer is None:
             process, loading = self._process, self._is_loading(file)

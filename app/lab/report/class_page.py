@@ -50,7 +50,7 @@ async function follow() {
       if (text) rows.innerHTML = text;
       away.textContent = "";
     } catch {
-      away.textContent = "The page is not followed any more: springtide has ended, or cannot be reached.";
+      away.textContent = "Not updating: Springtide has stopped or cannot be reached.";
       await new Promise((resolve) => setTimeout(resolve, 2000));
     }
   }
@@ -88,7 +88,7 @@ def rows(students: Sequence[Student]) -> Html:
     body = join(student_row(student, names[student.folder]) for student in students)
     return fill(
         '<h1>Class of {}</h1><p class="faint">{} have begun{}. The page follows as files are saved.</p>{}'
-        '<h2>Students</h2><table class="class"><thead><tr><th>Folder</th><th>At, and the mistake there</th>'
+        '<h2>Students</h2><table class="class"><thead><tr><th>Folder</th><th>Current task and mistake</th>'
         '<th class="number">Right</th><th>Tasks</th><th class="wide">Rope</th></tr></thead>'
         "<tbody>{}</tbody></table>"
         '<p class="faint small">✓ right, ✗ wrong or does not run, ● not complete, · not begun. Ropes fall '

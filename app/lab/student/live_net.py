@@ -126,7 +126,7 @@ CLOTH = NetKind(
 
 
 class LiveNet(Service):
-    """Has steps taken in a thread. `march` is for the simulation thread, `attempt` for the one that looks at files."""
+    """Runs steps on a worker thread. `march` is for the simulation thread, `attempt` for that which looks at files."""
 
     def __init__(self, material: NetKind, versions: Versions, compile_it: Callable[[], None] = lambda: None) -> None:
         """compile_it: called once the newest version has taken `COMPILE_AFTER` in plain Python."""

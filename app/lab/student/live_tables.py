@@ -103,7 +103,7 @@ class LiveTables(Service):
         self.want({})
 
     def want(self, calls: Mapping[str, Call]) -> None:
-        """Have these tables, of functions by name; of several wishes the last one counts."""
+        """Request these tables, of functions by name; the latest request wins."""
         self.calls = calls
         self.look()
 

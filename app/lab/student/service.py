@@ -1,4 +1,4 @@
-"""A thread that takes one action after another, and lives whatever goes wrong: it has a student's functions run."""
+"""A worker thread that survives the exceptions of its actions; it has a student's functions run."""
 
 import queue
 import threading

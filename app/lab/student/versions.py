@@ -86,7 +86,7 @@ class Look:
 
 
 class Use(NamedTuple):
-    """Something that functions of one of the student's files do."""
+    """One use of a student's functions, such as moving the rope."""
 
     lane: str  # who asks: makes one call at a time, in processes of its own
     name: str

@@ -7,7 +7,7 @@ from app.render.markup.html import Html, note
 from app.scenes.contract import AnySnapshot, AnyView, PostCommand
 
 ORDER_STEP = 1e-3  # between the places of two folders
-WITHHELD = "Shown once you have answered the questions of the task in the lab."
+WITHHELD = "Hidden until you have answered this task's questions."
 
 
 class Readings:

@@ -38,8 +38,8 @@ class Change(NamedTuple):
         what = fill("<b>{}</b>{}", title, f" ({name})" if name else "")
         return note(
             fill(
-                '<span data-springtide-changer="{}"><span class="springtide-own">You opened {} for all.</span>'
-                '<span class="springtide-others">Another browser opened {} for all.</span></span>',
+                '<span data-springtide-changer="{}"><span class="springtide-own">You switched everyone to {}.</span>'
+                '<span class="springtide-others">Someone else switched everyone to {}.</span></span>',
                 self.page, what, what,
             )
         )  # fmt: skip

@@ -52,7 +52,7 @@ class Compare:
         gui = self.gui
         with gui.add_folder("Compare side by side", expand_by_default=False):
             self.choice = gui.add_dropdown(
-                "This beside", self.settings.presets, hint="What is set now, beside a preset"
+                "Compare with", self.settings.presets, hint="Shows your settings next to a preset"
             )
             self.start = gui.add_button("Show side by side")
             self.start.on_click(self.on_start)
@@ -60,7 +60,7 @@ class Compare:
                 fill('<a target="_top" href="./?compare={}">{}</a>', name, comparison.title)
                 for name, comparison in COMPARISONS.items()
             )
-            gui.add_html(note(fill("Ready to be opened: {}", join(links, " · "))))
+            gui.add_html(note(fill("Ready-made comparisons: {}", join(links, " · "))))
         self.update()
 
     async def on_start(self, event: ViserEvent) -> None:

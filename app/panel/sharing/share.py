@@ -192,7 +192,7 @@ class Share:
     def refuse(self, client: viser.ClientHandle | None, reason: str) -> None:
         """Tell one browser why a set-up was not taken."""
         if client is not None:
-            client.add_notification("This set-up was not opened", reason, color="red", auto_close_seconds=30.0)
+            client.add_notification("Couldn't open this set-up", reason, color="red", auto_close_seconds=30.0)
 
     def place(self, setup: Setup, client: viser.ClientHandle | None) -> None:
         """Give one browser the camera of a set-up that is shown already."""

@@ -45,9 +45,9 @@ COLOURS = {
 
 
 HINTS = {  # scene -> what to begin with
-    "rope": "Write spring_force in rope.py and save it: the rope moves by it at once.",
+    "rope": "Write spring_force in rope.py and save it: the rope uses it right away.",
     "cloth": "Write cloth_forces or cloth_links in cloth.py and save it: a cloth moves by it at once.",
-    "square_sea": "Write gravity, spectrum or dispersion in square_sea.py and save it: the sea runs by it at once.",
+    "square_sea": "Write gravity, spectrum or dispersion in square_sea.py and save it: the sea uses it right away.",
     "radial_sea": "Write mixture_viscosity, wave_decay, reflectance or draft in radial_sea.py and save it: the sea "
     "runs by it at once.",
 }
@@ -68,7 +68,10 @@ class CodePanel:
         with gui.add_folder("Your code"):
             self.text = gui.add_html("")
             self.choice = gui.add_checkbox(
-                "Run by your functions", session.tables.shown, hint="Off: by the program's, to compare", visible=False
+                "Use your functions",
+                session.tables.shown,
+                hint="Off: use the built-in ones, for comparison",
+                visible=False,
             )
 
         @self.choice.on_update
@@ -164,10 +167,10 @@ def sea_texts(tables: TableReport) -> list[Html]:
     """The functions that move a sea, those that it does not use, and the difference from the program's sea."""
     said: list[Html] = []
     if tables.off:
-        said.append(fill("The sea runs by the program's functions."))
+        said.append(fill("The sea uses the built-in functions."))
     if tables.running:
         what = join((fill("{} ({})", bold(name), moved) for name, moved in tables.running.items()), ", ")
-        said.append(fill("The sea runs by your {}.", what))
+        said.append(fill("The sea uses your {}.", what))
     for name, own, program, unit in tables.differences:
         value, reference = (f"{number(x, 3)} {unit}" if x == x else "…" for x in (own, program))
         said.append(fill("{} {} (program {})", name, bold(value), reference))
@@ -193,7 +196,7 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
     used = (CLOTH if scene == "cloth" else ROPE).in_use(report.own, report.method, sphere=report.sphere)
     own = ", ".join(name for name, is_own in used.items() if is_own)
     other = ", ".join(name for name, is_own in used.items() if not is_own)
-    said = [fill("Your {} moves by {}{}.", scene, bold(own), fill(" (reference: {})", other) if other else "")]
+    said = [fill("Your {} is driven by {}{}.", scene, bold(own), fill(" (reference: {})", other) if other else "")]
     if report.seconds:
         pace = report.step / report.seconds
         speed = f"{1e6 * report.seconds:.0f} µs a step, {number(pace)} times real time"
@@ -218,7 +221,7 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
         said += [faint(line) for line in report.unlike]
     if report.restarts:
         often = "once" if report.restarts == 1 else f"{report.restarts} times"
-        said.append(faint(f"It fell behind {often}, and went on from the program's {scene}."))
+        said.append(faint(f"It fell behind {often}, so it was restarted from the built-in {scene}."))
     return said
 
 

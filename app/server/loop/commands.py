@@ -30,7 +30,7 @@ from app.scenes.ahead.compiling import Compiling, Job
 from app.scenes.contract import AnyKind
 from sim.parameters import EFFECTS, Effect, effect_of_change
 
-Motion = Play | Pause | TogglePlay | Halt  # what leaves the scene alone
+Motion = Play | Pause | TogglePlay | Halt  # transport commands: they do not touch the scene
 
 
 class Record(NamedTuple):

@@ -32,7 +32,7 @@ FAULTS = {
     "return 1 / 0": ("raised", "ZeroDivisionError"),
     "while True: pass": ("endless", "endless loop"),
     "exit()": ("ended", "calls exit()"),
-    "return np.zeros(2)": ("wrong shape", "expected is a number"),
+    "return np.zeros(2)": ("wrong shape", "expected a number"),
     "return np.nan": ("NaN", "returns NaN"),
     "return -3.0": ("out of range", "returns -3; possible is"),
     "return np.inf": ("out of range", "returns inf"),
@@ -119,7 +119,7 @@ def test_wrong_functions_show_and_a_switch_shows_the_program_s_sea(folder: Folde
     program = alone.sea.significant_height_at(0.0)
     assert scene.sea.significant_height_at(0.0) == pytest.approx(2.0 * program, rel=2e-3)
     said = "".join(sea_texts(folder.tables.report))
-    assert "The sea runs by your <b>spectrum</b> (heights of the waves)." in said
+    assert "The sea uses your <b>spectrum</b> (heights of the waves)." in said
     (what, own, reference, unit), *_ = folder.tables.report.differences
     assert own == pytest.approx(2.0 * reference, rel=2e-3)
     assert f"{what} <b>{own:.2f} {unit}</b> (program {reference:.2f} {unit})" in said

@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[3]
 # What a function does -> the kind of the error and a part of its text.
 ACCIDENTS = {
     "while True: pass": ("endless", "endless loop"),
-    "import time\n    time.sleep(60)": ("endless", "does not come to an end within"),
+    "import time\n    time.sleep(60)": ("endless", "did not finish within"),
     "exit()": ("ended", "calls exit()"),
     "import os\n    os._exit(3)": ("ended", "exit status 3"),
     "import os\n    os.kill(os.getpid(), 11)": ("ended", "signal 11"),

@@ -34,9 +34,9 @@ ACCIDENTS = {
 WRONG_LINKS = {
     "return np.array([[0, 999]])": "returns a point that is not there: a cloth of",
     "return np.array([[1, 1]])": "joins a point to itself",
-    "return [[0, 1, 2]]": "expected is an array of shape (1, 2)",
+    "return [[0, 1, 2]]": "expected an array of shape (1, 2)",
     "return [[0.5, 1.0]]": "returns a point that is not there",
-    "return 3": "expected is an array",
+    "return 3": "expected an array",
 }
 
 
@@ -92,7 +92,7 @@ def test_right_functions_move_the_cloth_as_the_program_does(right: Session, valu
     student = scene.frame().student
     assert student is not None
     assert np.allclose(student, scene.frame().points, atol=1e-5)
-    assert "Your cloth moves by <b>cloth_forces, cloth_links</b>." in code_lines(
+    assert "Your cloth is driven by <b>cloth_forces, cloth_links</b>." in code_lines(
         right.state, right.cloth.report, tables_of(right), "cloth"
     )
 

@@ -96,7 +96,7 @@ def is_true(task: Task, source: str, said: Wrong) -> bool:
         inputs = samples_of(task, SEED, SAMPLES) + samples_of(task, FRESH_SEED, FRESH)
         said_of = [contrast(result(task, function, s), result(task, task.function, s), *s) for s in inputs]
         return any(sentence and text.endswith(sentence) for sentence in said_of)
-    found = re.search(r"(?:it|It) returns (\(.*?\)|\S+).*; expected is (.+)\.$", text)
+    found = re.search(r"(?:it|It) returns (\(.*?\)|\S+).*; expected (.+)\.$", text)
     assert found, text
     inputs = samples_of(task, SEED, SAMPLES) + samples_of(task, FRESH_SEED, FRESH)
     pairs = ((result(task, function, s), result(task, task.function, s)) for s in inputs)

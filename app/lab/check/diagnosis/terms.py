@@ -537,7 +537,7 @@ def mistake_of(finding: Finding) -> tuple[str, str]:
         name = change.text.removeprefix(UNUSED)
         return f"{name} not used", f"{IGNORED}{name}."
     why = [change.form.why] if change.form else []
-    must = f"It must be {unit.formula}." if unit.formula else "So it is at all inputs that were tried."
+    must = f"It must be {unit.formula}." if unit.formula else "This holds for every input tried."
     return f"{unit.name} {words(finding)}", " ".join([*why, must])
 
 

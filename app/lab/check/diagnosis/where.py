@@ -126,7 +126,7 @@ def example(trial: Difference, names: Sequence[str], parts: Sequence[str]) -> st
         if (text := shown(value, which, len(wrong) if wrong.ndim else 0))
     ]
     at = f"With {', '.join(given)} it returns" if given else "It returns"
-    return f"{at} {number(found)}{name}; expected is {number(right)}."
+    return f"{at} {number(found)}{name}; expected {number(right)}."
 
 
 def shown(value: Any, which: int | None, length: int) -> str:

@@ -7,7 +7,7 @@ from app.render.markup.html import Html, note
 from app.scenes.contract import AnySnapshot, AnyView, PostCommand
 
 ORDER_STEP = 1e-3  # between the places of two folders
-WITHHELD = "Hidden until you have answered this task's questions."
+WITHHELD = "Hidden until you have answered the questions of this task."
 
 
 class Readings:

@@ -46,7 +46,7 @@ COLOURS = {
 
 HINTS = {  # scene -> what to begin with
     "rope": "Write spring_force in rope.py and save it: the rope uses it right away.",
-    "cloth": "Write cloth_forces or cloth_links in cloth.py and save it: a cloth moves by it at once.",
+    "cloth": "Write cloth_forces or cloth_links in cloth.py and save it: the cloth uses it right away.",
     "square_sea": "Write gravity, spectrum or dispersion in square_sea.py and save it: the sea uses it right away.",
     "radial_sea": "Write mixture_viscosity, wave_decay, reflectance or draft in radial_sea.py and save it: the sea "
     "runs by it at once.",

@@ -30,7 +30,7 @@ PHILLIPS = SquareSeaParams(size="64", mesh="32", spectrum="phillips", length=400
 # What a function does in place of its body -> kind of the error and a part of what is said.
 FAULTS = {
     "return 1 / 0": ("raised", "ZeroDivisionError"),
-    "while True: pass": ("endless", "endless loop"),
+    "while True: pass": ("endless", "infinite loop"),
     "exit()": ("ended", "calls exit()"),
     "return np.zeros(2)": ("wrong shape", "expected a number"),
     "return np.nan": ("NaN", "returns NaN"),
@@ -205,7 +205,7 @@ def test_an_endless_function_is_called_once_however_the_scene_changes(folder: Fo
         scene.change_forces(dataclasses.replace(scene.params, planet_mass=mass))
         wait_for(lambda mass=mass: folder.tables.asked["gravity"][1].columns[0][0] == mass)
     assert (folder.versions.copies / str(number) / "calls").read_text("utf-8") == "x"
-    assert "endless loop" in folder.tables.errors["gravity"].text
+    assert "infinite loop" in folder.tables.errors["gravity"].text
 
 
 def test_a_moment_that_comes_back_runs_by_the_functions_of_now(folder: Folder) -> None:

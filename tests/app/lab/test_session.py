@@ -44,7 +44,7 @@ HEAD = "import numpy as np\n\n"
 RIGHT = HEAD + inspect.getsource(REFERENCE["spring_force"])
 # Line of spring_force -> kind of the error and a part of what is said; each is put before the right body.
 ACCIDENTS = {
-    "while True: pass": ("endless", "endless loop"),
+    "while True: pass": ("endless", "infinite loop"),
     "exit()": ("ended", "calls exit()"),
     "__import__('os')._exit(3)": ("ended", "exit status 3"),
     "np.ones(1 << 27)": ("memory", "MiB"),

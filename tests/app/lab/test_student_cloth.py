@@ -24,7 +24,7 @@ SMALL = ClothParams(
     integrator="symplectic_euler", time_step=1 / 240, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, gather=1.0
 )
 ACCIDENTS = {
-    "while True: pass": ("endless", "endless loop"),
+    "while True: pass": ("endless", "infinite loop"),
     "exit()": ("ended", "calls exit()"),
     "return x + y": ("raised", "NameError"),
     "return np.zeros(3)": ("wrong shape", "cloth_forces returns an array of shape (3,)"),

@@ -127,7 +127,7 @@ def test_a_prediction_comes_before_the_answer_and_stays(folder: Path) -> None:
         book.show_answer(DRAFT)
     book.answer(DRAFT, PREDICT, "higher")
     book.show_answer(DRAFT)
-    with pytest.raises(ValueError, match="stays as it is"):
+    with pytest.raises(ValueError, match="can no longer be changed"):
         book.answer(DRAFT, PREDICT, "deeper")
     again = Workbook(TASKS, folder)
     assert again.is_shown(DRAFT)

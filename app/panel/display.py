@@ -52,5 +52,6 @@ def add_switches(gui: viser.GuiApi) -> None:
         '<option value="automatic">automatic</option><option value="high">high</option>'
         '<option value="medium">medium</option><option value="low">low</option></select> '
         "<span data-springtide-quality-now></span></label>"
-        '<button type="button" data-springtide-display>Display …</button></div>'
+        '<button type="button" data-springtide-display>Display …</button>'
+        '<button type="button" data-springtide-projector title="Key L">Projector</button></div>'
     )

@@ -10,6 +10,7 @@ import { onChange, onLook } from "../core/watch.js";
 
 const SEND_INTERVAL = 40; // [ms] between two moments that are sent while a hand moves along the bar
 const PANELS = "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root)";
+const MIN_WIDTH = 160; // [pixels] of the bar
 const bar = document.createElement("div");
 bar.id = "springtide-time";
 bar.setAttribute("role", "group");
@@ -96,18 +97,25 @@ bar.addEventListener("keydown", (event) => {
   send("step", by);
 });
 
+// The room of the bar, { left, right, bottom }, that panels leave of the picture: above a sheet at its foot, else beside them.
+function roomOf(box, high) {
+  let { left, right, bottom } = box;
+  for (const panel of document.querySelectorAll(PANELS)) {
+    const { left: from, right: to, top, width, bottom: foot } = panel.getBoundingClientRect();
+    if (!width || foot < bottom - high - 12 || top > bottom || to <= left || from >= right) continue;
+    const middle = (box.left + box.right) / 2, isSheet = from < middle && to > middle;
+    // A panel that reaches up to the edge of the window has no room above it.
+    if (isSheet && top - high >= Math.max(box.top, 0)) bottom = Math.min(bottom, top);
+    else if (isSheet ? from - left >= right - to : from >= middle) right = Math.min(right, from);
+    else left = Math.max(left, to);
+  }
+  return right - left < MIN_WIDTH ? box : { left, right, bottom };
+}
+
 function place() {
   const canvas = document.querySelector("canvas[data-engine]");
   if (bar.hidden || !canvas) return;
-  let { left, right, bottom } = canvas.getBoundingClientRect();
-  const middle = (left + right) / 2, high = bar.offsetHeight;
-  for (const panel of document.querySelectorAll(PANELS)) {
-    const box = panel.getBoundingClientRect();
-    if (!box.width || box.bottom < bottom - high - 12 || box.top > bottom) continue;
-    if (box.left < middle && box.right > middle) bottom = Math.min(bottom, box.top);
-    else if (box.left >= middle) right = Math.min(right, box.left);
-    else left = Math.max(left, box.right);
-  }
+  const high = bar.offsetHeight, { left, right, bottom } = roomOf(canvas.getBoundingClientRect(), high);
   const edges = { left, right: innerWidth - right, foot: innerHeight - bottom, bar: high };
   const { style } = document.documentElement;
   for (const [name, value] of Object.entries(edges)) {

@@ -56,6 +56,11 @@ const MATT_GLSL = `
 export const skyTerms = { value: null }; // the nine terms, and the least light of all directions
 const LIKELY_SKY = [0.7, 0.75, 0.8]; // until the photograph is read
 export let skiesRead = 0; // frames.js draws when it changes
+let isReading = false; // whether the photograph is on its way from the graphics card
+// Whether rough surfaces still have a light that is not of the sky that is seen.
+export const awaitsLight = () => isReading;
+let photographed = null; // the light of the photograph in DIRECTIONS, red, green, blue and one more number each
+let litAs = ""; // what the terms are of
 let samples = null; // the table with which the photograph is read
 
 export function addAmbient(shader) {
@@ -87,14 +92,49 @@ function readSky(renderer, scene, mesh) {
   const numbers = new Float32Array(4 * DIRECTIONS), asked = [samples.target, 0, 0, DIRECTIONS, 1, numbers];
   const take = () => {
     if (samples.key !== key) return;
-    setTerms(numbers);
+    [photographed, litAs, isReading] = [numbers, "", false];
     skiesRead += 1;
     viewer().requestRender();
   };
   if (QUALITY.isWhole()) {
     renderer.readRenderTargetPixels(...asked);
     take();
-  } else renderer.readRenderTargetPixelsAsync(...asked).then(take, () => {}); // it fails where the context is lost
+  } else {
+    isReading = true;
+    renderer.readRenderTargetPixelsAsync(...asked).then(take, () => (isReading = false)); // it fails where the context is lost
+  }
+}
+
+const CLEAR_OF_LAND = 0.5; // sine of the elevation from which on land has no share in the light of the photograph
+const SEA_LIGHT = 0.3; // of the sky that comes back from the sea
+
+// The light in DIRECTIONS on what stands in a sea, from that of the photograph, which was taken on land: below a grey sky it is
+// grey, and where land would be it is that of sky and sea. uniforms: of the sea.
+export function overSea(numbers, { skyTint, clouds }) {
+  const tint = skyTint.value.toArray(), cover = Math.min(Math.max(clouds.value.x, 0), 1), found = numbers.slice();
+  const heights = Array.from({ length: DIRECTIONS }, (_, k) => {
+    const z = 1 - (2 * k + 1) / DIRECTIONS;
+    return Math.sqrt(1 - z * z) * Math.sin(GOLDEN_ANGLE * k); // three's y is up
+  });
+  const high = [...heights.keys()].filter((k) => heights[k] > CLEAR_OF_LAND);
+  const mean = tint.map((share, i) => (share * high.reduce((sum, k) => sum + numbers[4 * k + i], 0)) / high.length);
+  const grey = 0.3 * mean[0] + 0.5 * mean[1] + 0.2 * mean[2];
+  for (const [k, height] of heights.entries()) {
+    const even = Math.max(cover, 1 - Math.max(height, 0) / CLEAR_OF_LAND), level = 0.5 + 0.5 * height;
+    for (let i = 0; i < 3; i++) {
+      const sky = mean[i] + cover * (grey - mean[i]), light = sky * (level + SEA_LIGHT * (1 - level));
+      found[4 * k + i] = tint[i] * numbers[4 * k + i] + even * (light - tint[i] * numbers[4 * k + i]);
+    }
+  }
+  return found;
+}
+
+// Bring the terms up to date. uniforms: of the sea that is drawn, or null.
+function renewTerms(uniforms) {
+  const now = uniforms ? [...uniforms.skyTint.value.toArray(), uniforms.clouds.value.x].join() : "land";
+  if (!photographed || litAs === now) return;
+  litAs = now;
+  setTerms(uniforms ? overSea(photographed, uniforms) : photographed);
 }
 
 // The terms of a sky with these colours in DIRECTIONS, red, green, blue and one more number each.
@@ -122,8 +162,8 @@ export function setTerms(numbers) {
 // Whether a material is lit so. At the lowest quality everything is.
 export const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0;
 
-// Light viser's own meshes so; those with a shader of ours ask for it themselves.
-export function lightMeshes(renderer, scene) {
+// Light viser's own meshes so; those with a shader of ours ask for it themselves. uniforms: of the sea that is drawn, or null.
+export function lightMeshes(renderer, scene, uniforms) {
   const lit = [];
   let plain = null; // an ordinary mesh, not an instanced one: its class makes the triangle
   scene.traverseVisible((object) => {
@@ -133,6 +173,7 @@ export function lightMeshes(renderer, scene) {
     if (isPlain && object.material.isMeshStandardMaterial) plain ??= object;
   });
   if (plain) readSky(renderer, scene, plain);
+  renewTerms(uniforms);
   for (const one of skyTerms.value ? lit : []) {
     const { springtide } = one.userData;
     if (springtide && !springtide.startsWith(AMBIENT)) continue;

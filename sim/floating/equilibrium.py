@@ -19,13 +19,13 @@ from sim.floating.hull import Hull
 from sim.floating.hydrostatics import Submerged, submerged
 from sim.root import narrowed
 from sim.validation import argument_error, as_float, check_positive
-from sim.water import SEA_DENSITY
+from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 Layers = Sequence[tuple[float, float]]
 SEA_WATER: Layers = ((SEA_DENSITY, math.inf),)  # the default fluid of the package
 
 
-def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = 9.81) -> float:
+def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = EARTH_GRAVITY) -> float:
     """Depth [m] of the lowest point of the upright hull below the top surface, at rest in the layers.
 
     layers: (density [kg/m3], thickness [m]) from the top, the last of thickness inf; sea water by default. The result

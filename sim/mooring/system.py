@@ -38,7 +38,7 @@ from sim.springs.line_arrays import (
 )
 from sim.springs.point_system import PointSystem
 from sim.validation import argument_error, check_choice, check_kind, check_number, check_vector, is_whole_number
-from sim.water import SEA_DENSITY, Water
+from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 from sim.waves import Waves
 
 Vector = tuple[float, float, float]
@@ -126,7 +126,7 @@ class System(PointSystem[MooringRun]):
     points: tuple[Point, ...]
     depth: float  # [m]
     bodies: tuple[MooredBody, ...] = ()
-    gravity: float = 9.81  # [m/s^2]
+    gravity: float = EARTH_GRAVITY  # [m/s^2]
     density: float = SEA_DENSITY  # [kg/m^3]; 0: no water
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
     bed_damping: float = 3e5  # [Pa s/m]

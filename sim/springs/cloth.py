@@ -24,6 +24,7 @@ from sim.springs.net import (
     check_surroundings,
 )
 from sim.validation import argument_error, check_choice, check_number, is_whole_number
+from sim.water import EARTH_GRAVITY
 
 PIN_CHOICES = ("corners", "edge", "all corners", "rim", "free")
 MAX_ROWS = 1024  # and columns
@@ -51,7 +52,7 @@ def cloth(
     bend: float = 98.0,
     damping: float = 0.002,
     drag: float = 0.0,
-    gravity: float = 9.81,
+    gravity: float = EARTH_GRAVITY,
     origin: Vector = (0.0, 0.0, 0.0),
     pinned: str | Iterable[tuple[int, int]] = "corners",
     floor: float | None = None,

@@ -39,7 +39,7 @@ def narrowed(
             is_led = (stride == least) & (is_below == np.less(before_value, 0.0))
             least = np.where(is_led, 4.0 * least, 0.5 * finest)
             step = np.abs(np.asarray(value) / slope)
-            is_newton = (step <= np.maximum(0.5 * stride, least)) & (slope > 0.0) & np.isfinite(slope)
+            is_newton = (step <= np.maximum(0.5 * stride, least)) & (slope > 0.0)
             move = np.maximum(step, least)
             after = np.where(is_below, x + move, x - move)
             is_newton &= (low < after) & (after < high)

@@ -9,12 +9,20 @@ from sim.root import narrowed
 
 
 def counted(value_at):
-    """The function, and the list of the places where it was evaluated."""
-    places = []
+    """The function, and the list of the places where it was evaluated: each inside the bracket that is known by then.
+
+    It fails after 400 of them.
+    """
+    places, low, high = [], -math.inf, math.inf
 
     def asked(x):
+        nonlocal low, high
+        assert low < x < high
         places.append(x)
-        return value_at(x)
+        assert len(places) < 400
+        found = value_at(x)
+        low, high = (x, high) if (found[0] if isinstance(found, tuple) else found) < 0.0 else (low, x)
+        return found
 
     return asked, places
 
@@ -50,8 +58,24 @@ def test_a_jump_is_enclosed_although_the_value_beside_it_is_small():
     assert a < 0.7 <= b <= a + 1e-6
 
 
+def test_a_step_of_almost_nothing_far_from_the_root_does_not_make_the_search_creep():
+    asked, places = counted(lambda x: (-1.0 if x < 0.3 else -1e-300 if x < 0.7 else 1.0, 1.0))
+    a, b = narrowed(asked, 0.0, 1.0, has_slope=True)
+    assert a < 0.7 <= b == pytest.approx(0.7, rel=1e-15)
+    assert len(places) < 250
+
+
+@pytest.mark.parametrize("factor", [0.1, 0.3, 0.51, 0.7, 3.0])
+def test_a_wrong_slope_leads_to_no_place_outside_the_bracket(factor):
+    for low, high in ((0.0, 3.0), (-1.0, 1.1), (0.9, 40.0)):
+        asked, _ = counted(lambda x: (x - 1.0, factor))
+        assert narrowed(asked, low, high, has_slope=True)[1] == pytest.approx(1.0, rel=1e-15)
+
+
 def test_infinite_values_and_a_flat_part_do_no_harm():
-    a, b = narrowed(lambda x: -math.inf if x < 1.0 else math.inf if x > 2.0 else x - 1.5, 0.0, 9.0)
+    asked, places = counted(lambda x: -math.inf if x < 1.0 else math.inf if x > 2.0 else x - 1.5)
+    a, b = narrowed(asked, 0.0, 9.0)
+    assert len(places) < 20
     assert a < 1.5 <= b == pytest.approx(1.5, rel=1e-15)
     a, b = narrowed(lambda x: (min(x - 0.25, 0.0), 1.0 if x < 0.25 else 0.0), 0.0, 1.0, has_slope=True)
     assert a < 0.25 <= b == pytest.approx(0.25, rel=1e-15)  # the smallest of many roots

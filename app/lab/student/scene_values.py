@@ -14,8 +14,8 @@ from app.lab.course.live_values import LiveNumber, LiveValues
 from app.lab.process.tabulate import Interval
 from app.lab.student.live_tables import Call
 from sim.ocean.spectra import phillips
+from sim.water import EARTH_GRAVITY
 
-EARTH_GRAVITY = 9.81  # [m/s2] of the radial sea
 WAVE = 2.0 * math.pi  # [rad/m] wavenumber of the wave of 1 m that the radial sea tells the lifetime of
 DECAY_TIME = 10.0  # [s]
 ANY = Interval(-math.inf, math.inf, "")

@@ -236,12 +236,22 @@ def outside_table(hull: Hull, draft: float) -> str:
 
 
 def check_water_depth(name: str, hull: Hull, depth: float) -> None:
-    """Raises ValueError for a hull with the coefficients of water of a finite depth in water of another one [m]."""
+    """Raises ValueError for a hull with a dataset of water of a finite depth in water of another one [m].
+
+    A dataset of deep water is right for waves that are short for the depth: in water of a finite depth a UserWarning
+    says so. Tables of deep water without a density are those of shapes, which are used in water of any depth.
+    """
     table = hull.shape.table
-    if table is None or math.isinf(table.depth):
+    if table is None:
         return
     own = table.depth * table_length(hull)
-    if not abs(depth - own) <= SAME_WATER * own:
+    if math.isinf(own):
+        if math.isinf(depth) or math.isnan(table.density):
+            return
+        words = f"{name}: a hull with a dataset of water inf m deep, in water of {depth:.6g} m"
+        right = f"its coefficients are right for waves up to {2.0 * depth:.3g} m long"
+        warnings.warn(f"{words}; {right}", UserWarning, stacklevel=3)
+    elif not abs(depth - own) <= SAME_WATER * own:
         given = f"a hull with a dataset of water {own:.6g} m deep, in water of {depth:.6g} m"
         raise argument_error(name, given, "water of the dataset's depth, or a dataset of the water's")
 

@@ -6,10 +6,11 @@ from sim.floating.hulls.hull import Hull
 from sim.floating.linear.hydrodynamics import check_water_density, linear_hull, natural_frequency
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft, upright
 from sim.validation import argument_error, check_not_negative, is_whole_number
+from sim.water import EARTH_GRAVITY
 
 
 def heave_period(
-    hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = 9.81, added: float = 1.0
+    hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = EARTH_GRAVITY, added: float = 1.0
 ) -> float:
     """Period [s] of small heave of the upright hull about its equilibrium: 2 pi sqrt((m + A33)/C33).
 
@@ -27,7 +28,7 @@ def heave_period(
 
 
 def heave_period_at(
-    hull: Hull, density: float, layers: Layers, draft: float, gravity: float = 9.81, added: float = 1.0
+    hull: Hull, density: float, layers: Layers, draft: float, gravity: float = EARTH_GRAVITY, added: float = 1.0
 ) -> float:
     """`heave_period` of a hull with a known equilibrium draft [m]."""
     if math.isinf(draft):
@@ -40,7 +41,12 @@ def heave_period_at(
 
 
 def roll_period(
-    hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = 9.81, added: float = 1.0, axis: int = 0
+    hull: Hull,
+    density: float,
+    layers: Layers = SEA_WATER,
+    gravity: float = EARTH_GRAVITY,
+    added: float = 1.0,
+    axis: int = 0,
 ) -> float:
     """Period [s] of small roll (axis 0, about x) or pitch (axis 1, about y) of the upright hull, free to sway.
 

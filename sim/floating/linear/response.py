@@ -26,6 +26,7 @@ from sim.floating.motion.body import Body, check_body, check_pose
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.statics.stability import about_rest, is_stable
 from sim.validation import argument_error, as_array, check_angle, check_positive
+from sim.water import EARTH_GRAVITY
 
 MAX_TRIM = 1e-3  # [rad] of a body that counts as upright: a hull from a file is never quite symmetric
 MAX_MISS = 1e-6  # [rad] from the only heading of a dataset
@@ -46,7 +47,7 @@ class LinearForces(NamedTuple):
 
 
 def response_amplitude(
-    body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = 9.81
+    body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = EARTH_GRAVITY
 ) -> np.ndarray:
     """Motion (..., 6) of the body's centre of gravity at frequencies (...) [rad/s], for waves of amplitude 1 m.
 
@@ -72,7 +73,7 @@ def response_amplitude(
 
 
 def linear_forces(
-    body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = 9.81
+    body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = EARTH_GRAVITY
 ) -> LinearForces:
     """The terms of the equation that `response_amplitude` solves, with the same arguments and errors."""
     check_body("body", body)

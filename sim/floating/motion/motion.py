@@ -72,6 +72,7 @@ from sim.floating.motion.rotation import (
 from sim.floating.statics.hydrostatics import add_pressure
 from sim.jit import kernel
 from sim.validation import argument_error, check_kind, check_positive, check_within, is_whole_number
+from sim.water import EARTH_GRAVITY
 
 # The kernels of one substep are inlined: a real call copies about a hundred fields of the records, which took more than
 # half of the time.
@@ -84,7 +85,7 @@ WORLD = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))  # its axes
 class MotionCoefficients(NamedTuple):
     """The coefficients of motion, one set for all bodies."""
 
-    gravity: float = 9.81  # [m/s2]
+    gravity: float = EARTH_GRAVITY  # [m/s2]
     linear_drag: float = 0.0  # b [m/s]
     quadratic_drag: float = 1.0  # C, of a bluff body
     added_mass: float = 1.0  # factor on that at infinite frequency

@@ -5,7 +5,7 @@ interfaces, since each one adds the pressure (rho_i - rho_{i-1}) g (depth below 
 
   rho V = sum_i (rho_i - rho_{i-1}) V(h - D_i),   rho_0 = 0
 
-with V(h) the hull's volume up to h above its lowest point: monotone in h, solved by bisection to the last bit.
+with V(h) the hull's volume up to h above its lowest point: monotone in h, its derivative is the waterplane's area.
 A shape with closed forms (shapes/) uses them, a mesh the exact integrals over its triangles.
 """
 
@@ -14,17 +14,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sim.floating.closed_mesh import check_hull
+from sim.floating.hull import Hull
 from sim.floating.hulls.closed_mesh import check_hull
 from sim.floating.hulls.hull import Hull
+from sim.floating.hydrostatics import Submerged, submerged
 from sim.floating.statics.hydrostatics import Submerged, submerged
+from sim.root import narrowed
 from sim.validation import argument_error, as_float, check_positive
-from sim.water import SEA_DENSITY
+from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 Layers = Sequence[tuple[float, float]]
 SEA_WATER: Layers = ((SEA_DENSITY, math.inf),)  # the default fluid of the package
 
 
-def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = 9.81) -> float:
+def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gravity: float = EARTH_GRAVITY) -> float:
     """Depth [m] of the lowest point of the upright hull below the top surface, at rest in the layers.
 
     layers: (density [kg/m3], thickness [m]) from the top, the last of thickness inf; sea water by default. The result
@@ -45,18 +49,13 @@ def equilibrium_draft(hull: Hull, density: float, layers: Layers = SEA_WATER, gr
         return math.inf
     weight = density * hull.volume
 
-    def lift(draft: float) -> float:
-        return sum(change * upright(hull, draft - top).volume for change, top in steps)
+    def excess(draft: float) -> tuple[float, float]:
+        """Mass [kg] of the displaced fluids over the hull's, and its derivative [kg/m]."""
+        parts = [(change, upright(hull, float(draft) - top)) for change, top in steps]
+        return sum(change * part.volume for change, part in parts) - weight, sum(c * part.area for c, part in parts)
 
-    low, high = 0.0, steps[-1][1] + float(hull.extents[2, 1] - hull.extents[2, 0])
-    while True:
-        middle = (low + high) / 2
-        if not low < middle < high:
-            return high
-        if lift(middle) < weight:
-            low = middle
-        else:
-            high = middle
+    deepest = steps[-1][1] + float(hull.extents[2, 1] - hull.extents[2, 0])
+    return float(narrowed(excess, 0.0, deepest, has_slope=True)[1])
 
 
 def upright(hull: Hull, height: float) -> Submerged:

@@ -22,7 +22,7 @@ from sim.floating.hulls.closed_mesh import ClosedMesh, area_vectors, check_hull
 from sim.floating.motion.rotation import rotation_matrix
 from sim.jit import kernel
 from sim.validation import argument_error, as_array, check_not_negative
-from sim.water import SEA_DENSITY
+from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 AT_SURFACE = 1e-9  # share of the height of a hull within which a vertex lies in the surface
 
@@ -212,7 +212,7 @@ def pressure_force(
     rotation: ArrayLike = (1.0, 0.0, 0.0, 0.0),
     surface: ArrayLike = 0.0,
     density: float = SEA_DENSITY,
-    gravity: float = 9.81,
+    gravity: float = EARTH_GRAVITY,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Force (3,) [N] and moment (3,) [N m] about the centre of mass of a fluid of `density` [kg/m3] below `surface`.
 

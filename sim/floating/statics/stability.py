@@ -14,6 +14,7 @@ its metacentric heights about two level axes, are above 0 (Newman 1977, section 
 pose: within `NEUTRAL` a body counts as one.
 """
 
+import functools
 import math
 import warnings
 from collections.abc import Callable
@@ -22,11 +23,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.floating.closed_mesh import area_vectors
+from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
+from sim.floating.hull import Hull
 from sim.floating.hulls.closed_mesh import area_vectors
 from sim.floating.hulls.hull import Hull
+from sim.floating.hydrostatics import displaced
 from sim.floating.motion.rotation import heading_angle, product, quaternion_by_vector, rotation_matrix
+from sim.floating.rotation import heading_angle, product, quaternion_by_vector, rotation_matrix
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.statics.hydrostatics import displaced
+from sim.root import narrowed
 from sim.validation import ConvergenceError, argument_error, as_array, is_whole_number
 
 if TYPE_CHECKING:
@@ -122,7 +129,7 @@ def arms_of(loaded: Loaded, rest: Balance, angles: np.ndarray, axis: int) -> np.
 def balance_at(loaded: Loaded, rotation: Quaternion) -> Balance:
     """The balance of a body in a pose.
 
-    The level, by Newton's method within a bracket, is the one at which the displaced fluids weigh as much as the body.
+    The level is the one at which the displaced fluids weigh as much as the body.
     A tilt moves the centre of buoyancy with the body, and by the wedges at the waterplanes, which it turns about their
     common centre of flotation (Newman 1977, section 6.16).
     """
@@ -131,23 +138,19 @@ def balance_at(loaded: Loaded, rotation: Quaternion) -> Balance:
     x = np.ascontiguousarray(rotation_matrix(np.array(rotation)) @ hull.vertices.T)
     faces, vertical = np.ascontiguousarray(hull.faces.T), np.ascontiguousarray(area_vectors(x.T, hull.faces)[:, 2])
 
+    @functools.lru_cache(maxsize=2)  # of the bracket's ends, at the last one of which the search has been already
     def under(level: float) -> np.ndarray:
         """The integrals (10,) of `add_displaced`, times density, under a surface at this level."""
         return sum((change * displaced(x, faces, vertical, level - top - x[2]) for change, top in steps), np.zeros(10))
 
-    low, high = float(x[2].min()), float(x[2].max()) + steps[-1][1]
-    level, resolved = (low + high) / 2.0, ROUND_OFF * (high - low)
-    while True:
+    def excess(level: float) -> tuple[float, float]:
+        """Mass [kg] of the displaced fluids over the body's, and its derivative [kg/m]."""
         found = under(level)
-        missing, area = weight - float(found[0]), float(found[4])
-        low, high = (level, high) if missing > 0.0 else (low, level)
-        after = level + missing / area if area > 0.0 else math.nan
-        if not low < after < high:
-            after = (low + high) / 2.0
-        if not low < after < high or abs(after - level) <= resolved:
-            break
-        level = after
-    _, Mx, My, Mz, A, Ax, Ay, Axx, Ayy, Axy = found.tolist()
+        return float(found[0]) - weight, float(found[4])
+
+    low, high = float(x[2].min()), float(x[2].max()) + steps[-1][1]
+    level = float(narrowed(excess, low, high, ROUND_OFF * (high - low), has_slope=True)[1])
+    _, Mx, My, Mz, A, Ax, Ay, Axx, Ayy, Axy = under(level).tolist()
     if A > 0.0:
         Axx, Ayy, Axy = Axx - Ax * Ax / A, Ayy - Ay * Ay / A, Axy - Ax * Ay / A
     restoring = np.array([[Mz + Ayy, -Axy], [-Axy, Mz + Axx]]) / weight

@@ -14,11 +14,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.floating.closed_mesh import check_hull
-from sim.floating.hull import Hull
 from sim.floating.hulls.closed_mesh import check_hull
 from sim.floating.hulls.hull import Hull
-from sim.floating.hydrostatics import Submerged, submerged
 from sim.floating.statics.hydrostatics import Submerged, submerged
 from sim.root import narrowed
 from sim.validation import argument_error, as_float, check_positive

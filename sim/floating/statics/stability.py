@@ -23,14 +23,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.floating.closed_mesh import area_vectors
-from sim.floating.equilibrium import SEA_WATER, Layers, check_layers, density_steps
-from sim.floating.hull import Hull
 from sim.floating.hulls.closed_mesh import area_vectors
 from sim.floating.hulls.hull import Hull
-from sim.floating.hydrostatics import displaced
 from sim.floating.motion.rotation import heading_angle, product, quaternion_by_vector, rotation_matrix
-from sim.floating.rotation import heading_angle, product, quaternion_by_vector, rotation_matrix
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.statics.hydrostatics import displaced
 from sim.root import narrowed

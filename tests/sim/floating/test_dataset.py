@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from sim.dispersion import wavenumber
-from sim.floating import Body, Hull, heave_period, make_fleet, response_amplitude, roll_period, with_dataset
+from sim.floating import Body, Hull, float_in, heave_period, make_fleet, response_amplitude, roll_period, with_dataset
 from sim.floating.linear.hydrodynamics import radiated_share
 from sim.floating.linear.linear_table import read_table, write_table
 from sim.floating.linear.response import linear_forces
-from sim.floating.motion import float_in
 from sim.mooring.moored import moored
 from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves
 from sim.water import Water

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.floating import Body, FloatState, Hull, MotionCoefficients, response_amplitude
-from sim.floating.motion import float_in
+from sim.floating import Body, FloatState, Hull, MotionCoefficients, float_in, response_amplitude
 from sim.ocean import Sea
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.fluids import fluids

@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from sim.floating import Body, Hull, MotionCoefficients, response_amplitude
+from sim.floating import Body, Hull, MotionCoefficients, float_in, response_amplitude
 from sim.floating.linear.hydrodynamics import haskind, linear_hull
-from sim.floating.motion import float_in
 from sim.floating.statics.equilibrium import upright
 from sim.mooring.moored import moored
 from sim.ocean.radial.radial import RadialSea

@@ -14,6 +14,7 @@ from sim.floating import (
     Hull,
     MotionCoefficients,
     equilibrium_draft,
+    float_in,
     heave_period,
     make_fleet,
     make_water,
@@ -27,7 +28,6 @@ from sim.floating import (
     still_water,
     submerged,
 )
-from sim.floating.motion import float_in
 from sim.ocean import Sea
 from tests.refusals import Row, assert_refused, each
 

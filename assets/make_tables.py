@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from assets.shape_panels import PANELS
-from sim.floating.boundary_elements import FREQUENCIES, Solution, solve
+from sim.floating.linear.boundary_elements import FREQUENCIES, Solution, solve
 
 TABLES = Path(__file__).parents[1] / "sim" / "floating" / "tables"
 ASPECTS = (1.0, 1.5, 2.5, 5.0)  # of the sides of a box

@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from sim.floating.hull import Hull
-from sim.floating.hydrodynamics import table_length
+from sim.floating.hulls.hull import Hull
+from sim.floating.linear.hydrodynamics import table_length
 
 
 def clustered(n: int) -> np.ndarray:

@@ -13,9 +13,9 @@ from app.formats import text_tables
 from assets.shape_panels import panels_of_shape
 from benchmarks.linear_motion import GRAVITY, SEA_DENSITY, first_swings, linear_decay, linear_response
 from sim.floating import Body, Hull, MotionCoefficients, equilibrium_draft, make_fleet, step, still_water
-from sim.floating.boundary_elements import FREQUENCIES, make_table
-from sim.floating.equilibrium import SEA_WATER
-from sim.floating.hydrodynamics import LinearHull, lagrange, linear_hull, natural_frequency
+from sim.floating.linear.boundary_elements import FREQUENCIES, make_table
+from sim.floating.linear.hydrodynamics import LinearHull, lagrange, linear_hull, natural_frequency
+from sim.floating.statics.equilibrium import SEA_WATER
 
 COMPARED = (("Box", Hull.box(1.8, 1.8, 1.05)), ("Buoy", Hull.cylinder(0.9, 1.05)), ("Ball", Hull.sphere(0.75)))
 COMPARED_DENSITY = 450.0  # [kg/m3]

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from sim.floating.hydrodynamics import LinearHull
+from sim.floating.linear.hydrodynamics import LinearHull
 
 SEA_DENSITY, GRAVITY = 1025.0, 9.81  # [kg/m3], [m/s2] that all here holds for
 

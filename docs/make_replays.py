@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from app.panel.recorder import Recorder
-from app.panel.recording_files import Plotted
+from app.panel.recording.recorder import Recorder
+from app.panel.recording.recording_files import Plotted
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
 from app.server.loop.sim_loop import SimLoop

@@ -256,7 +256,9 @@ def kernel(
     noalias: promise that no array argument that is written overlaps another, so that loops vectorise without checks.
     inline: always expand into the calling kernel (for the short loops that a step is made of); implies no allocation.
     allocates: False promises that no array or view is made, so that array arguments are not reference-counted: at ten
-    points that counting costs several times the arithmetic.
+    points that counting costs several times the arithmetic. A kernel that calls one without counting that returns an
+    array, alone or in a record (`link_at` of lines does), needs it too: else it releases an array that nobody took,
+    which corrupts the heap.
     parallel: allow numba.prange.
     """
     if function is None:

@@ -8,7 +8,10 @@ import numpy as np
 from sim import dispersion
 from sim.validation import check_not_negative, check_positive
 
-SEA_DENSITY = 1025.0  # [kg/m3] of the water where none is named
+# The defaults of the library, where nothing else is named.
+EARTH_GRAVITY = 9.81  # [m/s2]
+SEA_DENSITY = 1025.0  # [kg/m3] of sea water
+FRESH_DENSITY = 1000.0  # [kg/m3]
 SAME_WATER = 1e-3  # largest relative difference of two waters that count as one
 
 
@@ -17,7 +20,7 @@ class Water:
     """A water of one density, by default the deep sea. Raises ValueError for a value that is not allowed."""
 
     depth: float = math.inf  # [m]
-    gravity: float = 9.81  # [m/s2]
+    gravity: float = EARTH_GRAVITY  # [m/s2]
     density: float = SEA_DENSITY  # [kg/m3]; 0: none
 
     def __post_init__(self) -> None:

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
+from sim.root import narrowed
 from sim.turns import cos_sin_turns
 from sim.validation import (
     argument_error,
@@ -42,7 +43,7 @@ from sim.validation import (
 from sim.water import Water
 
 STRETCHINGS = ("constant", "wheeler")
-MAX_TURN, CREST_HALVINGS = 1e4, 60  # of the search for the phases of a crest
+MAX_TURN = 1e4  # of the search for the phases of a crest
 LONGEST = 1e-12  # [rad/m] in place of a wavenumber of 0
 DEEPEST = 40.0  # kz beyond which the motion is under 1e-17 of that at the surface
 # Rows of `Waves.table`. k along x and y [turns/m], phase [turns], rate [turns/s], cos and sin of the bearing,
@@ -125,13 +126,14 @@ class Waves:
         highest = float(self.amplitude.sum())
         height = check_within("height", height, -0.99 * highest, 0.99 * highest, "m")
         largest = max(float(self.amplitude.max(initial=0.0)), 1e-300)
-        half, turned, low, high = np.tan(0.5 * theta), theta, -MAX_TURN, MAX_TURN
-        for _ in range(CREST_HALVINGS):  # the flow theta' = -a sin(theta) takes tan(theta/2) to this
-            middle = 0.5 * (low + high)
-            turned = 2.0 * np.arctan(np.exp(np.clip(-middle / largest * self.amplitude, -300.0, 300.0)) * half)
-            is_high = float((self.amplitude * np.cos(turned)).sum()) > height
-            low, high = (low, middle) if is_high else (middle, high)
-        return dataclasses.replace(self, phase=self.phase - theta + turned)
+        half = np.tan(0.5 * theta)
+
+        def turned(s: float) -> np.ndarray:
+            """Phases after the flow theta' = -a sin(theta) for s/largest, which scales tan(theta/2)."""
+            return 2.0 * np.arctan(np.exp(np.clip(-s / largest * self.amplitude, -300.0, 300.0)) * half)
+
+        s = narrowed(lambda s: float((self.amplitude * np.cos(turned(s))).sum()) - height, -MAX_TURN, MAX_TURN)[1]
+        return dataclasses.replace(self, phase=self.phase - theta + turned(s))
 
     @functools.cached_property
     def table(self) -> np.ndarray:

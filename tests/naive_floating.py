@@ -6,8 +6,8 @@ import math
 import numpy as np
 
 from sim.floating import Hull, MotionCoefficients, pressure_force, submerged
-from sim.floating.hydrodynamics import afloat
-from sim.floating.rotation import rotation_matrix
+from sim.floating.linear.hydrodynamics import afloat
+from sim.floating.motion.rotation import rotation_matrix
 
 
 def sliced(vertices: np.ndarray, faces: np.ndarray, depth: np.ndarray) -> tuple[float, np.ndarray, float]:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app.scenes import NAMES, warmup
+from app.scenes import NAMES
+from app.scenes.ahead import warmup
 
 ROOT = Path(__file__).parents[1]
 # Each part and packages that are not there once it has run, after those before it in the same process. Where scipy is
@@ -80,7 +81,7 @@ def test_scenes_that_are_compiled_are_not_imported_to_find_what_is_missing(monke
 
 
 def test_the_process_of_a_student_s_functions_imports_little() -> None:
-    code = "import sys; import app.lab.worker; print(*sys.modules)"
+    code = "import sys; import app.lab.process.worker; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     loaded = done.stdout.split()
     assert {name.split(".")[0] for name in loaded} & {"numba", "scipy", "viser", "sim", "asyncio", "ssl"} == set()

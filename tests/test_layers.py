@@ -23,7 +23,7 @@ ORDER = (
 RANK = {folder: rank for rank, folders in enumerate(ORDER) for folder in folders}
 TOP_MODULES = {"__init__", "__main__", "messages", "files"}  # directly in app/
 VIEWING = ("server", "panel", "render")  # folders that may import viser, beside each scene's drawing
-SCENES_SHARED = {"springs"}  # folders in app/scenes that are no scenes
+SCENES_SHARED = {"springs", "ahead"}  # folders in app/scenes that are no scenes
 APART = ("springs", "ocean", "particles")
 
 
@@ -85,8 +85,8 @@ def offences(paths: list[Path], *packages: str) -> list[str]:
 
 
 def is_drawing(path: Path) -> bool:
-    """Whether this draws a scene: app/scenes/*/view.py, or a part of it, *_view.py."""
-    return path.parts[-3] == "scenes" and path.stem.rpartition("_")[2] == "view"
+    """Whether this draws a scene: view.py in its folder, or a part of it, *_view.py, there or in drawing/."""
+    return "scenes" in path.parts and path.stem.rpartition("_")[2] == "view"
 
 
 def test_there_are_sources_to_look_at():
@@ -141,7 +141,7 @@ def test_sim_knows_neither_viewer_nor_app_nor_threads():
 
 def test_the_kernel_decorator_is_the_only_compiler():
     # What students write is compiled in a process of its own, and not kept. The cache asks for which processor.
-    allowed = ("sim/jit.py", "sim/compiler.py", "sim/cache.py", "app/lab/compiled.py")
+    allowed = ("sim/jit.py", "sim/compiler.py", "sim/cache.py", "app/lab/process/compiled.py")
     paths = [path for path in [*below("sim"), *below("app"), *below("benchmarks")] if named(path) not in allowed]
     assert not offences(paths, "numba")
 
@@ -170,7 +170,7 @@ def test_there_is_no_circle_of_imports(top: str):
 
 
 def test_the_spine_is_typed():
-    """What viser's own types leave open has names of its own, in app/render/viser_types.py."""
+    """What viser's own types leave open has names of its own, in app/render/handles/viser_types.py."""
     paths = [*below("app/server"), *below("app/panel"), ROOT / "app" / "scenes" / "contract.py"]
     assert not offences(paths, "typing.Any")
 

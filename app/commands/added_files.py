@@ -71,7 +71,7 @@ def with_mooring(params: Any, path: Path, given: Container[str]) -> Any:
 
     if not hasattr(params, "moordyn_file"):
         raise argument_error("--mooring", str(path), "a MoorDyn file with the scene mooring only")
-    from app.scenes.mooring.from_file import mooring_of
+    from app.scenes.mooring.files.from_file import mooring_of
 
     system = mooring_of(str(path)).system
     if system.node_count > MAX_MOORING_NODES:

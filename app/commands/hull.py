@@ -11,9 +11,9 @@ from app.commands.mesh_facts import size_text, size_warning
 from app.commands.options import add_mesh_reading, mesh_reading, quantity
 from app.formats import text_tables
 from sim.floating import Body, Hull, metacentric_height, righting_arm
-from sim.floating.closed_mesh import open_edges
-from sim.floating.hull import MeshReading, open_mesh_from_file
-from sim.floating.mesh_repair import place_of_gaps, remedy
+from sim.floating.hulls.closed_mesh import open_edges
+from sim.floating.hulls.hull import MeshReading, open_mesh_from_file
+from sim.floating.hulls.mesh_repair import place_of_gaps, remedy
 from sim.validation import check_number
 from sim.water import SEA_DENSITY
 

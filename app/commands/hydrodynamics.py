@@ -11,9 +11,9 @@ from app.commands.checkout import of_checkout
 from app.commands.options import add_mesh_reading, mesh_reading
 from app.formats import text_tables
 from sim.floating import Hull
-from sim.floating.boundary_elements import FREQUENCIES, make_table
-from sim.floating.hull import AS_IT_IS, MeshReading
-from sim.floating.linear_table import place_of_table, write_table
+from sim.floating.hulls.hull import AS_IT_IS, MeshReading
+from sim.floating.linear.boundary_elements import FREQUENCIES, make_table
+from sim.floating.linear.linear_table import place_of_table, write_table
 from sim.validation import argument_error
 
 DRAFT_SHARES = (0.15, 0.3, 0.5, 0.7, 0.85)  # of the height of a hull, at which its coefficients are computed

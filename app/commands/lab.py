@@ -56,9 +56,9 @@ def run_live(arguments: argparse.Namespace) -> int:
     """`springtide lab DIR`."""
     if len(arguments.folders) > 1:
         return serve_class(arguments)
-    from app.lab.session import Session
-    from app.lab.task import load_tasks
-    from app.lab.workbook import Workbook
+    from app.lab.course.task import load_tasks
+    from app.lab.course.workbook import Workbook
+    from app.lab.student.session import Session
 
     session = Session(arguments.folders[0], load_tasks(*arguments.tasks), arguments.tasks)
     try:

@@ -13,9 +13,9 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from app.commands.serve import LOOPBACK, reached_host, say, wait_until
-from app.lab.class_page import page, policy, rows
-from app.lab.classroom import Classroom
-from app.lab.task import load_tasks
+from app.lab.course.task import load_tasks
+from app.lab.report.class_page import page, policy, rows
+from app.lab.report.classroom import Classroom
 from app.server.web.access import make_key
 
 END_INTERVAL = 0.1  # [s] between two looks of the server whether to end

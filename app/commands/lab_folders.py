@@ -10,13 +10,13 @@ from rich.text import Text
 
 from app.files import check_out_file
 from app.formats import text_tables
-from app.lab.check import FolderResult, TaskResult, check_folder
-from app.lab.folder import folder_names, make_folder
-from app.lab.mistakes import mistakes, present_mistake, standing
-from app.lab.report import page_of
-from app.lab.results_file import csv_text, json_text
-from app.lab.runners import Runners
-from app.lab.task import load_tasks
+from app.lab.check.check import FolderResult, TaskResult, check_folder
+from app.lab.check.mistakes import mistakes, present_mistake, standing
+from app.lab.course.folder import folder_names, make_folder
+from app.lab.course.task import load_tasks
+from app.lab.process.runners import Runners
+from app.lab.report.report import page_of
+from app.lab.report.results_file import csv_text, json_text
 from sim.files import replacing
 
 STYLES = {

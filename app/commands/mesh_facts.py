@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from sim.floating import Hull, equilibrium_draft
-from sim.floating.hull import MeshReading
+from sim.floating.hulls.hull import MeshReading
 
 LONGEST, SHORTEST = 500.0, 0.05  # [m] of a hull, outside which its file is likely to have another unit
 

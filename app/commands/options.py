@@ -81,7 +81,7 @@ def add_mesh_reading(parser: argparse.ArgumentParser) -> None:
 
 def mesh_reading(arguments: argparse.Namespace) -> Any:
     """How the options say that a mesh file is read."""
-    from sim.floating.hull import MeshReading
+    from sim.floating.hulls.hull import MeshReading
 
     return MeshReading(arguments.hull_unit, arguments.weld, arguments.mirror, arguments.cap)
 

@@ -15,14 +15,14 @@ import webbrowser
 from collections.abc import Callable, Generator, Sequence
 from typing import TYPE_CHECKING, Any, LiteralString
 
-from app.render.html import fill, note
+from app.render.markup.html import fill, note
 from app.server.web.access import KEY_VARIABLE, Access, read_base_path, read_key, read_origin
 from app.server.web.guard import Opened, is_loopback, open_server, quiet
 from sim.validation import argument_error
 
 if TYPE_CHECKING:
-    from app.lab.session import Session
-    from app.lab.workbook import Workbook
+    from app.lab.course.workbook import Workbook
+    from app.lab.student.session import Session
     from app.scenes.setups import Setup
     from app.server.viewer import Viewer
 
@@ -63,7 +63,7 @@ def reached_host(host: str, port: int) -> Generator[str]:
             taken.bind(("::1", port))
         except OSError as error:
             if error.errno in (errno.EADDRINUSE, errno.EACCES):
-                say(f"localhost:{port} may lead to another program.")
+                say(f"Another program also answers on localhost:{port}; use the address below.")
                 yield LOOPBACK
                 return
             # Without IPv6, localhost is 127.0.0.1.
@@ -108,8 +108,8 @@ def serve_lab(
         return 1
 
     def make() -> "Viewer":
-        from app.lab.task import load_tasks
-        from app.lab.workbook import Workbook
+        from app.lab.course.task import load_tasks
+        from app.lab.course.workbook import Workbook
         from app.server.viewer import Viewer
 
         tasks = workbook or Workbook(load_tasks(with_checks=False))

@@ -10,7 +10,7 @@ from rich import get_console
 
 from app.files import make_out_folder
 from app.scenes import NAMES
-from app.scenes.warmup import all_pieces, compile_here
+from app.scenes.ahead.warmup import all_pieces, compile_here
 from sim.cache import INSTALLED, SHARED_VARIABLE, host_levels, level_environment
 from sim.jit import CACHE
 from sim.validation import argument_error

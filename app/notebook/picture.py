@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from app.panel.picture import take_picture
+from app.panel.recording.picture import take_picture
 from app.server.viewer import Viewer
 from sim.validation import argument_error, is_whole_number
 

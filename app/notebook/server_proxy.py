@@ -38,9 +38,9 @@ def lab_words() -> list[str]:
     named = os.environ.get(LAB_VARIABLE)
     if not named:
         return []
-    from app.lab.answers import FILE
-    from app.lab.folder import add_exercises
-    from app.lab.task import load_tasks
+    from app.lab.course.answers import FILE
+    from app.lab.course.folder import add_exercises
+    from app.lab.course.task import load_tasks
 
     try:
         folder = Path(named).expanduser().absolute()

@@ -4,9 +4,9 @@
 
 import viser
 
-from app.render.html import fill
-from app.render.viser_inside import uuid_of
-from app.render.viser_types import GuiHandle, ViserEvent
+from app.render.handles.viser_inside import uuid_of
+from app.render.handles.viser_types import GuiHandle, ViserEvent
+from app.render.markup.html import fill
 from app.scenes.contract import AnyView
 
 BRAND_COLOUR = (28, 106, 168)
@@ -52,5 +52,6 @@ def add_switches(gui: viser.GuiApi) -> None:
         '<option value="automatic">automatic</option><option value="high">high</option>'
         '<option value="medium">medium</option><option value="low">low</option></select> '
         "<span data-springtide-quality-now></span></label>"
-        '<button type="button" data-springtide-display>Display …</button></div>'
+        '<button type="button" data-springtide-display>Display …</button>'
+        '<button type="button" data-springtide-projector title="Key L">Projector</button></div>'
     )

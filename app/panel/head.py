@@ -5,10 +5,10 @@ from collections.abc import Callable
 import viser
 
 from app.messages import Command, Pause, Play, StepOnce
-from app.panel.remedy import Remedy
+from app.panel.controls.remedy import Remedy
 from app.panel.settings import SceneSettings
-from app.render.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
-from app.render.viser_types import ViserEvent
+from app.render.handles.viser_types import ViserEvent
+from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.scenes.contract import AnySnapshot, AnyView
 from sim.parameters import in_words
 
@@ -144,7 +144,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
         fill("<br>Faster: {}.", s.faster) if s.faster else "",
-        fill("<br>The earlier run was not kept: it starts again from t = 0.") if s.restarted else "",
+        fill("<br>That run is no longer in memory, so this one starts at t = 0.") if s.restarted else "",
         fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
         fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",
     )

@@ -10,29 +10,29 @@ from typing import TYPE_CHECKING
 
 import viser
 
-from app.lab.workbook import Workbook
+from app.lab.course.workbook import Workbook
 from app.messages import RunRow
-from app.panel.changes import Changes
-from app.panel.compare import Beside, Compare
-from app.panel.controls import Controls
-from app.panel.controls_tab import VIEW_GROUPS, ControlsTab
+from app.panel.controls.controls import Controls
+from app.panel.controls.controls_tab import VIEW_GROUPS, ControlsTab
+from app.panel.controls.holding import add_holding
 from app.panel.display import add_switches, add_theme_buttons
-from app.panel.files import MakeReplay
-from app.panel.guide import GuideTab
 from app.panel.head import Head
-from app.panel.holding import add_holding
 from app.panel.keys import add_keys
 from app.panel.plots import Plots
-from app.panel.recorder import Recorder
+from app.panel.recording.files import MakeReplay
+from app.panel.recording.recorder import Recorder
+from app.panel.recording.timeline import Timeline
 from app.panel.settings import SceneSettings
-from app.panel.share import Share
-from app.panel.timeline import Timeline
+from app.panel.sharing.changes import Changes
+from app.panel.sharing.compare import Beside, Compare
+from app.panel.sharing.share import Share
+from app.panel.workbook.guide import GuideTab
 from app.render.cameras import place_camera
 from app.scenes.contract import AnySnapshot, AnyView
 
 if TYPE_CHECKING:
-    from app.lab.session import Session
-    from app.panel.code_panel import CodePanel
+    from app.lab.student.session import Session
+    from app.panel.workbook.code_panel import CodePanel
 
 STATUS_INTERVAL = 0.25  # [s]
 MARKS_INTERVAL = 0.5  # [s]
@@ -96,7 +96,7 @@ class Panel:
         if workbook is not None:
             self.guide = GuideTab(gui, self.kind, workbook, self.settings.set_up, tabs[LAB], self.controls)
             if session is not None:
-                from app.panel import code_panel  # only `springtide lab DIR` pays for it
+                from app.panel.workbook import code_panel
 
                 with tabs[LAB]:
                     self.code = code_panel.CodePanel(gui, session, self.kind.name)

@@ -16,8 +16,8 @@ from viser import uplot
 
 from app.formats.round_step import round_step
 from app.messages import ChartLine, PlotRow, RunIdentity, RunLine, RunRow
-from app.panel.recording_files import Plotted
-from app.render.viser_types import GuiHandle
+from app.panel.recording.recording_files import Plotted
+from app.render.handles.viser_types import GuiHandle
 from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
 from app.scenes.contract import AnyKind, AnySnapshot
 

@@ -6,10 +6,10 @@ from typing import NamedTuple, TypeAlias
 
 import viser
 
-from app.lab import task
+from app.lab.course import task
 from app.messages import BaseParams, KeptState, Reset, Take
 from app.panel.history import EarlierSettings, History
-from app.panel.task_setups import setup_of_task
+from app.panel.workbook.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, client_cameras
 from app.scenes.contract import Advice, AnyKind, PostCommand
 from app.scenes.own_setups import own_files

@@ -15,7 +15,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.messages import Vector, vector_of
-from app.render.of_handles import OfHandles
+from app.render.handles.of_handles import OfHandles
 
 NEAR, FAR = 0.01, 1000.0  # [m] from the camera, where the picture begins and ends: viser's own
 FIT_MARGIN = 1.1  # room around what a camera shows

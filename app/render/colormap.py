@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from app.render.brightness import DARK_LIFT, LUMA
 from sim.jit import kernel
 
 # What becomes of a disturbance, in the order of `sim.springs.analysis.growth`; light, medium and dark also in grey.
@@ -13,8 +14,6 @@ ANCHORS = np.array(
     [[62, 4, 156], [126, 3, 168], [179, 38, 131], [218, 91, 105], [248, 149, 64], [253, 197, 39], [240, 249, 33]]
 )
 SCALE = ANCHORS.astype(np.float64)  # the same numbers as the kernel takes them
-LUMA = 0.299, 0.587, 0.114  # weights of red, green and blue in how bright a colour is
-DARK_LIFT = 0.5  # share of the way to white that black goes on a dark floor; more, and the scale would not only rise
 
 
 def scale_colours(values: NDArray[np.float64], low: float, high: float) -> NDArray[np.float32]:

@@ -11,8 +11,8 @@ import numpy as np
 import viser
 
 from app.formats.packing import pack
+from app.render.handles.viser_inside import set_arrays
 from app.render.injection import add_data_mesh, injector_of
-from app.render.viser_inside import set_arrays
 from sim.validation import argument_error
 
 SUFFIX = "vertex_colors"  # of the hidden mesh that makes the script replace the shader

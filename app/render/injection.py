@@ -19,9 +19,9 @@ import weakref
 import numpy as np
 import viser
 
-from app.render.html import fill
-from app.render.viser_inside import uuid_of
-from app.render.viser_types import GuiHandle, ViserEvent
+from app.render.handles.viser_inside import uuid_of
+from app.render.handles.viser_types import GuiHandle, ViserEvent
+from app.render.markup.html import fill
 
 LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them

@@ -13,8 +13,8 @@ import re
 from importlib import resources
 from urllib.parse import quote
 
-from app.render.colormap import DARK_LIFT, LUMA
-from app.render.html import Html
+from app.render.brightness import DARK_LIFT, LUMA
+from app.render.markup.html import Html
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
 
 ROOMS = ("core", "page", "panel", "scene", "sea", "shading")

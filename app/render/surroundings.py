@@ -11,9 +11,9 @@ import viser
 from numpy.typing import NDArray
 
 from app.render.cameras import NEAR, set_clipping
-from app.render.of_handles import OfHandles
+from app.render.handles.of_handles import OfHandles
+from app.render.handles.viser_inside import update_node
 from app.render.staff import Staff
-from app.render.viser_inside import update_node
 
 Colour = tuple[int, int, int]  # sRGB, 0 to 255
 FLOOR = "/floor"

@@ -15,10 +15,10 @@ import viser
 
 from app.formats.surface_fields import SurfaceNumbers, pack_fields, set_surface_fields
 from app.render.cameras import lowest_camera
+from app.render.handles.viser_inside import set_arrays
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import WATER_UNIFORMS, Grid, Material, Waterline, as_bytes, uniform_table, waterline_table
 from app.render.skies import CAMERA_RANGE
-from app.render.viser_inside import set_arrays
 from sim.ocean.radial.radial_grid import RadialGrid
 
 RIPPLE_PERIOD = 1024.0  # [s] after which ripples start again: their phases are single precision in the browser

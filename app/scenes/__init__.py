@@ -30,7 +30,7 @@ def check_name(name: str) -> str:
 
 def scene_named(name: str) -> "AnyKind":
     """The scene of a folder. Raises ValueError for a name that is none."""
-    return importlib.import_module(f"{__name__}.{check_name(name)}.scene").SCENE
+    return importlib.import_module(f"{__name__}.{check_name(name)}").SCENE
 
 
 def view_named(name: str) -> "type[AnyView]":

@@ -5,9 +5,10 @@ To add a scene, add one folder here, named as the scene is on the command line:
 1. `parameters.py`: a frozen dataclass of parameters (`sim/parameters.py`), such as `RopeParams`, with at least `speed`
    and `grid`, each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults;
    the first preset is the defaults. `ABOUT` holds a sentence on each: what it shows and what to try.
-2. `scene.py`: the simulation, a class that satisfies `Scene`, and `SCENE = SceneKind(...)`. It imports no viewer.
+2. `scene.py`: the simulation, a class that satisfies `Scene`. It imports no viewer.
 3. `view.py`: the drawing, a class derived from `SceneView`, and `VIEW`, that class. Only it and `*_view.py` beside it
    import viser.
+4. `__init__.py`: `SCENE = SceneKind(...)`, the table of all these. It imports no viewer either.
 
 The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
 """
@@ -27,7 +28,7 @@ from sim.parameters import Value
 if TYPE_CHECKING:
     from viser import ClientHandle, ViserServer
 
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from sim.springs.net import Net
 
 FRAME_INTERVAL = 1 / 60  # [s] between ticks of the loop, and between two frames of a scene that asks for nothing else

@@ -4,7 +4,7 @@ import functools
 from typing import Any
 
 from app.formats.formatting import number
-from app.render.html import Html, bold, fill, join
+from app.render.markup.html import Html, bold, fill, join
 from app.scenes.sea_parameters import notes_on_file, spectrum_in_file
 
 

@@ -104,7 +104,7 @@ def missing_files(setup: Setup, present: object = None) -> str:
     """How to add the files of a set-up, or "" if there are none or the parameters `present` have them."""
     missing = [(option, name) for option, name in setup.files.items() if added_files(present).get(option) != name]
     return " ".join(
-        f"The {option} {name} is missing: set-ups hold its name only. Start with --{option} {name} to add the file."
+        f"The {option} {name} is missing: the set-up only names it. Restart with --{option} {name} to add the file."
         for option, name in missing
     )
 

@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from typing import TYPE_CHECKING
 
 from app.messages import Ask, BaseParams, KeptState
-from app.panel.compare import PaneWords
+from app.panel.sharing.compare import PaneWords
 from app.scenes.comparisons import check_count, headings, middle_of, shared_parameters, with_shared
 from app.scenes.setups import Setup
 from app.server.loop.shared_clock import Seat, SharedClock
@@ -241,4 +241,4 @@ class Comparing:
             if not isinstance(error, ValueError):
                 traceback.print_exc()
             for client in self.first.server.get_clients().values():
-                client.add_notification("Nothing was opened beside it", str(error), color="red")
+                client.add_notification("Couldn't open a second pane", str(error), color="red")

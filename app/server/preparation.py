@@ -7,9 +7,9 @@ from collections.abc import Callable
 import viser
 
 from app.messages import BaseParams
-from app.render.html import fill, note
 from app.render.injection import reset_page
-from app.scenes.compiling import Compiling
+from app.render.markup.html import fill, note
+from app.scenes.ahead.compiling import Compiling
 from app.scenes.contract import AnyKind
 
 PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled

@@ -14,15 +14,15 @@ import numpy as np
 
 from app.formats.packing import is_packed
 from app.messages import BaseParams
-from app.panel.files import REPLAY_DURATION
-from app.panel.recorder import Kept, arrays_of_frame
-from app.panel.recording_files import Plotted, plot_charts
+from app.panel.recording.files import REPLAY_DURATION
+from app.panel.recording.recorder import Kept, arrays_of_frame
+from app.panel.recording.recording_files import Plotted, plot_charts
 from app.render.cameras import place_cameras
-from app.render.html import Html, fill, join
+from app.render.handles.viser_inside import change_buffers
 from app.render.injection import record_shaders
+from app.render.markup.html import Html, fill, join
 from app.render.scripts import SCENE, tags
 from app.render.surroundings import LIGHT_SKY
-from app.render.viser_inside import change_buffers
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import setup_block, write_value

@@ -8,13 +8,13 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from app.messages import BaseParams, Command, Halt
-from app.panel.compare import Beside
 from app.panel.panel import Panel
-from app.panel.recorder import Kept
+from app.panel.recording.recorder import Kept
 from app.panel.settings import SceneSettings
-from app.render.html import note
+from app.panel.sharing.compare import Beside
+from app.render.markup.html import note
 from app.scenes import NAMES, view_named
-from app.scenes.compiling import describe
+from app.scenes.ahead.compiling import describe
 from app.scenes.contract import AnyKind, AnyScene
 from app.server.loop.clock import PATIENCE
 from app.server.loop.commands import CompileGate

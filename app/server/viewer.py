@@ -12,20 +12,20 @@ from typing import TYPE_CHECKING
 
 import viser
 
-from app.lab.workbook import Workbook
+from app.lab.course.workbook import Workbook
 from app.messages import BaseParams, Command, Release, Reset, StudentAnswer
-from app.panel.changes import Changes
-from app.panel.compare import PaneWords
 from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
 from app.panel.settings import SceneSettings
+from app.panel.sharing.changes import Changes
+from app.panel.sharing.compare import PaneWords
 from app.render.cameras import ClientCamera, place_client_camera
-from app.render.html import fill, note
+from app.render.handles.viser_inside import send_at_once
 from app.render.injection import disable_shaders, reset_page
-from app.render.viser_inside import send_at_once
+from app.render.markup.html import fill, note
 from app.scenes import NAMES, scene_named
-from app.scenes.compiling import Compiling
+from app.scenes.ahead.compiling import Compiling
 from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
 from app.scenes.setups import make_setup
 from app.server.beside import ComparedLabs, Comparing
@@ -39,7 +39,7 @@ from app.server.web.panes import Panes
 from app.server.web.transport import Transport
 
 if TYPE_CHECKING:
-    from app.lab.session import Session
+    from app.lab.student.session import Session
 
 MIN_SCENE_TIME = 0.3  # [s] for which a scene is shown before another is opened: long enough for its status line
 

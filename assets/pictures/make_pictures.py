@@ -17,10 +17,10 @@ from typing import Any, NamedTuple
 
 from playwright.sync_api import sync_playwright
 
-from app.lab.folder import make_folder
-from app.lab.session import Session
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
+from app.lab.student.session import Session
 from app.messages import Advance
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup

@@ -20,8 +20,8 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from app.lab.folder import make_folder
-from app.lab.task import load_tasks
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
 from benchmarks.labs import served
 from benchmarks.pupil import Pupil
 from benchmarks.timing import load

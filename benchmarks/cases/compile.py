@@ -15,7 +15,7 @@ from app.scenes import NAMES
 # In a separate process for each scene, with a cache of its own.
 PROGRAM = """
 import sys, time
-from app.scenes.warmup import all_pieces, compile_piece
+from app.scenes.ahead.warmup import all_pieces, compile_piece
 for piece, drawn in all_pieces(sys.argv[1]):
     start = time.process_time()
     compile_piece(sys.argv[1], piece, drawn=drawn)

@@ -6,7 +6,7 @@ from typing import Any
 
 from app.messages import Take
 from app.scenes import NAMES, scene_named
-from app.scenes.compiling import Compiling
+from app.scenes.ahead.compiling import Compiling
 from app.scenes.timer import effort_clock
 from app.server.loop.commands import CompileGate, Record
 

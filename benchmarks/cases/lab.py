@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from app.commands.lab_folders import check
-from app.lab.folder import make_folder
-from app.lab.rope_march import Segment
-from app.lab.runner import Runner
-from app.lab.task import load_tasks
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.process.rope_march import Segment
+from app.lab.process.runner import Runner
 from app.scenes.springs.student_net import forces_of
 from sim.springs import rope
 

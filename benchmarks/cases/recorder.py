@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from app.panel.recorder import Recorder
+from app.panel.recording.recorder import Recorder
 from app.scenes import NAMES, scene_named
 from app.scenes.moments import arrays_in
 from app.scenes.setups import make_setup

@@ -1,20 +1,20 @@
 """Floating bodies: hulls, where they float, and how they move in one or two fluids under waves."""
 
-from sim.floating.body import Body, Fleet, lowest, make_fleet, pull, vertices
-from sim.floating.dataset import with_dataset
-from sim.floating.equilibrium import equilibrium_draft
-from sim.floating.excitation import WaveExcitation
-from sim.floating.float_in import FloatRun, FloatState, float_in
-from sim.floating.fluid_state import FluidState, make_water, still_water
-from sim.floating.heave_meter import HeaveMeter
-from sim.floating.hull import Hull, shape_from_file
-from sim.floating.hydrostatics import Submerged, pressure_force, submerged
-from sim.floating.motion import MotionCoefficients, step
-from sim.floating.periods import heave_period, roll_period
-from sim.floating.prediction import HydrostaticPrediction, predict
-from sim.floating.response import LinearForces, linear_forces, response_amplitude
+from sim.floating.hulls.hull import Hull, shape_from_file
+from sim.floating.linear.dataset import with_dataset
+from sim.floating.linear.excitation import WaveExcitation
+from sim.floating.linear.periods import heave_period, roll_period
+from sim.floating.linear.response import LinearForces, linear_forces, response_amplitude
+from sim.floating.motion.body import Body, Fleet, lowest, make_fleet, pull, vertices
+from sim.floating.motion.float_in import FloatRun, FloatState, float_in
+from sim.floating.motion.fluid_state import FluidState, make_water, still_water
+from sim.floating.motion.heave_meter import HeaveMeter
+from sim.floating.motion.motion import MotionCoefficients, step
 from sim.floating.shapes import SHAPES, Shape
-from sim.floating.stability import metacentric_height, righting_arm
+from sim.floating.statics.equilibrium import equilibrium_draft
+from sim.floating.statics.hydrostatics import Submerged, pressure_force, submerged
+from sim.floating.statics.prediction import HydrostaticPrediction, predict
+from sim.floating.statics.stability import metacentric_height, righting_arm
 
 __all__ = [
     "SHAPES", "Body", "Fleet", "FloatRun", "FloatState", "FluidState", "HeaveMeter", "Hull", "HydrostaticPrediction",

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sim import floating
-from sim.floating.hydrodynamics import check_water_depth, not_negative
-from sim.floating.response import linear_forces
+from sim.floating.linear.hydrodynamics import check_water_depth, not_negative
+from sim.floating.linear.response import linear_forces
 from sim.mooring.system import MooredBody
 from sim.validation import argument_error
 from sim.water import Water
@@ -24,7 +24,7 @@ def moored(
     """The body at its place of rest without lines, upright in water, its axes along x and y.
 
     frequency: [rad/s] of the added mass and the radiation damping, which are taken as constant; that of the highest
-    waves is a good one. waves: those of the system, which push it by `sim.floating.response.linear_forces` [N, N m].
+    waves is a good one. waves: those of the system, which push it by `linear_forces` of `sim.floating` [N, N m].
     water: that of the waves by default, else sea water of the depth of the hull's dataset. Coefficients are those of
     deep water, or of the dataset's.
 

@@ -34,10 +34,11 @@ from sim.springs.line_arrays import (
     PLACE,
     STIFFNESS,
     LineArrays,
+    record_of,
 )
 from sim.springs.point_system import PointSystem
 from sim.validation import argument_error, check_choice, check_kind, check_number, check_vector, is_whole_number
-from sim.water import SEA_DENSITY, Water
+from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 from sim.waves import Waves
 
 Vector = tuple[float, float, float]
@@ -125,7 +126,7 @@ class System(PointSystem[MooringRun]):
     points: tuple[Point, ...]
     depth: float  # [m]
     bodies: tuple[MooredBody, ...] = ()
-    gravity: float = 9.81  # [m/s^2]
+    gravity: float = EARTH_GRAVITY  # [m/s^2]
     density: float = SEA_DENSITY  # [kg/m^3]; 0: no water
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
     bed_damping: float = 3e5  # [Pa s/m]
@@ -312,7 +313,9 @@ class System(PointSystem[MooringRun]):
             paths[q, 0] = self.points[i].position
         carried, arms, rows = self.body_rows(mass)
         waves = np.zeros((9, 0)) if self.waves is None else self.waves.table
-        return LineArrays(
+        return record_of(
+            LineArrays,
+            self,
             rows=1,
             cols=n,
             nodes=nodes,
@@ -322,11 +325,10 @@ class System(PointSystem[MooringRun]):
             inertia=np.zeros(6 * n),
             gx=0.0,
             gy=0.0,
-            gz=-float(self.gravity),
+            gz=-self.gravity,
             forces=declared(self.forces),
             damped=True,
             axial=True,
-            slack_damping=bool(self.slack_damping),
             loads=loads_on(self.points, n),
             bends=bends_of(self),
             curves=curves.table,
@@ -334,20 +336,15 @@ class System(PointSystem[MooringRun]):
             links=links,
             places=places,
             parts=parts,
-            bed=-float(self.depth),
-            bed_stiffness=float(self.bed_stiffness),
-            bed_damping=float(self.bed_damping),
-            friction=float(self.friction),
+            bed=-self.depth,
             stop_rate=1.0,
-            current=np.array(self.current, dtype=np.float64),
-            depth=float(self.depth),
             waves=waves,
-            pins=np.array(moved, dtype=np.int64),
+            pins=moved,
             paths=paths,
             carried=carried,
             arms=arms,
             bodies=rows,
-            steady=np.array([body.steady for body in self.bodies], dtype=np.float64).reshape(-1, 6),
+            steady=np.reshape([body.steady for body in self.bodies], (-1, 6)),
             excitation=excitations(self.bodies, waves.shape[1]),
             stop=stop_request(),
         )

@@ -22,7 +22,7 @@ from sim.validation import (
     check_positive,
     check_wavenumbers,
 )
-from sim.water import SEA_DENSITY
+from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 INF = math.inf
 CRITICAL = 1.3114687221932  # nu k^2/omega0 above which a wave no longer oscillates: the quartic's double root
@@ -31,7 +31,9 @@ LONG = 1e-6  # kd that stands for 0 in the ratios of modes
 EVANESCENT = 18.0  # kd beyond which the far mode is under 2e-8 of the near one and lost in rounding
 
 
-def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY) -> Any:
+def omega(
+    k: Any, gravity: float = EARTH_GRAVITY, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
+) -> Any:
     """Angular frequency [rad/s] of waves of wavenumber k [rad/m], any shape.
 
     gravity [m/s2] and density [kg/m3] above 0; depth [m] above 0 or inf; tension [N/m] 0 or above.
@@ -45,7 +47,7 @@ def omega(k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.
 
 
 def phase_speed(
-    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
+    k: Any, gravity: float = EARTH_GRAVITY, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
 ) -> Any:
     """Phase speed omega/k [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`.
 
@@ -57,7 +59,7 @@ def phase_speed(
 
 
 def group_speed(
-    k: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
+    k: Any, gravity: float = EARTH_GRAVITY, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
 ) -> Any:
     """Group speed d omega/dk [m/s]; at k = 0 sqrt(g depth), inf where depth is. Arguments and errors as for `omega`.
 
@@ -69,7 +71,7 @@ def group_speed(
 
 
 def wavenumber(
-    omega: Any, gravity: float = 9.81, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
+    omega: Any, gravity: float = EARTH_GRAVITY, depth: float = INF, tension: float = 0.0, density: float = SEA_DENSITY
 ) -> Any:
     """Wavenumber [rad/m] of waves of angular frequency omega [rad/s], any shape: the inverse of `omega`.
 
@@ -88,7 +90,7 @@ def two_layer(
     upper_density: float,
     thickness: float,
     lower_density: float,
-    gravity: float = 9.81,
+    gravity: float = EARTH_GRAVITY,
     depth: float = INF,
     surface_tension: float = 0.0,
     interface_tension: float = 0.0,
@@ -117,7 +119,7 @@ def mode_ratios(
     upper_density: float,
     thickness: float,
     lower_density: float,
-    gravity: float = 9.81,
+    gravity: float = EARTH_GRAVITY,
     depth: float = INF,
     surface_tension: float = 0.0,
     interface_tension: float = 0.0,
@@ -142,7 +144,7 @@ def mode_ratios(
     return ModeRatios(np.where(seen, down, 0.0)[()], np.where(seen, up, 0.0)[()])
 
 
-def viscous_root(k: Any, viscosity: float, gravity: float = 9.81, film: bool = False) -> tuple[Any, Any]:
+def viscous_root(k: Any, viscosity: float, gravity: float = EARTH_GRAVITY, film: bool = False) -> tuple[Any, Any]:
     """(omega [rad/s], decay rate [1/s]) of a wave on deep fluid of kinematic viscosity [m2/s].
 
     film: the surface cannot be stretched, "oil on troubled waters". omega is 0 where the motion creeps without
@@ -163,7 +165,7 @@ def viscous_two_layer(
     thickness: float,
     lower_density: float,
     lower_viscosity: float,
-    gravity: float = 9.81,
+    gravity: float = EARTH_GRAVITY,
     surface_tension: float = 0.0,
     interface_tension: float = 0.0,
     film: bool = False,

@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 from sim.validation import check_choice, check_number
+from sim.water import EARTH_GRAVITY
 
 G = 6.67430e-11  # [m3/(kg s2)] CODATA 2018
 MAX_MASS = 1e9  # [Earth masses] hundreds of suns: no planet
-EARTH_GRAVITY = 9.81  # [m/s2] at one Earth mass, whatever the rule
 
 # R ~ M^exponent. Rocky: the mass-radius relation of rocky planets, exponent 0.27 (Valencia, O'Connell, Sasselov 2006).
 RADIUS_RULES = {"same_radius": 0.0, "same_density": 1.0 / 3.0, "rocky": 0.27}

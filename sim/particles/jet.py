@@ -13,6 +13,7 @@ from sim.jit import kernel
 from sim.particles.rain import bilinear
 from sim.particles.random import uniform
 from sim.validation import argument_error, check_not_negative, check_positive, check_vector, is_whole_number
+from sim.water import EARTH_GRAVITY
 
 
 class Landed(NamedTuple):
@@ -33,7 +34,7 @@ class Jet:
         flow: float = 0.5,
         spread: float = 0.06,
         count: int = 4000,
-        gravity: float = 9.81,
+        gravity: float = EARTH_GRAVITY,
         drag_time: float = math.inf,
         wind: tuple[float, float] = (0.0, 0.0),
         flight: float = 8.0,

@@ -26,8 +26,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sim.validation import check_not_negative, check_positive
+from sim.water import EARTH_GRAVITY
 
-GRAVITY = 9.81  # [m/s2]
 AIR_TEMPERATURE, AIR_DENSITY, AIR_HEAT = 293.0, 1.2, 1005.0  # [K], [kg/m3], [J/(kg K)]
 RADIATED_SHARE = 0.3  # of the power of a fire of hydrocarbons; the rest heats the plume
 # Upper end in z/q of flame, intermittent flame and plume; kappa and eta in each.
@@ -63,13 +63,13 @@ def centreline(height: ArrayLike, power: float) -> tuple[NDArray[np.float64], ND
     regime = np.searchsorted(REGIME_ENDS, z)
     kappa, eta = KAPPA[regime], ETA[regime]
     speed = kappa * z**eta * kilowatts**0.2
-    return speed, (kappa / (0.9 * math.sqrt(2.0 * GRAVITY))) ** 2 * z ** (2.0 * eta - 1.0) * AIR_TEMPERATURE
+    return speed, (kappa / (0.9 * math.sqrt(2.0 * EARTH_GRAVITY))) ** 2 * z ** (2.0 * eta - 1.0) * AIR_TEMPERATURE
 
 
 def buoyancy_flux(power: float) -> float:
     """F [m4/s3] of a fire of this power [W]. Raises ValueError where it is not above 0."""
     heat = (1.0 - RADIATED_SHARE) * check_positive("power", power, "W")
-    return GRAVITY * heat / (math.pi * AIR_DENSITY * AIR_HEAT * AIR_TEMPERATURE)
+    return EARTH_GRAVITY * heat / (math.pi * AIR_DENSITY * AIR_HEAT * AIR_TEMPERATURE)
 
 
 def turbulent_radius(distance: ArrayLike) -> NDArray[np.float64]:

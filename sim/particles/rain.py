@@ -20,10 +20,10 @@ from sim.validation import (
     check_vector,
     is_whole_number,
 )
+from sim.water import EARTH_GRAVITY, FRESH_DENSITY
 
 SMALLEST, LARGEST = 0.5e-3, 6.0e-3  # [m] drops outside are not counted: mist below, broken up above
 FASTEST = 9.17  # [m/s] where Gunn and Kinzer's table ends: large drops flatten and gain no more
-EARTH = 9.81  # [m/s2] under which the speeds were measured
 
 
 def slope_parameter(rate: float) -> float:
@@ -31,7 +31,7 @@ def slope_parameter(rate: float) -> float:
     return 4.1e3 * rate**-0.21
 
 
-def terminal_speed(diameter: ArrayLike, gravity: float = EARTH) -> Any:
+def terminal_speed(diameter: ArrayLike, gravity: float = EARTH_GRAVITY) -> Any:
     """Fall speed [m/s] of drops of diameter [m], array or number: v = 9.65 - 10.3 exp(-0.6 D/mm), ~ sqrt(gravity).
 
     Raises ValueError for a negative or non-finite diameter, or gravity not above 0.
@@ -46,7 +46,7 @@ def terminal_speed(diameter: ArrayLike, gravity: float = EARTH) -> Any:
     if bad.any():
         raise argument_error("diameter", float(D[bad].flat[0]), allowed)
     atlas = 9.65 - 10.3 * np.exp(-600.0 * D)
-    return (np.clip(atlas, 0.0, FASTEST) * math.sqrt(gravity / EARTH))[()]
+    return (np.clip(atlas, 0.0, FASTEST) * math.sqrt(gravity / EARTH_GRAVITY))[()]
 
 
 class Rainfall(NamedTuple):
@@ -60,12 +60,12 @@ class Rainfall(NamedTuple):
     extinction: float  # [1/m] of light: large drops take away twice what they cover (van de Hulst 1957, 8.22)
 
 
-def rainfall(rate: float, gravity: float = EARTH) -> Rainfall:
+def rainfall(rate: float, gravity: float = EARTH_GRAVITY) -> Rainfall:
     """Rain of Marshall and Palmer's drops at `rate` [mm/h]. Raises ValueError unless rate and gravity are above 0."""
     check_positive("rate", rate, "mm/h")
     D, N, step = drop_sizes(rate, gravity)
     v = terminal_speed(D, gravity)
-    mass = 1000.0 * math.pi / 6.0 * D**3
+    mass = FRESH_DENSITY * math.pi / 6.0 * D**3
     return Rainfall(
         float((N * step).sum()),
         float((N * v * step).sum()),
@@ -95,7 +95,7 @@ class Rain:
         ceiling: float,
         count: int = 2000,
         wind: tuple[float, float] = (0.0, 0.0),
-        gravity: float = EARTH,
+        gravity: float = EARTH_GRAVITY,
         seed: int = 0,
     ) -> None:
         """rate [mm/h]; length [m] of the tile; ceiling [m]: height drops start from; count: most drops to draw;
@@ -159,7 +159,7 @@ class Rain:
         return np.interp(self._random.uniform(size=count), cumulative, self._sizes)
 
 
-def drop_sizes(rate: float, gravity: float = EARTH) -> tuple[np.ndarray, np.ndarray, float]:
+def drop_sizes(rate: float, gravity: float = EARTH_GRAVITY) -> tuple[np.ndarray, np.ndarray, float]:
     """Diameters [m], N(D) = N0 exp(-Lambda D) [1/m4] there, and their spacing [m] (midpoints).
 
     N0 is such that the drops carry `rate` [mm/h]. Marshall and Palmer's 8e6 /m4 is for drops of all sizes at speeds of

@@ -8,9 +8,9 @@ is as fast as they are, so that they spread as one ring about still water.
 import math
 from typing import NamedTuple
 
-from sim.particles.rain import EARTH, drop_sizes, terminal_speed
+from sim.particles.rain import drop_sizes, terminal_speed
 from sim.validation import check_positive
-from sim.water import SEA_DENSITY
+from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 SMALLEST_RING_DROP = 2e-3  # [m] drops below it make rings too low to be seen
 
@@ -35,7 +35,7 @@ def ring_wave(gravity: float, tension: float = 0.0728, density: float = SEA_DENS
     )
 
 
-def ring_flux(rate: float, gravity: float = EARTH) -> float:
+def ring_flux(rate: float, gravity: float = EARTH_GRAVITY) -> float:
     """Drops that make a ring, of SMALLEST_RING_DROP and above, for each square metre and second [1/(m2 s)].
 
     rate [mm/h]; gravity [m/s2]. Raises ValueError where one is not above 0.

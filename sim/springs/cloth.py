@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.root import narrowed
 from sim.springs.laws import check_law
 from sim.springs.net import (
     CLOTH,
@@ -23,6 +24,7 @@ from sim.springs.net import (
     check_surroundings,
 )
 from sim.validation import argument_error, check_choice, check_number, is_whole_number
+from sim.water import EARTH_GRAVITY
 
 PIN_CHOICES = ("corners", "edge", "all corners", "rim", "free")
 MAX_ROWS = 1024  # and columns
@@ -50,7 +52,7 @@ def cloth(
     bend: float = 98.0,
     damping: float = 0.002,
     drag: float = 0.0,
-    gravity: float = 9.81,
+    gravity: float = EARTH_GRAVITY,
     origin: Vector = (0.0, 0.0, 0.0),
     pinned: str | Iterable[tuple[int, int]] = "corners",
     floor: float | None = None,
@@ -148,12 +150,14 @@ def pleated_cloth(net: Net, gather: float) -> Net:
     width = float(x[0, -1] - x[0, 0])
     s = np.linspace(0.0, gather * width, 2001)
     phase = 2.0 * math.pi * PLEATS * s / s[-1]
-    # Bisect for the amplitude at which the wave is as long as the cloth is wide.
-    low, high, amplitude, arc_length = 0.0, width, 0.0, s
-    for _ in range(50):
-        amplitude = 0.5 * (low + high)
-        arc_length = np.concatenate([[0.0], np.hypot(np.diff(s), np.diff(amplitude * np.sin(phase))).cumsum()])
-        low, high = (amplitude, high) if arc_length[-1] < width else (low, amplitude)
+
+    def arc_length_at(amplitude: float) -> NDArray[np.float64]:
+        return np.concatenate([[0.0], np.hypot(np.diff(s), np.diff(amplitude * np.sin(phase))).cumsum()])
+
+    # The wave is as long as the cloth is wide.
+    ends = narrowed(lambda amplitude: arc_length_at(amplitude)[-1] - width, 0.0, width, 1e-15 * width)
+    amplitude = float(ends[1])
+    arc_length = arc_length_at(amplitude)
     # Particles lie at equal arc lengths along the wave.
     along = np.interp(np.linspace(0.0, arc_length[-1], x.shape[1]), arc_length, s)
     out = amplitude * np.sin(2.0 * math.pi * PLEATS * along / s[-1])

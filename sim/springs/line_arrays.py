@@ -6,7 +6,9 @@ point where several lines end has one for each of them, half a segment long. A m
 its neighbours are the point itself, so that it has no direction, and water acts on it alike in all.
 """
 
-from typing import Any, NamedTuple
+import functools
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +27,33 @@ PART = np.dtype([
 # M^-1 B = DECAY_SHAPES diag(DECAY_RATES) DECAY_PARTS.
 INVERSE_MASS, BODY_MASS, STIFFNESS, DAMPING, PLACE = 0, 36, 72, 108, 144
 DECAY_SHAPES, DECAY_PARTS, DECAY_RATES = 147, 183, 219
+
+Record = TypeVar("Record")
+# A kernel is compiled for the types of its record's fields: each field always gets the type that it declares.
+CONVERTERS: dict[Any, Callable[[Any], Any]] = {
+    int: int,
+    float: float,
+    bool: bool,
+    NDArray[np.float64]: lambda value: np.ascontiguousarray(value, dtype=np.float64),
+    NDArray[np.int64]: lambda value: np.ascontiguousarray(value, dtype=np.int64),
+}
+
+
+def record_of(kind: type[Record], owner: object, **fields: Any) -> Record:
+    """A record of the NamedTuple `kind`: `fields`, and attributes of `owner` for its other fields.
+
+    Values of the types in CONVERTERS are converted. Arrays that have the declared type already are shared.
+    """
+    return kind(**{
+        name: convert(fields[name] if name in fields else getattr(owner, name))
+        for name, convert in converters_of(kind).items()
+    })  # fmt: skip
+
+
+@functools.cache
+def converters_of(kind: type) -> dict[str, Callable[[Any], Any]]:
+    """The converter of each field of a NamedTuple."""
+    return {name: CONVERTERS.get(declared, lambda value: value) for name, declared in get_type_hints(kind).items()}
 
 
 class LineArrays(NamedTuple):

@@ -7,6 +7,7 @@ Links are families of neighbour offsets, never index lists: every particle of th
 import dataclasses
 import functools
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays, WideArrays
 from sim.springs.forces import OWN, check_forces, declared
 from sim.springs.integrators import Integrator
 from sim.springs.laws import LAWS, check_law
+from sim.springs.line_arrays import record_of
 from sim.springs.point_system import PointSystem
 from sim.springs.run import Run
 from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
@@ -262,73 +264,66 @@ class Net(PointSystem[Run]):
         for p, (_, path) in enumerate(self.pin_paths):
             paths[p, :4] = path.coefficients
             paths[p, 4, 0] = path.start
-        sx, sy, sz, sr = self.sphere or (0.0, 0.0, 0.0, 0.0)
-        svx, svy, svz = self.sphere_velocity
+        sphere = self.sphere or (0.0, 0.0, 0.0, 0.0)
         grab = self.grab or Grab(0, 0, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
-        view = RopeArrays(
+        view = record_of(
+            RopeArrays,
+            self,
             rows=rows,
             cols=cols,
             inverse_masses=self.inverse_masses(),
             mass=float(self.mass),
-            drag=float(self.drag),
-            gx=float(self.gravity[0]),
-            gy=float(self.gravity[1]),
-            gz=float(self.gravity[2]),
-            offsets=np.array([f[:2] for f in self.families], dtype=np.int64).reshape(-1, 2),
-            families=np.array([f[2:] for f in self.families], dtype=np.float64).reshape(-1, 3),
-            law=self.law,
+            offsets=np.reshape([f[:2] for f in self.families], (-1, 2)),
+            families=np.reshape([f[2:] for f in self.families], (-1, 3)),
             forces=declared(self.forces),
             damped=any(f.damping > 0 for f in self.families),
             axial=self.damping_model == "axial",
             has_floor=self.floor is not None,
-            floor=float((self.floor or 0.0) + self.radius),
+            floor=(self.floor or 0.0) + self.radius,
             has_sphere=self.sphere is not None,
-            sx=float(sx),
-            sy=float(sy),
-            sz=float(sz),
-            sr=float(sr + self.radius),
-            svx=float(svx),
-            svy=float(svy),
-            svz=float(svz),
-            epoch=float(self.epoch),
-            contact_k=float(self.contact.stiffness),
-            contact_b=float(self.contact.damping),
-            friction=float(self.contact.friction),
+            sr=sphere[3] + self.radius,
+            contact_k=self.contact.stiffness,
+            contact_b=self.contact.damping,
+            friction=self.contact.friction,
             stop_rate=1.0,
             lab_contact=self.contact.law == "lab",
-            pins=np.array([i * cols + j for (i, j), _ in self.pin_paths], dtype=np.int64),
+            pins=[i * cols + j for (i, j), _ in self.pin_paths],
             paths=paths,
-            grabbed=-1 if self.grab is None else int(grab.row * cols + grab.col),
-            grab_x=float(grab.target[0]),
-            grab_y=float(grab.target[1]),
-            grab_z=float(grab.target[2]),
-            grab_k=float(grab.stiffness),
-            grab_b=float(grab.damping),
-            grab_max=float(grab.max_force),
+            grabbed=-1 if self.grab is None else grab.row * cols + grab.col,
+            grab_k=grab.stiffness,
+            grab_b=grab.damping,
+            grab_max=grab.max_force,
             stop=stop_request(),
+            **components("g", self.gravity),
+            **components("s", sphere),
+            **components("sv", self.sphere_velocity),
+            **components("grab_", grab.target),
         )
         if self.is_rope and self.air is None and self.thickness == 0.0 and self.mass_ratios is None:
             return view
         view = view._replace(mass=self.masses.ravel())
         air, (ends, links) = self.air or Air(), link_table(self.shape, self.families, float(self.side_ratio))
-        wide = WideArrays(
+        wide = record_of(
+            WideArrays,
+            self,
             has_air=self.air is not None,
-            wind_x=float(air.wind[0]),
-            wind_y=float(air.wind[1]),
-            wind_z=float(air.wind[2]),
-            air_drag=0.5 * float(air.density * air.drag),
-            air_lift=0.5 * float(air.density * air.lift),
-            thickness=float(self.thickness),
+            air_drag=0.5 * air.density * air.drag,
+            air_lift=0.5 * air.density * air.lift,
             row_spacing=self.spacing(1, 0),
             col_spacing=self.spacing(0, 1),
-            pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1, dtype=np.int64),
+            pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
-            bands=self.bands,
-            side=float(self.side_ratio),
+            side=self.side_ratio,
             ends=ends,
             links=links,
+            **components("wind_", air.wind),
         )
         return (ClothArrays if [f[:2] for f in self.families] == CLOTH else GridArrays)(*view, *wide)
+
+
+def components(prefix: str, vector: Sequence[float]) -> dict[str, float]:
+    """Fields of a kernels' record that hold a vector: `prefix` with x, y and z."""
+    return {prefix + axis: component for axis, component in zip("xyz", vector, strict=False)}
 
 
 def link_ratios(shape: tuple[int, int], di: int, dj: int, side: float) -> NDArray[np.float64]:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from sim.springs.laws import check_law
 from sim.springs.net import DAMPING_MODELS, FARTHEST, Contact, Family, Net, Vector, check_place, check_surroundings
 from sim.validation import argument_error, as_array, check_choice, check_number, is_whole_number
+from sim.water import EARTH_GRAVITY
 
 MAX_POINTS = 1_000_000
 
@@ -20,7 +21,7 @@ def rope(
     stiffness: float = 800.0,
     damping: float = 7.0,
     drag: float = 1.0,
-    gravity: float = 9.81,
+    gravity: float = EARTH_GRAVITY,
     root: Vector = (0.0, 0.0, 0.0),
     floor: float | None = None,
     sphere: tuple[float, float, float, float] | None = None,

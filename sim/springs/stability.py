@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
+from sim.root import narrowed
 from sim.springs.analysis.strain import strain_range
 from sim.springs.forces import OWN
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
@@ -430,40 +431,22 @@ def last_stable(margin: Callable[[float], float], start: float) -> float:
     margin: the logarithm of the largest stable step over the step, of a scale. start: where the search begins.
     """
     low = high = start
-    above = below = margin(start)
-    if abs(above) <= NEARLY:
+    found = margin(start)
+    if abs(found) <= NEARLY:
         return start
     # Undamped, a stable step goes as the inverse root of the stiffness: a little beyond that lies the other end.
-    ratio = math.exp(min(2.2 * abs(above), LARGEST_RATIO))
-    while above < 0.0:
-        high, below = low, above
-        low /= ratio
-        above = margin(low)
+    ratio, is_stable = math.exp(min(2.2 * abs(found), LARGEST_RATIO)), found >= 0.0
+    while (found >= 0.0) == is_stable:
+        low, high = (high, high * ratio) if is_stable else (low / ratio, low)
+        found = margin(high if is_stable else low)
         ratio = FURTHER
         if low < 1e-12:
             return 0.0
-    while below >= 0.0:
-        low, above = high, below
-        high *= ratio
-        below = margin(high)
-        ratio = FURTHER
         if high > 1e12:
             return math.inf
-    # Steps go nearly as a power of the stiffness, so false position in the logarithms (its Illinois form) is quick.
-    a, b = math.log(low), math.log(high)
-    side = 0  # which end moved last
-    while b - a > NEARLY:
-        smooth = math.isfinite(above) and math.isfinite(below)
-        middle = (a * below - b * above) / (below - above) if smooth else 0.5 * (a + b)
-        middle = min(max(middle, a + 0.4 * NEARLY), b - 0.4 * NEARLY)
-        value = margin(math.exp(middle))
-        if value >= 0.0:
-            a, above, below = middle, value, 0.5 * below if side > 0 else below
-            side = 1
-        else:
-            b, below, above = middle, value, 0.5 * above if side < 0 else above
-            side = -1
-    return math.exp(a)
+    # Steps go nearly as a power of the stiffness, so secants in the logarithms are quick.
+    stable, _ = narrowed(lambda s: -margin(math.exp(s)), math.log(low), math.log(high), NEARLY)
+    return math.exp(stable)
 
 
 def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes: list[Mode] | None = None) -> Gauge:

@@ -18,9 +18,10 @@ from sim.tables.numbers import is_value, values_of
 from sim.tables.rows import Row, line_error, split_rows
 from sim.tables.units import UnitMeasure, measure_of
 from sim.validation import argument_error
+from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 TURN = 2.0 * math.pi
-WEIGHT = 1025.0 * 9.81  # [N/m3] of sea water: waves of 1 m2 have this energy in J/m2
+WEIGHT = SEA_DENSITY * EARTH_GRAVITY  # [N/m3] of sea water: waves of 1 m2 have this energy in J/m2
 MAX_SHOWN = 60  # characters of a header in a message
 MAX_HEADER = 200  # characters of a header that are read
 MAX_LISTED = 12  # columns that are left out, in a line

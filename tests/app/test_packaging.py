@@ -92,7 +92,8 @@ def test_the_wheel_holds_of_the_assets_what_the_program_reads_and_nothing_else()
 def test_the_library_reads_its_tables_without_the_rest_of_the_package(tmp_path: Path):
     shutil.copytree(ROOT / "sim", tmp_path / "sim", ignore=shutil.ignore_patterns("__pycache__"))
     code = (
-        "import sys; from sim.floating.linear_table import table_of; from sim.ocean.weathering.components import *;"
+        "import sys; from sim.floating.linear.linear_table import table_of;"
+        "from sim.ocean.weathering.components import *;"
         "tables = [table_of(name).draft.size for name in ('box', 'cylinder', 'sphere')];"
         "oils = len(fluids()) > len(oil_records()) > 0;"
         "print(tables, oils, {'app', 'assets'} & set(sys.modules), *sys.modules['sim'].__path__)"

@@ -228,6 +228,7 @@ class Tab:
             warnings.warn(f"a page of {clients} got nothing for {STALLED} s: {state}; {self.errors}", stacklevel=2)
             self.page.reload()
         self.wait(is_there)
+        self.wait(self.page.locator("#springtide-cover.springtide-hidden").count)  # it lies over panel and picture
         mark.remove()
         self.errors = [error for error in self.errors if LATE_UPDATE not in error]
 

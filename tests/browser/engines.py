@@ -5,6 +5,7 @@ for Chromium, an X server of its own, and ends with all its processes. On Debian
 `webkit2gtk-driver` and `xvfb`.
 """
 
+import abc
 import contextlib
 import json
 import os
@@ -48,7 +49,7 @@ def free_port() -> int:
         return probe.getsockname()[1]
 
 
-class Engine:
+class Engine(abc.ABC):
     """What the browsers have in common: a page, which takes actions of WebDriver and runs JavaScript."""
 
     def __init__(self) -> None:
@@ -66,15 +67,17 @@ class Engine:
         assert screen.stdout is not None
         return {**os.environ, **SOFTWARE, "DISPLAY": f":{screen.stdout.readline().strip()}"}
 
+    @abc.abstractmethod
     def open(self, address: str) -> None:
-        raise NotImplementedError
+        """Load a page."""
 
+    @abc.abstractmethod
     def run(self, body: str) -> Any:
         """The result of the body of an async function in the page. Raises RuntimeError where it throws."""
-        raise NotImplementedError
 
+    @abc.abstractmethod
     def act(self, actions: list[dict[str, Any]]) -> None:
-        raise NotImplementedError
+        """Perform actions of WebDriver."""
 
     def wait(self, body: str, seconds: float = 120.0) -> Any:
         """The result of the body of a function once it is true."""

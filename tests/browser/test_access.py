@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
 from app.messages import Pause
 from app.scenes import NAMES
 from app.server.viewer import Viewer

@@ -60,3 +60,29 @@ def test_matt_surfaces_are_lit_by_sun_and_sky_from_all_sides(
     np.testing.assert_allclose(found[:, 0], light[:, 0], atol=error + 0.002)
     np.testing.assert_allclose(found[toward < -0.6, 0], 0.1, atol=shadow_error + 0.002)
     np.testing.assert_allclose(found[:, 1:], light[:, 1:3], atol=0.002)
+
+
+AT_SEA = """async ([lights, cover]) => { const { overSea } = await import("springtide/scene/ambient.js");
+    const uniforms = { skyTint: { value: { toArray: () => [1, 1, 1] } }, clouds: { value: { x: cover } } };
+    return overSea(lights, uniforms); }"""
+
+
+@pytest.mark.parametrize("cover", [0.0, 1.0])
+def test_what_stands_in_a_sea_is_lit_by_sky_and_sea_and_not_by_the_land_of_the_photograph(
+    page: Any, cover: float
+) -> None:
+    """A blue sky above dark green land. Below clouds the light is grey."""
+    n = directions()
+    sky, land = np.array([0.6, 0.8, 1.0]), np.array([0.01, 0.05, 0.0])
+    share = np.clip(0.5 + n[:, 1:2], 0.0, 1.0)  # y is up
+    light = np.hstack([share * sky + (1.0 - share) * land, np.ones((COUNT, 1))])
+    found = np.reshape(page.evaluate(AT_SEA, [light.ravel().tolist(), cover]), (COUNT, 4))[:, :3]
+    overhead = found[n[:, 1] > 0.95].mean(0)
+    level = found[np.abs(n[:, 1]) < 0.1]
+    assert (level.min(0) > 0.5 * overhead).all()
+    assert (found.min(0) > 0.2 * overhead).all()
+    if cover:
+        np.testing.assert_allclose(found.std(axis=1), 0.0, atol=1e-6)
+    else:
+        np.testing.assert_allclose(overhead, sky, rtol=0.02)
+        np.testing.assert_allclose(level / level[:, 2:], np.tile(sky, (len(level), 1)), rtol=0.02)

@@ -17,7 +17,7 @@ from tests.browser.conftest import CHOOSE, WITH_CARD, new_page
 # Mark the programs of the sea, and that of plain water.
 MARKED = """(() => { const P = WebGL2RenderingContext.prototype, { shaderSource, attachShader } = P;
     P.shaderSource = function (shader, text) {
-        [shader.isOfSea, shader.isPlain] = [/uniform highp sampler2D (sea|sky)/.test(text), text.includes("AROUND")];
+        [shader.isOfSea, shader.isPlain] = [/uniform highp sampler2D (sea|sky)/.test(text), text.includes("standIn")];
         shaderSource.call(this, shader, text); };
     P.attachShader = function (program, shader) {
         program.isOfSea ||= shader.isOfSea;
@@ -57,6 +57,12 @@ DRAWN = """() => { const found = [];
         const key = material?.userData?.springtide;
         if (key?.startsWith("springtide-water") || key?.startsWith("springtide-dome")) found.push(key); });
     return found.sort(); }"""
+# The words on the cover; "" where it is not there.
+COVER = """() => document.getElementById("springtide-cover").classList.contains("springtide-hidden") ? ""
+    : document.getElementById("springtide-cover-words").innerText"""
+# The colour behind a sea whose sky is not ready; empty where there is none.
+STAND_IN = """() => { const color = document.documentElement.style.getPropertyValue("--springtide-sky");
+    return (color.match(/[0-9]+/g) ?? []).map(Number); }"""
 
 
 @contextlib.contextmanager
@@ -79,19 +85,31 @@ def wait_for(page: Any, shaders: list[str]) -> None:
 
 
 def test_a_page_never_waits_for_a_program_of_the_sea(chromium: Any) -> None:
-    with open_sea(chromium, BESIDE) as (_, page):
+    with open_sea(chromium, BESIDE) as (lab, page):
         wait_for(page, ["springtide-water/sea plain"])
+        # The cover stays until the picture is whole, and the mean colour of the sky stands in below it.
+        page.wait_for_function(f"({COVER})() === 'Preparing the picture …'", timeout=60_000)
+        page.wait_for_timeout(1500)
+        assert page.evaluate(COVER) == "Preparing the picture …"
+        red, _, blue = page.evaluate(STAND_IN)
+        assert blue > red
         page.evaluate("window.held = false")
         wait_for(page, ["springtide-dome in tiles with details 0", "springtide-water/sea lit"])
+        page.wait_for_function(f"({COVER})() === ''", timeout=60_000)
         # Other programs are needed for another quality: until they are ready, the last ones draw.
         page.evaluate("window.held = true")
         page.evaluate(CHOOSE, "high")
         page.wait_for_function("window.__springtide.quality.details() === 2")
         page.wait_for_timeout(1000)
         assert page.evaluate(DRAWN) == ["springtide-dome in tiles with details 0", "springtide-water/sea lit"]
+        assert page.evaluate(COVER) == ""
         page.evaluate("window.held = false")
         wait_for(page, ["springtide-dome in tiles", "springtide-water/sea lit"])
         assert not page.evaluate("window.hasWaited === true")
+        lab.settings.load("Storm arriving")
+        page.wait_for_function(f"(([red, green, blue]) => red === green && green === blue)(({STAND_IN})())")
+        lab.open("rope")  # it has the page's own sky
+        page.wait_for_function(f"({STAND_IN})().length === 0")
 
 
 @pytest.mark.long

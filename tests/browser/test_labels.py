@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from app.messages import Pause
-from app.panel.picture import take_picture
+from app.panel.recording.picture import take_picture
 from app.render.cameras import place_cameras
 from app.scenes.race.parameters import PRESETS, RaceParams
 from app.server.viewer import Viewer

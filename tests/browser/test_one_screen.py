@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.folder import make_folder
-from app.lab.task import Task, load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.folder import make_folder
+from app.lab.course.task import Task, load_tasks
+from app.lab.course.workbook import Workbook
 from app.messages import Pause
-from app.panel.guide import SET_UP, label_of
-from app.render.html import Html
+from app.panel.workbook.guide import SET_UP, label_of
+from app.render.markup.html import Html
 from app.scenes import NAMES
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab

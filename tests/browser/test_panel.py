@@ -1,7 +1,7 @@
 """Numbers typed key by key, and what the panel says of playing, in a real browser."""
 
 from app.messages import Pause
-from app.panel.control import title
+from app.panel.controls.control import title
 from app.server.viewer import Viewer
 from sim.parameters import parameters_of
 from sim.quantities import write_number

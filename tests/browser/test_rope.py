@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.messages import Pause, Play
-from app.panel import stability_map as live
+from app.panel.controls import stability_map as live
 from app.render.surroundings import SUN_INTENSITY
 from app.scenes.rope.view import RopeView
 from app.scenes.springs.rope_parameters import ROOT

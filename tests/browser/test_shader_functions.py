@@ -186,6 +186,10 @@ def test_foam_and_rings_have_the_shares_that_they_are_told(page: Any) -> None:
         cover = evaluate(page, f"foamCover(p.xy, p.z, {footprint})", points, {"wind": (0.4, 9.81, 1.0)})[:, 0]
         assert cover.mean() == pytest.approx(share, abs=0.02)
         assert ((cover < 0.01) | (cover > 0.99)).mean() > 0.4  # with edges: it is no grey film
+        # At the lowest quality white water is still white, as much of it.
+        few = evaluate(page, f"foamCover(p.xy, p.z, {footprint})", points, {"wind": (0.4, 9.81, 1.0)}, details=0)[:, 0]
+        assert few.mean() == pytest.approx(share, abs=0.03)
+        assert 0.5 * share < (few > 0.5).mean() < 2.0 * share
     wavelength, speed = ring_wave(9.81)
     for share in (0.3, 0.9):
         life = constant("RING_REACH") * wavelength / speed

@@ -11,7 +11,7 @@ import imageio.v3 as iio
 import pytest
 
 from app.messages import Pause, Reset
-from app.panel.changes import UNDO
+from app.panel.sharing.changes import UNDO
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import NAMES, scene_named
 from app.scenes.own_setups import own_files
@@ -62,18 +62,18 @@ def test_a_link_is_taken_shown_to_the_others_and_made_again(
 ) -> None:
     """With a second visitor, who comes by a link."""
     lab, tab = opened
-    monkeypatch.setattr("app.panel.changes.SHOWN_TIME", 60.0)  # of a slow machine
+    monkeypatch.setattr("app.panel.sharing.changes.SHOWN_TIME", 60.0)  # of a slow machine
     query = "&scene=rope&stiffness=2k&time_step=1/600&camera=3,-4,2,0,0,1.5"
     other = open_tab(lab.port, query=query)
     base = f"http://127.0.0.1:{lab.port}/"
     tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 2000.0, 60)
-    tab.wait(tab.page.get_by_text("Another browser opened Rope").is_visible, 20)
-    other.wait(other.page.get_by_text("You opened Rope").is_visible, 20)
-    assert not tab.page.get_by_text("You opened Rope").is_visible()
-    assert not other.page.get_by_text("Another browser opened Rope").is_visible()
+    tab.wait(tab.page.get_by_text("Someone else switched everyone to Rope").is_visible, 20)
+    other.wait(other.page.get_by_text("You switched everyone to Rope").is_visible, 20)
+    assert not tab.page.get_by_text("You switched everyone to Rope").is_visible()
+    assert not other.page.get_by_text("Someone else switched everyone to Rope").is_visible()
     tab.page.get_by_role("button", name=UNDO).click()
     tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 800.0, 20)
-    tab.wait(lambda: not tab.page.get_by_text("Another browser opened Rope").is_visible(), 20)
+    tab.wait(lambda: not tab.page.get_by_text("Someone else switched everyone to Rope").is_visible(), 20)
     other.page.reload()
     tab.wait(lambda: vars(lab.settings.params)["stiffness"] == 2000.0, 60)
     assert vars(lab.settings.params)["time_step"] == 1 / 600

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.folder import make_folder
-from app.lab.rope_march import REFERENCE
-from app.lab.session import Session
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
+from app.lab.process.rope_march import REFERENCE
+from app.lab.student.session import Session
 from app.messages import Pause, Play
 from app.scenes.rope.parameters import RopeParams
 from app.server.viewer import Viewer
@@ -21,7 +21,7 @@ RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
 
 @pytest.mark.stress
 def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, open_tab) -> None:
-    monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
+    monkeypatch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
     tasks, folder = load_tasks(), tmp_path / "mine"
     make_folder(folder, tasks)
     session = Session(folder, tasks)

@@ -26,6 +26,10 @@ PANEL_EDGE = """() => { const box = document.querySelector(
 # Fill the canvas with red.
 FILL = """() => { const gl = document.querySelector("canvas[data-engine]").getContext("webgl2");
     gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.clearColor(1, 0, 0, 1); gl.clear(gl.COLOR_BUFFER_BIT); }"""
+# Whether a press at the middle of the line reaches it.
+IS_ON_TOP = """() => {
+    const line = document.querySelector("#springtide-time input"), box = line.getBoundingClientRect();
+    return document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2) === line; }"""
 THUMB = 14  # [pixels] about, of a range: its middle goes from half of that to as much before the end
 
 
@@ -65,6 +69,28 @@ def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Vi
     assert lab.loop.scene.time < high - 10.0
     tab.wait(lambda: recorder.span()[1] < high - 10.0, 10)
     tab.wait(lambda: not tab.page.locator("#springtide-time output").is_visible(), 10)
+
+
+def test_the_bar_is_inside_the_window_at_every_size_in_any_order(shown: tuple[Viewer, Tab]) -> None:
+    """A window of 640 x 400 is one of 1280 x 800 at 200 %: there the panel covers more than half of it."""
+    lab, tab = shown
+    size = tab.page.viewport_size
+    lab.settings.set("plot_tip", True)
+    tab.wait(lambda: tab.page.locator(".uplot").count() > 0, 30)
+    try:
+        for width, height in ((1280, 800), (640, 400), (1024, 700), (1280, 800), (600, 300), (900, 420), (500, 300)):
+            tab.page.set_viewport_size({"width": width, "height": height})
+
+            def is_inside(width: int = width, height: int = height) -> bool:
+                bar, line, scene = tab.page.evaluate(BOXES)
+                across = 0 <= bar["left"] < line["left"] + 60 < line["right"] < bar["right"] <= width
+                is_within = across and 0 <= bar["top"] < bar["bottom"] <= min(height, scene["bottom"]) + 1
+                return is_within and tab.page.evaluate(IS_ON_TOP)
+
+            tab.wait(is_inside, 20)
+    finally:
+        lab.settings.set("plot_tip", False)
+        tab.page.set_viewport_size(size)
 
 
 def test_under_a_bar_of_the_whole_width_the_picture_is_new_up_to_the_top(open_tab: Callable[..., Tab]) -> None:

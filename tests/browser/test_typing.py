@@ -17,8 +17,8 @@ from typing import Any
 import pytest
 
 from app.messages import BaseParams, Pause
-from app.panel.control import title
-from app.panel.controls_tab import VIEW_GROUPS
+from app.panel.controls.control import title
+from app.panel.controls.controls_tab import VIEW_GROUPS
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyKind
 from app.server.viewer import Viewer

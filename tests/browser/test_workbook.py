@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.answers import read_answers
-from app.lab.folder import make_folder
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.answers import read_answers
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
 from app.messages import Pause
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from app.__main__ import main
-from app.lab.live_values import LiveNumber, fill_in
-from app.lab.task import QUESTION_KINDS, load_tasks
-from app.render.formula import formula
+from app.lab.course.live_values import LiveNumber, fill_in
+from app.lab.course.task import QUESTION_KINDS, load_tasks
+from app.render.markup.formula import formula
 from app.scenes.rope.parameters import RopeParams
 from sim.parameters import parameters_of
 from tests.docs.pages import ROOT, text_of

@@ -73,7 +73,8 @@ def files_by_place(module: str) -> list[str]:
     folder = Path(module).parent
     named = ROOT / "tests" / folder / f"test_{Path(module).name}"
     if module.startswith("app/scenes/") and len(folder.parts) > 2:
-        paths = list((ROOT / "tests/app/scenes").glob(f"test_{folder.parts[2]}*.py"))
+        tests, scene = ROOT / "tests/app/scenes", folder.parts[2]
+        paths = [*tests.glob(f"test_{scene}*.py"), *tests.glob(f"{scene}/test_*.py")]
     elif len(folder.parts) == 1:
         paths = [named] if named.exists() else []
     else:

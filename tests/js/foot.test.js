@@ -23,6 +23,20 @@ test("it stands above a sheet over the middle, and then beside what reaches so f
   assert.deepEqual(foot(box(0, 900, 400, 600), box(700, 900, 0, 390)), [0, 700, 400]);
 });
 
+test("it stands beside a panel over the middle that leaves no room above it, where there is more room", () => {
+  assert.deepEqual(foot(box(300, 900, 20, 600)), [0, 300, 600]);
+  assert.deepEqual(foot(box(0, 600, 20, 600)), [600, 900, 600]);
+  assert.deepEqual(foot(box(300, 900, HIGH, 600)), [0, 900, HIGH]); // there is just as much room as it needs
+  const scrolled = { ...CANVAS, top: -100 }; // its top is above the window
+  assert.deepEqual(Object.values(footOf(scrolled, [box(300, 900, 20, 600)], HIGH)), [0, 300, 600]);
+});
+
+test("what panels leave is not taken where it is too narrow, nor what stands beside the scene", () => {
+  assert.deepEqual(foot(box(100, 900, 20, 600)), [0, 900, 600]);
+  assert.deepEqual(foot(box(160, 900, 20, 600)), [0, 160, 600]);
+  assert.deepEqual(foot(box(900, 1200, 0, 600), box(-50, 0, 0, 600)), [0, 900, 600]);
+});
+
 test("a moment is said in seconds, and how far back it is", () => {
   assert.deepEqual(wordsOf(12.345, 20, true), { moment: "t = 12.35 s", back: "7.7 s back" });
   assert.deepEqual(wordsOf(20, 20, false), { moment: "Live", back: "0.0 s back" });

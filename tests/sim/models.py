@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from sim.floating import Body, Hull, MotionCoefficients, make_fleet, make_water, step
-from sim.floating.body import pull
+from sim.floating.motion.body import pull
 from sim.ocean import Sea
 from sim.ocean.radial.radial import RadialSea
 from sim.springs import INTEGRATORS, Air, Contact, Grab, cloth, rope

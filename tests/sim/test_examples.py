@@ -13,15 +13,15 @@ MODULES = [
     if ">>> " in path.read_text("utf-8")
 ]
 FIRST = {
-    "sim.floating.body": ("",),  # of the module
-    "sim.floating.equilibrium": ("equilibrium_draft",),
-    "sim.floating.float_in": ("",),
-    "sim.floating.hull": ("Hull.box",),
-    "sim.floating.hydrostatics": ("submerged",),
-    "sim.floating.motion": ("step",),
-    "sim.floating.periods": ("heave_period", "roll_period"),
-    "sim.floating.response": ("",),
-    "sim.floating.stability": ("",),
+    "sim.floating.motion.body": ("",),  # of the module
+    "sim.floating.statics.equilibrium": ("equilibrium_draft",),
+    "sim.floating.motion.float_in": ("",),
+    "sim.floating.hulls.hull": ("Hull.box",),
+    "sim.floating.statics.hydrostatics": ("submerged",),
+    "sim.floating.motion.motion": ("step",),
+    "sim.floating.linear.periods": ("heave_period", "roll_period"),
+    "sim.floating.linear.response": ("",),
+    "sim.floating.statics.stability": ("",),
     "sim.mooring.motion": ("paths_to",),
     "sim.ocean.dispersion": ("omega", "phase_speed", "group_speed"),
     "sim.ocean.radial.gerstner": ("draw_waves",),

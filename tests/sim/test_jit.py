@@ -122,7 +122,7 @@ def test_a_class_is_no_module_where_the_case_of_names_does_not_count(monkeypatch
 
     monkeypatch.setattr(Path, "is_file", is_there)
     forget_sources()
-    assert jit.source_of("sim.floating.hull") == ROOT / "sim" / "floating" / "hull.py"
+    assert jit.source_of("sim.floating.hulls.hull") == ROOT / "sim" / "floating" / "hulls" / "hull.py"
     assert jit.source_of("sim.floating") == ROOT / "sim" / "floating" / "__init__.py"
     for name in ("sim.floating.Hull", "sim.Floating", "sim.floating.none", "numpy"):
         assert jit.source_of(name) is None, name

@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
 from app.messages import GrabTo, Pause, Place, Play, PointAlong, Release, Reset, StepOnce
+from app.scenes.ahead.warmup import prepare
 from app.scenes.contract import FRAME_INTERVAL
-from app.scenes.warmup import prepare
 from app.server.viewer import Viewer
 from sim.parameters import Parameter, parameters_of
 from tests.stress.tally import Tally

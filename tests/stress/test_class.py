@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from app.lab.answers import read_answers
-from app.lab.folder import make_folder
-from app.lab.task import load_tasks
+from app.lab.course.answers import read_answers
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
 from app.scenes.last_setup import read_last
 from benchmarks.pupil import STIFFNESS, Pupil
 

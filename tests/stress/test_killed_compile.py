@@ -31,7 +31,7 @@ def test_a_compiler_killed_at_random_moments_leaves_nothing_broken(tmp_path: Pat
     moments = random.Random(0)
     for _ in range(KILLS):
         worker = subprocess.Popen(
-            [sys.executable, "-m", "app.scenes.compile_worker"], stdin=subprocess.PIPE, env=environment, text=True
+            [sys.executable, "-m", "app.scenes.ahead.compile_worker"], stdin=subprocess.PIPE, env=environment, text=True
         )
         assert worker.stdin is not None
         worker.stdin.write("rope\tleapfrog\t0\nrope\tstability gauge\t0\nrope\trk4\t0\n")

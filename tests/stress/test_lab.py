@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from msgspec.structs import replace
 
-from app.lab.answers import Answers, read_answers
-from app.lab.program_check import check_program
-from app.lab.runner import Runner
-from app.lab.task import load_tasks
+from app.lab.check.program_check import check_program
+from app.lab.course.answers import Answers, read_answers
+from app.lab.course.task import load_tasks
+from app.lab.process.runner import Runner
 from tests.app.lab.answers_file import write_answers
 from tests.app.lab.test_answers import ROOT
 
@@ -52,8 +52,8 @@ def test_every_accident_in_every_function_is_named_within_three_seconds(tmp_path
 PAGE_WRITER = """
 import sys
 from pathlib import Path
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
 book = Workbook(load_tasks(with_checks=False), Path(sys.argv[1]))
 task = next(task for task in book.tasks if task.name == "extra_draft")
 measure, explain = task.questions[1:]

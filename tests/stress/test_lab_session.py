@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.folder import make_folder
-from app.lab.live_net import ROPE
-from app.lab.rope_march import REFERENCE
-from app.lab.session import Session
-from app.lab.task import load_tasks
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.process.rope_march import REFERENCE
+from app.lab.student.live_net import ROPE
+from app.lab.student.session import Session
 from app.server.viewer import Viewer
 from tests.app.lab.test_session import ACCIDENTS, HEAD, RIGHT, make_scene, run, save, taken
 from tests.waiting import wait_for
@@ -36,7 +36,7 @@ def session(tmp_path: Path) -> Iterator[Session]:
 def test_every_accident_in_every_function_is_named_within_three_seconds(
     session: Session, monkeypatch: pytest.MonkeyPatch, name: str, line: str
 ) -> None:
-    monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)
+    monkeypatch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e6)
     session.rope.method, session.rope.sphere = METHODS.get(name, "rk4"), name == "sphere_force"
     assert name in (ROPE.step_of(session.rope.method), "spring_force", "rope_acceleration", "sphere_force")
     source = inspect.getsource(REFERENCE[name])
@@ -71,7 +71,7 @@ def test_the_rope_moves_by_what_is_saved_within_a_second(session: Session, monke
 
 
 def test_what_numba_can_compile_it_compiles(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e-6)
+    monkeypatch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e-6)
     save(session, RIGHT)
     wait_for(lambda: taken(session) == session.state.version)
     scene = make_scene(session)

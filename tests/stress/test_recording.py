@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.panel.recorder import MAX_BYTES, Recorder, arrays_of_frame
+from app.panel.recording.recorder import MAX_BYTES, Recorder, arrays_of_frame
 from app.scenes import scene_named
 from app.scenes.moments import arrays_in
 from app.server.loop.sim_loop import SimLoop

@@ -14,6 +14,7 @@ interface Springtide {
   quality?: object;
   memory?: () => object;
   skiesDrawn?: number;
+  showsWhole?: () => boolean;
   contexts?: number;
   beside?: boolean;
 }
@@ -161,16 +162,26 @@ declare namespace uplot {
     height: number;
     data: (number | null)[][];
     series: Series[];
+    axes: Axis[];
+    padding: Padding[];
     scales: { x: { min: number; max: number; auto(chart: Chart, reset: boolean): boolean } };
     redraw(): void;
     setScale(name: string, range: { min: number; max: number }): void;
     setSize(size: { width: number; height: number }): void;
     valToPos(value: number | null, scale: string): number;
   }
+  type Size = (...given: unknown[]) => number;
+  type Padding = number | Size;
+  interface Axis {
+    font: [css: string, onCanvas: number, onPage: number];
+    size: Size;
+    space: Size;
+  }
   interface Series {
     class?: string;
     label: string;
     show: boolean;
+    width: number;
     _stroke: unknown;
     paths(chart: Chart, index: number, ...rest: unknown[]): unknown;
   }
@@ -210,6 +221,12 @@ declare namespace three {
     toArray(): unknown[];
   }
   interface Color {
+    r: number;
+    g: number;
+    b: number;
+    clone(): Color;
+    fromArray(numbers: ArrayLike<number>): this;
+    getStyle(): string;
     toArray(): number[];
   }
   interface Uniform<T = any> { // a shader's uniforms have values of many types
@@ -334,7 +351,7 @@ declare namespace three {
     backgroundBlurriness: number;
     backgroundRotation: Euler;
     overrideMaterial: Material | null;
-    fog: object | null;
+    fog: { color: Color } | null;
     onBeforeRender(renderer: Renderer, scene: Scene, camera: Camera, target: unknown): void;
   }
   interface Camera extends Object3D {

@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 from app.messages import GrabTo, Place, Release, SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
-from app.scenes.cloth.parameters import ABOUT, MAX_ACCOUNTED_PARTICLES, PRESETS, ClothParams, hidden
+from app.scenes.cloth.parameters import MAX_ACCOUNTED_PARTICLES, ClothParams
 from app.scenes.cloth.pins import Pins
-from app.scenes.cloth.quantities import QUANTITIES, ClothInstant
 from app.scenes.cloth.start import build, sphere_home
-from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind
-from app.scenes.springs.divergence import holding_step
+from app.scenes.contract import FRAME_INTERVAL, Pieces
 from app.scenes.springs.grab import GrabSpring, ParticleGrab
-from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
+from app.scenes.springs.laws import SPRING, pieces_of_law
 from app.scenes.springs.methods import FEW_POINTS, method_that_runs
 from app.scenes.springs.net_scene import NetScene
 from app.scenes.springs.speed_advice import faster_steps
@@ -32,7 +30,7 @@ from sim.springs.stability import Mode, gershgorin
 from sim.springs.state import State, energy
 
 if TYPE_CHECKING:
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from app.scenes.cloth.student_cloth import StudentCloth
 
 MAX_ASSESSED_PARTICLES = 1100  # above this an assessment takes too long, and Gershgorin's bound is shown
@@ -284,25 +282,3 @@ class ClothScene(NetScene[ClothParams]):
     def laid_out(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Positions or velocities (3, rows, cols) as (rows, cols, 3)."""
         return np.moveaxis(values, 0, -1).copy()
-
-
-SCENE = SceneKind(
-    name="cloth",
-    title="Cloth",
-    help="<b>Drag the cloth</b> to pull it, or the arrows to move its pins and the sphere.",
-    params=ClothParams,
-    presets=PRESETS,
-    about=ABOUT,
-    make=ClothScene,
-    make_with_student=ClothScene,
-    hidden=hidden,
-    warm_up=warm_up,
-    needs=needs,
-    warm_up_on_use=functools.partial(pieces_on_use, warm_up),
-    series=SERIES,
-    plots=PLOTS,
-    frame_units={"points": "m", "strain": "", "student": "m, a student's cloth beside the program's"},
-    quantities=QUANTITIES,
-    instant=ClothInstant,
-    remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
-)

@@ -6,8 +6,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.live_net import CLOTH, LiveNet, Marched
-from app.lab.rope_march import ClothData, Segment
+from app.lab.process.rope_march import ClothData, Segment
+from app.lab.student.live_net import CLOTH, LiveNet, Marched
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.laws import SPRING

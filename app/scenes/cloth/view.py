@@ -12,14 +12,14 @@ from app.messages import Snapshot, Vector
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
 from app.render.gizmo import Gizmo
-from app.render.html import Html, fill, info, join
+from app.render.handles.viser_inside import set_arrays
+from app.render.markup.html import Html, fill, info, join
 from app.render.meshes import ball, rod, tube_faces
-from app.render.viser_inside import set_arrays
 from app.scenes.cloth.frame import ClothFrame, ClothReadings
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.contract import Pieces, PostCommand
-from app.scenes.springs.html import colour_scale, simple_drawing, stability_bar, step_mark
-from app.scenes.springs.view import SecondNet, Sphere, SpringView
+from app.scenes.springs.drawing.html import colour_scale, simple_drawing, stability_bar, step_mark
+from app.scenes.springs.drawing.view import SecondNet, Sphere, SpringView
 
 CLOTH_COLOUR = (176, 58, 72)
 CHECK_COLOUR, CHECK_SHARES = (240, 226, 208), (0.0, 0.35, 0.75)  # where no, one or both threads have it

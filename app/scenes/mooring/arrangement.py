@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector, vector_of
-from app.scenes.mooring.from_file import mooring_of
+from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.rows import LineRows, ends_of
 from sim import floating

@@ -22,7 +22,7 @@ from app.scenes.mooring.tensions import Tensions
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.speed_advice import faster_steps
-from sim.floating.rotation import quaternion_by_vector
+from sim.floating.motion.rotation import quaternion_by_vector
 from sim.mooring import System
 from sim.springs import INTEGRATORS
 from sim.springs.forces.bending import set_line_tensions

@@ -42,11 +42,11 @@ class MooringParams:
     )
     axial_stiffness: float = in_line(5e7, 1e3, 1e10, "N", "Stiffness EA of a line", log_from=1e3, title="Stiffness EA")
     breaking_load: float = in_line(
-        3450.0, 0.0, 1e5, "kN", "Tension at which a line breaks, of which the panel gives the use; 0: not known",
+        3450.0, 0.0, 1e5, "kN", "Breaking load; tensions are also shown as a percentage of it. 0: unknown",
         log_from=1.0, affects="look",
     )  # fmt: skip
     line_damping: float = in_line(
-        0.8, 0.0, 2.0, "", "Damping of the stretch of a segment, of the critical one", title="Internal damping"
+        0.8, 0.0, 2.0, "", "Axial damping of a segment, as a fraction of critical", title="Internal damping"
     )
     drag_across: float = in_line(1.6, 0.0, 5.0, "", "Drag coefficient across the line")
     drag_along: float = in_line(0.1, 0.0, 2.0, "", "Drag coefficient along the line")
@@ -84,7 +84,7 @@ class MooringParams:
 
     surface: bool = in_look(True, doc="The water's surface")
     watch: bool = in_look(
-        True, doc="Path of the body, and the circle that it has not left, but when dragged", title="Watch circle"
+        True, doc="Path of the body, and the smallest circle that holds it (drags excluded)", title="Watch circle"
     )
     handles: bool = in_look(True, doc="Arrows that move anchors and fairleads")
     grid: bool = in_look(True, doc="Lines on the bed (key G)")

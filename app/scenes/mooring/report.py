@@ -6,14 +6,14 @@ from pathlib import PureWindowsPath
 
 from app.formats.formatting import metres, number, percent, seconds
 from app.messages import Snapshot
-from app.render.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
+from app.render.markup.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
+from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.frame import EndStatistics, LineReading, MooringReadings
-from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.quantities import QUANTITIES, load_use
 from app.scenes.mooring.start_check import BLAMED, Fault, raised_points
 from app.scenes.quantities import read, written
-from app.scenes.springs.html import colour_scale, step_mark
+from app.scenes.springs.drawing.html import colour_scale, step_mark
 from sim.extreme_values import LEAST_PEAKS
 
 TENSIONS = "Tensions"  # heading

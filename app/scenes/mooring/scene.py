@@ -3,14 +3,13 @@
 from typing import Any
 
 from app.scenes.charts import CurveAxes, PlotAxes
-from app.scenes.contract import Advice, FileFacts, Pieces, SceneKind
+from app.scenes.contract import Advice, FileFacts, Pieces
 from app.scenes.mooring.body_scene import MooringScene
-from app.scenes.mooring.file_scene import FileScene
+from app.scenes.mooring.files.file_scene import FileScene
+from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.frame import MooringReadings
-from app.scenes.mooring.from_file import mooring_of
-from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, SERIES, LineScene
-from app.scenes.mooring.parameters import ABOUT, EXPLICIT, OF_NO_FILE, PRESETS, MooringParams, hidden
-from app.scenes.mooring.quantities import QUANTITIES
+from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, LineScene
+from app.scenes.mooring.parameters import EXPLICIT, OF_NO_FILE, MooringParams
 from app.scenes.mooring.start_check import raised_points
 from app.scenes.springs.divergence import holding_step
 
@@ -89,30 +88,3 @@ def file_facts(params: MooringParams) -> FileFacts | None:
         "lines": [{**line._asdict(), "type": line.type.name} for line in system.lines],
     }  # fmt: skip
     return FileFacts("mooring", facts, frozenset(OF_NO_FILE))
-
-
-SCENE = SceneKind(
-    name="mooring",
-    title="Mooring",
-    help="<b>Drag the body</b>, or the arrows of anchors and fairleads.",
-    params=MooringParams,
-    presets=PRESETS,
-    about=ABOUT,
-    make=scene_of,
-    hidden=hidden,
-    warm_up=warm_up,
-    needs=needs,
-    warm_up_on_use=on_use,
-    series=SERIES,
-    plots=PLOTS,
-    curves=CURVES,
-    frame_units={
-        "points": "m", "body": "m", "rotation": "1", "tension": "N", "surface": "m", "path": "m", "uplift": "1",
-    },
-    remedy=remedy,
-    advice=advice,
-    notes=notes,
-    warnings=warnings,
-    file_facts=file_facts,
-    quantities=QUANTITIES,
-)  # fmt: skip

@@ -11,7 +11,7 @@ from app.formats.formatting import number, percent
 from app.messages import Vector
 from app.scenes.contract import Advice
 from app.scenes.mooring.arrangement import DENSITY, GRAVITY, Places, hull_of
-from app.scenes.mooring.from_file import FileMooring
+from app.scenes.mooring.files.from_file import FileMooring
 from app.scenes.mooring.parameters import MooringParams
 from sim.parameters import parameters_of
 

@@ -12,16 +12,16 @@ from app.render.gizmo import Gizmo
 from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand, SceneView
 from app.scenes.mooring.arrangement import depth_of, extent
-from app.scenes.mooring.bed_view import DrawnBed
-from app.scenes.mooring.body_view import DrawnBody
-from app.scenes.mooring.ends_view import DrawnEnds
+from app.scenes.mooring.drawing.bed_view import DrawnBed
+from app.scenes.mooring.drawing.body_view import DrawnBody
+from app.scenes.mooring.drawing.ends_view import DrawnEnds
+from app.scenes.mooring.drawing.lines_view import DrawnLines
+from app.scenes.mooring.drawing.watch_view import WatchCircle
+from app.scenes.mooring.drawing.water_view import SeenWater
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
-from app.scenes.mooring.lines_view import DrawnLines
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
-from app.scenes.mooring.watch_view import WatchCircle
-from app.scenes.mooring.water_view import SeenWater
-from app.scenes.springs.html import simple_drawing
+from app.scenes.springs.drawing.html import simple_drawing
 
 ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07  # in `extent`s
 FAR_VIEW = 40.0  # where the picture ends, and the bed would, in `extent`s

@@ -1,7 +1,7 @@
 """The table of a race's results as HTML. Only the view imports it."""
 
 from app.formats.formatting import metres, metres_above, number, percent, seconds
-from app.render.html import ERROR_COLOUR, Html, bold, coloured, escape, fill, info, join, table_head, table_row
+from app.render.markup.html import ERROR_COLOUR, Html, bold, coloured, escape, fill, info, join, table_head, table_row
 from app.scenes.charts import PALETTE
 from app.scenes.race.entrants import RaceReadings, Result
 from app.scenes.race.names import rope_name

@@ -8,18 +8,17 @@ from numpy.typing import NDArray
 
 from app.messages import PlotRow, SceneCommand, Vector
 from app.scenes.charts import Chart
-from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
+from app.scenes.contract import FRAME_INTERVAL, Pieces
 from app.scenes.moments import copied, restore
-from app.scenes.race.charts import CURVES, RaceCharts
+from app.scenes.race.charts import RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings, race_bound
 from app.scenes.race.names import rope_labels
-from app.scenes.race.parameters import ABOUT, PRESETS, RaceParams, hidden, method_of
-from app.scenes.race.quantities import QUANTITIES
+from app.scenes.race.parameters import RaceParams, method_of
 from app.scenes.springs.grab import GrabFrame
-from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
+from app.scenes.springs.laws import SPRING, pieces_of_law
 from app.scenes.springs.net_motion import NetMotion
 from app.scenes.springs.rope_handles import RopeHandles, grab_spring, offset_of
-from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
+from app.scenes.springs.rope_parameters import build_rope
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from sim.springs import INTEGRATORS, Net, rope
 from sim.springs.analysis.reference_run import ReferenceRun
@@ -170,25 +169,3 @@ class RaceScene:
             "energy": (np.array([entrant.stored_energy() for entrant in race.entrants]), "J, stored"),
             "numerical_dissipation": (taken, "J, that the method took"),
         }
-
-
-SCENE = SceneKind(
-    name="race",
-    title="Race of ropes",
-    help="<b>Drag a rope</b> to pull all of them alike.",
-    params=RaceParams,
-    presets=PRESETS,
-    about=ABOUT,
-    opening="Shaken at the root",
-    make=RaceScene,
-    hidden=hidden,
-    warm_up=warm_up,
-    needs=needs,
-    warm_up_on_use=functools.partial(pieces_on_use, warm_up),
-    series=(),
-    plots={},
-    curves=CURVES,
-    frame_units={"ropes": "m, side by side", "references": "m"},
-    stability_map=StabilityMap(stiffness_parameter, build_rope),
-    quantities=QUANTITIES,
-)

@@ -8,20 +8,20 @@ import viser
 
 from app.messages import Snapshot, Vector
 from app.render.colormap import lifted, rgb
+from app.render.handles.viser_inside import set_arrays, update_node
 from app.render.injection import injector_of
 from app.render.tubes import compile_tube
-from app.render.viser_inside import set_arrays, update_node
 from app.scenes.charts import PALETTE
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.race.entrants import RaceReadings
 from app.scenes.race.html import errors_line, results_table
 from app.scenes.race.parameters import RaceParams
 from app.scenes.race.scene import RaceFrame
-from app.scenes.springs.html import step_mark
+from app.scenes.springs.drawing.html import step_mark
+from app.scenes.springs.drawing.ropes_view import RopesDrawing, RopesView
+from app.scenes.springs.drawing.view import Translucent
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
-from app.scenes.springs.ropes_view import RopesDrawing, RopesView
-from app.scenes.springs.view import Translucent
 
 TUBE_RADIUS = 0.75 * ROPE_RADIUS  # [m]
 REFERENCE_RADIUS = 0.9 * TUBE_RADIUS  # [m], so that a rope without error hides its reference run

@@ -22,8 +22,8 @@ from sim.floating import (
     pull,
     step,
 )
-from sim.floating.body import pack_linear
-from sim.floating.excitation import LAST_RATES, WaveExcitation, rate_of_change
+from sim.floating.linear.excitation import LAST_RATES, WaveExcitation, rate_of_change
+from sim.floating.motion.body import pack_linear
 from sim.floating.shapes import Appearance
 from sim.interruption import raise_if_stopped
 from sim.ocean.any_sea import AnySea, SurfaceAt
@@ -304,7 +304,7 @@ class FloatingBodies:
     def acceleration_of(self, at: SurfaceAt, h: float, gravity: float) -> np.ndarray:
         """Upward acceleration (n,) [m/s2] of the water that the bodies meet along their way.
 
-        So it has no mean, as that at places that move with the waves would have (sim/floating/excitation.py).
+        So it has no mean, as that at places that move with the waves would have (sim/floating/linear/excitation.py).
         """
         self.rises = (at.velocity[:, 2].copy(), *self.rises[: len(LAST_RATES)])
         if len(self.rises) <= len(LAST_RATES):

@@ -11,8 +11,8 @@ from app.messages import Vector
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
 from app.scenes.radial_sea.bodies import BodyReading
 from app.scenes.radial_sea.cutaway import Cutaway
+from app.scenes.radial_sea.oil.well_blowout import OilBudget, Slick
 from app.scenes.radial_sea.parameters import RadialSeaParams
-from app.scenes.radial_sea.well_blowout import OilBudget, Slick
 from sim.floating import Hull
 from sim.ocean.any_sea import RadialSurface
 from sim.ocean.fluids.fluid_column import FluidColumn

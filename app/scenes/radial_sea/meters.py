@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.floating import Fleet, HeaveMeter
-from sim.floating.heave_meter import WindowMean
-from sim.floating.rotation import body_z_axes
+from sim.floating.motion.heave_meter import WindowMean
+from sim.floating.motion.rotation import body_z_axes
 from sim.ocean.any_sea import SurfaceAt
 
 MIN_COSINE = 0.2  # of the angle between a body's axis and the normal of the water, where drafts still mean something

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.floating import Fleet, Hull
-from sim.floating.mooring_lines import fairleads, just_taut, pulls
+from sim.floating.motion.mooring_lines import fairleads, just_taut, pulls
 
 BED_DEPTH = 60.0  # [m] of the anchors, and of what has sunk
 LINE_REACH = 180.0  # [m] from a body to its anchors, level

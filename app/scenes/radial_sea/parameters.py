@@ -15,7 +15,7 @@ from app.scenes.sea_parameters import (
     spectrum_values,
     unused_waves,
 )
-from sim.floating.hull import MeshReading
+from sim.floating.hulls.hull import MeshReading
 from sim.ocean.fluids.emulsions import MIXTURE_LAWS
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.fluids import Fluid, fluids

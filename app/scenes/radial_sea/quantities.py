@@ -9,8 +9,8 @@ import numpy as np
 
 from app.scenes.quantities import Quantities, Quantity, for_tasks, slug
 from app.scenes.radial_sea.bodies import BODY_KINDS, BodyKind
+from app.scenes.radial_sea.oil.well_blowout import FALL_TIME, LANDING, NOZZLE
 from app.scenes.radial_sea.parameters import weathered_oil
-from app.scenes.radial_sea.well_blowout import FALL_TIME, LANDING, NOZZLE
 from sim.ocean.fluids.emulsions import arrhenius
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.fluids import diffuse_reflectance, normal_reflectance
@@ -19,7 +19,7 @@ from sim.water import SEA_DENSITY
 
 if TYPE_CHECKING:
     from app.scenes.radial_sea.bodies import BodyReading
-    from app.scenes.radial_sea.well_blowout import OilBudget
+    from app.scenes.radial_sea.oil.well_blowout import OilBudget
     from sim.ocean.weathering import WeatheredOil
 
 LONG_WAVE = 10.0  # [m] length of the wave in statements about the speed of waves

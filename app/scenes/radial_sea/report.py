@@ -8,15 +8,15 @@ import numpy as np
 
 from app.formats.formatting import fixed, metres, number, percent, seconds
 from app.messages import Snapshot
-from app.render.html import Html, bold, faint, fill, info, join, table
+from app.render.markup.html import Html, bold, faint, fill, info, join, table
 from app.scenes.measured_sea import files_folder, measured_text
 from app.scenes.quantities import read, written
 from app.scenes.radial_sea.bodies import BodyReading
-from app.scenes.radial_sea.budget import budget_html, budget_marks
 from app.scenes.radial_sea.frame import RadialReadings
+from app.scenes.radial_sea.oil.budget import budget_html, budget_marks
+from app.scenes.radial_sea.oil.well_blowout import CROSSING_WAVE, OilBudget
 from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
 from app.scenes.radial_sea.quantities import OF_BODY, OF_OIL_BUDGET, QUANTITIES
-from app.scenes.radial_sea.well_blowout import CROSSING_WAVE, OilBudget
 from sim.ocean.fluids.emulsions import MIXTURE_LAWS
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.oil_film import appearance

@@ -9,30 +9,25 @@ from numpy.typing import NDArray
 
 from app.messages import GrabTo, Place, PlotRow, Release, SceneCommand, StudentAnswer
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
-from app.scenes.contract import FramePacking, Pieces, SceneKind
+from app.scenes.contract import Pieces
 from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
-from app.scenes.radial_sea.charts import BUDGET_LINES, budget_chart
 from app.scenes.radial_sea.drawn_surface import DrawnSurface, Foam, tile_of
-from app.scenes.radial_sea.frame import JetParcels, RadialFrame, RadialReadings, pack_frame, unpack_frame
+from app.scenes.radial_sea.frame import JetParcels, RadialFrame, RadialReadings
+from app.scenes.radial_sea.oil.charts import BUDGET_LINES, budget_chart
+from app.scenes.radial_sea.oil.well_blowout import WellBlowout, slick_reach, wave_left
 from app.scenes.radial_sea.parameters import (
-    ABOUT,
-    PRESETS,
     RadialSeaParams,
     column_of,
     densities_of,
     exposure_of,
-    hidden,
     own_densities_of,
     reading_of,
     spill_of,
 )
-from app.scenes.radial_sea.quantities import QUANTITIES
 from app.scenes.radial_sea.radiated_waves import RadiatedWaves
 from app.scenes.radial_sea.wave_choice import draw, wave_choice_of
-from app.scenes.radial_sea.well_blowout import WellBlowout, slick_reach, wave_left
-from app.scenes.sea_parameters import notes_on_file
 from sim.floating import Body, Hull, MotionCoefficients, Shape, make_fleet, shape_from_file, step, still_water
 from sim.interruption import kept_whole
 from sim.ocean.any_sea import AnySea
@@ -48,7 +43,7 @@ from sim.particles.jet import Jet
 from sim.validation import DivergenceError
 
 if TYPE_CHECKING:
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from app.scenes.radial_sea.student_sea import StudentRadialSea
 
 PLOTTED_BODIES = 3  # bodies with a plotted draft
@@ -425,31 +420,3 @@ def flying_parcels(jet: Jet) -> JetParcels:
     number = np.flatnonzero(jet.flying)
     position, velocity = (a[:, number].T.astype(np.float32) for a in (jet.position, jet.velocity))
     return JetParcels(position, velocity, number)
-
-
-SCENE = SceneKind(
-    name="radial_sea",
-    title="Radial sea",
-    help="<b>Drag a buoy</b> under the water and let go.",
-    params=RadialSeaParams,
-    presets=PRESETS,
-    about=ABOUT,
-    make=RadialSeaScene,
-    make_with_student=RadialSeaScene,
-    hidden=hidden,
-    warm_up=warm_up,
-    series=SERIES,
-    plots=PLOTS,
-    curves=CURVES,
-    frame_units={
-        "positions": "m",
-        "rotations": "quaternion (w, x, y, z)",
-        "surface_vertices": "m",
-        "surface_slope": "",
-        "foam": "0 to 1",
-    },
-    packing=FramePacking(pack_frame, unpack_frame),
-    quantities=QUANTITIES,
-    notes=notes_on_file,
-    needs=needs,
-)

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
-from app.lab.tabulate import Interval
+from app.lab.process.tabulate import Interval
+from app.lab.student.live_tables import Call, LiveTables, Table, TableReport, TableUser
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of
 from app.scenes.radial_sea.parameters import RadialSeaParams, column_of
 from sim.ocean.fluids.fluid_column import FluidColumn

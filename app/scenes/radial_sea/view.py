@@ -14,22 +14,22 @@ from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector
 from app.render.cameras import place_cameras
 from app.render.dragging import GrabLine, drag
 from app.render.follow_camera import FollowCamera
-from app.render.html import bold, fill
+from app.render.markup.html import bold, fill
 from app.render.material import Material
 from app.render.skies import set_sky
 from app.render.water import DrawnWater
 from app.scenes.contract import Pieces, SceneView
-from app.scenes.radial_sea.bodies_view import DrawnBodies, model
 from app.scenes.radial_sea.cutaway import DIRECTION
-from app.scenes.radial_sea.cutaway_view import Walls
-from app.scenes.radial_sea.fire_view import Flames
+from app.scenes.radial_sea.drawing.bodies_view import DrawnBodies, model
+from app.scenes.radial_sea.drawing.cutaway_view import Walls
+from app.scenes.radial_sea.drawing.fire_view import Flames
+from app.scenes.radial_sea.drawing.materials import material_of, waterlines_of
+from app.scenes.radial_sea.drawing.moorings_view import DrawnMoorings
+from app.scenes.radial_sea.drawing.stain_view import Stains
 from app.scenes.radial_sea.frame import RadialFrame, RadialReadings
-from app.scenes.radial_sea.materials import material_of, waterlines_of
-from app.scenes.radial_sea.moorings_view import DrawnMoorings
+from app.scenes.radial_sea.oil.well_blowout import FIRE, RIG
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.report import marks_of, notes_of, readout_of
-from app.scenes.radial_sea.stain_view import Stains
-from app.scenes.radial_sea.well_blowout import FIRE, RIG
 from sim.ocean.any_sea import RadialSurface
 from sim.ocean.radial.radial_grid import RadialGrid
 

@@ -1,1 +1,34 @@
 """One rope of springs."""
+
+import functools
+
+from app.scenes.contract import SceneKind, StabilityMap
+from app.scenes.rope.parameters import ABOUT, PRESETS, RopeParams, hidden
+from app.scenes.rope.quantities import QUANTITIES, RopeInstant
+from app.scenes.rope.scene import PLOTS, SERIES, RopeScene, build, needs, warm_up
+from app.scenes.springs.divergence import holding_step
+from app.scenes.springs.laws import pieces_on_use
+from app.scenes.springs.rope_parameters import stiffness_parameter
+
+SCENE = SceneKind(
+    name="rope",
+    title="Rope",
+    help="<b>Drag the rope</b> to pull it, or the arrows to move its root.",
+    params=RopeParams,
+    presets=PRESETS,
+    about=ABOUT,
+    opening="Shaken at the root",
+    make=RopeScene,
+    make_with_student=RopeScene,
+    hidden=hidden,
+    warm_up=warm_up,
+    needs=needs,
+    warm_up_on_use=functools.partial(pieces_on_use, warm_up),
+    series=SERIES,
+    plots=PLOTS,
+    frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
+    stability_map=StabilityMap(stiffness_parameter, build),
+    remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
+    quantities=QUANTITIES,
+    instant=RopeInstant,
+)

@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 
 from app.messages import SceneCommand, StudentAnswer, Vector
 from app.scenes.charts import PlotAxes
-from app.scenes.contract import FRAME_INTERVAL, Pieces, SceneKind, StabilityMap
+from app.scenes.contract import FRAME_INTERVAL, Pieces
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
-from app.scenes.rope.parameters import ABOUT, PRESETS, RopeParams, hidden
-from app.scenes.rope.quantities import QUANTITIES, RopeInstant
-from app.scenes.springs.divergence import holding_step, leapfrog_alternative
+from app.scenes.rope.parameters import RopeParams
+from app.scenes.springs.divergence import leapfrog_alternative
 from app.scenes.springs.grab import ParticleGrab
-from app.scenes.springs.laws import SPRING, pieces_of_law, pieces_on_use
+from app.scenes.springs.laws import SPRING, pieces_of_law
 from app.scenes.springs.methods import FEW_POINTS, method_that_runs
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.net_scene import NetScene
@@ -30,7 +29,7 @@ from sim.springs.stability import critical_stiffness, top_modes
 from sim.springs.state import State, energy
 
 if TYPE_CHECKING:
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from app.scenes.rope.student_rope import StudentRope
 
 MIN_MOVE_TO_ASSESS = 1e-3  # of a link: a rope that has moved by less since the last assessment is as stable as it was
@@ -247,27 +246,3 @@ class RopeScene(NetScene[RopeParams]):
     def laid_out(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Positions or velocities (3, 1, points) as (points, 3)."""
         return values[:, 0].T.copy()
-
-
-SCENE = SceneKind(
-    name="rope",
-    title="Rope",
-    help="<b>Drag the rope</b> to pull it, or the arrows to move its root.",
-    params=RopeParams,
-    presets=PRESETS,
-    about=ABOUT,
-    opening="Shaken at the root",
-    make=RopeScene,
-    make_with_student=RopeScene,
-    hidden=hidden,
-    warm_up=warm_up,
-    needs=needs,
-    warm_up_on_use=functools.partial(pieces_on_use, warm_up),
-    series=SERIES,
-    plots=PLOTS,
-    frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
-    stability_map=StabilityMap(stiffness_parameter, build),
-    remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
-    quantities=QUANTITIES,
-    instant=RopeInstant,
-)

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.live_net import ROPE
-from app.lab.rope_march import Segment
+from app.lab.process.rope_march import Segment
+from app.lab.student.live_net import ROPE
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.springs.laws import SPRING
 from app.scenes.springs.student_net import StudentNet, forces_of

@@ -10,17 +10,17 @@ from app.formats.formatting import number
 from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.coloured_mesh import ColouredMesh
-from app.render.html import Html, bold, fill
+from app.render.markup.html import Html, bold, fill
 from app.render.meshes import ball
 from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
 from app.scenes.rope.parameters import RopeParams
-from app.scenes.springs.html import colour_scale, held, simple_drawing, stability_bar, step_mark
+from app.scenes.springs.drawing.html import colour_scale, held, simple_drawing, stability_bar, step_mark
+from app.scenes.springs.drawing.ropes_view import MAX_BEAD_RATIO, RopesDrawing, RopesView
+from app.scenes.springs.drawing.view import SecondNet, Sphere
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_parameters import ROOT, ROPE_RADIUS, build_rope
-from app.scenes.springs.ropes_view import MAX_BEAD_RATIO, RopesDrawing, RopesView
-from app.scenes.springs.view import SecondNet, Sphere
 
 ROPE_COLOUR = (196, 154, 92)
 REFERENCE_COLOUR = (60, 110, 190)

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.lab.live_net import LiveNet, Marched, StudentReport
-from app.lab.rope_march import ClothData, Forces, Segment
+from app.lab.process.rope_march import ClothData, Forces, Segment
+from app.lab.student.live_net import LiveNet, Marched, StudentReport
 from sim.springs import Net
 from sim.springs.forces import OWN
 

@@ -112,7 +112,7 @@ class SquareSeaParams:
     )  # fmt: skip
 
     foam: bool = in_foam(True, doc="Foam where the surface is most compressed")
-    foam_by_wind: bool = in_foam(True, doc="As much foam as was measured at this wind speed; less on a damped sea")
+    foam_by_wind: bool = in_foam(True, doc="Foam cover as measured at this wind speed; less on damped seas")
     foam_threshold: float = in_foam(0.5, -1.0, 1.0, "", "Jacobian below which there is foam")
     foam_fade: float = in_foam(4.0, 0.1, 60.0, "s", "Time in which foam fades", log_from=0.1, title="Foam lifetime")
     drops: int = in_foam(1500, 1, 5000, "", "Largest number of drops shown", log_from=1, title="Drops shown")

@@ -12,11 +12,12 @@ from app.scenes.quantities import Quantities, Quantity, SceneInstant, for_sweeps
 from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.parameters import SquareSeaParams, acting, conditions, gravity
 from app.scenes.square_sea.statistics import Report, measure, theory
-from sim.ocean.planets import EARTH_GRAVITY, gravity_of
+from sim.ocean.planets import gravity_of
 from sim.ocean.radial.gerstner import peak_wavenumber
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.ocean.statistics.crest_heights import moments_of
 from sim.ocean.statistics.statistics import open_sea_height
+from sim.water import EARTH_GRAVITY
 
 if TYPE_CHECKING:
     from app.scenes.square_sea.rainfall import RainReadings

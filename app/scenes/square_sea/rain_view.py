@@ -9,12 +9,13 @@ they are sent once and hit nothing.
 import numpy as np
 import viser
 
+from app.render.handles.viser_inside import set_arrays
 from app.render.injection import add_data_mesh, injector_of
 from app.render.material import RAIN_UNIFORMS
-from app.render.viser_inside import set_arrays
 from app.scenes.square_sea.parameters import RainSettings
 from app.scenes.square_sea.rainfall import MAX_SPLASHES, SPLASH_DURATION, RainFrame
-from sim.particles.rain import EARTH, rainfall, slope_parameter
+from sim.particles.rain import rainfall, slope_parameter
+from sim.water import EARTH_GRAVITY
 
 EXPOSURE_TIME = 1 / 40  # [s] over which a moving drop draws its streak
 STREAK_HALF_WIDTH = 0.004  # [m]
@@ -70,7 +71,7 @@ class RainMesh:
     def __init__(self, server: viser.ViserServer, frame: RainFrame, settings: RainSettings, exposure: float) -> None:
         """exposure: of the water's material."""
         self.count, self.settings = len(frame.drops), settings
-        speed_factor = float(np.sqrt(settings.gravity / EARTH))
+        speed_factor = float(np.sqrt(settings.gravity / EARTH_GRAVITY))
         uniforms: dict[str, tuple[float, ...]] = {
             "rain": (STREAK_OPACITY, exposure, FADE_DISTANCE),
             "streak": (STREAK_HALF_WIDTH, MIN_STREAK_ANGLE, 0.0),

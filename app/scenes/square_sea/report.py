@@ -4,7 +4,7 @@ import math
 
 from app.formats.formatting import count, fixed, metres, number, percent, seconds
 from app.messages import Snapshot
-from app.render.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, lines, table
+from app.render.markup.html import WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, lines, table
 from app.scenes.measured_sea import measured_text
 from app.scenes.quantities import read, written
 from app.scenes.sea_parameters import chosen_spectrum
@@ -15,10 +15,11 @@ from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
 from sim.ocean.dispersion import viscous_root
-from sim.ocean.planets import EARTH_GRAVITY, RADIUS_RULES, gravity_of
+from sim.ocean.planets import RADIUS_RULES, gravity_of
 from sim.ocean.spectra.jonswap import FetchConditions, fetch_of_full_growth
 from sim.ocean.spectra.regular import RegularConditions
 from sim.ocean.statistics.statistics import BREAKING_HEIGHT, beaufort, resolved_in_time
+from sim.water import EARTH_GRAVITY
 
 MIN_SLOPE_LEFT = 0.98  # fraction of the mean square slope below which the sea counts as damped
 MAX_FRACTION_OF_ENDLESS_SEA = 1.2  # in wave height: a tile with more than this still has waves of earlier weather

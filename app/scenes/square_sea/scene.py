@@ -11,26 +11,21 @@ from numpy.typing import NDArray
 
 from app.messages import PlotRow, PointAlong, SceneCommand, Snapshot, StudentAnswer
 from app.scenes.charts import CurveAxes, PlotAxes
-from app.scenes.contract import Awaited, FramePacking, Pieces, SceneKind
+from app.scenes.contract import Pieces
 from app.scenes.moments import copied, restore
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
-from app.scenes.sea_parameters import notes_on_file
 from app.scenes.square_sea.foam import MeshFoam, WavePace
-from app.scenes.square_sea.frame import SeaFrame, SeaReadings, pack_frame, readings_of, unpack_frame
+from app.scenes.square_sea.frame import SeaFrame, SeaReadings, readings_of
 from app.scenes.square_sea.parameters import (
-    ABOUT,
-    PRESETS,
     SquareSeaParams,
     acting,
     conditions,
     gauge_home,
-    hidden,
     marches,
     rain_settings,
     solved_points,
 )
-from app.scenes.square_sea.quantities import QUANTITIES, SeaInstant
 from app.scenes.square_sea.rainfall import SeaRain
 from app.scenes.square_sea.statistics import INTERVAL, LiveStatistics
 from app.scenes.square_sea.tile_mesh import Fields
@@ -41,7 +36,7 @@ from sim.ocean.statistics.foam import whitecaps
 from sim.parameters import effect_of_change
 
 if TYPE_CHECKING:
-    from app.lab.live_code import LiveCode
+    from app.lab.student.live_code import LiveCode
     from app.scenes.square_sea.nonlinear import Marching
     from app.scenes.square_sea.student_sea import StudentSea
     from sim.ocean.nonlinear import NonlinearSea
@@ -375,29 +370,3 @@ def has_high_crest(snapshot: Snapshot) -> bool:
     """True if a drawn crest is 1.25 times Hs high or more: a rogue wave, by a usual definition."""
     height = snapshot.frame.vertices[..., 2]
     return bool(height.max() >= HIGH_CREST * 4.0 * height.std() > 0.0)
-
-
-SCENE = SceneKind(
-    name="square_sea",
-    title="Square sea",
-    help="<b>Click the water</b> to place a wave gauge; drag to look around.",
-    params=SquareSeaParams,
-    presets=PRESETS,
-    about=ABOUT,
-    make=SquareSeaScene,
-    make_with_student=SquareSeaScene,
-    hidden=hidden,
-    warm_up=warm_up,
-    needs=needs,
-    warm_up_on_use=pieces_on_use,
-    series=SERIES,
-    plots=PLOTS,
-    curves=CURVES,
-    frame_units={"vertices": "m", "slopes": "", "foam": "0 to 1"},
-    packing=FramePacking(pack_frame, unpack_frame),
-    quantities=QUANTITIES,
-    notes=notes_on_file,
-    instant=SeaInstant,
-    awaited=Awaited(f"Run on until a crest of {HIGH_CREST:g} Hs", AWAITED_HINT, marches, has_high_crest),
-    middle=lambda params: (0.5 * params.length, 0.5 * params.length),
-)

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.live_tables import Call, LiveTables, Table, TableReport, TableUser
-from app.lab.tabulate import Interval
+from app.lab.process.tabulate import Interval
+from app.lab.student.live_tables import Call, LiveTables, Table, TableReport, TableUser
 from app.scenes.sea_parameters import spectrum_values
 from app.scenes.square_sea.parameters import SquareSeaParams, acting, conditions, gravity, marches
 from sim.ocean import Sea

@@ -15,12 +15,12 @@ from app.formats.round_step import round_step
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, PointAlong, Snapshot, Vector, finite_vector
 from app.render.cameras import all_cameras, place_cameras
-from app.render.html import bold, fill
+from app.render.handles.viser_inside import set_arrays
+from app.render.markup.html import bold, fill
 from app.render.material import RAIN_HEIGHT, Material, Waterline, as_linear_bytes, blend
 from app.render.meshes import ball, tube_faces
 from app.render.skies import set_sky
 from app.render.staff import COLOURS, UPRIGHT, add_staff
-from app.render.viser_inside import set_arrays
 from app.render.water import DrawnWater, Tile
 from app.scenes.contract import Pieces, SceneView
 from app.scenes.measured_sea import files_folder, height_and_period

@@ -31,7 +31,7 @@ class TickClock:
         self.lateness = 0.0  # [s] by which sleeps lately ended too late, as others had the processor
         self.turn_at = 0.0  # [s] of `now`, when controls were last answered
         self.in_turn = False  # controls are being answered in the middle of a solve
-        self.is_late = False  # they were in this tick, or in the last one
+        self.is_late = False  # commands were handled in this tick, or in the last one
 
     def begin_tick(self, wall: float) -> bool:
         """A tick begins, `wall` seconds after the last; True where controls were answered in the middle of that."""

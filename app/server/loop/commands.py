@@ -26,11 +26,11 @@ from app.messages import (
     Take,
     TogglePlay,
 )
-from app.scenes.compiling import Compiling, Job
+from app.scenes.ahead.compiling import Compiling, Job
 from app.scenes.contract import AnyKind
 from sim.parameters import EFFECTS, Effect, effect_of_change
 
-Motion = Play | Pause | TogglePlay | Halt  # what leaves the scene alone
+Motion = Play | Pause | TogglePlay | Halt  # transport commands: they do not touch the scene
 
 
 class Record(NamedTuple):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.messages import BaseParams, KeptState, Pause, Play, PlotRow, RunIdentity, Take
-from app.panel.recorder import FrameMemory
+from app.panel.recording.recorder import FrameMemory
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
 from app.server.loop.clock import MAX_CATCH_UP, SOLVE_SHARE, FixedStep, TickClock

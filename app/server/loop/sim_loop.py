@@ -12,7 +12,7 @@ import traceback
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 
-from app.lab.process import ON_HUB
+from app.lab.process.shared import ON_HUB
 from app.messages import (
     Advance,
     Ask,
@@ -51,8 +51,8 @@ from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
 ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
-BREATH = 1e-3  # [s] between two ticks where the last sleep ended late: a tick at once would have no steps to take
-MAX_DEAF_TIME = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
+MIN_SLEEP = 1e-3  # [s] between two ticks where the last sleep ended late: a tick at once would have no steps to take
+MAX_COMMAND_DELAY = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
 
 class SimLoop:
@@ -74,7 +74,7 @@ class SimLoop:
         """audience: how many browsers look.
 
         admit: of the commands that have come, and of those that it held back before, those to handle now.
-        clock: wall time [s]. effort: what solving is charged by, this thread's processor time [s], so that a busy
+        clock: wall time [s]. effort: clock of the cost of solving, this thread's processor time [s], so that a busy
         machine that takes the processor away does not make the scene look expensive.
         sleep: for so long [s]. gives_way: whether frames become fewer where sleeps end late, as on a hub.
         """
@@ -100,7 +100,7 @@ class SimLoop:
         run, snapshots = self.run, self.run.snapshots
         was_late = self.clock.begin_tick(wall)
         self.take_in()
-        changed = self.handle_waiting() or not snapshots.is_shown
+        changed = self.handle_waiting() or not snapshots.is_current
         if changed and was_late:
             snapshots.publish()  # before steps that may take long
             changed = False
@@ -261,7 +261,7 @@ class SimLoop:
                 # A sleep that ended late makes the next one shorter; one that missed a whole frame is not made up for.
                 due = interval + (due if now - due < interval else now)
                 wanted = max(due, clock.now())
-                rest = max(due - clock.now(), BREATH if clock.tick_time < interval else 0.0)
+                rest = max(due - clock.now(), MIN_SLEEP if clock.tick_time < interval else 0.0)
                 if rest > 0:
                     self.wait(rest, stop)
 
@@ -281,14 +281,14 @@ class SimLoop:
         self.clock.begin_work()
         self.handle(command)
         self.clock.end_work()
-        self.run.snapshots.is_shown = False
+        self.run.snapshots.is_current = False
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
         """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""
         start, left = self.clock.now(), seconds
-        while left > MAX_DEAF_TIME and not self.waiting and not stop.is_set():
+        while left > MAX_COMMAND_DELAY and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
-                command = self.commands.get(timeout=MAX_DEAF_TIME if self.run.audience() else left)
+                command = self.commands.get(timeout=MAX_COMMAND_DELAY if self.run.audience() else left)
                 if not isinstance(command, StudentAnswer):
                     self.take_in(command)
                     stop.wait(max(0.0, FRAME_INTERVAL - (self.clock.now() - start)))  # not more ticks than frames
@@ -299,4 +299,4 @@ class SimLoop:
                 return
             left = seconds - (self.clock.now() - start)
         if left > 0.0:
-            self.clock.sleep(min(left, MAX_DEAF_TIME))
+            self.clock.sleep(min(left, MAX_COMMAND_DELAY))

@@ -16,7 +16,7 @@ from sim.validation import DivergenceError
 if TYPE_CHECKING:
     from app.server.loop.run import SceneRun
 
-MAX_BLIND_TIME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
+MAX_TIME_WITHOUT_FRAME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
 KEEP_SHARE = 0.003  # of a core that keeping states may take
 RATE_WINDOW = 1.0  # [s] over which rates are measured
@@ -36,7 +36,7 @@ class Snapshots:
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
         self.line = RunLine()  # of `kept_rows`
         self.published = 0.0  # [s] of simulated time, of the last snapshot
-        self.is_shown = True  # the latest snapshot is of the scene as it is
+        self.is_current = True  # the latest snapshot is of the scene as it is
         self.whole_at = run.clock.now()  # [s], when that was so last
         self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
         self.latest: AnySnapshot = self.collect(self.next_serial())
@@ -66,17 +66,17 @@ class Snapshots:
         """Frame to show now; the last good one if the scene has none or controls cancel it."""
         run, serial = self.run, self.next_serial()
         params = run.scene.params
-        run.activity = Activity("frame", may_end=run.clock.now() - self.whole_at < MAX_BLIND_TIME)
+        run.activity = Activity("frame", may_end=run.clock.now() - self.whole_at < MAX_TIME_WITHOUT_FRAME)
         try:
             if run.unfinished is not None or run.unmade:
-                self.is_shown = True  # all that there is of a scene that is not made
+                self.is_current = True  # all that there is of a scene that is not made
                 return self.without_frame()
             found = self.collect(serial)
-            self.is_shown, self.whole_at = run.scene.params is params, run.clock.now()
+            self.is_current, self.whole_at = run.scene.params is params, run.clock.now()
             return found._replace(serial=run.counts["snapshots"])  # controls may have been answered with others
         except InterruptionError:
             run.counts["pictures ended early"] += 1
-            self.is_shown = False
+            self.is_current = False
             return self.without_frame()
         except Exception as error:
             if not isinstance(error, DivergenceError):
@@ -103,7 +103,7 @@ class Snapshots:
         frame = scene.frame() if replay is None else replay.moment.frame
         where = where_not_finite(frame)
         if where:
-            raise DivergenceError(f"What is to be drawn is not finite ({where}). Reset, or take a smaller step.")
+            raise DivergenceError(f"The picture contains NaN or infinity ({where}). Reset, or use a smaller time step.")
         readings, curves = scene.readings(), scene.curves()
         self.hand_over(scene.take_plot_rows())
         return Snapshot(serial, frame, self.status(), readings, scene.params, curves, self.keep_state())

@@ -30,7 +30,7 @@ import viser
 import websockets.asyncio.server
 from websockets.http11 import Request, Response
 
-from app.render.viser_inside import (
+from app.render.handles.viser_inside import (
     UNKNOWN,
     Handler,
     Taker,
@@ -41,7 +41,7 @@ from app.render.viser_inside import (
     refuse_requests,
     send_to_all,
 )
-from app.render.viser_types import GuiHandle, ViserConnection, ViserMessage
+from app.render.handles.viser_types import GuiHandle, ViserConnection, ViserMessage
 from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, refusal
 from app.server.web.pace import PACE, Pace, put_small_first
 from app.server.web.page import own_answer, with_cover
@@ -53,7 +53,7 @@ MAX_FIELD_LENGTH = 64  # of what is typed into a field
 MAX_TEXT_LENGTH = 5100  # of a field of several lines: a set-up file, and the word of the page that sends it
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
 MAX_WAITING = 64  # messages of one browser that wait for their turn
-STARTING = threading.Lock()  # one server at a time: what starts it is replaced meanwhile
+STARTING = threading.Lock()  # one server at a time: websockets' serve() is patched while a server starts
 
 ClientId: TypeAlias = int
 MergeKey: TypeAlias = tuple[object, ...]
@@ -133,7 +133,7 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
                 return connection.respond(HTTPStatus.FORBIDDEN, "This page may not connect here.\n")
             request = panes.read(connection, request)
             if request is None:
-                return refusal(HTTPStatus.NOT_FOUND, "There is no set-up beside the first one.")
+                return refusal(HTTPStatus.NOT_FOUND, "No second pane is open.")
             answer = own_answer(request, shared=bool(access.key))
             return answer or with_cover(request, process_request(connection, request))
 

@@ -20,8 +20,8 @@ from typing import NamedTuple
 
 import viser
 
-from app.render.viser_inside import pass_windows_through
-from app.render.viser_types import ViserConnection, ViserMessage
+from app.render.handles.viser_inside import pass_windows_through
+from app.render.handles.viser_types import ViserConnection, ViserMessage
 from app.server.web.transport import kind_and_size
 
 SMALL = 8192  # [bytes] below which a message is no picture: it never waits, and no ping follows it

@@ -19,7 +19,7 @@ from typing import TypeAlias, TypeVar
 import websockets.asyncio.server
 from websockets.http11 import Request
 
-from app.render.viser_types import ViserConnection
+from app.render.handles.viser_types import ViserConnection
 
 PANE_PATH = re.compile(r"/pane/([2-9])(?=/)")
 T = TypeVar("T")

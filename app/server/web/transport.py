@@ -15,7 +15,7 @@ from typing import cast
 import numpy as np
 import viser
 
-from app.render.viser_inside import watch_messages
+from app.render.handles.viser_inside import watch_messages
 
 MAX_WAIT = 1.0  # [s] for viser's event loop to take a picture
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sim.floating.closed_mesh import ClosedMesh, check_length, closed_mesh
+from sim.floating.hulls.closed_mesh import ClosedMesh, check_length, closed_mesh
 from sim.floating.shapes.record import Appearance, Immersed, Shape
 
 

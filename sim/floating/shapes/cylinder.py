@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from sim.floating.closed_mesh import ClosedMesh, check_length, closed_mesh
+from sim.floating.hulls.closed_mesh import ClosedMesh, check_length, closed_mesh
 from sim.floating.shapes.record import Appearance, Immersed, Shape
 
 SIDES = 32  # of the prism: the second moments of its cross-section are within 2e-5 of the circle's

@@ -4,8 +4,8 @@ import dataclasses
 from collections.abc import Callable
 from typing import NamedTuple
 
-from sim.floating.closed_mesh import ClosedMesh
-from sim.floating.linear_table import LinearTable
+from sim.floating.hulls.closed_mesh import ClosedMesh
+from sim.floating.linear.linear_table import LinearTable
 from sim.validation import check_choice
 
 COLLISION_FORMS = ("ellipsoid", "box", "cylinder")

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from sim.floating.closed_mesh import ClosedMesh, check_length, closed_mesh, solid
+from sim.floating.hulls.closed_mesh import ClosedMesh, check_length, closed_mesh, solid
 from sim.floating.shapes.record import Appearance, Immersed, Shape
 from sim.validation import argument_error, is_whole_number
 

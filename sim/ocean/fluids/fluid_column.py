@@ -15,6 +15,7 @@ from sim.ocean.dispersion import damped_root, mode_ratios, omega, two_layer, vis
 from sim.ocean.fluids.emulsions import MIXTURE_LAWS
 from sim.ocean.fluids.fluids import Fluid, fluids, mixed
 from sim.validation import argument_error, check_choice, check_not_negative, check_positive, check_within
+from sim.water import EARTH_GRAVITY
 
 CONTINUOUS = ("plentiful", "oil", "water")
 
@@ -30,7 +31,7 @@ class FluidColumn:
     law: str = "pal_rhodes"  # of the mixture's viscosity
     continuous: str = "plentiful"  # fluid that an emulsion's drops are in: "plentiful", "oil" or "water"
     film: bool = False  # an inextensible film on top
-    gravity: float = 9.81  # [m/s2]
+    gravity: float = EARTH_GRAVITY  # [m/s2]
     mixture_viscosity: float | None = None  # [Pa s] in place of the law's
     decay: Callable[[np.ndarray], np.ndarray] | None = None  # decay rate (k) [1/s] in place of the exact one
 

@@ -20,7 +20,7 @@ from sim.ocean.dispersion import group_speed
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.fluids import Fluid
 from sim.validation import argument_error, check_not_negative, check_positive
-from sim.water import SEA_DENSITY
+from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 INERTIAL, VISCOUS, TENSION = 1.14, 1.45, 2.30
 FINAL_AREA = 1e5  # [m^(-1/4)] over V^(3/4)
@@ -39,7 +39,7 @@ def slick_radius(
     oil: float,
     water: float = SEA_DENSITY,
     viscosity: float = 1.19e-6,
-    gravity: float = 9.81,
+    gravity: float = EARTH_GRAVITY,
     spreading: float = 0.0,
 ) -> float:
     """Radius [m] of `volume` [m3] of oil after `time` [s]; oil, water [kg/m3]; viscosity of the water [m2/s].

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from sim.validation import argument_error, check_finite, check_not_negative, check_positive, is_whole_number
-from sim.water import SEA_DENSITY, Water
+from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 from sim.waves import Waves
 
 SAMPLES = 8  # of an envelope, to a wave
@@ -22,7 +22,12 @@ SIDE_BAND = 0.1  # amplitude of each side band over the carrier's
 
 
 def breather(
-    amplitude: float, count: int, length: float, place: float = 0.0, gravity: float = 9.81, density: float = SEA_DENSITY
+    amplitude: float,
+    count: int,
+    length: float,
+    place: float = 0.0,
+    gravity: float = EARTH_GRAVITY,
+    density: float = SEA_DENSITY,
 ) -> tuple[Waves, float]:
     """Waves of Peregrine's breather on deep water (1983, J. Aust. Math. Soc. B 25:16), and the time [s] to its peak.
 
@@ -46,7 +51,7 @@ def breather(
 
 
 def modulated_waves(
-    amplitude: float, count: int, length: float, gravity: float = 9.81, density: float = SEA_DENSITY
+    amplitude: float, count: int, length: float, gravity: float = EARTH_GRAVITY, density: float = SEA_DENSITY
 ) -> Waves:
     """A carrier as in `breather` with the two side bands that grow fastest (Benjamin and Feir 1967, J. Fluid Mech.
     27:417): k (1 +- 2ka), in the phase in which they grow. Raises ValueError for a value that is not allowed."""

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.validation import ConvergenceError, argument_error, as_array, check_positive, is_whole_number
+from sim.water import EARTH_GRAVITY
 
 ORDERS = (1, 60)
 HIGHEST = 0.1412  # height over wavelength of the highest wave on deep water (Michell 1893)
@@ -60,7 +61,7 @@ class StokesWave:
 
 
 def stokes_wave(
-    height: float, wavelength: float, depth: float = math.inf, order: int = 7, gravity: float = 9.81
+    height: float, wavelength: float, depth: float = math.inf, order: int = 7, gravity: float = EARTH_GRAVITY
 ) -> StokesWave:
     """The wave of this height [m] and wavelength [m] on water of this depth [m] or inf; order: Fourier terms, 1 to 60.
 

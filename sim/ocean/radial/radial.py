@@ -51,7 +51,7 @@ class RadialSea(AnySea):
     ) -> None:
         """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
         horizontal motion. The column carries the waves: they have the frequencies of the deep fluids in it.
-        Raises ValueError for a negative number, other waves or another column, and waves under another gravity.
+        Raises ValueError for a negative number, other waves or another column, and waves of another depth or gravity.
 
         `past` [s] is the time spent on each medium. Waves never regain energy that they lost there.
         """
@@ -254,12 +254,18 @@ class RadialSea(AnySea):
 
 
 def check_carried(waves: Waves, column: FluidColumn) -> None:
-    """Raises ValueError for waves that are none, or under another gravity than the column."""
+    """Raises ValueError for waves that are none, of water of a finite depth, or under another gravity than the column.
+
+    The column's fluids are deep.
+    """
     check_kind("waves", waves, Waves, "Waves, as `draw_waves` draws them")
     check_kind("column", column, FluidColumn, "a FluidColumn")
     if not math.isclose(waves.water.gravity, column.gravity, rel_tol=SAME_WATER):
         allowed = f"those under the column's gravity of {column.gravity:g} m/s2"
         raise argument_error("waves", f"waves on {waves.water}", allowed)
+    if len(waves.kx) and not math.isinf(waves.water.depth):
+        given = f"waves of water {waves.water.depth:.6g} m deep, on a column inf m deep"
+        raise argument_error("waves", given, "those of deep water")
 
 
 def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:

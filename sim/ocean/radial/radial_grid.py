@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from sim.root import narrowed
 from sim.validation import argument_error, check_positive, check_within, is_whole_number
 
 LAWS = ("geometric", "power")
@@ -90,13 +91,10 @@ class RadialGrid:
 
 
 def step_ratio(ratio: float, count: int) -> float:
-    """q >= 1 with (q^count - 1)/(q - 1) = ratio >= count, by bisection."""
-    low, high = 1.0, 64.0
-    for _ in range(200):
-        q = 0.5 * (low + high)
+    """q >= 1 with (q^count - 1)/(q - 1) = ratio >= count."""
+
+    def excess(q: float) -> float:
         total = count if q - 1.0 < 1e-12 else math.expm1(min(count * math.log(q), 700.0)) / (q - 1.0)
-        if total < ratio:
-            low = q
-        else:
-            high = q
-    return high
+        return math.log(total / ratio)
+
+    return float(narrowed(excess, 1.0, 64.0)[1])

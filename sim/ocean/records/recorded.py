@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.radial.gerstner import MAX_WAVES
 from sim.ocean.spectra import Conditions
+from sim.root import narrowed
 from sim.turns import within_half_turn
 from sim.validation import argument_error, as_array, check_angle, check_kind, check_vector, check_within
 from sim.water import Water
@@ -30,7 +31,6 @@ MIN_SAMPLES = 8
 UNEVEN = 1e-3  # of the spacing of samples, by which they may miss it
 HIGHEST = 10.0  # [Hz]: what is shorter is no gravity wave
 BRACKET = (0.05, 20.0)  # of omega^2/g, in which the wavenumber lies
-HALVINGS = 60  # of its logarithm: to the last bit
 
 
 def recorded_waves(
@@ -93,12 +93,8 @@ def recorded_waves(
 
 
 def wavenumber(omega: np.ndarray, water: FluidColumn | Conditions) -> np.ndarray:
-    """Wavenumber (n,) [rad/m] of waves of these angular frequencies (n,) [rad/s], by bisection."""
+    """Wavenumber (n,) [rad/m] of waves of these angular frequencies (n,) [rad/s]."""
     if isinstance(water, Conditions):
         return water.wavenumber(omega)
-    low, high = (factor * omega**2 / water.gravity for factor in BRACKET)
-    for _ in range(HALVINGS):
-        middle = np.sqrt(low * high)
-        below = water.roots(middle)[0] < omega
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return high
+    low, high = (np.log(factor * omega**2 / water.gravity) for factor in BRACKET)
+    return np.exp(narrowed(lambda logarithm: np.log(water.roots(np.exp(logarithm))[0] / omega), low, high)[1])

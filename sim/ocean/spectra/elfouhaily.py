@@ -12,6 +12,7 @@ import numpy as np
 from sim.angles import angle_from
 from sim.ocean.spectra.record import Conditions, Spectrum
 from sim.parameters import parameter
+from sim.water import EARTH_GRAVITY
 
 KM_WATER = 370.0  # [rad/m] wavenumber of the slowest wave on clean water under 9.81 m/s2, eq. 24
 
@@ -44,7 +45,7 @@ def frequency(w: np.ndarray, c: AgeConditions) -> np.ndarray:
 def curvature(k: np.ndarray, c: AgeConditions) -> tuple[np.ndarray, np.ndarray]:
     """B = B_l + B_h of wavenumbers k [rad/m], and the share Delta that differs along and across the wind."""
     g, U, Omega = c.gravity, c.wind_speed, c.inverse_wave_age
-    s = c.tension / c.density if c.tension > 0.0 else 9.81 / KM_WATER**2
+    s = c.tension / c.density if c.tension > 0.0 else EARTH_GRAVITY / KM_WATER**2
     km = math.sqrt(g / s)
     cm = math.sqrt(2.0 * g / km)
     speed = np.sqrt(g / k + s * k)

@@ -17,7 +17,7 @@ from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
 from sim.parameters import check_value, parameter, parameters_of
 from sim.validation import argument_error, as_array, as_float, check_angle, check_kind, check_number, check_positive
-from sim.water import SEA_DENSITY, Water
+from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 
 WIND_HEIGHTS = {10.0: 1.0, 19.5: 1.026}  # [m] -> wind there over U10, drag coefficient 1.3e-3 (Stewart 2008, eq. 16.33)
 MIN_WIND_SPEED = 1e-3  # [m/s] below which a wind makes no waves: spectra take powers of it, which would underflow
@@ -39,7 +39,7 @@ class Conditions:
 
     wind_speed: float = 10.0  # [m/s] at the spectrum's `wind_height`: U10; U19.5 for pierson_moskowitz
     wind_direction: float = 0.0  # [rad] where the wind goes to, from +x towards +y
-    gravity: float = 9.81  # [m/s2]
+    gravity: float = EARTH_GRAVITY  # [m/s2]
     depth: float = math.inf  # [m]
     tension: float = 0.0  # [N/m]
     density: float = SEA_DENSITY  # [kg/m3]

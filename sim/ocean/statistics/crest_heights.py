@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from sim.root import narrowed
+
 if TYPE_CHECKING:
     from sim.ocean.tile.sea import Sea
 
@@ -53,10 +55,11 @@ def high_crests(sea: "Sea", t: float | None = None) -> HighCrests:
 
 def most_probable_highest(count: float, power: int) -> float:
     """The height in standard deviations that is exceeded once: count x^power exp(-x^2/2) = 1; at least 1."""
-    x = 3.0
-    for _ in range(100):  # a fixed-point iteration that contracts above 1
-        x = math.sqrt(max(2.0 * math.log(max(count * x**power, 1.0)), 1.0))
-    return x
+    logarithm = math.log(max(count, 1.0))
+    high = math.sqrt(2.0 * logarithm) + 2.0
+    return float(
+        narrowed(lambda x: (0.5 * x * x - power * math.log(x) - logarithm, x - power / x), 1.0, high, has_slope=True)[0]
+    )
 
 
 def forristall_crest(

@@ -11,6 +11,7 @@ import functools
 import math
 from typing import TYPE_CHECKING
 
+from sim.root import narrowed
 from sim.validation import check_not_negative
 
 if TYPE_CHECKING:
@@ -51,11 +52,10 @@ def threshold(coverage: float, spread: float, frequency: float, lasting: float) 
 @functools.lru_cache(maxsize=4)
 def excess(coverage: float, frequency: float, lasting: float) -> float:
     """The z of `threshold`; cached, because every frame needs it and it seldom changes."""
-    low, high, z = -4.0, 8.0, 0.0
-    for _ in range(50):
-        z = 0.5 * (low + high)
+
+    def too_little(z: float) -> float:
         rate = frequency / (2.0 * math.pi) * math.exp(-0.5 * z * z)
         # Phi(z) is erfc(-z/sqrt(2))/2.
-        share = 1.0 - 0.5 * math.erfc(-z * math.sqrt(0.5)) * math.exp(-rate * lasting)
-        low, high = (z, high) if share > coverage else (low, z)
-    return z
+        return coverage - 1.0 + 0.5 * math.erfc(-z * math.sqrt(0.5)) * math.exp(-rate * lasting)
+
+    return float(narrowed(too_little, -4.0, 8.0)[1])

@@ -49,6 +49,7 @@ from sim.validation import (
     check_positions,
     is_whole_number,
 )
+from sim.water import EARTH_GRAVITY
 from sim.waves import Waves
 
 SIZES = (8, 4096)
@@ -69,7 +70,7 @@ class Sea(TileSurface, AnySea):
         spectrum: str | Spectrum[Any] = "pierson_moskowitz",
         wind_speed: float = 10.0,
         wind_direction: float = 0.0,
-        gravity: float = 9.81,
+        gravity: float = EARTH_GRAVITY,
         depth: float = math.inf,
         tension: float = 0.0,
         viscosity: float = 0.0,

@@ -10,6 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.root import narrowed
 from sim.springs.integrators import Integrator
 from sim.springs.net import Family, Net
 from sim.springs.rope import rope
@@ -20,6 +21,7 @@ FAR, NEAR = 1e3, 1e-60  # sizes at which a run from 1 has grown, or decayed
 TALL, LOW = 30.0, 0.1  # the same of a run that was cut short: a leapfrog that holds may reach 30
 STIR = 1e-9  # energy of a disturbance, in parts of what is large for its net
 GROWN = 1e4  # times its energy at which a disturbance has grown: still far too small for the rope not to be linear
+LOWEST, RESOLUTION = 0.1, 1e-3  # of a limit: share of the first step below which it counts as 0, and relative error
 MUCH = 100.0  # parts of what is large, which no link comes back from
 PUSH = 1e-5  # of a link, in the differences of `step_growth`: their error is its square
 STABLE, BOUNDED_GROWTH, EXPLODING = range(3)
@@ -60,23 +62,20 @@ def measured_limit(
 ) -> float:
     """The h omega at which a row of the map, growth rates (n,) at ascending `steps` (n,), first begins to grow.
 
-    Halved between the last that holds and the first that grows, to 0.1 %; inf where none grows, 0 where all do. most:
+    Sought between the last that holds and the first that grows, to 0.1 %; inf where none grows, 0 where all do. most:
     steps spent on one value; near its limit explicit Euler grows by (h omega)^2/100 a step.
     """
     grows = np.flatnonzero(rates > 0.0)
     if not len(grows):
         return math.inf
     first = int(grows[0])
-    low, high = float(steps[first - 1]) if first else 0.0, float(steps[first])
-    while high - low > 1e-3 * high:
-        middle = 0.5 * (low + high)
-        if middle < 0.1 * steps[0]:
-            return 0.0
-        if growth(integrator, zeta, middle, most) > 0.0:
-            high = middle
-        else:
-            low = middle
-    return 0.5 * (low + high)
+    low = float(steps[first - 1]) if first else LOWEST * float(steps[0])
+    if not first and growth(integrator, zeta, low, most) > 0.0:
+        return 0.0
+    high = float(steps[first])
+    # Only the sign of a growth rate counts: below the limit it is 0, or that of a decay.
+    ends = narrowed(lambda z: 1.0 if growth(integrator, zeta, z, most) > 0.0 else -1.0, low, high, RESOLUTION * high)
+    return 0.5 * float(sum(ends))
 
 
 def energy_scale(net: Net, x: NDArray[np.float64]) -> float:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.root import narrowed
 from sim.springs.analysis.growth import STABLE, outcome
 from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.integrators import Integrator
@@ -64,7 +65,7 @@ def located(steps: NDArray[np.float64], grows: NDArray[np.bool_], grows_at: Call
 
 def limit_between(low: float, high: float, grows_at: Callable[[float], bool]) -> float:
     """The step [s] between a stable one and one that grows, to `LIMIT_RESOLUTION`."""
-    while high > LIMIT_RESOLUTION * low:
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if grows_at(middle) else (middle, high)
-    return math.sqrt(low * high)
+    ends = narrowed(
+        lambda s: 1.0 if grows_at(math.exp(s)) else -1.0, math.log(low), math.log(high), math.log(LIMIT_RESOLUTION)
+    )
+    return math.exp(0.5 * sum(ends))

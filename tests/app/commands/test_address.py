@@ -107,7 +107,7 @@ def test_beside_another_program_at_localhost_the_address_is_that_of_the_lab(
         assert opened(host, other_program) == "127.0.0.1"
         said = capsys.readouterr().out
         assert f"Springtide is on http://127.0.0.1:{other_program}" in said
-        assert f"localhost:{other_program} may lead to another program" in said
+        assert f"Another program also answers on localhost:{other_program}" in said
 
 
 @pytest.mark.parametrize(

@@ -12,11 +12,12 @@ from app.__main__ import main
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.report import forces_html
 from app.scenes.radial_sea.scene import RadialSeaScene
-from sim.floating import Hull, boundary_elements, equilibrium_draft, shape_from_file
-from sim.floating.boundary_elements import FREQUENCIES, Solution
-from sim.floating.hydrodynamics import around, interpolated, linear_hull
-from sim.floating.linear_table import table_of
-from sim.floating.panels import areas_of, wet_panels
+from sim.floating import Hull, equilibrium_draft, shape_from_file
+from sim.floating.hulls.panels import areas_of, wet_panels
+from sim.floating.linear import boundary_elements
+from sim.floating.linear.boundary_elements import FREQUENCIES, Solution
+from sim.floating.linear.hydrodynamics import around, interpolated, linear_hull
+from sim.floating.linear.linear_table import table_of
 
 EDGE, HEIGHT, DENSITY = 2.0, 1.0, 400.0
 WATER = ((1025.0, float("inf")),)

@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 
 from app.__main__ import main
-from app.lab.answers import Answers, read_answers
-from app.lab.folder import folder_names
-from app.lab.task import load_tasks
+from app.lab.course.answers import Answers, read_answers
+from app.lab.course.folder import folder_names
+from app.lab.course.task import load_tasks
 from tests.app.lab.answers_file import write_answers
 
 ROOT = Path(__file__).parents[3]

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from app.__main__ import main
-from app.scenes import warmup
+from app.scenes.ahead import warmup
 from sim import jit
 from sim.cache import host_levels
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.lab.answers import FILE, Answers, answers_text
-from app.lab.task import Task
+from app.lab.course.answers import FILE, Answers, answers_text
+from app.lab.course.task import Task
 
 
 def write_answers(folder: Path, tasks: Sequence[Task], answers: Answers) -> None:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from app.lab.task import Question, Task, load_tasks
+from app.lab.course.task import Question, Task, load_tasks
 
 SHARED = 0.6  # of the words of an explanation, from which on a text may give it away
 LONG = 5  # letters of a word that counts

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.answer_check import check_answer
-from app.lab.answers import FILE, Answers, answers_text, change_answer, read_answers
-from app.lab.task import Question, TypicalError, load_tasks
+from app.lab.course.answer_check import check_answer
+from app.lab.course.answers import FILE, Answers, answers_text, change_answer, read_answers
+from app.lab.course.task import Question, TypicalError, load_tasks
 from tests.app.lab.answers_file import write_answers
 
 ROOT = Path(__file__).parents[3]
@@ -109,8 +109,8 @@ def test_no_file_is_said(tmp_path: Path) -> None:
 KILLED = """
 import os, sys
 from pathlib import Path
-from app.lab.answers import change_answer, read_answers
-from app.lab.task import load_tasks
+from app.lab.course.answers import change_answer, read_answers
+from app.lab.course.task import load_tasks
 
 def write_half(path, data):
     with open(path, "wb") as file:

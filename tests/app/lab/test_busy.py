@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.program_check import check_program
-from app.lab.runner import Runner
-from app.lab.task import load_tasks
+from app.lab.check.program_check import check_program
+from app.lab.course.task import load_tasks
+from app.lab.process.runner import Runner
 from tests.app.lab.right_solutions import RIGHT
 from tests.app.lab.test_true_sentences import TASKS, source_of
 

@@ -6,11 +6,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.lab.chart import chart
-from app.lab.program_check import Points, draw
-from app.lab.runner import Runner
-from app.lab.task import Task, load_tasks
-from app.render.line_chart import BOTTOM, LEFT, MAX_TICKS, PLOT_HEIGHT, RIGHT, TOP, WIDTH, ticks
+from app.lab.check.program_check import Points, draw
+from app.lab.course.task import Task, load_tasks
+from app.lab.process.runner import Runner
+from app.lab.report.chart import chart
+from app.render.markup.line_chart import BOTTOM, LEFT, MAX_TICKS, PLOT_HEIGHT, RIGHT, TOP, WIDTH, ticks
 
 X = np.linspace(0.0, 3.0, 7)
 

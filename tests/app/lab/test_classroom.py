@@ -21,19 +21,19 @@ import pytest
 
 from app.__main__ import main
 from app.commands.lab_class import make_server
-from app.lab.answers import change_answer, read_answers
-from app.lab.check import TaskResult, check_folder
-from app.lab.class_page import page, rows, strip
-from app.lab.classroom import Classroom, Desk, Student
-from app.lab.folder import folder_names, make_folder
-from app.lab.mistakes import mistakes, standing
-from app.lab.program_check import Verdict, not_checked
-from app.lab.rope_picture import RopePicture, rope_picture, svg
-from app.lab.runner import Runner
-from app.lab.runners import Runners
-from app.lab.saved import Saved, read_files, store
-from app.lab.task import Task, load_tasks
-from app.lab.versions import Versions, stamps
+from app.lab.check.check import TaskResult, check_folder
+from app.lab.check.mistakes import mistakes, standing
+from app.lab.check.program_check import Verdict, not_checked
+from app.lab.course.answers import change_answer, read_answers
+from app.lab.course.folder import folder_names, make_folder
+from app.lab.course.task import Task, load_tasks
+from app.lab.process.runner import Runner
+from app.lab.process.runners import Runners
+from app.lab.report.class_page import page, rows, strip
+from app.lab.report.classroom import Classroom, Desk, Student
+from app.lab.report.rope_picture import RopePicture, rope_picture, svg
+from app.lab.student.saved import Saved, read_files, store
+from app.lab.student.versions import Versions, stamps
 from tests.waiting import wait_for
 
 ODD = "<b>" if os.name == "posix" else "b&b"  # a folder's name; Windows has no angle brackets in names
@@ -203,9 +203,9 @@ def test_no_save_is_lost_whenever_it_comes(tmp_path: Path, monkeypatch: pytest.M
         busy.pop(saved.folder.parent, None)
         return RopePicture()
 
-    monkeypatch.setattr("app.lab.classroom.check_program", check)
-    monkeypatch.setattr("app.lab.classroom.rope_picture", picture)
-    monkeypatch.setattr("app.lab.classroom.LOOK_INTERVAL", 0.02)
+    monkeypatch.setattr("app.lab.report.classroom.check_program", check)
+    monkeypatch.setattr("app.lab.report.classroom.rope_picture", picture)
+    monkeypatch.setattr("app.lab.report.classroom.LOOK_INTERVAL", 0.02)
     own = [task for task in TASKS if task.file == "rope.py"]
 
     def shown(folder: Path) -> set[str]:
@@ -256,8 +256,8 @@ def endless(folder: Path) -> None:
 
 
 def test_the_end_does_not_wait_for_endless_functions(folders: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.lab.runners.Runner", functools.partial(Runner, time_limit=600.0))
-    monkeypatch.setattr("app.lab.classroom.Versions", functools.partial(Versions, time_limit=600.0))
+    monkeypatch.setattr("app.lab.process.runners.Runner", functools.partial(Runner, time_limit=600.0))
+    monkeypatch.setattr("app.lab.report.classroom.Versions", functools.partial(Versions, time_limit=600.0))
     for folder in folders:
         endless(folder)
     with Classroom(folders, TASKS) as classroom:
@@ -281,7 +281,7 @@ def test_a_function_that_could_not_be_checked_is_checked_again(
         asked.append(task.name)
         return Verdict("right") if asked.count(task.name) > 1 else not_checked("the machine is busy")
 
-    monkeypatch.setattr("app.lab.classroom.check_program", check)
+    monkeypatch.setattr("app.lab.report.classroom.check_program", check)
     with Classroom(folders[:1], TASKS) as classroom:
         wait_for(lambda: classroom.students[folders[0]].results)
         wait_for(lambda: {v.state for v in classroom.students[folders[0]].programs.values()} == {"right"})
@@ -294,8 +294,8 @@ def test_a_folder_that_is_as_it_was_changes_nothing_on_the_page(
     folders: list[Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looks: list[Path] = []
-    monkeypatch.setattr("app.lab.versions.stamps", lambda *of: looks.append(of[0]) or stamps(*of))
-    monkeypatch.setattr("app.lab.classroom.LOOK_INTERVAL", 0.02)
+    monkeypatch.setattr("app.lab.student.versions.stamps", lambda *of: looks.append(of[0]) or stamps(*of))
+    monkeypatch.setattr("app.lab.report.classroom.LOOK_INTERVAL", 0.02)
     with Classroom(folders[:1], TASKS) as classroom:
         wait_for(lambda: classroom.students[folders[0]].results)
         for _ in range(2):  # while the files are read at each look, and for the rewritten answers
@@ -415,7 +415,7 @@ def test_the_page_takes_no_option_of_a_lab(
 def test_several_folders_are_a_class(folders: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
     served: list[list[Path]] = []
     monkeypatch.setattr("app.commands.lab.serve_class", lambda arguments: served.append(arguments.folders) or 0)
-    monkeypatch.setattr("app.lab.session.Session", lambda *_: pytest.fail("one folder of several is served"))
+    monkeypatch.setattr("app.lab.student.session.Session", lambda *_: pytest.fail("one folder of several is served"))
     for several in (folders[:2], folders[:3]):
         assert main(["lab", *map(str, several)]) == 0
         assert served[-1] == several

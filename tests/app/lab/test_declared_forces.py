@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.lab.cloth_march import ClothFunctions
-from app.lab.rope_march import ClothData, Functions, Segment, march, packed, unpacked
-from app.lab.wire import Foreign, pack, unpack
+from app.lab.process.cloth_march import ClothFunctions
+from app.lab.process.rope_march import ClothData, Functions, Segment, march, packed, unpacked
+from app.lab.process.wire import Foreign, pack, unpack
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.student_net import forces_of

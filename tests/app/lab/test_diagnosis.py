@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.lab.diagnosis.edits import edits_of
-from app.lab.diagnosis.equations import equations_of, written
-from app.lab.diagnosis.steps import explain_step
-from app.lab.diagnosis.tableau import STEPS, NoTableau, merged, order_of, pruned, read_tableau
-from app.lab.diagnosis.terms import Term, explain_terms
-from app.lab.task import load_tasks
+from app.lab.check.diagnosis.edits import edits_of
+from app.lab.check.diagnosis.equations import equations_of, written
+from app.lab.check.diagnosis.steps import explain_step
+from app.lab.check.diagnosis.tableau import STEPS, NoTableau, merged, order_of, pruned, read_tableau
+from app.lab.check.diagnosis.terms import Term, explain_terms
+from app.lab.course.task import load_tasks
 
 TASKS = {task.name: task for task in load_tasks() if task.check is not None}
 SEED = 20261126

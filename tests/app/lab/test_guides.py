@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import pytest
 
-from app.lab.live_values import LiveNumber, LiveValues, fill_in, names_in
-from app.lab.task import Task, load_tasks
-from app.panel.guide import SnapshotValues
-from app.panel.task_setups import setup_of_task
-from app.render.formula import formula
+from app.lab.course.live_values import LiveNumber, LiveValues, fill_in, names_in
+from app.lab.course.task import Task, load_tasks
+from app.panel.workbook.guide import SnapshotValues
+from app.panel.workbook.task_setups import setup_of_task
+from app.render.markup.formula import formula
 from app.scenes import scene_named
 from app.server.loop.sim_loop import SimLoop
 

@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.live_code import LiveCode
-from app.lab.live_net import CLOTH, ROPE, LiveNet
-from app.lab.live_tables import LiveTables
-from app.lab.task import load_tasks
-from app.lab.versions import Versions
+from app.lab.course.task import load_tasks
+from app.lab.student.live_code import LiveCode
+from app.lab.student.live_net import CLOTH, ROPE, LiveNet
+from app.lab.student.live_tables import LiveTables
+from app.lab.student.versions import Versions
 from app.messages import StudentAnswer
-from app.panel.code_panel import sea_texts
+from app.panel.workbook.code_panel import sea_texts
 from app.scenes.radial_sea.bodies import box_of
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.scene import RadialSeaScene
@@ -30,9 +30,9 @@ PHILLIPS = SquareSeaParams(size="64", mesh="32", spectrum="phillips", length=400
 # What a function does in place of its body -> kind of the error and a part of what is said.
 FAULTS = {
     "return 1 / 0": ("raised", "ZeroDivisionError"),
-    "while True: pass": ("endless", "endless loop"),
+    "while True: pass": ("endless", "infinite loop"),
     "exit()": ("ended", "calls exit()"),
-    "return np.zeros(2)": ("wrong shape", "expected is a number"),
+    "return np.zeros(2)": ("wrong shape", "expected a number"),
     "return np.nan": ("NaN", "returns NaN"),
     "return -3.0": ("out of range", "returns -3; possible is"),
     "return np.inf": ("out of range", "returns inf"),
@@ -119,7 +119,7 @@ def test_wrong_functions_show_and_a_switch_shows_the_program_s_sea(folder: Folde
     program = alone.sea.significant_height_at(0.0)
     assert scene.sea.significant_height_at(0.0) == pytest.approx(2.0 * program, rel=2e-3)
     said = "".join(sea_texts(folder.tables.report))
-    assert "The sea runs by your <b>spectrum</b> (heights of the waves)." in said
+    assert "The sea uses your <b>spectrum</b> (heights of the waves)." in said
     (what, own, reference, unit), *_ = folder.tables.report.differences
     assert own == pytest.approx(2.0 * reference, rel=2e-3)
     assert f"{what} <b>{own:.2f} {unit}</b> (program {reference:.2f} {unit})" in said
@@ -205,7 +205,7 @@ def test_an_endless_function_is_called_once_however_the_scene_changes(folder: Fo
         scene.change_forces(dataclasses.replace(scene.params, planet_mass=mass))
         wait_for(lambda mass=mass: folder.tables.asked["gravity"][1].columns[0][0] == mass)
     assert (folder.versions.copies / str(number) / "calls").read_text("utf-8") == "x"
-    assert "endless loop" in folder.tables.errors["gravity"].text
+    assert "infinite loop" in folder.tables.errors["gravity"].text
 
 
 def test_a_moment_that_comes_back_runs_by_the_functions_of_now(folder: Folder) -> None:
@@ -286,7 +286,7 @@ def test_an_error_of_the_lab_is_shown_and_the_next_version_runs(
 
     scene = SquareSeaScene(PHILLIPS, folder.live)
     with monkeypatch.context() as patch:
-        patch.setattr("app.lab.runner.Runner.table", fail)
+        patch.setattr("app.lab.process.runner.Runner.table", fail)
         folder.save(source("gravity"))
         wait_for(lambda: folder.tables.errors)
         assert "TypeError: not what was expected" in str(next(iter(folder.tables.errors.values())))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.lab.live_values import LiveNumber, fill_in, names_in, read_conditions
+from app.lab.course.live_values import LiveNumber, fill_in, names_in, read_conditions
 
 VALUES = {"depth": LiveNumber(0.25, "m"), "share": LiveNumber(0.125), "law": "lab", "on": True, "n": LiveNumber(3e7)}
 

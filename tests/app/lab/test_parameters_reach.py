@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.lab.folder import make_folder
-from app.lab.session import Session
-from app.lab.task import load_tasks
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.student.session import Session
 from app.messages import GrabTo, StudentAnswer
-from app.panel.code_panel import code_lines, tables_of
+from app.panel.workbook.code_panel import code_lines, tables_of
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from app.scenes.cloth.start import build, sphere_home
@@ -61,7 +61,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
     folder = tmp_path_factory.mktemp("lab") / "mine"
     make_folder(folder, TASKS)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)
+        patch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e6)
         session = Session(folder, TASKS)
         wait_for(lambda: session.state.version == 1)
         for name, file in FILES.items():

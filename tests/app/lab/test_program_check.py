@@ -14,16 +14,16 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from app.lab.check.comparing import call, conform, form_of, same
+from app.lab.check.diagnose import SEED
+from app.lab.check.program_check import SAMPLES, Verdict, check_program
+from app.lab.check.student_function import StudentFunction, special_case
 from app.lab.checking import Mistake, Wrong
-from app.lab.comparing import call, conform, form_of, same
-from app.lab.diagnose import SEED
-from app.lab.folder import stub
-from app.lab.program_check import SAMPLES, Verdict, check_program
-from app.lab.runner import BUSY, RunError, Runner
-from app.lab.saved import store
-from app.lab.source import read_source
-from app.lab.student_function import StudentFunction, special_case
-from app.lab.task import Task, load_tasks
+from app.lab.course.folder import stub
+from app.lab.course.task import Task, load_tasks
+from app.lab.process.runner import BUSY, RunError, Runner
+from app.lab.student.saved import store
+from app.lab.student.source import read_source
 from tests.app.lab.right_solutions import RIGHT
 from tests.app.lab.students_mistakes import CASES as MISTAKES
 from tests.app.lab.wrong_solutions import WRONG
@@ -271,7 +271,7 @@ def test_an_endless_file_is_run_once_for_all_its_functions(tmp_path: Path) -> No
         verdicts = [check_program(tmp_path, runner, task) for task in own]
         assert runner.starts == 1
     line = (HEAD + FORCE).count("\n") + 1
-    said = f"rope.py does not run: line {line}: rope.py does not come to an end within 0.3 s: is there an endless loop?"
+    said = f"rope.py does not run: line {line}: rope.py did not finish within 0.3 s: is there an infinite loop?"
     assert {verdict.sentence for verdict in verdicts} == {said}
 
 
@@ -299,7 +299,7 @@ def test_an_encoding_that_python_refuses_is_refused(tmp_path: Path, head: bytes)
 def test_a_task_may_take_as_long_as_others_keep_the_processor(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [0.0]
     runner = SimpleNamespace(effort=3.0, watch=lambda file, name, *arguments, twice: 1.0)
-    monkeypatch.setattr("app.lab.student_function.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("app.lab.check.student_function.time.monotonic", lambda: clock[0])
     student = StudentFunction(cast(Runner, runner), TASKS["gravity"])
     clock[0] = 50.0
     assert student(1.0) == 1.0
@@ -338,7 +338,7 @@ def test_a_busy_machine_is_no_failure_and_the_check_is_made_again(
             raise refusal
         return started(self, surroundings)
 
-    monkeypatch.setattr("app.lab.program_check.RETRY_INTERVAL", 0.0)
+    monkeypatch.setattr("app.lab.check.program_check.RETRY_INTERVAL", 0.0)
     monkeypatch.setattr(Runner, "_started", start)
     (tmp_path / "rope.py").write_text(HEAD + FORCE, "utf-8")
     with Runner(tmp_path) as runner:

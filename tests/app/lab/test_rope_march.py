@@ -9,12 +9,12 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
-from app.lab.compiled import first_line
-from app.lab.live_net import COMPILE_AFTER, MAX_REST, REST_RATIO, ROPE, LiveNet, Marched
-from app.lab.rope_march import Forces, Functions, MarchResult, Segment, Unfit, march
-from app.lab.runner import BUSY, RunError
-from app.lab.task import load_tasks
-from app.lab.versions import Versions
+from app.lab.course.task import load_tasks
+from app.lab.process.compiled import first_line
+from app.lab.process.rope_march import Forces, Functions, MarchResult, Segment, Unfit, march
+from app.lab.process.runner import BUSY, RunError
+from app.lab.student.live_net import COMPILE_AFTER, MAX_REST, REST_RATIO, ROPE, LiveNet, Marched
+from app.lab.student.versions import Versions
 from tests.waiting import wait_for
 
 FORCES = Forces(
@@ -169,9 +169,9 @@ def test_a_version_is_compiled_once_it_has_taken_as_long_as_compiling_does(folde
 def test_on_a_busy_hub_a_function_rests_and_is_not_compiled(
     folder: Folder, asked: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.lab.live_net.ON_HUB", True)
+    monkeypatch.setattr("app.lab.student.live_net.ON_HUB", True)
     rests: list[float] = []
-    monkeypatch.setattr("app.lab.live_net.time", Mock(sleep=rests.append))
+    monkeypatch.setattr("app.lab.student.live_net.time", Mock(sleep=rests.append))
     waited = [2.0 * COMPILE_AFTER, 2.0 * COMPILE_AFTER, 0.01, -1e-4]  # it takes `COMPILE_AFTER` each time
     folder.save(*(marched(COMPILE_AFTER + wait, COMPILE_AFTER) for wait in waited))
     compiled = []

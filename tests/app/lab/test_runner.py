@@ -17,19 +17,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.lab import call_limit, runner
-from app.lab.call_limit import ASLEEP, COMPUTING, ENDLESS, CallLimit
-from app.lab.process import FORKS
-from app.lab.runner import START, RunError, Runner, has_ended
-from app.lab.template import Template
-from app.lab.wire import receive, send
+from app.lab.process import call_limit, runner
+from app.lab.process.call_limit import ASLEEP, COMPUTING, ENDLESS, CallLimit
+from app.lab.process.runner import START, RunError, Runner, has_ended
+from app.lab.process.shared import FORKS
+from app.lab.process.template import Template
+from app.lab.process.wire import receive, send
 from tests.waiting import wait_for
 
 ROOT = Path(__file__).parents[3]
 # What a function does -> the kind of the error and a part of its text.
 ACCIDENTS = {
-    "while True: pass": ("endless", "endless loop"),
-    "import time\n    time.sleep(60)": ("endless", "does not come to an end within"),
+    "while True: pass": ("endless", "infinite loop"),
+    "import time\n    time.sleep(60)": ("endless", "did not finish within"),
     "exit()": ("ended", "calls exit()"),
     "import os\n    os._exit(3)": ("ended", "exit status 3"),
     "import os\n    os.kill(os.getpid(), 11)": ("ended", "signal 11"),
@@ -37,7 +37,7 @@ ACCIDENTS = {
     "kept = []\n    while True: kept.append(bytearray(1 << 22))": ("memory", "MiB"),
     "for i in range(1_000_000): print(i)": ("printed", "more than 10000 lines"),
     "try:\n        while True: print()\n    except Exception: pass": ("printed", "more than 10000 lines"),
-    "import os\n    while True: os.write(1, b'x' * 9999)": ("endless", "endless loop"),
+    "import os\n    while True: os.write(1, b'x' * 9999)": ("endless", "infinite loop"),
     "import os\n    for n in range(3, 30):\n        try: os.write(n, bytes([2, 0, 0, 0, 0, 0, 0, 0, 0x91, 0xC0]))"
     "\n        except OSError: pass\n    while True: pass": ("ended", "wrote into the pipe"),
     "return 1 / 0": ("raised", "ZeroDivisionError: division by zero"),
@@ -79,7 +79,7 @@ def test_an_endless_loop_is_found_in_any_folder_and_function(tmp_path: Path) -> 
     folder.mkdir()
     text = "def größe(x):\n    while True:\n        x = -x\n\ndef f(x):\n    return größe(x)\n"
     (folder / "mine.py").write_text(text, "utf-8")
-    with Runner(folder, time_limit=0.5) as runner, pytest.raises(RunError, match="größe does not come to") as caught:
+    with Runner(folder, time_limit=0.5) as runner, pytest.raises(RunError, match="größe did not finish") as caught:
         runner.call("mine.py", "f", 1.0)
     assert (caught.value.file, caught.value.line in (2, 3)) == ("mine.py", True)
 
@@ -88,8 +88,8 @@ def test_the_limit_that_is_told_is_the_one_that_was_passed(tmp_path: Path, monke
     write(tmp_path, "while True: pass")
     with Runner(tmp_path, time_limit=0.5) as runner, pytest.raises(RunError, match=r"within 0\.5 s"):
         runner.call("mine.py", "f", 1.0)
-    monkeypatch.setattr("app.lab.runner.LOAD_LIMIT", 1e-6)
-    monkeypatch.setattr("app.lab.runner.read_answers", lambda *_: None)  # a fork may be ready before the lab waits
+    monkeypatch.setattr("app.lab.process.runner.LOAD_LIMIT", 1e-6)
+    monkeypatch.setattr("app.lab.process.runner.read_answers", lambda *_: None)  # a fork may be ready first
     with Runner(tmp_path, time_limit=5.0) as runner, pytest.raises(RunError, match=r"within 1e-06 s"):
         runner.start()
 
@@ -101,7 +101,9 @@ BUSY = "import os, time\n    os.sched_setaffinity(0, {x})\n    while time.proces
 def test_a_call_that_waits_for_the_processor_is_no_endless_loop(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.lab.call_limit.MAX_WAIT", 200.0)  # a low priority can get a hundredth of a busy processor
+    monkeypatch.setattr(
+        "app.lab.process.call_limit.MAX_WAIT", 200.0
+    )  # a low priority can get a hundredth of a busy processor
     write(tmp_path, BUSY)
     core = min(os.sched_getaffinity(0))
     endless = f"import os; os.sched_setaffinity(0, {{{core}}})\nwhile 1: pass"
@@ -183,7 +185,7 @@ def test_a_worker_tells_its_place_and_time_where_the_system_does_not(tmp_path: P
     """As on Windows and macOS, by a thread; here the thread runs on Linux too."""
     write(tmp_path, "import time; end = time.process_time() + 0.5\n    while time.process_time() < end: pass")
     start = START.replace("main()", "sys.platform = 'darwin'; main()").replace(
-        "from app", "import app.lab.process\nfrom app"
+        "from app", "import app.lab.process.shared\nfrom app"
     )
     process = subprocess.Popen(
         [sys.executable, "-P", "-c", start, str(ROOT), "2", ""], stdin=subprocess.PIPE, stdout=subprocess.PIPE
@@ -219,8 +221,8 @@ def spring_force(x1, x2, *rest):
 """
 ROPE_TWICE = """import sys, numpy as np
 from pathlib import Path
-from app.lab.rope_march import Forces, Segment
-from app.lab.runner import Runner
+from app.lab.process.rope_march import Forces, Segment
+from app.lab.process.runner import Runner
 x = np.linspace([0.0, 0.0, 3.0], [1.0, 0.0, 3.0], 3)
 segment = Segment(1, 0.1, Forces(1.0, 800.0, 7.0, 0.0, 0.2, 0.0), np.zeros((0, 4, 3)))
 with Runner(Path(sys.argv[1])) as runner:
@@ -370,7 +372,7 @@ def test_an_endless_loop_ends_when_the_lab_is_killed(tmp_path: Path) -> None:
         [
             sys.executable,
             "-c",
-            f"from app.lab.runner import *; Runner(Path({str(tmp_path)!r}), 600).call('mine.py', 'f', 1)",
+            f"from app.lab.process.runner import *; Runner(Path({str(tmp_path)!r}), 600).call('mine.py', 'f', 1)",
         ],
         cwd=ROOT,
     )
@@ -429,9 +431,9 @@ def test_a_call_does_not_wait_for_the_death_of_the_last_process(
 
     with Runner(tmp_path, time_limit=0.2) as one:
         with monkeypatch.context() as patch:
-            patch.setattr("app.lab.runner.dispose", dispose)
-            patch.setattr("app.lab.runner.has_ended", lambda *_, **__: False)
-            with pytest.raises(RunError, match="endless"):
+            patch.setattr("app.lab.process.runner.dispose", dispose)
+            patch.setattr("app.lab.process.runner.has_ended", lambda *_, **__: False)
+            with pytest.raises(RunError, match="infinite"):
                 one.call("mine.py", "f", 1.0)
         assert one.call("mine.py", "right", 3.0) == 6.0
         assert not disposed.is_set()
@@ -575,12 +577,12 @@ def test_a_template_lives_whatever_it_is_asked_to_reap(tmp_path: Path, monkeypat
 
 def test_a_process_that_is_slow_to_start_gets_more_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path, "return x")
-    monkeypatch.setattr("app.lab.runner.LOAD_LIMIT", 1e-6)
-    monkeypatch.setattr("app.lab.runner.MAX_LOAD_LIMIT", 20.0)
+    monkeypatch.setattr("app.lab.process.runner.LOAD_LIMIT", 1e-6)
+    monkeypatch.setattr("app.lab.process.runner.MAX_LOAD_LIMIT", 20.0)
     limits = []
     with Runner(tmp_path) as one:
         with monkeypatch.context() as patch:
-            patch.setattr("app.lab.runner.read_answers", lambda *_: None)  # never ready
+            patch.setattr("app.lab.process.runner.read_answers", lambda *_: None)  # never ready
             for _ in range(3):
                 limits.append(one._load_limit)
                 with pytest.raises(RunError, match=r"the machine is busy: no process can be started: .*within"):

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.folder import make_folder
-from app.lab.live_tables import LiveTables
-from app.lab.live_values import LiveNumber
-from app.lab.scene_values import VALUES, calls_here
-from app.lab.task import load_tasks
-from app.lab.versions import Versions
-from app.panel.code_panel import compared_text
-from app.panel.guide import SnapshotValues
+from app.lab.course.folder import make_folder
+from app.lab.course.live_values import LiveNumber
+from app.lab.course.task import load_tasks
+from app.lab.student.live_tables import LiveTables
+from app.lab.student.scene_values import VALUES, calls_here
+from app.lab.student.versions import Versions
+from app.panel.workbook.code_panel import compared_text
+from app.panel.workbook.guide import SnapshotValues
 from app.scenes import scene_named
 from app.server.loop.sim_loop import SimLoop
 from tests.waiting import wait_for

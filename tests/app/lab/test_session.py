@@ -14,19 +14,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.background_check import BackgroundCheck
-from app.lab.folder import make_folder
-from app.lab.live_net import CLOTH, ROPE, StudentReport, bent_rope
-from app.lab.live_tables import TableReport
-from app.lab.program_check import Verdict, not_checked
-from app.lab.rope_march import REFERENCE
-from app.lab.runner import RunError, Runner
-from app.lab.saved import read_files
-from app.lab.session import CodeState, Session
-from app.lab.task import load_tasks
-from app.lab.versions import Versions, stamps
+from app.lab.check.background_check import BackgroundCheck
+from app.lab.check.program_check import Verdict, not_checked
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.process.rope_march import REFERENCE
+from app.lab.process.runner import RunError, Runner
+from app.lab.student.live_net import CLOTH, ROPE, StudentReport, bent_rope
+from app.lab.student.live_tables import TableReport
+from app.lab.student.saved import read_files
+from app.lab.student.session import CodeState, Session
+from app.lab.student.versions import Versions, stamps
 from app.messages import GrabTo, Place, StudentAnswer
-from app.panel.code_panel import CHART_LEFT, CHART_WIDTH, code_lines, difference_chart, function_lines, headline
+from app.panel.workbook.code_panel import (
+    CHART_LEFT,
+    CHART_WIDTH,
+    code_lines,
+    difference_chart,
+    function_lines,
+    headline,
+)
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene, rows_of
 from tests.waiting import wait_for
@@ -37,7 +44,7 @@ HEAD = "import numpy as np\n\n"
 RIGHT = HEAD + inspect.getsource(REFERENCE["spring_force"])
 # Line of spring_force -> kind of the error and a part of what is said; each is put before the right body.
 ACCIDENTS = {
-    "while True: pass": ("endless", "endless loop"),
+    "while True: pass": ("endless", "infinite loop"),
     "exit()": ("ended", "calls exit()"),
     "__import__('os')._exit(3)": ("ended", "exit status 3"),
     "np.ones(1 << 27)": ("memory", "MiB"),
@@ -69,7 +76,7 @@ def working_in(folder: Path) -> Iterator[Session]:
 def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
     """The folder that most tests save into, one after the other."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
+        patch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
         with working_in(tmp_path_factory.mktemp("lab") / "mine") as session:
             yield session
             copies = session.versions.copies
@@ -289,7 +296,7 @@ def test_where_no_process_can_be_started_that_is_said_and_tried_again(right: Ses
 
     wait_for(lambda: right.versions.spare is not None)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.lab.runner.Runner._started", refuse)
+        patch.setattr("app.lab.process.runner.Runner._started", refuse)
         process(right).close()  # as after an error
         scene = make_scene(right)
         run(scene, 3)
@@ -315,7 +322,7 @@ def test_a_check_that_a_busy_machine_does_not_allow_is_made_again(
 ) -> None:
     wait_for(lambda: not right.check.waiting)
     answers = iter([not_checked("the machine is busy"), Verdict("right")])
-    monkeypatch.setattr("app.lab.background_check.RETRY_INTERVAL", 0.3)
+    monkeypatch.setattr("app.lab.check.background_check.RETRY_INTERVAL", 0.3)
     monkeypatch.setattr(right.check, "ask", lambda folder, name: next(answers))
     save(right, RIGHT + "\n# to be checked\n")
     wait_for(lambda: right.versions.verdicts.get("spring_force") not in (None, Verdict("right")))
@@ -331,7 +338,7 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
 
     before = right.state.version
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.lab.versions.store", full_disk)
+        patch.setattr("app.lab.student.versions.store", full_disk)
         (right.folder / "rope.py").write_text(RIGHT + "\n# later\n", "utf-8")
         wait_for(lambda: right.state.error and "cannot be taken up" in right.state.error.text)
         assert right.state.version == before
@@ -341,8 +348,8 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
 def test_files_that_stay_as_they_are_are_not_read_again(right: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     looks, reads = [], []
     wait_for(lambda: time.monotonic() > right.versions.files.sure_at)
-    monkeypatch.setattr("app.lab.versions.stamps", lambda *of: looks.append(1) or stamps(*of))
-    monkeypatch.setattr("app.lab.versions.read_files", lambda folder: reads.append(1) or read_files(folder))
+    monkeypatch.setattr("app.lab.student.versions.stamps", lambda *of: looks.append(1) or stamps(*of))
+    monkeypatch.setattr("app.lab.student.versions.read_files", lambda folder: reads.append(1) or read_files(folder))
     wait_for(lambda: len(looks) >= 2)
     assert not reads
     version = right.state.version

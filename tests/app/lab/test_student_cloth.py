@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.session import Session
-from app.lab.task import load_tasks
+from app.lab.course.task import load_tasks
+from app.lab.student.session import Session
 from app.messages import GrabTo, Place, StudentAnswer
-from app.panel.code_panel import code_lines, tables_of
+from app.panel.workbook.code_panel import code_lines, tables_of
 from app.scenes.cloth.parameters import ClothParams
 from app.scenes.cloth.scene import ClothScene
 from tests.app.lab.test_session import save, taken, working_in
@@ -24,7 +24,7 @@ SMALL = ClothParams(
     integrator="symplectic_euler", time_step=1 / 240, rows=5, cols=6, stiffness=100.0, shear=60.0, bend=3.0, gather=1.0
 )
 ACCIDENTS = {
-    "while True: pass": ("endless", "endless loop"),
+    "while True: pass": ("endless", "infinite loop"),
     "exit()": ("ended", "calls exit()"),
     "return x + y": ("raised", "NameError"),
     "return np.zeros(3)": ("wrong shape", "cloth_forces returns an array of shape (3,)"),
@@ -34,9 +34,9 @@ ACCIDENTS = {
 WRONG_LINKS = {
     "return np.array([[0, 999]])": "returns a point that is not there: a cloth of",
     "return np.array([[1, 1]])": "joins a point to itself",
-    "return [[0, 1, 2]]": "expected is an array of shape (1, 2)",
+    "return [[0, 1, 2]]": "expected an array of shape (1, 2)",
     "return [[0.5, 1.0]]": "returns a point that is not there",
-    "return 3": "expected is an array",
+    "return 3": "expected an array",
 }
 
 
@@ -92,7 +92,7 @@ def test_right_functions_move_the_cloth_as_the_program_does(right: Session, valu
     student = scene.frame().student
     assert student is not None
     assert np.allclose(student, scene.frame().points, atol=1e-5)
-    assert "Your cloth moves by <b>cloth_forces, cloth_links</b>." in code_lines(
+    assert "Your cloth is driven by <b>cloth_forces, cloth_links</b>." in code_lines(
         right.state, right.cloth.report, tables_of(right), "cloth"
     )
 

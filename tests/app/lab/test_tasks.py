@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.report import written
-from app.lab.task import Task, load_tasks, read_task
+from app.lab.course.task import Task, load_tasks, read_task
+from app.lab.report.report import written
 from app.scenes import scene_named
 from sim.floating import Hull, equilibrium_draft
 from sim.ocean.dispersion import viscous_root

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
+from app.lab.check.comparing import call, conform, parts, reproduces, same
+from app.lab.check.diagnose import FRESH, FRESH_SEED, SEED
+from app.lab.check.diagnosis.effects import EFFECTS
+from app.lab.check.diagnosis.where import number
+from app.lab.check.program_check import SAMPLES, compare
+from app.lab.check.student_function import StudentFunction
 from app.lab.checking import Wrong
-from app.lab.comparing import call, conform, parts, reproduces, same
-from app.lab.diagnose import FRESH, FRESH_SEED, SEED
-from app.lab.diagnosis.effects import EFFECTS
-from app.lab.diagnosis.where import number
-from app.lab.program_check import SAMPLES, compare
-from app.lab.runner import RunError, Runner
-from app.lab.student_function import StudentFunction
-from app.lab.task import Task, load_tasks
+from app.lab.course.task import Task, load_tasks
+from app.lab.process.runner import RunError, Runner
 from tests.app.lab.audit_mistakes import MISTAKES
 from tests.app.lab.right_solutions import RIGHT
 
@@ -96,7 +96,7 @@ def is_true(task: Task, source: str, said: Wrong) -> bool:
         inputs = samples_of(task, SEED, SAMPLES) + samples_of(task, FRESH_SEED, FRESH)
         said_of = [contrast(result(task, function, s), result(task, task.function, s), *s) for s in inputs]
         return any(sentence and text.endswith(sentence) for sentence in said_of)
-    found = re.search(r"(?:it|It) returns (\(.*?\)|\S+).*; expected is (.+)\.$", text)
+    found = re.search(r"(?:it|It) returns (\(.*?\)|\S+).*; expected (.+)\.$", text)
     assert found, text
     inputs = samples_of(task, SEED, SAMPLES) + samples_of(task, FRESH_SEED, FRESH)
     pairs = ((result(task, function, s), result(task, task.function, s)) for s in inputs)

@@ -7,12 +7,12 @@ from unittest.mock import Mock
 
 import pytest
 
-from app.lab.live_net import ROPE
-from app.lab.program_check import Verdict
-from app.lab.runner import BUSY, RunError
-from app.lab.saved import read_files
-from app.lab.task import load_tasks
-from app.lab.versions import Look, Use, Versions, stamps
+from app.lab.check.program_check import Verdict
+from app.lab.course.task import load_tasks
+from app.lab.process.runner import BUSY, RunError
+from app.lab.student.live_net import ROPE
+from app.lab.student.saved import read_files
+from app.lab.student.versions import Look, Use, Versions, stamps
 
 
 def test_a_look_finds_what_was_written_made_and_removed(tmp_path: Path) -> None:
@@ -53,7 +53,7 @@ def test_a_save_of_several_writes_is_one_change(tmp_path: Path, monkeypatch: pyt
     assert look.has_changed()
     found = [frozenset({("a.py", 1, size, size)}) for size in (10, 20, 30, 30, 40)]
     seen = iter(found)
-    monkeypatch.setattr("app.lab.versions.stamps", lambda *_: next(seen))
+    monkeypatch.setattr("app.lab.student.versions.stamps", lambda *_: next(seen))
     assert look.has_changed()
     assert look.seen == found[3]
     assert next(seen) == found[4]
@@ -61,7 +61,7 @@ def test_a_save_of_several_writes_is_one_change(tmp_path: Path, monkeypatch: pyt
 
 def test_a_second_save_that_changes_no_stamp_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr("app.lab.versions.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr("app.lab.student.versions.time.monotonic", lambda: clock[0])
     path = tmp_path / "mine" / "rope.py"
     path.parent.mkdir()
     look = Versions(path.parent, ())
@@ -117,7 +117,7 @@ def process(*_: object) -> Mock:
 @pytest.fixture
 def versions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Versions]:
     """The versions of an empty folder, with processes that never start."""
-    monkeypatch.setattr("app.lab.versions.Runner", process)
+    monkeypatch.setattr("app.lab.student.versions.Runner", process)
     (tmp_path / "mine").mkdir()
     found = Versions(tmp_path / "mine", load_tasks())
     found.look()
@@ -234,7 +234,7 @@ def test_a_version_that_was_compiled_runs_so_until_it_fails_or_another_is_saved(
     assert march() == (2, ())
     compiler = Mock(is_fresh=False, **{"compile.return_value": (["spring_force"], "")})
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.lab.versions.Runner", lambda *_, compiles=False: compiler if compiles else process())
+        patch.setattr("app.lab.student.versions.Runner", lambda *_, compiles=False: compiler if compiles else process())
         versions.compile(use)
         assert march() == (2, ("spring_force",))
         compiler.march.side_effect = RunError("raised", "index out of range", "rope.py")

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from msgspec.structs import replace
 
-from app.lab.answers import FILE, Answers, read_answers
-from app.lab.folder import MAX_PICTURES, PICTURES, make_folder
-from app.lab.live_values import LiveNumber
-from app.lab.task import Question, Task, load_tasks
-from app.lab.workbook import DONE, MAX_TEXT, Workbook, read_off
+from app.lab.course.answers import FILE, Answers, read_answers
+from app.lab.course.folder import MAX_PICTURES, PICTURES, make_folder
+from app.lab.course.live_values import LiveNumber
+from app.lab.course.task import Question, Task, load_tasks
+from app.lab.course.workbook import DONE, MAX_TEXT, Workbook, read_off
 from app.scenes import scene_named
 from sim.parameters import parameters_of
 
@@ -127,7 +127,7 @@ def test_a_prediction_comes_before_the_answer_and_stays(folder: Path) -> None:
         book.show_answer(DRAFT)
     book.answer(DRAFT, PREDICT, "higher")
     book.show_answer(DRAFT)
-    with pytest.raises(ValueError, match="stays as it is"):
+    with pytest.raises(ValueError, match="can no longer be changed"):
         book.answer(DRAFT, PREDICT, "deeper")
     again = Workbook(TASKS, folder)
     assert again.is_shown(DRAFT)
@@ -241,7 +241,7 @@ def test_a_look_at_the_file_that_began_before_a_change_does_not_undo_it(
         return found
 
     looking = threading.Thread(target=book.refresh)
-    monkeypatch.setattr("app.lab.workbook.read_answers", read_slowly)
+    monkeypatch.setattr("app.lab.course.workbook.read_answers", read_slowly)
     looking.start()
     assert has_read.wait(10.0)
     book.answer(DRAFT, MEASURE, "2")

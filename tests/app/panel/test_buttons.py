@@ -12,13 +12,13 @@ import pytest
 import viser
 from viser import _messages
 
-from app.lab.folder import make_folder
-from app.lab.session import Session
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
+from app.lab.student.session import Session
 from app.messages import Command
-from app.panel import share
-from app.panel.compare import Beside
+from app.panel.sharing import share
+from app.panel.sharing.compare import Beside
 from app.scenes import NAMES
 from app.server.viewer import Viewer
 from tests.waiting import wait_for

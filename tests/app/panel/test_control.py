@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 import viser
 
-from app.panel.control import SliderScale, title
-from app.panel.controls import Controls
+from app.panel.controls.control import SliderScale, title
+from app.panel.controls.controls import Controls
 from app.scenes import NAMES, scene_named
 from app.server.viewer import Viewer
 from sim.parameters import Parameter, parameters_of

@@ -9,15 +9,15 @@ from typing import Any
 
 import pytest
 
-from app.lab.answers import FILE, read_answers
-from app.lab.folder import PICTURES, make_folder
-from app.lab.live_values import LiveNumber
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
-from app.panel.guide import HIDE, PICTURE, SET_UP, SHOW, UNANSWERED, GuideTab, QuestionWidgets
+from app.lab.course.answers import FILE, read_answers
+from app.lab.course.folder import PICTURES, make_folder
+from app.lab.course.live_values import LiveNumber
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
 from app.panel.panel import Panel
-from app.panel.task_list import BACK, ON
-from app.render.html import escape
+from app.panel.workbook.guide import HIDE, PICTURE, SET_UP, SHOW, UNANSWERED, GuideTab, QuestionWidgets
+from app.panel.workbook.task_list import BACK, ON
+from app.render.markup.html import escape
 from app.scenes.race.html import error_text
 from app.server.viewer import Viewer
 from tests import coroutines
@@ -254,13 +254,15 @@ def test_a_picture_is_kept_for_the_task_that_is_shown(student: Viewer, folder: P
         add_notification=lambda title, body, **_: words.append(SimpleNamespace(body=body)) or words[-1]
     )
     event = SimpleNamespace(target=SimpleNamespace(value=PICTURE), client_id=1, client=client)
-    monkeypatch.setattr("app.panel.report_pictures.take_picture", lambda client, size, *, jpeg: b"\xff\xd8\xff")
+    monkeypatch.setattr(
+        "app.panel.recording.report_pictures.take_picture", lambda client, size, *, jpeg: b"\xff\xd8\xff"
+    )
     coroutines.run(guide.on_tool(event))
     wait_for(lambda: "The report has the picture" in words[-1].body)
     name = next((folder / PICTURES).iterdir()).name
     assert name.startswith("spring_force-rope-")
     assert name in words[-1].body
-    monkeypatch.setattr("app.panel.report_pictures.take_picture", refuse)
+    monkeypatch.setattr("app.panel.recording.report_pictures.take_picture", refuse)
     wait_for(lambda: not guide.pictures.busy.locked())
     coroutines.run(guide.on_tool(event))
     wait_for(lambda: words[-1].body == "No picture was taken: the browser has gone")
@@ -273,7 +275,7 @@ def test_a_picture_is_kept_for_the_task_that_is_shown(student: Viewer, folder: P
             change()
             return b"\xff\xd8\xff"
 
-        monkeypatch.setattr("app.panel.report_pictures.take_picture", come_late)
+        monkeypatch.setattr("app.panel.recording.report_pictures.take_picture", come_late)
         coroutines.run(guide.on_tool(event))
         wait_for(lambda: "another task or scene was opened" in words[-1].body)
         assert len(list((folder / PICTURES).iterdir())) == 1

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from app.panel import files as module
-from app.panel.files import ARRAYS, PICTURE, REPLAY
+from app.panel.recording import files as module
+from app.panel.recording.files import ARRAYS, PICTURE, REPLAY
 from app.server.viewer import Viewer
 from tests.waiting import wait_for
 

@@ -11,12 +11,12 @@ from typing import Any
 import pytest
 import viser
 
-from app.lab.folder import make_folder
-from app.lab.session import Session
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
+from app.lab.student.session import Session
 from app.messages import RunOn, Take
-from app.panel.readings import WITHHELD
+from app.panel.controls.readings import WITHHELD
 from app.scenes import NAMES, scene_named
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.square_sea.parameters import SquareSeaParams

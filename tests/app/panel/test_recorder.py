@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from app.messages import KeptState, RunIdentity, Snapshot, Status
-from app.panel import recorder as module
-from app.panel.recorder import Recorder, arrays_of_frame
-from app.panel.recording_files import arrays_of
+from app.panel.recording import recorder as module
+from app.panel.recording.recorder import Recorder, arrays_of_frame
+from app.panel.recording.recording_files import arrays_of
 from app.scenes import scene_named
 from app.scenes.moments import arrays_in
 

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.panel import recording_files
-from app.panel.recorder import Kept, Recorder
-from app.panel.recording_files import Plotted, arrays_of, plots_csv, plots_svg, recording_npz
+from app.panel.recording import recording_files
+from app.panel.recording.recorder import Kept, Recorder
+from app.panel.recording.recording_files import Plotted, arrays_of, plots_csv, plots_svg, recording_npz
 from app.scenes import NAMES, scene_named
 from app.server.loop.sim_loop import SimLoop
 from app.server.viewer import Viewer
@@ -171,7 +171,7 @@ def test_a_film_has_a_picture_of_each_frame_and_ends_where_another_moment_is_cho
     monkeypatch.setattr(panel.recorder, "kept", lambda: frames)
     monkeypatch.setattr(panel.recorder, "send_frame", chosen.append)
     monkeypatch.setattr(type(panel.recorder), "shown", property(lambda _: chosen[-1] if chosen else None))
-    monkeypatch.setattr("app.panel.files.take_picture", lambda client, size, **_: repr(size).encode())
+    monkeypatch.setattr("app.panel.recording.files.take_picture", lambda client, size, **_: repr(size).encode())
     said: list[str] = []
     client: Any = None
     work: Any = SimpleNamespace(say=said.append)

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from app.panel.share import Share, camera_of
+from app.panel.sharing.share import Share, camera_of
 from app.scenes import scene_named
 
 

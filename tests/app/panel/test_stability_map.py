@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.panel import stability_map as live
+from app.panel.controls import stability_map as live
 from app.scenes.rope import scene as rope
 from sim.springs.analysis.growth import EXPLODING, STABLE
 from sim.springs.stability import critical_step

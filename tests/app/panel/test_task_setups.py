@@ -5,10 +5,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.lab.task import Task, load_tasks
-from app.lab.workbook import Workbook
-from app.panel.share import Share
-from app.panel.task_setups import read_link, setup_of_task
+from app.lab.course.task import Task, load_tasks
+from app.lab.course.workbook import Workbook
+from app.panel.sharing.share import Share
+from app.panel.workbook.task_setups import read_link, setup_of_task
 from app.server.viewer import Viewer
 from tests import coroutines
 from tests.waiting import wait_for

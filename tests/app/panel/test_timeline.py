@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from app.messages import BaseParams, KeptState, Pause, Play
-from app.panel.recorder import RATES, Recorder
-from app.panel.timeline import Timeline
+from app.panel.recording.recorder import RATES, Recorder
+from app.panel.recording.timeline import Timeline
 from tests.app.panel.test_recorder import INTERVAL, snapshot
 
 STATE = KeptState("a state", {})

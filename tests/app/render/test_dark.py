@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from app.render.colormap import ANCHORS, LUMA, css_scale, lifted
+from app.render.brightness import LUMA
+from app.render.colormap import ANCHORS, css_scale, lifted
 from app.render.surroundings import DARK, DARK_SKY
 from app.scenes.race.view import material_colour
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.render.formula import formula
+from app.render.markup.formula import formula
 
 BAR = '<mo stretchy="false" lspace="0" rspace="0">|</mo>'
 

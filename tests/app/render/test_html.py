@@ -1,6 +1,6 @@
 """The HTML of panel and reports."""
 
-from app.render.html import Html, bold, escape, fill, join, lines, note, table
+from app.render.markup.html import Html, bold, escape, fill, join, lines, note, table
 
 EVIL = "<img src=x onerror='alert(1)'> & more"
 SAFE = "&lt;img src=x onerror=&#39;alert(1)&#39;&gt; &amp; more"

@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from app.render.line_chart import (
+from app.render.markup.line_chart import (
     BOTTOM,
     CHARACTER_WIDTH,
     LEFT,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import viser
 
-from app.render.viser_inside import input_of, set_arrays, uuid_of
+from app.render.handles.viser_inside import input_of, set_arrays, uuid_of
 
 TURNS = np.array([[1.0, 0.0, 0.0, 0.0]])
 

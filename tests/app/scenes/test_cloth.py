@@ -10,8 +10,9 @@ import pytest
 from app.messages import GrabTo, Place, Release
 from app.panel.head import status_line
 from app.render.colormap import scale_colours
+from app.scenes.cloth import SCENE
 from app.scenes.cloth.parameters import PRESETS, ClothParams, hidden
-from app.scenes.cloth.scene import MAX_SPHERE_SPEED, SCENE, ClothScene, gusty_wind
+from app.scenes.cloth.scene import MAX_SPHERE_SPEED, ClothScene, gusty_wind
 from app.scenes.cloth.view import ClothView, checks, faces
 from app.scenes.quantities import measured, plotted_quantities, recorded_quantities
 from app.scenes.springs.quantities import STABILITY

@@ -9,7 +9,7 @@ import pytest
 import viser
 
 from app.render.material import Material
-from app.scenes.radial_sea.fire_view import MAX_FIRE_SPLATS, Flames
+from app.scenes.radial_sea.drawing.fire_view import MAX_FIRE_SPLATS, Flames
 from app.scenes.radial_sea.frame import JetParcels
 from sim.particles.plume import soot_made
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.panel.recording_files import arrays_of
+from app.panel.recording.recording_files import arrays_of
 from app.render.staff import HEIGHT, PLACE
 from app.scenes import NAMES, scene_named, view_named
 from app.scenes.contract import AnyKind

@@ -24,8 +24,8 @@ from app.scenes.mooring.arrangement import (
     surface_heights,
     surface_side,
 )
-from app.scenes.mooring.bed_view import BED_ROWS, bed_colours
 from app.scenes.mooring.body_scene import MooringScene
+from app.scenes.mooring.drawing.bed_view import BED_ROWS, bed_colours
 from app.scenes.mooring.excursion import MAX_PATH, PATH_INTERVAL
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import PRESETS, MooringParams

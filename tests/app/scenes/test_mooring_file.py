@@ -9,15 +9,15 @@ import pytest
 from app.__main__ import main
 from app.commands.run import run_to_file
 from app.messages import GrabTo, Release
-from app.panel.recorder import Recorder
-from app.panel.recording_files import Plotted, recording_npz
+from app.panel.recording.recorder import Recorder
+from app.panel.recording.recording_files import Plotted, recording_npz
+from app.scenes.mooring import SCENE
 from app.scenes.mooring.arrangement import depth_of, extent, has_body, water_of
-from app.scenes.mooring.file_scene import FileScene, water_motion
-from app.scenes.mooring.from_file import mooring_of
+from app.scenes.mooring.files.file_scene import FileScene, water_motion
+from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import MooringParams, hidden
 from app.scenes.mooring.report import notes_of
-from app.scenes.mooring.scene import SCENE
 from app.scenes.quantities import measured
 from app.scenes.setups import described, missing_files, read_file, read_setup_text, write_file
 from app.server.loop.sim_loop import SimLoop

@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.scenes.mooring import report
+from app.scenes.mooring import SCENE, report
 from app.scenes.mooring.arrangement import DENSITY, GRAVITY, bearings, first_places, line_types, sections
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.scene import SCENE
 from app.scenes.mooring.tensions import Tensions
 from app.scenes.quantities import measured
 from sim.mooring import critical_step

@@ -10,17 +10,17 @@ import pytest
 from app.render.injection import disable_shaders
 from app.scenes.mooring.arrangement import body_of, build, first_places, line_types, sections
 from app.scenes.mooring.body_scene import MooringScene
-from app.scenes.mooring.body_view import DrawnBody
+from app.scenes.mooring.drawing.body_view import DrawnBody
+from app.scenes.mooring.drawing.square import square_faces, square_points
+from app.scenes.mooring.drawing.water_view import SeenWater
 from app.scenes.mooring.excursion import Excursion
-from app.scenes.mooring.file_scene import FileInputs
+from app.scenes.mooring.files.file_scene import FileInputs
+from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.frame import EndStatistics
-from app.scenes.mooring.from_file import mooring_of
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.report import tension_table
 from app.scenes.mooring.restoring import StaticInputs, level_tension, static_curve
 from app.scenes.mooring.scene import needs
-from app.scenes.mooring.square import square_faces, square_points
-from app.scenes.mooring.water_view import SeenWater
 from sim.mooring.statics import at_rest
 
 FILES = Path(__file__).parents[2] / "sim" / "mooring" / "files"

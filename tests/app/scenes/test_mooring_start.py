@@ -12,7 +12,7 @@ import pytest
 from app.__main__ import main
 from app.scenes.contract import Advice
 from app.scenes.mooring.body_scene import MooringScene
-from app.scenes.mooring.file_scene import FileScene
+from app.scenes.mooring.files.file_scene import FileScene
 from app.scenes.mooring.line_scene import LineScene
 from app.scenes.mooring.parameters import PRESETS, MooringParams
 from app.scenes.mooring.report import figures_of, marks_of, notes_of

@@ -10,11 +10,11 @@ import pytest
 
 from app.commands.added_files import with_mooring
 from app.messages import GrabTo, Place, Release, RestartStatistics
+from app.scenes.mooring import SCENE
 from app.scenes.mooring.body_scene import MooringScene
-from app.scenes.mooring.file_scene import FileScene
+from app.scenes.mooring.files.file_scene import FileScene
 from app.scenes.mooring.parameters import PRESETS, MooringParams, hidden
 from app.scenes.mooring.report import figures_of, kilonewtons, notes_of, tension_tables
-from app.scenes.mooring.scene import SCENE
 from app.scenes.mooring.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
 from app.scenes.quantities import measured
 from sim.extreme_values import LEAST_PEAKS

@@ -15,8 +15,8 @@ import pytest
 from app.__main__ import main
 from app.notebook.dataset import to_dataset
 from app.notebook.lab import read_setup as read_notebook_setup
-from app.panel.recorder import Recorder
-from app.panel.recording_files import Plotted, recording_npz
+from app.panel.recording.recorder import Recorder
+from app.panel.recording.recording_files import Plotted, recording_npz
 from app.scenes import scene_named
 from app.scenes.setups import (
     Setup,

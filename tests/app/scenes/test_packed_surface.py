@@ -5,8 +5,9 @@ import pytest
 
 from app.formats.surface_fields import pack_fields, set_surface_fields
 from app.scenes.packed_surface import DISPLACEMENT_STEP, MAX_SENT_STEP, SentSurface
+from app.scenes.square_sea.frame import SeaFrame, pack_frame, unpack_frame
 from app.scenes.square_sea.parameters import SquareSeaParams
-from app.scenes.square_sea.scene import SeaFrame, SquareSeaScene, pack_frame, unpack_frame
+from app.scenes.square_sea.scene import SquareSeaScene
 
 SIDE = 64
 

@@ -12,10 +12,10 @@ import pytest
 
 from app.__main__ import main
 from app.formats.formatting import fixed
-from app.lab.live_values import LiveNumber, names_in
-from app.lab.task import Task, load_tasks
+from app.lab.course.live_values import LiveNumber, names_in
+from app.lab.course.task import Task, load_tasks
 from app.notebook.dataset import to_dataset
-from app.panel.guide import SnapshotValues
+from app.panel.workbook.guide import SnapshotValues
 from app.scenes import NAMES, scene_named
 from app.scenes.mooring import report as mooring_report
 from app.scenes.quantities import Quantity, measured, read, recorded_quantities, written

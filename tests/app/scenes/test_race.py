@@ -13,15 +13,16 @@ import pytest
 from app.commands.run import run_to_file
 from app.formats import formatting
 from app.messages import GrabTo, Place, Release
-from app.render.html import ERROR_COLOUR
-from app.render.line_chart import line_chart
+from app.render.markup.html import ERROR_COLOUR
+from app.render.markup.line_chart import line_chart
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.quantities import measured
+from app.scenes.race import SCENE
 from app.scenes.race.charts import ERROR_TICKS, MAX_ROWS, RaceCharts, round_up
 from app.scenes.race.entrants import tick_of
 from app.scenes.race.html import results_table
 from app.scenes.race.parameters import PRESETS, RaceParams, hidden
-from app.scenes.race.scene import SCENE, RaceScene, compile_gauge
+from app.scenes.race.scene import RaceScene, compile_gauge
 from app.scenes.race.view import LABEL_SHARE, SHOWN_ASPECT, RaceView, label_heights, shown_height
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene

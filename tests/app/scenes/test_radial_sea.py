@@ -20,10 +20,10 @@ from app.scenes.contract import AnyScene
 from app.scenes.radial_sea.bodies import BODY_KINDS, place_of
 from app.scenes.radial_sea.drawn_surface import FOAM_RADIUS, mean_square_slope, tile_of
 from app.scenes.radial_sea.moorings import BED_DEPTH, LINE_REACH
+from app.scenes.radial_sea.oil.well_blowout import LANDING, WellBlowout, slick_reach
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden
 from app.scenes.radial_sea.report import forces_html, marks_of
 from app.scenes.radial_sea.scene import RadialSeaScene
-from app.scenes.radial_sea.well_blowout import LANDING, WellBlowout, slick_reach
 from app.server.loop.sim_loop import SimLoop
 from sim.floating import Hull, equilibrium_draft, heave_period
 from sim.ocean.fluids.fluids import fluids

@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from app.scenes.quantities import measured
+from app.scenes.radial_sea import SCENE
 from app.scenes.radial_sea.moorings import LINE_REACH
+from app.scenes.radial_sea.oil.well_blowout import JetTotal
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, weathered_oil
 from app.scenes.radial_sea.report import forces_html
-from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
-from app.scenes.radial_sea.well_blowout import JetTotal
+from app.scenes.radial_sea.scene import RadialSeaScene
 from app.server.loop.sim_loop import SimLoop
 from sim.floating import equilibrium_draft, submerged
-from sim.floating.heave_meter import HeaveMeter
+from sim.floating.motion.heave_meter import HeaveMeter
 from sim.parameters import check_record
 
 CALM = {"waves": False, "rig": False, "ripples": False}

@@ -8,8 +8,8 @@ import pytest
 
 from app.render.material import MAX_WATERLINES, Waterline, waterline_table
 from app.scenes import scene_named
-from app.scenes.radial_sea.materials import waterlines_of
-from app.scenes.radial_sea.well_blowout import RIG
+from app.scenes.radial_sea.drawing.materials import waterlines_of
+from app.scenes.radial_sea.oil.well_blowout import RIG
 
 
 def frame_of(**values: object):

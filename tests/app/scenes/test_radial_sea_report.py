@@ -10,14 +10,15 @@ import pytest
 
 from app.formats.formatting import fixed
 from app.scenes.quantities import read
-from app.scenes.radial_sea.budget import budget_html, origin_text
-from app.scenes.radial_sea.charts import budget_chart
+from app.scenes.radial_sea import SCENE
 from app.scenes.radial_sea.drawn_surface import DrawnSurface
+from app.scenes.radial_sea.oil.budget import budget_html, origin_text
+from app.scenes.radial_sea.oil.charts import budget_chart
+from app.scenes.radial_sea.oil.well_blowout import OilBudget
 from app.scenes.radial_sea.parameters import PRESETS, RadialSeaParams, column_of, hidden, spill_of
 from app.scenes.radial_sea.quantities import QUANTITIES
 from app.scenes.radial_sea.report import marks_of, mixture_html, notes_of, oil_budget_text, readout_of, surfaces_html
-from app.scenes.radial_sea.scene import SCENE, RadialSeaScene
-from app.scenes.radial_sea.well_blowout import OilBudget
+from app.scenes.radial_sea.scene import RadialSeaScene
 from app.server.loop.sim_loop import SimLoop
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.fluids import fluids

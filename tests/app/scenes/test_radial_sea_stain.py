@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import viser
 
+from app.scenes.radial_sea.drawing.stain_view import SKIN, Stains, stain_of
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.scene import RadialSeaScene
-from app.scenes.radial_sea.stain_view import SKIN, Stains, stain_of
 from sim.parameters import check_record
 
 

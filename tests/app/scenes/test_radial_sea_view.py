@@ -8,11 +8,11 @@ import viser
 
 from app.render.material import Material
 from app.scenes import scene_named, view_named
-from app.scenes.radial_sea import cutaway_view
 from app.scenes.radial_sea.cutaway import DIRECTION
-from app.scenes.radial_sea.cutaway_view import Walls
-from app.scenes.radial_sea.materials import SPILL_RADIUS, material_of
-from app.scenes.radial_sea.moorings_view import LINE_SIDES, NEAR_END, DrawnMoorings, Rods
+from app.scenes.radial_sea.drawing import cutaway_view
+from app.scenes.radial_sea.drawing.cutaway_view import Walls
+from app.scenes.radial_sea.drawing.materials import SPILL_RADIUS, material_of
+from app.scenes.radial_sea.drawing.moorings_view import LINE_SIDES, NEAR_END, DrawnMoorings, Rods
 from app.scenes.radial_sea.parameters import RadialSeaParams
 from app.scenes.radial_sea.view import keel_of, offset_of_view
 

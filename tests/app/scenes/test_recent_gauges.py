@@ -8,7 +8,7 @@ import pytest
 
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene as Rope
-from app.scenes.springs.html import stability_bar
+from app.scenes.springs.drawing.html import stability_bar
 from app.scenes.springs.recent_gauges import SPAN
 from sim.springs.stability import critical_step
 from sim.validation import DivergenceError

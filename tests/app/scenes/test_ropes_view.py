@@ -19,12 +19,12 @@ from app.scenes.race.view import RaceView
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.rope.scene import RopeScene
 from app.scenes.rope.view import LOWER, RopeView
-from app.scenes.springs.html import colour_scale
+from app.scenes.springs.drawing.html import colour_scale
+from app.scenes.springs.drawing.ropes_view import bead_radius
+from app.scenes.springs.drawing.view import SecondNet, Sphere
 from app.scenes.springs.net_motion import rope_lengths
 from app.scenes.springs.rope_handles import offset_of
 from app.scenes.springs.rope_parameters import ROOT, build_rope
-from app.scenes.springs.ropes_view import bead_radius
-from app.scenes.springs.view import SecondNet, Sphere
 
 RaceDrawing: Any = RaceView  # whose types the tests know
 

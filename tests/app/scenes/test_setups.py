@@ -11,7 +11,7 @@ from urllib.parse import urlencode
 import numpy as np
 import pytest
 
-from app.render.html import fill
+from app.render.markup.html import fill
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import (
     FILE_KEYS,

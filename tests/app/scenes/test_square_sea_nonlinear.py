@@ -11,9 +11,9 @@ import pytest
 from app.formats.formatting import number
 from app.messages import Pause, Play, PointAlong, Reset, RunOn
 from app.scenes.quantities import measured
-from app.scenes.square_sea import report
+from app.scenes.square_sea import SCENE, report
 from app.scenes.square_sea.parameters import LINEAR_ONLY, PRESETS, SquareSeaParams, hidden, solved_points
-from app.scenes.square_sea.scene import SCENE, SquareSeaScene
+from app.scenes.square_sea.scene import SquareSeaScene
 from app.server.loop.sim_loop import SimLoop
 from sim.ocean import Sea
 from sim.ocean.nonlinear import NonlinearSea, stokes_wave

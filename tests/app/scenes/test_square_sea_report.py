@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.messages import Snapshot
-from app.render.html import WARNING_COLOUR, bold
+from app.render.markup.html import WARNING_COLOUR, bold
 from app.scenes import quantities
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.quantities import QUANTITIES, open_sea
@@ -26,8 +26,8 @@ from app.scenes.square_sea.report import (
 )
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.server.loop.sim_loop import SimLoop
-from sim.ocean.planets import EARTH_GRAVITY
 from sim.parameters import check_record
+from sim.water import EARTH_GRAVITY
 
 Loop: Any = SimLoop  # of a scene whose types the tests know
 

@@ -7,10 +7,10 @@ import pytest
 
 from app.__main__ import make_parser
 from app.commands.options import read_params
-from app.lab import task
+from app.lab.course import task
 from app.messages import BaseParams
 from app.notebook.lab import read_setup as read_notebook
-from app.panel.task_setups import setup_of_task
+from app.panel.workbook.task_setups import setup_of_task
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import AnyKind
 from app.scenes.setups import make_setup, read_file, read_query, write_value

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from app.lab.task import load_tasks
+from app.lab.course.task import load_tasks
 from app.scenes import NAMES, scene_named, view_named
 from sim.parameters import check_record, parameters_of
 from sim.validation import DivergenceError

@@ -6,7 +6,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from app.panel.changes import SHOWN_TIME, UNDO, Change, Changes, Notice
+from app.panel.sharing.changes import SHOWN_TIME, UNDO, Change, Changes, Notice
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
@@ -34,7 +34,7 @@ def shown(lab: Viewer) -> str:
 
 def test_the_time_of_a_change_begins_in_the_scene_that_it_opened(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr("app.panel.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr("app.panel.sharing.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
     before = make_setup(scene_named("rope"))
     changes = Changes()
     changes.latest = Change("page", "cloth", make_setup(scene_named("cloth")), before)
@@ -60,7 +60,7 @@ def test_a_change_is_undone_once() -> None:
 
 def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr("app.panel.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr("app.panel.sharing.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
 
     async def follow_links() -> None:
         async with visitor(lab) as first:
@@ -69,8 +69,8 @@ def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pyte
             assert lab.changes.latest is None
             async with visitor(lab) as second:
                 await follow(first, "?scene=rope&preset=Pendulum")
-                assert "You opened <b>Rope</b> (Pendulum) for all." in shown(lab)
-                assert "Another browser opened <b>Rope</b> (Pendulum) for all." in shown(lab)
+                assert "You switched everyone to <b>Rope</b> (Pendulum)." in shown(lab)
+                assert "Someone else switched everyone to <b>Rope</b> (Pendulum)." in shown(lab)
                 await follow(second, "?scene=rope&points=11")  # the last one wins
                 assert vars(lab.settings.params)["points"] == 11
                 clock[0] += 0.9 * SHOWN_TIME
@@ -91,7 +91,9 @@ def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer) -> Non
             before = lab.settings.params
             await follow(first, "?scene=cloth")
             assert lab.panel.kind.name == "cloth"
-            assert "Another browser opened <b>Cloth</b>" in shown(lab)  # in the panel of the scene that it opened
+            assert "Someone else switched everyone to <b>Cloth</b>" in shown(
+                lab
+            )  # in the panel of the scene that it opened
             await undo(second)
             await until(lambda: lab.panel.kind.name == "rope" and not shown(lab))
             assert lab.settings.params == before

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from app.messages import Ask, Pause, Play, StepOnce
-from app.scenes.compiling import Job
+from app.scenes.ahead.compiling import Job
 from app.scenes.contract import AnySnapshot
 from app.scenes.rope.parameters import RopeParams
 from app.scenes.setups import Setup

@@ -11,9 +11,9 @@ import pytest
 import zstandard
 
 from app.formats.packing import pack
-from app.panel.files import REPLAY_DURATION
-from app.panel.recorder import Recorder
-from app.panel.recording_files import Plotted
+from app.panel.recording.files import REPLAY_DURATION
+from app.panel.recording.recorder import Recorder
+from app.panel.recording.recording_files import Plotted
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import scene_named, view_named
 from app.scenes.setups import read_setup

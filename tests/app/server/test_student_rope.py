@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.folder import make_folder
-from app.lab.rope_march import REFERENCE
-from app.lab.session import Session
-from app.lab.task import load_tasks
-from app.lab.workbook import Workbook
+from app.lab.course.folder import make_folder
+from app.lab.course.task import load_tasks
+from app.lab.course.workbook import Workbook
+from app.lab.process.rope_march import REFERENCE
+from app.lab.student.session import Session
 from app.scenes import scene_named
 from app.scenes.race.parameters import RaceParams
 from app.server.viewer import Viewer
@@ -23,7 +23,7 @@ RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
 def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.lab.live_net.COMPILE_AFTER", 1e6)
+    monkeypatch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e6)
     monkeypatch.setattr(Viewer, "audience", lambda self: 1)
     tasks, folder = load_tasks(), tmp_path / "mine"
     make_folder(folder, tasks)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from app.messages import GrabTo, Play, Reset, StepOnce, TogglePlay
-from app.panel.recorder import MAX_RATE
+from app.panel.recording.recorder import MAX_RATE
 from app.scenes import scene_named
-from app.scenes.compiling import Job
+from app.scenes.ahead.compiling import Job
 from app.scenes.rope import scene as rope_scene
 from app.server.viewer import Viewer
 from sim.parameters import check_record

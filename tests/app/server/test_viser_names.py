@@ -13,7 +13,7 @@ from tests.fresh import of_each
 ROOT = Path(__file__).parents[3]
 OWN = {"_replace", "_asdict", "_fields", "_exit", "_current_frames"}  # of named tuples, and of the modules os and sys
 
-# Each name that `app/render/viser_inside.py` takes from viser's inside.
+# Each name that `app/render/handles/viser_inside.py` takes from viser's inside.
 NAMES = (
     "_binary_buffers", "_connected_clients", "_gui_input_handle_from_uuid", "_handle_incoming_message", "_impl",
     "_messages", "_queue_scene_message", "_websock_connection", "_websock_server", "SceneNodeUpdateMessage",
@@ -34,9 +34,9 @@ from tests import coroutines
 from tests.app.server.test_viser_names import ROOT
 
 def try_lab(name):
-    path = ROOT / "app" / "render" / "viser_inside.py"
+    path = ROOT / "app" / "render" / "handles" / "viser_inside.py"
     source = re.sub(rf"\\b{name}\\b", f"{name}_changed", path.read_text("utf-8"))
-    inside = types.ModuleType("app.render.viser_inside")
+    inside = types.ModuleType("app.render.handles.viser_inside")
     sys.modules[inside.__name__] = inside
     exec(compile(source, str(path), "exec"), inside.__dict__)
     from app.server.replay_file import replay_html
@@ -101,7 +101,7 @@ def test_without_an_inner_name_the_lab_runs_and_says_what_it_loses(names: tuple[
 
 def test_one_file_uses_inner_names() -> None:
     users = {path.relative_to(ROOT).as_posix() for path in (ROOT / "app").rglob("*.py") if used(path)}
-    assert users == {"app/render/viser_inside.py"}
+    assert users == {"app/render/handles/viser_inside.py"}
 
 
 def used(path: Path) -> set[str]:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim.floating import Body, Hull, MotionCoefficients, make_fleet, make_water, pull, step, still_water
-from sim.floating.body_collisions import collide
-from sim.floating.motion import advance
+from sim.floating.motion.body_collisions import collide
+from sim.floating.motion.motion import advance
 from tests.naive_floating import quaternion
 
 FRAME_INTERVAL = 1 / 60

@@ -8,11 +8,12 @@ import pytest
 
 from sim.dispersion import wavenumber
 from sim.floating import Body, Hull, float_in, heave_period, make_fleet, response_amplitude, roll_period, with_dataset
-from sim.floating.hydrodynamics import radiated_share
-from sim.floating.linear_table import read_table, write_table
-from sim.floating.response import linear_forces
+from sim.floating.linear.hydrodynamics import radiated_share
+from sim.floating.linear.linear_table import read_table, write_table
+from sim.floating.linear.response import linear_forces
 from sim.mooring.moored import moored
 from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves
+from sim.water import Water
 from tests.refusals import assert_refused
 
 pytest.importorskip("netCDF4")
@@ -231,6 +232,12 @@ def test_a_sea_or_mooring_of_another_depth_or_heading_is_refused():
     assert np.isfinite(float_in(shallow, [body], duration=0.1, frames=2).x).all()
     one = box("fore", (0.0, 0.0), FOLDER / "depths.nc", depth=math.inf, heading=0.0).afloat()
     assert np.isfinite(float_in(RadialSea(waves), [one], duration=0.1, frames=2).x).all()
+    for use in (
+        lambda: float_in(shallow, [one], duration=0.1, frames=2),
+        lambda: moored(1, one, 1.0, water=Water(20.0)),
+    ):
+        with pytest.warns(UserWarning, match=r"water inf m deep, in water of 20 m; .* waves up to 40 m long"):
+            use()
     across = draw_waves(regular, regular.conditions(wave_height=0.5, wave_period=6.0, wind_direction=1.0))
     assert_refused("bodies[0]", lambda: float_in(RadialSea(across), [one], duration=0.1, frames=2), "of that heading")
     assert moored(1, one, 1.0).mass[2][2] > one.loaded()[1] * one.hull.volume

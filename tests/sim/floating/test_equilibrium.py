@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 from sim.floating import Body, Hull, equilibrium_draft, heave_period, make_fleet, roll_period, step, still_water
-from sim.floating.equilibrium import upright
-from sim.floating.periods import heave_period_at
-from sim.floating.prediction import predict
+from sim.floating.linear.periods import heave_period_at
+from sim.floating.statics.equilibrium import upright
+from sim.floating.statics.prediction import predict
 
 WATER = [(1025.0, math.inf)]
 SPILL = [(850.0, 0.2), (1025.0, math.inf)]

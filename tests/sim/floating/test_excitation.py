@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim.floating import Body, Hull, make_fleet, with_dataset
-from sim.floating.excitation import HEADING_TOLERANCE, WaveExcitation
+from sim.floating.linear.excitation import HEADING_TOLERANCE, WaveExcitation
 from sim.ocean.radial.radial import RadialSea
 from sim.waves import Waves
 from tests.sim.floating.test_hydrodynamics import wedge

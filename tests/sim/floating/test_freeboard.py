@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from sim.floating import Body, Hull, heave_period, metacentric_height, response_amplitude, righting_arm, with_dataset
-from sim.floating.closed_mesh import area_vectors
-from sim.floating.hydrodynamics import linear_hull, plane_force
-from sim.floating.hydrostatics import add_pressure
-from sim.floating.response import linear_forces
+from sim.floating.hulls.closed_mesh import area_vectors
+from sim.floating.linear.hydrodynamics import linear_hull, plane_force
+from sim.floating.linear.response import linear_forces
+from sim.floating.statics.hydrostatics import add_pressure
 
 pytest.importorskip("xarray")
 pytest.importorskip("netCDF4")

@@ -20,9 +20,8 @@ from sim.floating import (
     step,
     still_water,
 )
-from sim.floating.body import lower_factor
-from sim.floating.excitation import WaveExcitation
-from sim.floating.hydrodynamics import (
+from sim.floating.linear.excitation import WaveExcitation
+from sim.floating.linear.hydrodynamics import (
     DEEPEST,
     DIRECTIONS,
     LinearHull,
@@ -33,8 +32,9 @@ from sim.floating.hydrodynamics import (
     plane_force,
     upright,
 )
-from sim.floating.linear_table import table_of
-from sim.floating.prediction import predict
+from sim.floating.linear.linear_table import table_of
+from sim.floating.motion.body import lower_factor
+from sim.floating.statics.prediction import predict
 from sim.ocean.radial.radial import RadialSea
 from sim.waves import Waves
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.floating import Hull, pressure_force, submerged
-from sim.floating.rotation import rotation_matrix
+from sim.floating.motion.rotation import rotation_matrix
 from sim.floating.shapes.sphere import geodesic
 from tests.naive_floating import lumpy, pressure_by_points, quaternion, sliced
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sim.floating import Body, Hull, MotionCoefficients, float_in, response_amplitude
-from sim.floating.equilibrium import upright
-from sim.floating.hydrodynamics import haskind, linear_hull
+from sim.floating.linear.hydrodynamics import haskind, linear_hull
+from sim.floating.statics.equilibrium import upright
 from sim.mooring.moored import moored
 from sim.ocean.radial.radial import RadialSea
 from sim.water import Water

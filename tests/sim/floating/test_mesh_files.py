@@ -8,9 +8,9 @@ import pytest
 import trimesh
 
 from sim.floating import Hull, equilibrium_draft
-from sim.floating.closed_mesh import enclosed_volume, open_edges
-from sim.floating.hull import MeshReading, shape_from_file
-from sim.floating.mesh_repair import capped, filled, loops_of, mirrored, open_boundary, remedy, repaired, welded
+from sim.floating.hulls.closed_mesh import enclosed_volume, open_edges
+from sim.floating.hulls.hull import MeshReading, shape_from_file
+from sim.floating.hulls.mesh_repair import capped, filled, loops_of, mirrored, open_boundary, remedy, repaired, welded
 from tests.refusals import assert_refused
 
 # A wedge 20 m long, 6 m wide, 3 m high, its deck at z = 3 and its bottom 2 m wide: 240 m3.

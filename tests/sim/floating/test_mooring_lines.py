@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from sim.floating import Body, Fleet, Hull, make_fleet, step, still_water
-from sim.floating.hydrodynamics import linear_hull, natural_frequency
-from sim.floating.mooring_lines import MooringLines, fairleads, just_taut, pulls
-from sim.floating.periods import period
-from sim.floating.rotation import rotation_matrix
+from sim.floating.linear.hydrodynamics import linear_hull, natural_frequency
+from sim.floating.linear.periods import period
+from sim.floating.motion.mooring_lines import MooringLines, fairleads, just_taut, pulls
+from sim.floating.motion.rotation import rotation_matrix
 from tests.sim.mooring.catenary import catenary
 
 DEPTH, REACH, STIFFNESS = 30.0, 60.0, 2e4  # [m], [m], [N]

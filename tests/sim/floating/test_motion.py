@@ -21,11 +21,11 @@ from sim.floating import (
     submerged,
     vertices,
 )
-from sim.floating.hydrodynamics import POLES
-from sim.floating.hydrodynamics import afloat as afloat_in
-from sim.floating.motion import frequency_bound
-from sim.floating.rotation import heading_angle, product, rotation_matrix
-from sim.floating.stability import UPRIGHT
+from sim.floating.linear.hydrodynamics import POLES
+from sim.floating.linear.hydrodynamics import afloat as afloat_in
+from sim.floating.motion.motion import frequency_bound
+from sim.floating.motion.rotation import heading_angle, product, rotation_matrix
+from sim.floating.statics.stability import UPRIGHT
 from tests.naive_floating import axes_of_heading, lumpy, naive_step, quaternion
 
 FRAME_INTERVAL = 1 / 60

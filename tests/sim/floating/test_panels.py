@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from assets.shape_panels import PANELS, clustered
-from sim.floating.boundary_elements import solve
+from sim.floating.linear.boundary_elements import solve
 
 VOLUMES = {
     "box": lambda draft: 4.0 * draft,

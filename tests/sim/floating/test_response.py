@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sim.floating import Body, Hull, linear_forces, response_amplitude, with_dataset
-from sim.floating.dataset import MOTIONS
-from sim.floating.hydrodynamics import velocity_at
+from sim.floating.linear.dataset import MOTIONS
+from sim.floating.linear.hydrodynamics import velocity_at
 from tests.refusals import assert_refused
 
 xarray = pytest.importorskip("xarray")

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import trimesh.transformations as reference
 
-from sim.floating.rotation import body_z_axes, heading_angle, product, quaternion_by_vector, rotation_matrix
+from sim.floating.motion.rotation import body_z_axes, heading_angle, product, quaternion_by_vector, rotation_matrix
 
 TURNS = np.random.default_rng(0).normal(size=(9, 4))
 

@@ -20,7 +20,7 @@ from sim.floating import (
     step,
     still_water,
 )
-from sim.floating.rotation import product
+from sim.floating.motion.rotation import product
 
 LENGTH, WIDTH, HEIGHT, DRAFT = 60.0, 16.0, 6.0, 3.0  # [m]
 MASS = 1025.0 * LENGTH * WIDTH * DRAFT

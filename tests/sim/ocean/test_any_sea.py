@@ -158,8 +158,8 @@ def hull_of_20_m() -> Body:
     """A box with a table of coefficients that counts as one of water 20 m deep."""
     import dataclasses
 
-    from sim.floating.hydrodynamics import table_length
-    from sim.floating.linear_table import table_of
+    from sim.floating.linear.hydrodynamics import table_length
+    from sim.floating.linear.linear_table import table_of
 
     hull, table = Hull.box(4.0, 4.0, 2.0), table_of("box")
     rows = {name: getattr(table, name)[:1, 2:3] for name in ("added_mass", "damping", "infinite", "excitation")}

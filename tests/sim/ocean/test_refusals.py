@@ -40,6 +40,10 @@ def drop(**values):
     small(wind_speed=0.0).ripples.add(0.0, **{"points": [[1.0, 2.0]], "width": 1.0, **values})
 
 
+def shallow_waves():
+    return draw_waves(JONSWAP, JONSWAP.conditions(depth=8.0), 4)
+
+
 def radial() -> RadialSea:
     return RadialSea(draw_waves(JONSWAP, JONSWAP.conditions(), 4))
 
@@ -82,6 +86,8 @@ REFUSED: list[Row] = [
     ("points", lambda: radial().kinematics([[0.0, 0.0]], 0.0), "(n, 3)"),
     ("t", lambda: radial().kinematics([[0.0, 0.0, 0.0]], INF), ""),
     ("waves", lambda: RadialSea(radial().waves, FluidColumn(gravity=1.62)), "under the column's gravity of 1.62"),
+    ("waves", lambda: RadialSea(shallow_waves()), "waves of water 8 m deep, on a column inf m deep"),
+    ("waves", lambda: radial().change(1.0, shallow_waves()), "waves of water 8 m deep, on a column inf m deep"),
     (
         "column",
         lambda: RadialSea(radial().waves, FluidColumn(thickness=0.1)).kinematics([[0.0, 0.0, 0.0]], 0.0),

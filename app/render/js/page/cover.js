@@ -1,17 +1,21 @@
 // What the page says while nothing is drawn, and after the server has ended.
 //
-// The cover is there from the first bytes of the page. It goes when the panel is drawn; while a scene is compiled it shows
-// what the panel says of that (an element of class "springtide-progress"). It comes back when the server does not answer.
+// The cover is there from the first bytes of the page. It goes when the whole picture of the scene is drawn (frames.js);
+// while a scene is compiled it shows what the panel says of that (an element of class "springtide-progress"). It comes back
+// when the server does not answer.
 // Where the page cannot start it says why (before/failures.js).
 
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
-import { onChange } from "../core/watch.js";
+import { onChange, onLook } from "../core/watch.js";
 
 const ALIVE_INTERVAL = 2000; // [ms] between two questions whether the server is still there
 const RETRY_INTERVAL = 1000; // [ms] the same after a question without an answer
 const ANSWER_TIME = 5000; // [ms] after which a question counts as not answered
 const MAX_UNANSWERED = 3; // questions in a row: a laptop that wakes, or changes its network, misses one
+const SETTLING = 300; // [ms] after a panel, in which the things of its scene come
+const UNDRAWN = 10_000; // [ms] after which the cover goes where no frame has begun
+const PATIENCE = 60_000; // [ms] after which it goes in any case
 const cover = /** @type {HTMLElement} */ (document.getElementById("springtide-cover"));
 const words = /** @type {HTMLElement} */ (document.getElementById("springtide-cover-words"));
 // A path is that of a proxy, such as a JupyterHub, or of a pane of several.
@@ -26,6 +30,25 @@ function say(text, hidden) {
   cover.classList.toggle("springtide-hidden", hidden);
 }
 
+/** @type {string | null} */
+let opened = null; // the panel whose picture is awaited, by its field for reports
+let openedAt = 0; // [ms] since when
+let pictured = ""; // the panel whose picture was whole
+
+// Whether the picture of the panel's scene is still to come. A lab that draws by viser's public interface has no such field,
+// and another one has it after its status line.
+function awaitsPicture() {
+  const field = document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "";
+  if (field && field === pictured) return false;
+  const now = performance.now();
+  if (field !== opened) [opened, openedAt] = [field, now];
+  const since = now - openedAt, { showsWhole } = springtide;
+  if (!field) return since < SETTLING;
+  if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;
+  pictured = field;
+  return false;
+}
+
 let waiting = "Connecting to the lab …"; // while there is no panel
 function update() {
   if (unanswered >= MAX_UNANSWERED) return say(`The lab has stopped. ${restart}`, false);
@@ -36,7 +59,8 @@ function update() {
   }
   if (document.querySelector(".springtide-panel")) {
     waiting = "Opening the scene …"; // the page is connected from now on
-    return say(null, true);
+    const isAwaited = awaitsPicture();
+    return say(isAwaited && !pictured ? "Preparing the picture …" : null, !isAwaited);
   }
   return say(springtide.failure || waiting, false);
 }
@@ -66,3 +90,4 @@ async function ask() {
 let timer = setTimeout(ask, 0);
 page.own(() => clearTimeout(timer));
 onChange(update);
+onLook(update);

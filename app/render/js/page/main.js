@@ -7,6 +7,7 @@ const PARTS = {
   camera: () => import("./camera.js"),
   fields: () => import("../panel/fields.js"),
   charts: () => import("../panel/charts.js"),
+  hall: () => import("../panel/hall.js"),
   timeline: () => import("../panel/timeline.js"),
   share: () => import("../panel/share.js"),
   display: () => import("../panel/display.js"),

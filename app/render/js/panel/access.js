@@ -6,7 +6,7 @@ import { onControls, onValues } from "../core/watch.js";
 const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:first-child"; // the title of a folder
 // The button of viser's settings is hidden until they are shown; then it leads back.
 /** @type {Record<string, string>} */
-const ICON_NAMES = { "list-search": "Commands", "adjustments": "Back to the panel", "x": "Close" };
+const ICON_NAMES = { "list-search": "Commands", "adjustments": "Back to the panel", "x": "Close", "maximize": "Enlarge" };
 
 /** @param {Element} element @param {string} name @param {string} value */
 function set(element, name, value) {

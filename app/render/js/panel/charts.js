@@ -4,12 +4,14 @@
 // The time axis: viser keeps the part of it that is shown, and on a slow page loses it when a chart is made anew. Here all
 // of it is shown again, unless it was zoomed by hand.
 // The name of the first axis, at its end (page.css). The height of the charts: a whole number of them fills their pane.
+// The size of the type and the lines: by "Large text", and in a lecture hall by the height of the window (hall.js).
 // A line in the charts over time, where the recording is shown: the time line says the time (timeline.js).
 //
 // Of viser this file uses window.__viserTestpoints.uplots, the charts of the page.
 
 import { page } from "../core/life.js";
 import { onControls, onFrame, onLook } from "../core/watch.js";
+import { fillsWindow, tickSize, typeFactor } from "./hall.js";
 
 const BELOW = 4; // [pixels] of a pane below its charts
 const MIN_HEIGHT = 150; // [pixels] of a chart with its title, or as high as its pane
@@ -19,8 +21,8 @@ const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = '.mantine-Tabs-root
 const PHONE_SHARE = 0.32; // of the window's height, for the plots on a phone (page.css)
 const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
 const CROSS = "springtide-cross", PLACED = "springtide-placed-cross";
-const CROSS_HEIGHT = 14, CROSS_WIDTH = 8; // [pixels] of a cross; its words stand to its right
-const CROSS_STYLE = "position:absolute;white-space:nowrap;font:12px/14px sans-serif;pointer-events:none";
+const CROSS_HEIGHT = 14, CROSS_WIDTH = 8; // [pixels] of a cross in type of 12 pixels; its words stand to its right
+const CROSS_STYLE = "position:absolute;white-space:nowrap;pointer-events:none";
 const LINE_STYLE = "position:absolute;top:0;bottom:0;width:0;border-left:2px solid #e03131;pointer-events:none";
 
 // The charts of the page.
@@ -54,6 +56,7 @@ function placeCrosses(chart) {
   });
   const marks = [...chart.over.querySelectorAll(`.${PLACED}`)];
   while (marks.length > wanted.length) marks.pop()?.remove();
+  const factor = typeFactor(), [high, wide] = [factor * CROSS_HEIGHT, factor * CROSS_WIDTH];
   wanted.forEach(([left, label, stroke], n) => {
     let mark = marks[n];
     if (!mark) {
@@ -61,7 +64,8 @@ function placeCrosses(chart) {
       mark.className = PLACED;
       chart.over.append(mark);
     }
-    const style = `${CROSS_STYLE};color:${stroke};top:${n * CROSS_HEIGHT - CROSS_HEIGHT / 2}px;left:${left - CROSS_WIDTH / 2}px`;
+    const place = `top:${(n - 0.5) * high}px;left:${left - wide / 2}px`;
+    const style = `${CROSS_STYLE};font:${tickSize()}px/${high}px sans-serif;color:${stroke};${place}`;
     if (mark.dataset.style !== style) {
       mark.dataset.style = style;
       mark.style.cssText = style;
@@ -120,10 +124,11 @@ function fillPanes(charts) {
     const own = charts.filter(({ root }) => pane.contains(root) && root.offsetHeight);
     own.sort((a, b) => a.root.getBoundingClientRect().top - b.root.getBoundingClientRect().top);
     if (!own.length) continue;
-    const [first] = own, whole = PHONE.matches ? window.innerHeight * PHONE_SHARE : pane.clientHeight;
+    const [first] = own, isPhone = PHONE.matches && !fillsWindow();
+    const whole = isPhone ? window.innerHeight * PHONE_SHARE : pane.clientHeight;
     const top = first.root.getBoundingClientRect().top - pane.getBoundingClientRect().top + pane.scrollTop;
     const room = whole - top - BELOW, between = gapOf(own);
-    const seen = Math.max(1, Math.min(own.length, Math.floor(room / MIN_HEIGHT)));
+    const seen = Math.max(1, Math.min(own.length, Math.floor(room / (MIN_HEIGHT * typeFactor()))));
     for (const chart of own) {
       const around = chart.root.offsetHeight - chart.height; // title and key
       const height = Math.max(MIN_CANVAS, Math.floor((room + between) / seen - between - around));
@@ -139,6 +144,46 @@ function gapOf([first, second]) {
   return Math.max(0, second.root.getBoundingClientRect().top - first.root.getBoundingClientRect().bottom);
 }
 
+/** @typedef {Pick<uplot.Axis, "font" | "size" | "space">} AxisSizes */
+// Sizes of axes, charts and series as viser has set them.
+/** @type {WeakMap<uplot.Axis, AxisSizes>} */
+const axisSizes = new WeakMap();
+/** @type {WeakMap<uplot.Chart, uplot.Padding>} */
+const paddings = new WeakMap();
+/** @type {WeakMap<uplot.Series, number>} */
+const widths = new WeakMap();
+/** @type {WeakMap<uplot.Chart, number>} */
+const sizedAs = new WeakMap(); // chart -> its factor
+
+// Give the numbers and the lines of a chart their size. uPlot keeps the font of an axis as [CSS, size in pixels of the canvas,
+// size]; where another version has something else, the numbers keep their size.
+/** @param {uplot.Chart} chart */
+function sizeType(chart) {
+  const factor = typeFactor();
+  if ((sizedAs.get(chart) ?? 1) === factor) return;
+  sizedAs.set(chart, factor);
+  for (const [k, axis] of chart.axes.entries()) {
+    const { font, size, space } = axisSizes.get(axis) ?? axis;
+    if (!axisSizes.has(axis)) axisSizes.set(axis, { font, size, space });
+    if (!Array.isArray(font) || typeof font[0] !== "string") continue;
+    const [css, onCanvas, onPage] = font, scaled = css.replace(/[\d.]+px/, (old) => `${factor * Number.parseFloat(old)}px`);
+    axis.font = [scaled, factor * onCanvas, factor * onPage];
+    axis.size = (...given) => factor * size(...given);
+    if (k === 0) axis.space = (...given) => factor * space(...given);
+  }
+  if (Array.isArray(chart.padding)) {
+    const padding = paddings.get(chart) ?? chart.padding[0]; // half of the highest number
+    paddings.set(chart, padding);
+    if (typeof padding === "function") chart.padding[0] = (...given) => factor * padding(...given);
+  }
+  for (const series of chart.series.slice(1)) {
+    const width = widths.get(series) ?? series.width;
+    widths.set(series, width);
+    series.width = factor * width;
+  }
+  chart.setSize({ width: chart.width, height: chart.height });
+}
+
 /** @param {uplot.Chart} chart */
 function nameAxis({ over, series }) {
   if (over.dataset.springtideAxis !== series[0].label) over.dataset.springtideAxis = series[0].label;
@@ -148,6 +193,7 @@ let moment = ""; // [s] of the recording that is shown, as the time line says it
 
 function look() {
   const charts = chartsOfPage();
+  charts.forEach(sizeType);
   fillPanes(charts);
   for (const chart of charts) {
     nameAxis(chart);

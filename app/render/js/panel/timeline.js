@@ -74,8 +74,8 @@ function update() {
   put(button("play"), state.playing ? "❚❚" : "▶");
   button("play").ariaLabel = button("play").title = state.playing ? "Stop playing the recording" : "Play the recording";
   button("continue").disabled = isPast && !state.resumable;
-  button("continue").title = state.resumable ? "The run goes on from this moment; what came later is forgotten"
-    : "No state was kept that early: choose a later moment";
+  button("continue").title = state.resumable ? "Resume from here; everything recorded later is discarded"
+    : "Can't resume from this far back; pick a later moment";
   line.disabled = !(state.high > state.low);
   line.title = `Recorded: ${(state.high - state.low).toFixed(0)} s, ${state.size}. Drag to look back`;
   if (held) return;

@@ -57,6 +57,12 @@ const MATT_GLSL = `
 export const skyTerms = { value: null }; // the nine terms, and the least light of all directions
 const LIKELY_SKY = [0.7, 0.75, 0.8]; // until the photograph is read
 export let skiesRead = 0; // frames.js draws when it changes
+let isReading = false; // whether the photograph is on its way from the graphics card
+// Whether rough surfaces still have a light that is not of the sky that is seen.
+export const awaitsLight = () => isReading;
+/** @type {Float32Array | null} */
+let photographed = null; // the light of the photograph in DIRECTIONS, red, green, blue and one more number each
+let litAs = ""; // what the terms are of
 /** @type {Table | null} */
 let samples = null; // the table with which the photograph is read
 
@@ -94,14 +100,53 @@ function readSky(renderer, scene, mesh) {
   const asked = [table.target, 0, 0, DIRECTIONS, 1, numbers];
   const take = () => {
     if (table.key !== key) return;
-    setTerms(numbers);
+    [photographed, litAs, isReading] = [numbers, "", false];
     skiesRead += 1;
     startedViewer().requestRender();
   };
   if (QUALITY.isWhole()) {
     renderer.readRenderTargetPixels(...asked);
     take();
-  } else renderer.readRenderTargetPixelsAsync(...asked).then(take, () => {}); // it fails where the context is lost
+  } else {
+    isReading = true;
+    renderer.readRenderTargetPixelsAsync(...asked).then(take, () => (isReading = false)); // it fails where the context is lost
+  }
+}
+
+const CLEAR_OF_LAND = 0.5; // sine of the elevation from which on land has no share in the light of the photograph
+const SEA_LIGHT = 0.3; // of the sky that comes back from the sea
+
+// The light in DIRECTIONS on what stands in a sea, from that of the photograph, which was taken on land: below a grey sky it is
+// grey, and where land would be it is that of sky and sea. uniforms: of the sea.
+/** @param {Float32Array} numbers @param {three.Uniforms} uniforms */
+export function overSea(numbers, { skyTint, clouds }) {
+  /** @type {number[]} */
+  const tint = skyTint.value.toArray();
+  const cover = Math.min(Math.max(clouds.value.x, 0), 1), found = numbers.slice();
+  const heights = Array.from({ length: DIRECTIONS }, (_, k) => {
+    const z = 1 - (2 * k + 1) / DIRECTIONS;
+    return Math.sqrt(1 - z * z) * Math.sin(GOLDEN_ANGLE * k); // three's y is up
+  });
+  const high = [...heights.keys()].filter((k) => heights[k] > CLEAR_OF_LAND);
+  const mean = tint.map((share, i) => (share * high.reduce((sum, k) => sum + numbers[4 * k + i], 0)) / high.length);
+  const grey = 0.3 * mean[0] + 0.5 * mean[1] + 0.2 * mean[2];
+  for (const [k, height] of heights.entries()) {
+    const even = Math.max(cover, 1 - Math.max(height, 0) / CLEAR_OF_LAND), level = 0.5 + 0.5 * height;
+    for (let i = 0; i < 3; i++) {
+      const sky = mean[i] + cover * (grey - mean[i]), light = sky * (level + SEA_LIGHT * (1 - level));
+      found[4 * k + i] = tint[i] * numbers[4 * k + i] + even * (light - tint[i] * numbers[4 * k + i]);
+    }
+  }
+  return found;
+}
+
+// Bring the terms up to date. uniforms: of the sea that is drawn, or null.
+/** @param {three.Uniforms | null} uniforms */
+function renewTerms(uniforms) {
+  const now = uniforms ? [...uniforms.skyTint.value.toArray(), uniforms.clouds.value.x].join() : "land";
+  if (!photographed || litAs === now) return;
+  litAs = now;
+  setTerms(uniforms ? overSea(photographed, uniforms) : photographed);
 }
 
 // The terms of a sky with these colours in DIRECTIONS, red, green, blue and one more number each.
@@ -131,9 +176,9 @@ export function setTerms(numbers) {
 /** @param {three.Material} material */
 export const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0;
 
-// Light viser's own meshes so; those with a shader of ours ask for it themselves.
-/** @param {three.Renderer} renderer @param {three.Scene} scene */
-export function lightMeshes(renderer, scene) {
+// Light viser's own meshes so; those with a shader of ours ask for it themselves. uniforms: of the sea that is drawn, or null.
+/** @param {three.Renderer} renderer @param {three.Scene} scene @param {three.Uniforms | null} uniforms */
+export function lightMeshes(renderer, scene, uniforms) {
   /** @type {three.Material[]} */
   const lit = [];
   /** @type {three.Mesh[]} */
@@ -145,6 +190,7 @@ export function lightMeshes(renderer, scene) {
     if (isPlain && object.material.isMeshStandardMaterial) plain.push(object);
   });
   if (plain.length > 0) readSky(renderer, scene, plain[0]);
+  renewTerms(uniforms);
   for (const one of skyTerms.value ? lit : []) {
     const { springtide } = one.userData;
     if (springtide && !springtide.startsWith(AMBIENT)) continue;

@@ -12,10 +12,10 @@ import { viewer } from "../core/viewer.js";
 import { awaitsSky } from "../sea/sky_table.js";
 import { isDark } from "../shading/dark.js";
 import { QUALITY } from "../shading/quality.js";
-import { programsReady } from "../shading/shaders.js";
+import { lacksPrograms, programsReady } from "../shading/shaders.js";
 import { BOTH_SIDES } from "../shading/three.js";
 import { wrapMethod } from "../shading/wrap.js";
-import { skiesRead } from "./ambient.js";
+import { awaitsLight, skiesRead } from "./ambient.js";
 
 const SMALL = 16384; // numbers up to which a texture is compared itself: viser counts that of labels on in each frame
 const LONG_FRAME = 100; // [ms] from which on a frame leaves time for the panel
@@ -117,6 +117,7 @@ export function paceFrames(renderer, life) {
   let last = null; // the inputs of the frame that the canvas shows
   /** @type {{ fence: WebGLSync | null, compiled: boolean } | null} */
   let drawing = null; // of that frame while it is being drawn: its fence, and whether it had a new program
+  let isWhole = false; // whether that frame has its sky, its light, and all of its shaders
   let length = 0; // [ms] of it
   let started = 0, pressed = 0, left = 0; // when it began, when something in the panel was pressed, frames left to the panel
 
@@ -152,6 +153,7 @@ export function paceFrames(renderer, life) {
     return true;
   }
 
+  springtide.showsWhole = () => isWhole && !drawing; // the cover goes then
   let knownPrograms = ""; // with the last frame
   const programs = () => `${renderer.info.programs?.at(-1)?.id} ${programsReady}`;
 
@@ -162,7 +164,9 @@ export function paceFrames(renderer, life) {
     makeOpaque(renderer, own);
     if (camera !== eye || QUALITY.isCapturing() || springtide.isRecording || !keepsPixels) {
       last = null;
-      return void earlier.call(this, scene, camera);
+      earlier.call(this, scene, camera);
+      isWhole = Boolean(own.environment) && !lacksPrograms;
+      return;
     }
     if (document.visibilityState === "hidden") return;
     const inputs = inputsOf(renderer, own, camera), shown = last;
@@ -171,6 +175,7 @@ export function paceFrames(renderer, life) {
     [started, left] = [performance.now(), 0];
     earlier.call(this, scene, camera);
     last = inputs;
+    isWhole = Boolean(own.environment) && !awaitsLight() && !lacksPrograms;
     const known = programs();
     awaitEnd(known !== knownPrograms);
     knownPrograms = known;

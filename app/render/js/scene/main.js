@@ -13,7 +13,7 @@ import { onControls } from "../core/watch.js";
 import { openWater } from "../sea/open_water.js";
 import { rain } from "../sea/rain.js";
 import { skiesDrawn } from "../sea/sky_table.js";
-import { water } from "../sea/water.js";
+import { drawnSea, water } from "../sea/water.js";
 import { followContext } from "../shading/context.js";
 import { QUALITY } from "../shading/quality.js";
 import { beginFrame, isLinked, meshOf } from "../shading/shaders.js";
@@ -88,7 +88,7 @@ function dressScene(renderer, scene, camera) {
     if (material && isLinked(renderer, material)) active.push(node.base);
   });
   for (const shader of SHADERS) shader.removeUnused?.();
-  lightMeshes(renderer, scene);
+  lightMeshes(renderer, scene, drawnSea());
   dressSmoke(scene);
   dressLabels(renderer, scene, camera);
   springtide.skiesDrawn = skiesDrawn;

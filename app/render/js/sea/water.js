@@ -24,6 +24,9 @@ export const seas = new Map(); // name of the node -> what this file has made fo
 /** @type {Map<string, three.Uniforms>} */
 export const uniformsByName = new Map();
 
+// The uniforms of the sea that is drawn, or null: what stands in it is lit by its sky.
+export const drawnSea = () => [...seas.values()].find(({ isReady }) => isReady)?.uniforms ?? null;
+
 // Uniforms of three numbers each. three's classes are not in scope, therefore vectors are copied from the mesh.
 /** @param {three.Mesh} mesh @param {string[]} names @returns {three.Uniforms} */
 export function makeUniforms(mesh, names) {
@@ -42,6 +45,7 @@ function uniformsOf(base, mesh) {
   let uniforms = uniformsByName.get(base);
   if (!uniforms) {
     uniforms = makeUniforms(mesh, WATER_UNIFORMS);
+    uniforms.standIn = { value: [0.45, 0.55, 0.68] };
     for (const name of ["toSea", "fromSea"]) uniforms[name] = { value: mesh.matrixWorld.clone() };
     const textures = ["wavePlaces", "waveSlopes", "skyTable", "seaVertices", "seaPlaces", "seaRest", "seaTiles", "seaLight"];
     for (const name of textures) uniforms[name] = { value: null };
@@ -166,6 +170,8 @@ function dressPlain(sea, renderer, camera, scene, shape) {
   }, camera, scene);
 }
 
+const IN_TILES = " in tiles"; // in the name of a shader of the sky
+
 // Give a sea and its sky their programs. Returns whether they have them.
 /**
  * @param {string} base @param {GriddedSea} sea @param {Pick<ShadedContext, "renderer" | "camera" | "scene">} context
@@ -185,13 +191,15 @@ function dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole 
     sea.triangle = sea.dome.geometry;
   }
   if (!sea.dome) return hasTable && isLit !== null && hasSurface;
-  const drawn = isLit ? sea.lit?.tiles : sea.triangle;
-  if (drawn) sea.dome.geometry = drawn;
-  const hasDome = dress(renderer, sea.dome, keyWithDetails(`springtide-dome${isLit === false ? "" : " in tiles"}`), (shader) => {
+  const inTiles = isLit === false ? "" : IN_TILES;
+  const hasDome = dress(renderer, sea.dome, keyWithDetails(`springtide-dome${inTiles}`), (shader) => {
     Object.assign(shader.uniforms, sea.uniforms);
     shader.vertexShader = isLit === false ? DOME_VERTEX : `#define TILES\n${DOME_VERTEX}`;
     shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
   }, camera, scene);
+  // It keeps the shader that it has until another one is compiled.
+  const drawn = sea.dome.material.userData.springtide?.includes(IN_TILES) ? sea.lit?.tiles : sea.triangle;
+  if (drawn) sea.dome.geometry = drawn;
   return hasTable && isLit !== null && hasSurface && hasDome;
 }
 
@@ -203,6 +211,21 @@ function showPhotograph(scene, shown) {
   if (shown && !scene.background) scene.background = scene.userData.photograph || null;
 }
 
+const SKY = "--springtide-sky"; // of the page (page.css): what is seen behind a sea without a sky
+const OVERCAST = 0.5; // light of a grey sky over that of a clear one
+const UNTONED = 0.8; // light over that of a colour of the page
+
+// Until its sky is ready, its mean colour stands in: that of the haze, which the server sets for each sky, grey below clouds.
+/** @param {Sea} sea @param {three.Scene} scene */
+function standIn({ uniforms }, scene) {
+  if (!scene.fog) return;
+  const { r, g, b } = scene.fog.color, cover = Math.min(Math.max(uniforms.clouds.value.x, 0), 1);
+  const grey = OVERCAST * (0.3 * r + 0.5 * g + 0.2 * b), mixed = [r, g, b].map((light) => light + cover * (grey - light));
+  uniforms.standIn.value = mixed.map((light) => UNTONED * light);
+  const { style } = document.documentElement, color = scene.fog.color.clone().fromArray(mixed).getStyle();
+  if (style.getPropertyValue(SKY) !== color) style.setProperty(SKY, color);
+}
+
 /** @type {NodeShader & Required<Pick<NodeShader, "unpack">>} */
 export const water = {
   suffix: "/water_material",
@@ -212,6 +235,7 @@ export const water = {
       disposeSea(sea);
       seas.delete(base);
     }
+    if (!seas.size) document.documentElement.style.removeProperty(SKY);
   },
   unpack({ base, mesh }) {
     const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
@@ -240,6 +264,7 @@ export const water = {
     mesh.layers.mask = 0; // the polar grid is drawn in its place
     if (!this.unpack({ base, mesh })) return null;
     readMaterial(sea, data);
+    standIn(sea, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);
     const lines = meshOf(`${base}/water_lines`);
     if (lines) sea.uniforms.waterlines.value = lines.geometry.attributes.position.array;

@@ -375,7 +375,7 @@ export const WATER_GLSL = {
       if (share <= 0.004) return vec4(0.0);
       vec2 d = vec2(cos(wind.x), sin(wind.x));
       vec2 p = vec2(dot(x, d) * 0.7, dot(x, vec2(-d.y, d.x))) / wind.z;
-      float seen = DETAILS > 0 ? 1.0 - smoothstep(0.3, 0.9, footprint / wind.z) : 0.0;
+      float seen = 1.0 - smoothstep(0.3, 0.9, footprint / wind.z); // at all qualities: white water is the last to go
       float near = DETAILS > 1 ? 1.0 - smoothstep(0.06, 0.2, footprint / wind.z) : 0.0;
       float cover = share, grain = 0.0;
       vec2 relief = vec2(0.0);
@@ -830,13 +830,12 @@ export const WATER_FRAGMENT = `
 // The sea in few words: its colour, and the sky at its horizon where one looks flatly at it.
 export const PLAIN_FRAGMENT = `
   ${WATER_PLACE}
-  uniform vec3 deepColor, lens;
-  const vec3 AROUND = vec3(0.45, 0.55, 0.68); // about the page's own sky
+  uniform vec3 deepColor, lens, standIn;
   void main() {
     cutOut();
     vec3 V = eye - seaPlace(), N = normalize(cross(dFdx(vSea), dFdy(vSea)));
     float far = length(V), grazing = pow(1.0 - abs(dot(N, V)) / far, 4.0), lost = 1.0 - exp(-far / lens.x);
-    gl_FragColor = vec4(mix(mix(deepColor, AROUND, 0.7 * grazing), AROUND, lost), 1.0);
+    gl_FragColor = vec4(mix(mix(deepColor, standIn, 0.7 * grazing), standIn, lost), 1.0);
     #include <tonemapping_fragment>
     #include <colorspace_fragment>
   }`;

@@ -2,10 +2,10 @@
 
 // From the finest; pixels: share of the screen's; details: of the shaders, 2 all, 1 less, 0 least.
 export const STEPS = [
-  // Pixels first: fewer of them need no other program.
+  // Pixels first: fewer of them need no other program, and take no foam, sky or sun away.
   { quality: "high", pixels: 1, details: 2 },
   { quality: "medium", pixels: 0.75, details: 2 },
-  { quality: "medium", pixels: 0.75, details: 1 },
+  { quality: "medium", pixels: 0.6, details: 2 },
   { quality: "low", pixels: 0.5, details: 1 },
   { quality: "low", pixels: 0.5, details: 0 },
 ];

@@ -36,11 +36,12 @@ export function replaceShader(material, key, edit) {
 const awaited = new Set();
 const LOOK_INTERVAL = 30; // [ms] between two looks at them
 export let programsReady = 0; // counts on with each of them; frames.js draws when it changes
+export let lacksPrograms = false; // whether something in this frame has another shader than it is to have
 let isCompiling = false; // whether this frame has begun to use a program, in a browser that compiles while the page waits
 
 // A new frame: the page may wait for one more program.
 export function beginFrame() {
-  isCompiling = false;
+  isCompiling = lacksPrograms = false;
 }
 
 function lookForPrograms() {
@@ -80,6 +81,7 @@ export function dress(renderer, object, key, edit, camera, scene = object) {
   if (awaited.size === 0) setTimeout(lookForPrograms, LOOK_INTERVAL);
   awaited.add(program);
   object.material = earlier;
+  lacksPrograms = true;
   return earlier !== bare;
 }
 

@@ -17,7 +17,7 @@ import pytest
 from app.messages import Command, KeptState, StepOnce, TogglePlay
 from app.panel.settings import SceneSettings
 from app.scenes import NAMES, scene_named
-from app.scenes.compiling import Compiling, Job
+from app.scenes.ahead.compiling import Compiling, Job
 from app.scenes.contract import Advice
 from app.server.loop.commands import CompileGate
 from app.server.loop.sim_loop import SimLoop

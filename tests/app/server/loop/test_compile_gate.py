@@ -3,9 +3,9 @@
 from concurrent.futures import Future
 
 from app.messages import Advance, KeptState, Pause, Play, Reset, Take
-from app.scenes.compiling import Compiling, Job
+from app.scenes.ahead.compiling import Compiling, Job
+from app.scenes.rope import SCENE
 from app.scenes.rope.parameters import RopeParams
-from app.scenes.rope.scene import SCENE
 from app.server.loop.commands import CompileGate, Record
 
 

@@ -14,7 +14,7 @@ from app.scenes.rope.scene import RopeScene
 from app.server.loop.clock import PATIENCE
 from app.server.loop.commands import BEGINNING, NOTHING, STEPS
 from app.server.loop.sim_loop import SimLoop
-from app.server.loop.snapshots import MAX_BLIND_TIME
+from app.server.loop.snapshots import MAX_TIME_WITHOUT_FRAME
 from sim.interruption import STOP, TURN, InterruptionError, kept_whole, pieces, raise_if_stopped, use_request
 from sim.ocean.fluids.fluid_column import FluidColumn, _layer_roots
 from sim.ocean.spectra import SPECTRA
@@ -356,22 +356,22 @@ def test_a_picture_ends_for_other_forces_and_after_a_while_without_one_does_not(
     busy.run.running, busy.run.activity, busy.scene.frame = False, NOTHING, long_frame
     params = ask(busy, points=5)
     busy.run.snapshots.publish()
-    assert (ended, busy.run.snapshots.is_shown, busy.run.halted) == ([1], False, "")
+    assert (ended, busy.run.snapshots.is_current, busy.run.halted) == ([1], False, "")
     assert busy.latest.frame is earlier
     busy.run.request[STOP] = 0
     busy.tick(0.0)
-    assert (ended, busy.run.snapshots.is_shown) == ([1, 0], True)
+    assert (ended, busy.run.snapshots.is_current) == ([1, 0], True)
     assert busy.latest.params is params
     assert len(busy.latest.frame.points) == 5
-    busy.run.snapshots.whole_at -= MAX_BLIND_TIME
+    busy.run.snapshots.whole_at -= MAX_TIME_WITHOUT_FRAME
     ask(busy, points=6)
     busy.run.snapshots.publish()
     assert ended == [1, 0, 0]
-    assert busy.run.snapshots.is_shown
+    assert busy.run.snapshots.is_current
 
 
 def test_a_picture_that_was_ended_is_made_again_by_a_paused_lab(busy):
-    busy.run.running, busy.run.activity, busy.run.snapshots.is_shown = False, NOTHING, False
+    busy.run.running, busy.run.activity, busy.run.snapshots.is_current = False, NOTHING, False
     busy.tick(0.0)
     assert busy.latest.serial == 2
     busy.tick(0.0)

@@ -5,7 +5,7 @@ import pytest
 from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take, TogglePlay
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.race import scene as race
-from app.scenes.rope.scene import SCENE
+from app.scenes.rope import SCENE
 from app.server.loop.shared_clock import LEAD, Seat, SharedClock
 from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record

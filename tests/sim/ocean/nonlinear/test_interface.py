@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sim.floating import Body, Hull
-from sim.floating.float_in import float_in
+from sim.floating.motion.float_in import float_in
 from sim.ocean import Sea
 from sim.ocean.any_sea import SurfaceAt
 from sim.ocean.nonlinear import NonlinearSea, breather, modulated_waves

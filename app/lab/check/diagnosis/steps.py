@@ -1,0 +1,129 @@
+"""Names the mistake of a step of an integration method, from its tableau."""
+
+import functools
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from app.lab.check.diagnosis.equations import NEW, ComparedRow, RightMethod, compared, equations_of, method_of
+from app.lab.check.diagnosis.explanation import Explanation
+from app.lab.check.diagnosis.tableau import NoTableau, StepTableau, merged, order_of, pruned, read_tableau
+
+PARTS = {f"{NEW} x": "The new position is", f"{NEW} v": "The new velocity is"}
+
+
+def explain_step(
+    student: Callable[..., Any], methods: Sequence[Callable[..., Any]], *, with_velocity: bool
+) -> Explanation | None:
+    """Explain how a step differs from its method; None if it does not, or if it has no tableau.
+
+    methods: right solutions that differ, the usual one first. with_velocity: whether the acceleration depends on the
+    velocity.
+    """
+    try:
+        found = read_tableau(student, with_velocity=with_velocity)
+    except (NoTableau, ValueError, IndexError, TypeError):  # the last three: results of another shape
+        return None
+    references = [right_method(method, with_velocity=with_velocity) for method in methods]
+    best: tuple[list[ComparedRow], RightMethod] | None = None
+    for reference in references:
+        for own in (found, pruned(found), merged(pruned(found))):
+            if own.stages == reference.tableau.stages:
+                rows = compared(own, reference)
+                is_likely = reference is references[0] or count_wrong(rows) <= 1
+                if is_likely and (best is None or count_wrong(rows) < count_wrong(best[0])):
+                    best = rows, reference
+    if best is None:
+        return explain_stages(merged(pruned(found)), references[0].tableau)
+    rows, method = best
+    if not count_wrong(rows):
+        return None
+    first = next(row for row in rows if row.is_wrong)
+    name, text = mistake_of(first)
+    order = order_sentence(found, method.tableau)
+    return Explanation(name, f"{text} {order}".strip(), tuple(row.equation for row in rows), found.step)
+
+
+@functools.cache
+def right_method(step: Callable[..., Any], *, with_velocity: bool) -> RightMethod:
+    """A right step as a method."""
+    return method_of(read_tableau(step, with_velocity=with_velocity))
+
+
+def count_wrong(rows: Sequence[ComparedRow]) -> int:
+    return sum(row.is_wrong for row in rows)
+
+
+def explain_stages(found: StepTableau, reference: StepTableau) -> Explanation:
+    """The explanation of a step with more or fewer states than the method has."""
+    few, many = ("few", "more") if found.stages < reference.stages else ("many", "fewer")
+    number = "1 state" if found.stages == 1 else f"{found.stages} states"
+    text = f"It uses the acceleration at {number}; the method uses it at {many}."
+    order = order_sentence(found, reference)
+    return Explanation(f"too {few} stages", f"{text} {order}".strip(), tuple(equations_of(found)), found.step)
+
+
+def order_sentence(found: StepTableau, reference: StepTableau) -> str:
+    """The order of a method where it is lower than it must be."""
+    has, needs = order_of(found), order_of(reference)
+    if has >= needs:
+        return ""
+    return (
+        f"It has order {has} instead of {needs}."
+        if has
+        else "It does not come nearer to the motion with smaller steps."
+    )
+
+
+def mistake_of(row: ComparedRow) -> tuple[str, str]:
+    """The mistake of a wrong row, and the sentence about it."""
+    found, must = said_of(row), f"it must be {row.equation.right}."
+    if is_reversed(row):
+        return "sign reversed", f"{found}; {must}"
+    if is_chained(row):
+        return "stages chained", f"{found}; {must} Each stage starts from x and v, not from the stage before it."
+    if (weights := weights_of(row)) is not None:
+        return "weights do not add up to one", f"{found}; {must} The weights add up to {weights:.4g} instead of 1."
+    if change := step_change(row):
+        return f"h {change}", f"{found}; {must}"
+    return found[0].lower() + found[1:], must[0].upper() + must[1:]
+
+
+def said_of(row: ComparedRow) -> str:
+    """The student's row in words."""
+    if row.name in PARTS:
+        return f"{PARTS[row.name]} {row.equation.text}"
+    where = "at the position" if row.name[0] == "x" else "with the velocity"
+    return f"Acceleration a{row.name[1:]} is computed {where} {row.equation.text}"
+
+
+def is_reversed(row: ComparedRow) -> bool:
+    """True if each term has the other sign."""
+    return set(row.found) == set(row.right) and all(abs(c + row.right[term]) < 1e-9 for term, c in row.found.items())
+
+
+def is_chained(row: ComparedRow) -> bool:
+    """True if a row starts from a stage in place of the start of the step."""
+    own = row.name.removeprefix(f"{NEW} ")[0]
+    return (
+        (own, 0) in row.right
+        and (own, 0) not in row.found
+        and any(symbol[0] == own and symbol[1:].isdigit() for symbol, power in row.found if power == 0)
+    )
+
+
+def weights_of(row: ComparedRow) -> float | None:
+    """The sum of the weights of a result with the right terms; None where it is 1, or a term is another one."""
+    if row.name not in PARTS or set(row.found) != set(row.right) or len(row.right) < 3:
+        return None
+    total = sum(c for (_, power), c in row.found.items() if power == 1)
+    return None if abs(total - 1.0) < 1e-9 else total
+
+
+def step_change(row: ComparedRow) -> str:
+    """ "used twice" or "forgotten" where a term has another power of h than it must have, or ""."""
+    for (symbol, power), c in row.right.items():
+        if power > 0 and (symbol, power) not in row.found:
+            for change, words in ((1, "used twice"), (-1, "forgotten")):
+                if abs(row.found.get((symbol, power + change), 0.0) - c) < 1e-9:
+                    return words
+    return ""

@@ -1,0 +1,152 @@
+"""Judges a student's function: against the reference at random inputs, then by its behaviour.
+
+A wrong function is compared with the typical mistakes of its task, then looked at by its structure
+(`diagnosis/`): the tableau of a step, the terms of a sum. Any function can leave an argument unused.
+"""
+
+import dataclasses
+import time
+from pathlib import Path
+
+import numpy as np
+
+from app.lab.check.comparing import call, same
+from app.lab.check.diagnose import SEED, behave, diagnosed, explain
+from app.lab.check.diagnosis.effects import EFFECTS
+from app.lab.check.diagnosis.explanation import Equation
+from app.lab.check.student_function import StudentFunction
+from app.lab.checking import Wrong
+from app.lab.course.task import Task
+from app.lab.process.runner import BUSY, RunError, Runner
+from app.lab.student.source import read_source
+
+MAX_TRIES = 3  # of a check, on a machine that is too busy to start a process
+RETRY_INTERVAL = 0.5  # [s] between two of them
+SAMPLES = 12  # random inputs
+TWICE = 3  # of them are tried twice
+
+
+@dataclasses.dataclass(frozen=True)
+class Verdict:
+    """Result of the check of one function.
+
+    state: "not begun", "right", "wrong", "failed" (no result), or "not checked" (the machine is too busy). mistake: the
+    name of a recognised mistake, or "". place: file and line of a mistake, as an editor takes it: "rope.py:17"; "" if
+    it is unknown. file: the file that does not run, whatever function of it is asked for, or "". equations: what a
+    wrong function does, beside the right ones.
+    """
+
+    state: str
+    text: str = ""
+    mistake: str = ""
+    place: str = ""
+    file: str = ""
+    equations: tuple[Equation, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """The mistake in words."""
+        named = f"{self.mistake}: " if self.state == "wrong" and self.mistake else ""
+        if self.file:
+            file, _, line = self.place.partition(":")
+            where = ", ".join([*([file] if file != self.file else []), *([f"line {line}"] if line else [])])
+            named = f"{self.file} does not run: {where}{': ' if where else ''}"
+        return named + self.text + ("" if self.text.endswith((".", "?", "!")) else ".")
+
+    @property
+    def located(self) -> str:
+        """The mistake in words, after its place."""
+        return self.sentence if self.file or not self.place else f"{self.place}: {self.sentence}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Points:
+    """A curve of the student's function beside the reference. student: None where it has no result."""
+
+    x_label: str
+    y_label: str
+    x: np.ndarray
+    reference: np.ndarray
+    student: np.ndarray | None
+
+
+def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
+    """Judge the student's function of a programming task."""
+    try:
+        source = read_source((folder / task.file).read_bytes())
+    except OSError:  # the call says what is wrong with the file
+        source = read_source(b"")
+    if not source.is_begun(task.name):
+        return Verdict("not begun")
+    verdict = judged(runner, task, source.line_of(task.name))
+    for _ in range(1, MAX_TRIES):
+        if verdict.state != "not checked":
+            break
+        time.sleep(RETRY_INTERVAL)
+        verdict = judged(runner, task, source.line_of(task.name))
+    return verdict
+
+
+def not_checked(why: str) -> Verdict:
+    """The verdict on a function that could not be run by no fault of its own."""
+    return Verdict("not checked", f"could not be checked ({why})")
+
+
+def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
+    """As `check_program`, of a function that is begun, once. line: on which it begins."""
+    student = StudentFunction(runner, task)
+    try:
+        compare(student)
+        behave(student)
+        check_exactly(student)
+    except RunError as error:
+        place = place_of(error.file, error.line)
+        if error.kind == BUSY:
+            return not_checked(error.text)
+        if error.kind in EFFECTS:
+            return Verdict("wrong", error.text, error.kind, place)
+        return Verdict("failed", error.text, error.kind, place, task.file if error.loading else "")
+    except Wrong as error:
+        place = place_of(task.file, error.line or line)
+        return Verdict("wrong", str(error), error.mistake, place, equations=error.equations)
+    return Verdict("right")
+
+
+def place_of(file: str, line: int | None) -> str:
+    """A place in a student's folder, as editors take it."""
+    return f"{file}:{line}" if line else file
+
+
+def draw(runner: Runner, task: Task) -> Points | None:
+    """The curve of a task for the report; None where the task has none."""
+    curve = getattr(task.check, "CURVE", None)
+    if curve is None:
+        return None
+    x = np.asarray(curve.x, np.float64)
+    reference = np.asarray(curve.values(task.function, x), np.float64)
+    try:
+        found = np.asarray(curve.values(StudentFunction(runner, task, is_watched=False), x), np.float64)
+    except (RunError, Wrong, ValueError, IndexError):  # its message stands above the curve
+        found = None
+    if found is not None and found.shape != x.shape:
+        found = None
+    return Points(curve.x_label, curve.y_label, x, reference, found)
+
+
+def compare(student: StudentFunction) -> None:
+    """Compare with the reference at random inputs. Raises RunError or Wrong."""
+    check = student.task.check
+    rng = np.random.default_rng(SEED)
+    trials = [student.trial(tuple(check.inputs(rng)), twice=i < TWICE) for i in range(SAMPLES)]  # type: ignore[union-attr]
+    if all(trial.is_right for trial in trials):
+        return
+    alternatives = getattr(check, "ALTERNATIVES", ())
+    if any(all(same(t.found, student.normalised(call(other, t.sample))) for t in trials) for other in alternatives):
+        return
+    raise diagnosed(student, trials)
+
+
+def check_exactly(student: StudentFunction) -> None:
+    """Raises Wrong for a step whose coefficients differ by less than the results may."""
+    if hasattr(student.task.check, "METHOD") and (why := explain(student)) is not None:
+        raise Wrong(why.text, why.mistake, why.equations)

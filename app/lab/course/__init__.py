@@ -1,0 +1,1 @@
+"""The course: tasks, the student's folder, the workbook and its answers."""

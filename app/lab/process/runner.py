@@ -1,0 +1,486 @@
+"""Runs a student's functions in a separate process: nothing that they do harms the lab.
+
+A call that takes more than 2 s of processor time is ended with its process, and the next call gets a new one. What went
+wrong is a `RunError`, which says what and where in words for the student. A process that does not get the processor
+(`call_limit.py`), that cannot be started, or that ends because the one that forked it has ended, is no fault of the
+functions: the error has the kind `BUSY`, for a lost process after some tries.
+"""
+
+import ast
+import contextlib
+import os
+import queue
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from collections.abc import Callable, Collection, Sequence
+from pathlib import Path
+from typing import IO, Any, TypeAlias
+
+import numpy as np
+
+from app.lab.process.call_limit import ASLEEP, COMPUTING, CallLimit
+from app.lab.process.call_limit import BUSY as BUSY_MACHINE
+from app.lab.process.cloth_march import FILE as CLOTH_FILE
+from app.lab.process.job import end_with_this_program, kill_with_children
+from app.lab.process.rope_march import FILE as ROPE_FILE
+from app.lab.process.rope_march import MarchResult, Segment, packed
+from app.lab.process.shared import COMPILES, FORKS, TRACE_SIGNAL
+from app.lab.process.tabulate import Interval
+from app.lab.process.template import Forked, Template, can_fork
+from app.lab.process.wire import pack, receive, send, unpack
+from app.lab.student.source import decoded
+
+TIME_LIMIT = 2.0  # [s] of one call
+LOAD_LIMIT = 10.0  # [s] until a new process is ready, which imports numpy; longer at each further try
+MAX_LOAD_LIMIT = 90.0  # [s]
+MAX_TRIES = 3  # of a call whose process is lost
+BUSY = "busy"  # kind of an error that is no fault of the student's functions
+EDITS_LIMIT = 2.0  # [s] for the edits of a function
+COMPILE_LIMIT = 60.0  # [s] for compiling
+TABLE_ROWS = 512  # of a table that are computed in one call
+TRACE_TIME = 0.2  # [s] for which a process that does not answer may take to say where it is
+MAX_TRACE = 2**16  # [bytes] of what it says
+FRAME = re.compile(r'File "(.+)", line (\d+) in (.+)')  # as faulthandler writes it
+ESCAPED = re.compile(r"\\x[0-9a-f]{2}|\\u[0-9a-f]{4}|\\U[0-9a-f]{8}")  # its characters beyond ASCII
+ROOT = Path(__file__).resolve().parents[3]  # the folder that holds `app`
+START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.process.worker import main; main()"
+COMMAND = (sys.executable, "-P", "-c", START, str(ROOT))
+TEMPLATE = Template() if can_fork() else None  # of all runners
+Process: TypeAlias = subprocess.Popen[bytes] | Forked
+
+
+class RunError(Exception):
+    """A student's function did not come to a result.
+
+    kind: "missing", "syntax", "raised", "endless", "ended", "memory", "printed", `BUSY`, or of a march those of
+    `rope_march.Unfit`. file, line: in the student's folder. loading: the file itself does not run, so that each of its
+    functions fails.
+    """
+
+    def __init__(self, kind: str, text: str, file: str, line: int | None = None, *, loading: bool = False) -> None:
+        super().__init__(text)
+        self.kind = kind
+        self.text = text
+        self.file = file
+        self.line = line
+        self.loading = loading
+
+    def __str__(self) -> str:
+        return f"{self.file}, line {self.line}: {self.text}" if self.line else f"{self.file}: {self.text}"
+
+
+class LostError(Exception):
+    """The process of a call has ended with its template."""
+
+
+class Runner:
+    """The functions in the Python files of one folder. Use it in a `with` block, which ends its process."""
+
+    def __init__(self, folder: Path, time_limit: float = TIME_LIMIT, *, compiles: bool = False) -> None:
+        """time_limit: [s] of one call. compiles: the process has numba, and a low priority."""
+        self.folder = folder.resolve()
+        self.time_limit = time_limit
+        self.compiles = compiles
+        self.starts = 0  # processes started
+        self.effort = 0.0  # [s] of processor time that calls have taken
+        self.is_fresh = False  # its process runs, and does not know the folder yet: another may be set
+        self._parsed: set[str] = set()  # files without an error of syntax
+        self._loaded: set[str] = set()  # files that the process has run
+        self._broken: dict[str, RunError] = {}  # file -> why it does not run: it is not tried for each function
+        self._load_limit = LOAD_LIMIT
+        self._process: Process | None = None
+        self._aborted = False
+        self._trace: IO[bytes] | None = None  # where the process writes, when it is asked, where it is
+        self._place: tuple[str, int, str] | None = None  # file, line and function, of a process that tells it unasked
+        self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
+
+    def __enter__(self) -> "Runner":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def call(self, file: str, function: str, *arguments: Any) -> Any:
+        """Result of a function: None, numbers, texts, arrays, lists and tuples of these, or `Foreign`.
+
+        Functions among the arguments are computed here when the student's function calls them. Raises RunError.
+        """
+        return self._ask("call", file, function, list(arguments))
+
+    def watch(self, file: str, function: str, *arguments: Any, twice: bool) -> Any:
+        """As `call`, of a function that does nothing besides its result. twice: two equal calls are compared.
+
+        Raises RunError with a kind of `effects.EFFECTS` too.
+        """
+        return self._ask("watch", file, function, [twice, list(arguments)])
+
+    def edits(self, file: str, function: str, *arguments: Any, far: bool) -> list[Any]:
+        """Functions that differ from one by one edit: number, before, after, line, condition and result of each.
+
+        far: the less likely edits. Raises RunError.
+        """
+        found = self._ask("edits", file, function, [far, list(arguments)], EDITS_LIMIT)
+        return found if isinstance(found, list) else []
+
+    def edited(self, file: str, function: str, number: int, *arguments: Any) -> Any:
+        """As `call`, of one of the last `edits`."""
+        return self._ask("edited", file, function, [number, list(arguments)])
+
+    def march(
+        self, own: Collection[str], step: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment]
+    ) -> MarchResult:
+        """Advance a rope (`rope_march.py`), or a cloth (`cloth_march.py`), by the student's functions.
+
+        own: names of the functions that the student has begun. step: name of the method's function. x, v: (n, 3).
+        segments: one or more, of one rope or one cloth. Raises RunError.
+        """
+        sheet = segments[0].sheet
+        arguments = [sorted(own), step, sheet, x, v, [packed(segment) for segment in segments]]
+        file = ROPE_FILE if sheet is None else CLOTH_FILE
+        answer = self._ask("march", file, step, arguments)
+        if not is_march(answer, x.shape):
+            self.close()
+            raise RunError("ended", f"{step} wrote into the pipe of the lab", file)
+        return MarchResult(*answer)
+
+    def table(
+        self, file: str, function: str, columns: Sequence[np.ndarray], shape: tuple[int, ...] | None, allowed: Interval
+    ) -> np.ndarray:
+        """(n, *shape) results of a function for each row of its arguments (`tabulate.py`). Raises RunError.
+
+        columns: (n, ...) each. shape: None for the number of entries of each result. The limit in time is that of each
+        `TABLE_ROWS` rows.
+        """
+        parts: list[np.ndarray] = []
+        for first in range(0, len(columns[0]), TABLE_ROWS):
+            rows = [column[first : first + TABLE_ROWS] for column in columns]
+            part = self._ask("table", file, function, [rows, shape, list(allowed)])
+            is_table = isinstance(part, np.ndarray) and part.dtype == np.float64
+            if not is_table or part.shape != (len(rows[0]), *(shape or ())) or not np.isfinite(part).all():
+                self.close()
+                raise RunError("ended", f"{function} wrote into the pipe of the lab", file)
+            parts.append(part)
+        return np.concatenate(parts)
+
+    def compile(self, own: Collection[str]) -> tuple[list[str], str]:
+        """Compile the functions that move a rope, for later marches; which could be, and why others could not.
+
+        Raises RunError.
+        """
+        names, why = self._ask("compile", ROPE_FILE, "numba", [sorted(own)], COMPILE_LIMIT)
+        return names, why
+
+    def abort(self) -> None:
+        """End the process from another thread: a call that is under way fails at once, and so does each later one."""
+        self._aborted = True
+        process = self._process
+        if process is not None:
+            with contextlib.suppress(OSError):  # it has ended already
+                process.kill()
+
+    def enter(self, folder: Path) -> None:
+        """Work in another folder; possible as long as nothing was called."""
+        self.folder = folder.resolve()
+
+    def start(self) -> None:
+        """Start the process, so that the next call does not wait for that. Raises RunError where it does not start."""
+        self._ready()
+
+    def _ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
+        """Answer of the process to a message. function: its name for errors. time_limit: [s], or None."""
+        if self._aborted:
+            raise RunError("ended", "the lab has ended the process", file)
+        if not (self.folder / file).is_file():
+            raise RunError("missing", "there is no such file", file)
+        if file in self._broken:
+            raise self._broken[file]
+        if file not in self._parsed:
+            check_syntax(self.folder / file)
+            self._parsed.add(file)
+        try:
+            for _ in range(MAX_TRIES):
+                functions: list[Callable[..., Any]] = []
+                with contextlib.suppress(LostError):
+                    return self._answer(kind, file, function, arguments, time_limit or self.time_limit, functions)
+                if functions:  # they may have been called, and are not to be called twice for one call
+                    break
+        except RunError as error:
+            if error.loading:
+                self._broken[file] = error
+            raise
+        raise RunError(BUSY, "the machine is busy: the process of the call was lost", file)
+
+    def _answer(
+        self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float,
+        functions: list[Callable[..., Any]],
+    ) -> Any:  # fmt: skip
+        """As `_ask`, by the present process. functions: takes those among the arguments. Raises LostError, RunError."""
+
+        def refer(function: Callable[..., Any]) -> int:
+            functions.append(function)
+            return len(functions) - 1
+
+        process = self._ready()
+        if self.is_fresh:
+            self._say(process, ["folder", str(self.folder)])
+            self.is_fresh = False
+        limit, self._place = CallLimit(process.pid, time_limit), None
+        self._say(process, [kind, file, function, pack(arguments, refer)])
+        while True:
+            answer = self._next(limit, file, function)
+            try:
+                if answer[0] == "result":
+                    self.effort += float(answer[2])
+                    return unpack(answer[1], lambda _: None)
+                if answer[0] == "loaded":
+                    self._loaded.add(file)
+                    continue
+                if answer[0] == "at":
+                    _, where, line, inner, used = answer
+                    self._place = (str(where), int(line), str(inner)) if line else None
+                    limit.note(float(used))
+                    continue
+                if answer[0] == "failed":
+                    _, kind, text, where, line, loading = answer
+                    line = line if isinstance(line, int) else None
+                    raise RunError(str(kind), str(text), str(where), line, loading=bool(loading))
+                reply = compute(functions, answer)
+            except RunError as error:
+                if error.kind == "memory":
+                    self.close()  # what it holds is given back
+                raise
+            except (LookupError, TypeError, ValueError):
+                self.close()
+                raise RunError("ended", f"{function} wrote into the pipe of the lab", file) from None
+            self._say(process, reply)
+
+    def close(self) -> None:
+        """End the process, and all that it has started."""
+        process, trace = self._process, self._trace
+        self._process, self._trace, self.is_fresh, self._loaded = None, None, False, set()
+        if process is None:
+            return
+        if process.returncode is None:  # else its number, and its group's, may be another process's by now
+            with contextlib.suppress(OSError):
+                kill_group(process)
+        if has_ended(process):
+            dispose(process, trace)
+        else:  # one of a low priority needs the processor to die, which can take seconds on a busy machine
+            threading.Thread(target=dispose, args=(process, trace), daemon=True).start()
+
+    def _ready(self) -> Process:
+        """The process, started unless it runs already. Raises RunError where it does not start."""
+        if self._process is not None and not has_ended(self._process):
+            return self._process
+        self.close()
+        self.starts += 1
+        # One thread for linear algebra: more would count as memory, and the arrays are small.
+        surroundings = {
+            **os.environ,
+            "OPENBLAS_NUM_THREADS": "1",
+            "OMP_NUM_THREADS": "1",
+            "PYTHONDONTWRITEBYTECODE": "1",
+        }
+        try:
+            process = self._process = self._started(surroundings)
+        except OSError as error:  # no more processes, files or memory
+            why = error.strerror or str(error) or type(error).__name__
+            raise RunError(BUSY, f"the machine is busy: no process can be started: {why}", "Python") from error
+        if self._aborted:
+            process.kill()
+        self._answers = queue.SimpleQueue()
+        threading.Thread(target=read_answers, args=(process, self._answers), daemon=True).start()
+        try:
+            limit = CallLimit(process.pid, self._load_limit, wall=self._load_limit)
+            self._next(limit, "Python", "the start of a process")
+        except (LostError, RunError) as error:
+            if self._aborted:
+                raise
+            self._load_limit = min(3.0 * self._load_limit, MAX_LOAD_LIMIT)
+            raise RunError(
+                BUSY, f"the machine is busy: no process can be started: {error or 'it was lost'}", "Python"
+            ) from None
+        self._load_limit = LOAD_LIMIT
+        self.is_fresh = True
+        return process
+
+    def _started(self, surroundings: dict[str, str]) -> Process:
+        """A new process; these are the environment variables of one that is not forked. Raises OSError."""
+        trace = self._trace = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
+        if TEMPLATE is not None:
+            return TEMPLATE.fork((*COMMAND, FORKS), surroundings, trace.fileno(), compiles=self.compiles)
+        process = subprocess.Popen(
+            [*COMMAND, str(trace.fileno()), COMPILES if self.compiles else ""],
+            pass_fds=(trace.fileno(),) if TRACE_SIGNAL is not None else (),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env=surroundings,
+            start_new_session=True,  # Ctrl-C in the terminal is the lab's to handle; see also `lower_priority`
+        )
+        end_with_this_program(process, background=self.compiles)
+        return process
+
+    def _where(self) -> tuple[str, int, str] | None:
+        """File, line and function of the student's at which the process is; None where that cannot be found out."""
+        if self._process is None or self._trace is None or TRACE_SIGNAL is None:
+            return self._place
+        return traced(self._process, self._trace, self.folder)
+
+    def _is_loading(self, file: str) -> bool:
+        """True if the process has not yet run a file to its end."""
+        return file not in self._loaded and (self.folder / file).is_file()
+
+    def _say(self, process: Process, message: list[Any]) -> None:
+        """Send a message; a process that has ended is noticed at the next answer."""
+        assert process.stdin is not None
+        with contextlib.suppress(OSError):
+            send(process.stdin, message)
+
+    def _next(self, limit: CallLimit, file: str, function: str) -> list[Any]:
+        """The next message of the process. Raises RunError where none comes in time, or the process has ended.
+
+        Raises LostError where it has ended with its template.
+        """
+        while (state := limit.look()) == COMPUTING:
+            with contextlib.suppress(queue.Empty):
+                answer = self._answers.get(timeout=limit.patience)
+                break
+        else:
+            place, loading = self._where(), self._is_loading(file)
+            self.close()
+            where, line, inner = place or (file, None, file if loading else function)
+            inner = where if inner == "<module>" else inner
+            if state == BUSY_MACHINE:
+                text = f"{inner} got {limit.taken:.2g} s of the processor within {limit.wall:g} s"
+                raise RunError(BUSY, f"the machine is busy: {text}", where, line)
+            why = "it waits, and does not compute" if state == ASLEEP else "is there an infinite loop?"
+            text = f"{inner} did not finish within {limit.seconds:g} s: {why}"
+            raise RunError("endless", text, where, line, loading=loading)
+        if answer is None:
+            process, loading = self._process, self._is_loading(file)
+            if process is not None:
+                has_ended(process, block=True)
+            self.close()
+            if isinstance(process, Forked) and process.is_orphan and not self._aborted:
+                raise LostError
+            status = process.returncode if process is not None else None
+            how = f"signal {-status}" if status is not None and status < 0 else f"exit status {status}"
+            raise RunError("ended", f"{file if loading else function} ended its process ({how})", file, loading=loading)
+        return answer
+
+
+def traced(process: Process, trace: IO[bytes], folder: Path) -> tuple[str, int, str] | None:
+    """File, line and function of a folder at which a process is as it writes them when it gets `TRACE_SIGNAL`."""
+    assert TRACE_SIGNAL is not None
+    before = os.fstat(trace.fileno()).st_size
+    with contextlib.suppress(OSError):  # it has ended
+        process.send_signal(TRACE_SIGNAL)
+    end = time.monotonic() + TRACE_TIME
+    while time.monotonic() < end:
+        time.sleep(0.01)
+        text = ESCAPED.sub(unescaped, os.pread(trace.fileno(), MAX_TRACE, before).decode("ascii", "replace"))
+        for file, line, function in FRAME.findall(text):
+            if Path(file).parent == folder:
+                return Path(file).name, int(line), function
+    return None
+
+
+def unescaped(escaped: "re.Match[str]") -> str:
+    """The character of an escape sequence of `ESCAPED`."""
+    return chr(int(escaped[0][2:], 16))
+
+
+def check_syntax(path: Path) -> None:
+    """Raises RunError for a file that cannot be parsed, in the words of the process, which is not needed for it."""
+    try:
+        ast.parse(decoded(path.read_bytes()))
+    except SyntaxError as error:
+        text = f"{type(error).__name__}: {error.msg}"
+        raise RunError("syntax", text, path.name, error.lineno, loading=True) from None
+    except (OSError, ValueError, RecursionError, MemoryError):  # which the process meets as well
+        pass
+
+
+def read_answers(process: Process, answers: "queue.SimpleQueue[list[Any] | None]") -> None:
+    """Put every message of the process into the queue, and None at its end."""
+    assert process.stdout is not None
+    while True:
+        try:
+            answer = receive(process.stdout)
+        except (OSError, ValueError):  # closed from here
+            answer = None
+        answers.put(answer)
+        if answer is None:
+            return
+
+
+def kill_group(process: Process) -> None:
+    """Kill a process and all that it has started. Raises OSError where that is not possible."""
+    if isinstance(process, Forked) and process.is_orphan and process.has_ended():
+        return  # it has done so itself, and its number may be another's by now
+    with contextlib.suppress(ProcessLookupError):  # just forked: it has no group yet, and has started nothing
+        if os.name == "posix":
+            os.killpg(process.pid, signal.SIGKILL)
+            return
+    if isinstance(process, Forked):
+        process.kill()
+    else:
+        kill_with_children(process)
+
+
+def dispose(process: Process, trace: IO[bytes] | None) -> None:
+    """Wait for the end of a process, reap it, and close its files."""
+    has_ended(process, block=True)
+    for stream in (process.stdin, process.stdout, trace):
+        with contextlib.suppress(OSError):  # what was not yet sent is dropped
+            if stream is not None:
+                stream.close()
+    process.wait()
+
+
+def has_ended(process: Process, *, block: bool = False) -> bool:
+    """Return whether a process has ended, and leave it unreaped where the system can: its group keeps its number.
+
+    block: wait until it has.
+    """
+    if isinstance(process, Forked):
+        return process.has_ended(block=block)
+    if process.returncode is None and hasattr(os, "waitid"):  # not on Windows, nor on macOS before Python 3.13
+        with contextlib.suppress(ChildProcessError):  # another thread has reaped it
+            return os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT | (0 if block else os.WNOHANG)) is not None
+    if block:
+        process.wait()
+    return process.poll() is not None
+
+
+def unexpected(error: Exception, file: str) -> RunError:
+    """An error of the lab's own as one for the panel; its traceback goes to the terminal."""
+    traceback.print_exception(error)
+    return RunError("ended", f"the lab could not run your functions: {type(error).__name__}: {error}", file)
+
+
+def is_march(answer: Any, shape: tuple[int, ...]) -> bool:
+    """True if an answer holds what a `MarchResult` of points (n, 3) does: a student's function may have forged it."""
+    if not isinstance(answer, tuple) or len(answer) != len(MarchResult._fields):
+        return False
+    x, v, steps, seconds, effort, left = answer
+    arrays = all(isinstance(array, np.ndarray) and array.dtype == np.float64 for array in (x, v))
+    times = isinstance(seconds, float) and isinstance(effort, float)
+    numbers = times and isinstance(steps, int) and isinstance(left, bool)
+    return arrays and numbers and x.shape == (len(x), *shape) and v.shape == shape
+
+
+def compute(functions: list[Callable[..., Any]], answer: list[Any]) -> list[Any]:
+    """The reply to a callback: the value, or why these arguments are refused."""
+    function, arguments = functions[answer[1]], unpack(answer[2], lambda _: None)
+    try:
+        return ["value", pack(function(*arguments), lambda _: 0)]
+    except Exception as error:  # whatever the student's function handed over
+        return ["refused", f"the function that was handed over cannot take these arguments: {error}"]

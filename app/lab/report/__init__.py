@@ -1,0 +1,1 @@
+"""Pages on results: the one to hand in, and the teacher's."""

@@ -1,0 +1,1 @@
+"""A student's saved functions while a lab runs: versions, and the scenes that run by them."""

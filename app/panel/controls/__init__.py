@@ -1,0 +1,1 @@
+"""The controls of a scene's parameters, and the texts among them."""

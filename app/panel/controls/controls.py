@@ -1,0 +1,81 @@
+"""The controls of a scene's parameters, which show and set one record."""
+
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import viser
+
+from app.messages import BaseParams
+from app.panel.controls.control import Control
+from sim.parameters import Value, parameters_of
+
+
+class Controls(Mapping[str, Control]):
+    """All controls of a panel, one a parameter under its name, in the folders of their groups."""
+
+    def __init__(
+        self, gui: viser.GuiApi, read: Callable[[], BaseParams], changed: Callable[[str, Value], None]
+    ) -> None:
+        """read: returns the present record. changed: takes a value that a browser sets."""
+        self.gui, self.read, self.changed = gui, read, changed
+        self.parameters = parameters_of(read())
+        self.own: dict[str, Control] = {}
+        self.again: list[Control] = []  # controls of parameters that are shown a second time, as in a task
+        self.hidden: set[str] = set()  # names of parameters that mean nothing just now
+        self.lock = threading.Lock()  # the viewer thread shows others again, the event loop sets them
+        self.folders: dict[str, viser.GuiFolderHandle] = {}
+
+    def __getitem__(self, name: str) -> Control:
+        return self.own[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.own)
+
+    def __len__(self) -> int:
+        return len(self.own)
+
+    def add_group(self, group: str, *, is_open: bool) -> None:
+        """The folder of a group of parameters, where there are any, in the container that is open."""
+        names = [name for name, parameter in self.parameters.items() if parameter.group == group]
+        if not names:
+            return
+        self.folders[group] = folder = self.gui.add_folder(group, expand_by_default=is_open)
+        with folder:
+            for name in names:
+                self.own[name] = self.make(folder, name)
+
+    def show_again(self, names: Sequence[str], folder: viser.GuiFolderHandle) -> None:
+        """Show these parameters a second time, in a folder, in place of those shown there before."""
+        with folder:
+            made = [self.make(folder, name) for name in names]
+        with self.lock:
+            before, self.again = self.again, made
+            for control in before:
+                control.remove()
+        self.show(self.hidden)
+
+    def make(self, folder: viser.GuiFolderHandle | viser.GuiTabHandle, name: str) -> Control:
+        """A control of a parameter, in the container that is open."""
+        return Control(
+            self.gui, folder, name, self.parameters[name], lambda: getattr(self.read(), name), self.on_change
+        )
+
+    def on_change(self, name: str, value: Value) -> None:
+        """A control was set."""
+        self.changed(name, value)
+        with self.lock:
+            for control in (self.own[name], *self.again):
+                if control.name == name:
+                    control.show_value(value)
+
+    def show(self, hidden: set[str]) -> None:
+        """Show the record; hide the controls that mean nothing just now, and the folders in which nothing is left."""
+        self.hidden = hidden
+        params = self.read()
+        with self.lock:
+            for control in (*self.own.values(), *self.again):
+                control.show_value(getattr(params, control.name))
+                control.show(control.name not in hidden)
+        shown = {self.parameters[name].group for name in self.own if name not in hidden}
+        for group, folder in self.folders.items():
+            folder.visible = group in shown

@@ -1,0 +1,92 @@
+"""The tab "Controls": the parameters by their groups, the readings among them, the stability map, and the help."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, cast
+
+import viser
+
+from app.messages import RunOn
+from app.panel.controls.controls import Controls
+from app.panel.controls.readings import Readings
+from app.panel.controls.remedy import ControlRemedies
+from app.panel.keys import KEYS
+from app.panel.settings import SceneSettings
+from app.render.handles.viser_types import ViserEvent
+from app.render.markup.html import Html, fill, note
+from app.scenes.contract import AnySnapshot, AnyView, Awaited, SpringParams
+
+if TYPE_CHECKING:
+    from app.panel.controls.stability_map import StabilityMapPanel
+
+OPEN_GROUP = "Main"  # the group of parameters that starts open
+VIEW_GROUPS = ("Look", "Plots")  # the groups that stand in the tab of the view
+
+
+class ControlsTab:
+    """Content of the tab, which is the container that is open where this is made."""
+
+    def __init__(
+        self, gui: viser.GuiApi, view: AnyView, settings: SceneSettings, controls: Controls, tab: viser.GuiTabHandle
+    ) -> None:
+        """controls: all but those of the view are added here."""
+        self.gui, self.view, self.settings, self.controls = gui, view, settings, controls
+        self.remedies = ControlRemedies(gui, controls, settings.follow)
+        for name in dict.fromkeys(parameter.group for parameter in controls.parameters.values()):
+            if name not in VIEW_GROUPS:
+                controls.add_group(name, is_open=name == OPEN_GROUP)
+            if name == OPEN_GROUP:
+                event = settings.kind.awaited
+                self.run_on = None if event is None else self.add_run_on(event)
+                self.readings = Readings(gui, view, tab, lambda command: settings.post(command))
+        self.map = self.add_map()
+        with gui.add_folder("Help", expand_by_default=False):
+            self.help = gui.add_html("")
+
+    def add_run_on(self, event: Awaited) -> viser.GuiButtonHandle:
+        """The button that runs on to an event."""
+        button = self.gui.add_button(event.label, visible=event.offered(self.settings.params), hint=event.hint)
+
+        @button.on_click
+        async def _(_: ViserEvent) -> None:
+            self.settings.post(RunOn(event.reached))
+
+        return button
+
+    def add_map(self) -> "StabilityMapPanel | None":
+        """The folder of the stability map; None if the scene has no map."""
+        scene = self.settings.kind.stability_map
+        if scene is None:
+            return None
+        from app.panel.controls import stability_map
+
+        read = cast(Callable[[], SpringParams], lambda: self.settings.params)
+        with self.gui.add_folder("Stability map", expand_by_default=False):
+            return stability_map.StabilityMapPanel(self.gui, scene, read, self.settings.set_all)
+
+    def show_settings(self) -> None:
+        """Show the settings beside the controls: the help, and whether there is an event to run on to."""
+        settings, kind = self.settings, self.settings.kind
+        if self.run_on is not None and kind.awaited is not None:
+            self.run_on.visible = kind.awaited.offered(settings.params)
+        self.help.content = note(fill("{} {}<br>{}", Html(kind.help), kind.about.get(settings.loaded, ""), KEYS))
+
+    def show_readings(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:
+        """Bring the scene's texts up to date. hidden: headings that would answer a question of the workbook."""
+        self.readings.show(snapshot, hidden)
+
+    def show_marks(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:
+        """Bring the lines under the controls, the advice there and the stability map up to date.
+
+        hidden: names of lines that would answer a question of the workbook.
+        """
+        for name, text in self.view.marks(snapshot).items():
+            self.controls[name].write("" if name in hidden else text)
+        if self.settings.kind.advice is not None:
+            self.remedies.show(self.settings.kind.advice(snapshot))
+        if self.map is not None:
+            self.map.draw()
+
+    def close(self) -> None:
+        """Stop the threads of the tab."""
+        if self.map is not None:
+            self.map.close()

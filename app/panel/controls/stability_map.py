@@ -1,0 +1,259 @@
+"""The map of the open scene over step and stiffness: measured on request, drawn in the panel, clickable.
+
+viser has no picture that answers a click. The map is SVG in an HTML element. Its click handler moves a hidden slider
+of two handles; from there on a click is a change like any other, which `app/server/web/guard.py` bounds.
+Of viser's inner names the handler uses `window.__viserMutable.sendMessage`; `tests/browser/test_rope.py` clicks it.
+"""
+
+import dataclasses
+import itertools
+import math
+import threading
+import traceback
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from app.formats.formatting import SUPERSCRIPTS
+from app.render.colormap import OUTCOME_COLOURS
+from app.render.handles.viser_inside import uuid_of
+from app.render.handles.viser_types import ViserEvent
+from app.render.markup.html import note
+from app.scenes.contract import SpringParams, StabilityMap
+from sim.parameters import Parameter, parameters_of
+from sim.springs import INTEGRATORS, Integrator, Net
+from sim.springs.analysis.stability_map import MapRow, map_row
+from sim.springs.automatic import AUTO, choose_for_step
+from sim.validation import ConvergenceError
+
+ROWS, COLS = 20, 28
+DECADES = 1.5  # of step and of stiffness to each side of where the parameters stand
+WORK = 200_000  # steps times points that a cell may take
+LEFT, TOP, WIDE, HIGH = 46.0, 6.0, 246.0, 168.0  # of the map within its picture
+PICTURE = (300.0, 210.0)
+
+
+class Axes(NamedTuple):
+    """Request for a map."""
+
+    params: SpringParams
+    parameter: str  # of the stiffness
+    steps: NDArray[np.float64]  # (COLS,) [s]
+    stiffnesses: NDArray[np.float64]  # (ROWS,) in the parameter's unit
+
+    def is_of(self, params: SpringParams) -> bool:
+        """True if nothing but step and stiffness has changed since."""
+        moved = {"time_step": params.time_step, self.parameter: getattr(params, self.parameter)}
+        return shown(dataclasses.replace(self.params, **moved)) == shown(params)
+
+
+def shown(params: SpringParams) -> tuple[object, ...]:
+    """The values that a map depends on."""
+    names = [name for name, parameter in parameters_of(params).items() if parameter.affects != "look"]
+    return tuple(getattr(params, name) for name in names)
+
+
+def span(parameter: Parameter, value: float, count: int) -> NDArray[np.float64]:
+    """Values (count,) about `value`, even in their logarithms, within the parameter's range."""
+    low = max(value / 10.0**DECADES, parameter.log_from)
+    high = max(min(value * 10.0**DECADES, parameter.high), 1.01 * low)
+    return low * (high / low) ** np.linspace(0.0, 1.0, count)
+
+
+def axes_of(params: SpringParams, parameter: str) -> Axes:
+    """The axes of a map about where the parameters stand."""
+    known = parameters_of(params)
+    return Axes(
+        params,
+        parameter,
+        span(known["time_step"], params.time_step, COLS),
+        span(known[parameter], getattr(params, parameter), ROWS),
+    )
+
+
+def method_of(params: SpringParams, net: Net) -> Integrator:
+    """The method that runs."""
+    if params.integrator == AUTO:
+        return choose_for_step(net, params.time_step).integrator
+    return INTEGRATORS[params.integrator]
+
+
+def measure_row(scene: StabilityMap, axes: Axes, stiffness: float) -> MapRow:
+    """Growth of the scene's network at rest at each step of the map."""
+    params = dataclasses.replace(axes.params, **{axes.parameter: stiffness})
+    net = scene.build(params)
+    return map_row(method_of(params, net), net, axes.steps, min(max(WORK // params.points, 256), 4096))
+
+
+class StabilityMapPanel:
+    """The map in the panel: a button, the picture, and a separate thread while it is measured."""
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        scene: StabilityMap,
+        read: Callable[[], SpringParams],
+        take: Callable[[Mapping[str, float]], None],
+    ) -> None:
+        """read: the parameters as set now; take: sets parameters at once, on viser's event loop."""
+        self.scene, self.read, self.take = scene, read, take
+        self.button = gui.add_button(
+            "Measure the map", hint="Measures which time steps and stiffnesses are stable; click the map to go there"
+        )
+        self.html = gui.add_html("")
+        self.click = gui.add_multi_slider(" ", 0.0, 1.0, step=1e-4, initial_value=(0.0, 0.0), visible=False)
+        self.axes: Axes | None = None
+        self.rows: list[MapRow] = []
+        self.problem = ""  # why there is no map, or no more of it
+        self.asked = 0  # how often: a thread that is no longer the latest stops
+
+        @self.button.on_click
+        async def _(_: ViserEvent) -> None:
+            self.ask()
+
+        @self.click.on_update
+        async def _(event: ViserEvent) -> None:
+            if event.client_id is not None:
+                self.go(event.target.value)
+
+    def ask(self) -> None:
+        """Measure again, in place of the running measurement."""
+        self.asked += 1
+        threading.Thread(target=self.measure, args=(self.asked,), name="stability map", daemon=True).start()
+
+    def close(self) -> None:
+        """Stop measuring."""
+        self.asked += 1
+
+    def measure(self, number: int) -> None:
+        """Measure row by row, in a separate thread; the panel draws the finished rows."""
+        params = self.read()
+        try:
+            net = self.scene.build(params)
+            record = method_of(params, net)
+            if record.undamped_only and net.is_damped:
+                self.axes, self.problem = None, f"{record.name.upper()} allows no damping: set damping and drag to 0."
+                return
+            axes = axes_of(params, self.scene.stiffness(params))
+            rows: list[MapRow] = []
+            for stiffness in axes.stiffnesses:
+                rows.append(measure_row(self.scene, axes, float(stiffness)))
+                if self.asked != number:
+                    return
+                self.axes, self.rows, self.problem = axes, list(rows), ""
+        except ConvergenceError as error:
+            if self.asked == number:
+                self.problem = f"The map could not be measured: {error}."
+        except Exception as error:
+            traceback.print_exc()
+            if self.asked == number:
+                self.problem = f"The map could not be measured: {type(error).__name__}: {error}"
+
+    def draw(self) -> None:
+        """Show the map as far as it is known, with a dot where the parameters stand; on the viewer thread."""
+        axes = self.axes
+        found = picture(axes, self.rows, self.read(), uuid_of(self.click)) if axes is not None else ""
+        problem = note(self.problem) if self.problem else ""
+        self.html.content = found + problem
+
+    def go(self, place: tuple[float, ...]) -> None:
+        """Set step and stiffness to a place in the map, (0, 0) its lower left corner and (1, 1) its upper right."""
+        if self.axes is None:
+            return
+        self.take({
+            name: float(f"{values[0] * (values[-1] / values[0]) ** min(max(part, 0.0), 1.0):.3g}")
+            for name, values, part in (
+                ("time_step", self.axes.steps, place[0]),
+                (self.axes.parameter, self.axes.stiffnesses, place[1]),
+            )
+        })  # fmt: skip
+
+
+def place_of(values: NDArray[np.float64], value: float) -> float:
+    """Place of a value between the first and the last, 0 to 1, by logarithms."""
+    return math.log(max(value, 1e-300) / values[0]) / math.log(values[-1] / values[0])
+
+
+def decade_ticks(values: NDArray[np.float64]) -> tuple[list[float], list[float]]:
+    """The powers of ten between the first and the last value, and the other whole multiples of them."""
+    low, high = values[0] * (1.0 - 1e-9), values[-1] * (1.0 + 1e-9)
+    exponents = range(math.floor(math.log10(low)), math.floor(math.log10(high)) + 1)
+    multiples = [(digit, float(f"{digit}e{exponent}")) for exponent in exponents for digit in range(1, 10)]
+    inside = [(digit, value) for digit, value in multiples if low <= value <= high]
+    return [value for digit, value in inside if digit == 1], [value for digit, value in inside if digit > 1]
+
+
+def tick_text(value: float) -> str:
+    """A power of ten, with its exponent raised."""
+    exponent = round(math.log10(value))
+    return f"{value:g}" if -2 <= exponent <= 2 else f"10{str(exponent).translate(SUPERSCRIPTS)}"
+
+
+def axis(values: NDArray[np.float64], name: str, *, across: bool) -> str:
+    """Ticks at the decades, short ones at their multiples, and the name with its unit, as SVG."""
+    parts: list[str] = []
+    decades, others = decade_ticks(values)
+    for value in (*decades, *others):
+        part, length = place_of(values, value), 5 if value in decades else 3
+        x, y = (LEFT + WIDE * part, TOP + HIGH) if across else (LEFT, TOP + HIGH * (1.0 - part))
+        dx, dy = (0, length) if across else (-length, 0)
+        parts.append(f'<path d="M{x:.1f} {y:.1f}l{dx} {dy}" stroke="currentColor"/>')
+        if value in decades:
+            at = f'x="{x:.1f}" y="{y + 16:.1f}" text-anchor="middle"'
+            at = at if across else f'x="{x - 7:.1f}" y="{y + 4:.1f}" text-anchor="end"'
+            parts.append(f"<text {at}>{tick_text(value)}</text>")
+    x, y = (LEFT + WIDE / 2, TOP + HIGH + 30) if across else (11.0, TOP + HIGH / 2)
+    turn = "" if across else f' transform="rotate(-90 {x} {y})"'
+    return "".join(parts) + f'<text x="{x}" y="{y}" text-anchor="middle"{turn}>{name}</text>'
+
+
+def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -> str:
+    """The map as HTML. slider: the uuid of the slider that a click moves."""
+    colours = list(OUTCOME_COLOURS.values())
+    height, width = HIGH / (ROWS - 1), WIDE / (COLS - 1)
+    parts: list[str] = []
+    for i, row in enumerate(rows):
+        y = TOP + HIGH - (i + 0.5) * height
+        ends = [0, *(np.flatnonzero(np.diff(row.outcomes)) + 1).tolist(), COLS]
+        for a, b in itertools.pairwise(ends):
+            left, right = max((a - 0.5) * width, 0.0), min((b - 0.5) * width, WIDE)
+            parts.append(
+                f'<rect x="{LEFT + left:.1f}" y="{y:.1f}" width="{right - left:.1f}" height="{height + 0.3:.1f}" '
+                f'fill="{colours[int(row.outcomes[a])]}"/>'
+            )
+    limits = [
+        f"{LEFT + WIDE * place_of(axes.steps, row.critical):.1f},{TOP + HIGH - i * height:.1f}"
+        for i, row in enumerate(rows)
+        if 0.0 < row.critical < math.inf
+    ]
+    x = LEFT + WIDE * place_of(axes.steps, params.time_step)
+    y = TOP + HIGH * (1.0 - place_of(axes.stiffnesses, getattr(params, axes.parameter)))
+    known = parameters_of(params)
+    stiffness = f"stiffness [{known[axes.parameter].unit}]"
+    ticks = axis(axes.steps, "time step h [s]", across=True) + axis(axes.stiffnesses, stiffness, across=False)
+    done = len(rows) == ROWS
+    words = " · ".join(
+        f'<span style="border-left:9px solid {colour};padding-left:4px">{name}</span>'
+        for name, colour in OUTCOME_COLOURS.items()
+    )
+    stale = "" if axes.is_of(params) else "<br><b>Settings have changed: measure again.</b>"
+    progress = "" if done else f"<br>measuring: {len(rows)} of {ROWS} rows"
+    send = (
+        "const p=new DOMPoint(event.clientX,event.clientY).matrixTransform(this.getScreenCTM().inverse());"
+        f"const x=(p.x-{LEFT})/{WIDE},y=1-(p.y-{TOP})/{HIGH};"
+        f"if(x>=0&&x<=1&&y>=0&&y<=1)window.__viserMutable.sendMessage("
+        f"{{type:'GuiUpdateMessage',uuid:'{slider}',updates:{{value:[x,y]}}}})"
+    )
+    clip = f'<clipPath id="springtide-map"><rect x="{LEFT}" y="{TOP}" width="{WIDE}" height="{HIGH}"/></clipPath>'
+    return (
+        f'<div class="springtide-note"><svg viewBox="0 0 {PICTURE[0]:.0f} {PICTURE[1]:.0f}" '
+        f'class="springtide-map" role="img" aria-label="Stability over time step and stiffness" fill="currentColor" '
+        f'onclick="{send}">{clip}<g clip-path="url(#springtide-map)" shape-rendering="crispEdges">{"".join(parts)}'
+        f'</g><g clip-path="url(#springtide-map)">'
+        f'<polyline points="{" ".join(limits)}" fill="none" stroke="#000" stroke-width="1.6"/>'
+        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="#fff" stroke="#000" stroke-width="2"/></g>{ticks}</svg>'
+        f"{words}<br>Line: critical step by theory. Dot: the settings now. Click to go there.{progress}{stale}</div>"
+    )

@@ -1,0 +1,1 @@
+"""The recording of a run, its time line, and files and pictures of it."""

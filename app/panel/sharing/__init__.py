@@ -1,0 +1,1 @@
+"""Links, set-ups and comparisons that browsers share."""

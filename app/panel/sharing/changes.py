@@ -1,0 +1,89 @@
+"""A line on the last link or file of one browser that changed a shared lab, for all browsers, with an undo.
+
+The last change wins. `Changes` outlives the panels, as a link may open another scene; what it holds is replaced as a
+whole, on viser's event loop and on the viewer's thread.
+"""
+
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+import viser
+
+from app.render.handles.viser_types import ViserEvent
+from app.render.markup.html import fill, note
+from app.scenes import scene_named
+from app.scenes.comparisons import COMPARISONS
+from app.scenes.setups import Setup
+
+SHOWN_TIME = 5.0  # [s] for which a change is shown
+UNDO = "Undo this change"
+
+
+class Change(NamedTuple):
+    """A change of the whole lab."""
+
+    page: str  # word that the page which made it knows itself by (app/render/js/panel/share.js)
+    scene: str  # that is shown after it
+    subject: Setup | str  # that was opened: a set-up, or the name of a comparison
+    before: Setup  # what was shown
+    end: float = 0.0  # [s] of the monotonic clock until which it is shown; 0: not shown yet
+
+    def words(self) -> str:
+        """The line as HTML; each page shows the sentence that is meant for it."""
+        if isinstance(self.subject, str):
+            title, name = COMPARISONS[self.subject].title, "side by side"
+        else:
+            title, name = scene_named(self.subject.scene).title, self.subject.name or self.subject.preset
+        what = fill("<b>{}</b>{}", title, f" ({name})" if name else "")
+        return note(
+            fill(
+                '<span data-springtide-changer="{}"><span class="springtide-own">You switched everyone to {}.</span>'
+                '<span class="springtide-others">Someone else switched everyone to {}.</span></span>',
+                self.page, what, what,
+            )
+        )  # fmt: skip
+
+
+class Changes:
+    """The last change of one server."""
+
+    def __init__(self) -> None:
+        self.latest: Change | None = None
+
+    def shown_in(self, scene: str) -> Change | None:
+        """The change to show in the panel of a scene; its time begins in that of the scene that it opened."""
+        change = self.latest
+        if change is None or change.scene != scene:
+            return None
+        now = time.monotonic()
+        if change.end == 0.0:
+            change = self.latest = change._replace(end=now + SHOWN_TIME)
+        if now > change.end:
+            self.latest = change = None
+        return change
+
+
+class Notice:
+    """The line in one panel."""
+
+    def __init__(self, gui: viser.GuiApi, scene: str, changes: Changes, restore: Callable[[Change], None]) -> None:
+        """Add it to the container that is open. restore: undoes a change."""
+        self.scene, self.changes, self.restore = scene, changes, restore
+        self.text = gui.add_html("", visible=False)
+        self.undo = gui.add_button_group("", (UNDO,), visible=False)
+        self.undo.on_click(self.on_undo)
+
+    def draw(self) -> None:
+        """Show the change, or none; on the viewer's thread."""
+        change = self.changes.shown_in(self.scene)
+        if change is not None:
+            self.text.content = change.words()
+        self.text.visible = change is not None
+        self.undo.visible = change is not None
+
+    async def on_undo(self, _: ViserEvent) -> None:
+        """Undo the change; the first press counts."""
+        change, self.changes.latest = self.changes.latest, None
+        if change is not None:
+            self.restore(change)

@@ -1,0 +1,1 @@
+"""Inner parts of viser, and values of its handles."""

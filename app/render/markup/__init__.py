@@ -1,0 +1,1 @@
+"""Text, formulas and charts as HTML and SVG."""

@@ -1,0 +1,1 @@
+"""Compiling ahead, in separate processes."""

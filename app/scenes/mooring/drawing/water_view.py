@@ -1,0 +1,64 @@
+"""The water of the mooring, which is seen through, and is open where the body is."""
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from app.render.coloured_mesh import ColouredMesh
+from app.render.handles.viser_inside import set_arrays
+from app.render.injection import add_data_mesh, injector_of
+from app.scenes.mooring.arrangement import depth_of, extent, hull_of, is_round, width_of
+from app.scenes.mooring.drawing.square import square_faces, square_points
+from app.scenes.mooring.frame import MooringFrame
+from app.scenes.mooring.parameters import MooringParams
+from sim.floating.motion.rotation import heading_angle
+
+WATER_COLOUR, WATER_OPACITY = (64, 120, 156), 0.4  # in browsers without shaders
+WATER_STEP = 2.0**-7  # [m] to which points of the water are rounded for the page
+
+
+def outline_of(params: MooringParams) -> tuple[float, float, float]:
+    """The body from above, for `js/sea/open_water.js`: half sides of a box [m], or the radius of a round one."""
+    if is_round(params):
+        return 0.0, 0.0, 0.5 * width_of(params)
+    x, y = hull_of(params).extents[:2, 1].tolist()
+    return x, y, 0.0
+
+
+class SeenWater:
+    """The water's surface, which moves with the waves."""
+
+    def __init__(self, server: viser.ViserServer, frame: MooringFrame) -> None:
+        rows = len(frame.surface)
+        self.places, self.outline = 0.5 * frame.side * square_points(rows), outline_of(frame.params)
+        vertices = self.vertices_of(frame)
+        self.surface = ColouredMesh(
+            server, "/water", vertices, square_faces(rows), np.zeros_like(vertices), columns=rows, step=WATER_STEP,
+            color=WATER_COLOUR, opacity=WATER_OPACITY, side="double", cast_shadow=False, receive_shadow=False,
+        )  # fmt: skip
+        self.around = None
+        if injector_of(server) is not None:
+            self.around = add_data_mesh(server, f"{self.surface.name}/open_water", self.opening(frame))
+
+    def vertices_of(self, frame: MooringFrame) -> NDArray[np.float32]:
+        """Vertices (m m, 3) [m]."""
+        return np.column_stack([self.places, frame.surface.ravel()]).astype(np.float32)
+
+    def opening(self, frame: MooringFrame) -> NDArray[np.float64]:
+        """Rows for `js/sea/open_water.js`: the water (3,) [m], and the body seen from above (2, 3)."""
+        place = (*frame.body[:2].tolist(), heading_angle(frame.rotation))
+        return np.array([(0.5 * frame.side, depth_of(frame.params), extent(frame.params)), place, self.outline])
+
+    def show(self, frame: MooringFrame) -> None:
+        """Move the surface with the waves, and its opening with the body; or hide it."""
+        is_shown = frame.params.surface
+        if self.surface.mesh.visible != is_shown:
+            self.surface.mesh.visible = is_shown
+        if is_shown:
+            self.surface.set(self.vertices_of(frame))
+        if self.around is not None:
+            set_arrays(self.around, vertices=self.opening(frame))
+
+    def remove(self) -> None:
+        """Remove it from the scene."""
+        self.surface.remove()

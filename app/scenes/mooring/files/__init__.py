@@ -1,0 +1,1 @@
+"""A mooring from a MoorDyn file."""

@@ -1,0 +1,185 @@
+"""The mooring of a MoorDyn file: all coupled points are one vessel, which the user drags and the waves move."""
+
+import dataclasses
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.messages import SceneCommand, Vector, vector_of
+from app.scenes.mooring.arrangement import extent, sea_of
+from app.scenes.mooring.files.from_file import mooring_of, slack_of
+from app.scenes.mooring.frame import MooringFrame
+from app.scenes.mooring.line_scene import LineScene, fade_at
+from app.scenes.mooring.parameters import MooringParams
+from app.scenes.mooring.restoring import LEAST_REACH, REACH
+from app.scenes.mooring.start_check import Fault, fault_of_file
+from app.scenes.springs.tracking import CriticallyDampedTracker
+from sim.interruption import raise_if_stopped
+from sim.mooring import System, at_rest
+from sim.mooring.motion import cubic
+from sim.validation import ConvergenceError
+from sim.waves import Waves
+
+VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
+FARTHEST = 10.0  # in `extent`s, beyond which a run has diverged
+CURVE_POINTS = 17  # offsets at which the statics of all lines are solved
+CHANGING = (
+    "state", "system", "tensions", "excursion", "start", "vessel", "sea", "step_modes", "moved_by",
+)  # fmt: skip
+
+
+class FileInputs(NamedTuple):
+    """Everything that the restoring curve depends on."""
+
+    path: str
+    wave: tuple[float, float]  # unit vector along the waves
+    far: float  # [m] offset to which the curve goes at least
+
+    def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Offsets [m] of the vessel along the waves, and the force [N] of all lines against each; NaN without rest."""
+        file = mooring_of(self.path)
+        slack = slack_of(file.system)
+        end = max(REACH * slack[0] if slack else 0.0, LEAST_REACH * file.extent, self.far)
+        offset = np.linspace(-end, end, CURVE_POINTS)
+        force = np.full(len(offset), math.nan)
+        for i, one in enumerate(offset):
+            raise_if_stopped()
+            away = np.array([one * self.wave[0], one * self.wave[1], 0.0])
+            placed = {p.id: np.add(p.position, away) for p in file.system.points if p.kind == "coupled"}
+            try:
+                rest = at_rest(file.system, placed)
+            except ConvergenceError:
+                continue
+            tension = np.concatenate([rest.tension[line.id] for line in file.system.lines])[file.rows.links]
+            force[i] = -float(file.rows.level_force(file.rows.points(rest.nodes), tension) @ self.wave)
+        return offset, force
+
+
+class FileScene(LineScene):
+    """A mooring that a file describes, on the simulation thread."""
+
+    changing = CHANGING
+
+    def arrange(self) -> None:
+        """Make the file's system, with the vessel where the file has it."""
+        p = self.params
+        self.file = mooring_of(p.moordyn_file)
+        self.vessel = CriticallyDampedTracker((0.0, 0.0, 0.0), VESSEL_SPEED * extent(p))
+        self.moved_by = np.zeros(3)
+        self.sea = sea_of(p)
+        self.system = self.arranged()
+        self.rows = self.file.rows
+
+    @property
+    def middle(self) -> Vector:
+        """[m] of the vessel at the surface, where it begins."""
+        return self.file.middle
+
+    def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
+        """The fault of a state to start with, None if there is none; see `LineScene`."""
+        return fault_of_file(self.file, stretch)
+
+    def arranged(self) -> System:
+        """The file's system in the waves and the current of the parameters."""
+        p = self.params
+        bearing = math.radians(p.direction)
+        current = (p.current * math.cos(bearing), p.current * math.sin(bearing), 0.0)
+        return dataclasses.replace(self.file.system, waves=self.sea, current=current)
+
+    def change_forces(self, params: MooringParams) -> None:
+        """Take parameters; the motion goes on."""
+        self.params = params
+        self.sea = sea_of(params)
+        self.take_system()
+        self.take_step()
+
+    def take_system(self) -> None:
+        """Go on with the water as it is now."""
+        self.system = self.arranged()
+
+    @property
+    def is_dragged(self) -> bool:
+        """True while a user moves the vessel."""
+        return self.grabbed is not None or not self.vessel.at_rest
+
+    def handle(self, command: SceneCommand) -> None:
+        """Carry out a command of the mouse, or begin the statistics again: a vessel follows as far as lines reach."""
+        super().handle(command)
+        if self.grabbed is not None:
+            away = np.subtract(self.grabbed[1], self.middle)[:2]
+            away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))
+            self.vessel.target = vector_of(np.append(away, 0.0))
+
+    def body_place(self) -> NDArray[np.float64]:
+        """(3,) [m] of the vessel's middle at the surface."""
+        return np.add(self.middle, self.moved_by)
+
+    def rotation(self) -> NDArray[np.float64]:
+        """No rotation (3,) [rad]."""
+        return np.zeros(3)
+
+    def paths(self, duration: float) -> NDArray[np.float64]:
+        """(coupled points, 5, 3) for `duration` [s], as `LineArrays` has them: all points move as one."""
+        t = self.state.t
+        follow = self.params.follow
+        x0, v0 = np.array(self.vessel.position), np.array(self.vessel.velocity)
+        self.vessel.advance(t, duration)
+        x1, v1 = np.array(self.vessel.position), np.array(self.vessel.velocity)
+        for x, v, at in ((x0, v0, t), (x1, v1, t + duration)):
+            wave, speed = water_motion(self.sea, self.middle, at)
+            fade = fade_at(at)
+            x += follow * fade * wave
+            v += follow * fade * speed
+        paths = np.repeat(cubic(x0, v0, x1, v1, t, duration)[None], len(self.file.vessel), axis=0)
+        paths[:, 0] += self.places
+        self.moved_by = x1 if self.file.vessel else np.zeros(3)
+        return paths
+
+    @property
+    def places(self) -> NDArray[np.float64]:
+        """(coupled points, 3) [m] at the start."""
+        points = self.file.system.points
+        return np.array([points[node].position for node in self.file.vessel]).reshape(-1, 3)
+
+    def is_bounded(self) -> bool:
+        """False once anything is not finite or is farther away than lines reach."""
+        return bool(np.abs(self.state.x).max() < FARTHEST * extent(self.params) + self.rows.lengths.sum())
+
+    def frame(self) -> MooringFrame:
+        """Frame to draw."""
+        found, x = super().frame(), self.state.x.T.astype(np.float32)
+        anchors = list(self.file.anchors)
+        # Of the lines that end at an anchor, any may pull it upwards.
+        lifted = np.zeros(len(x), bool)
+        np.logical_or.at(lifted, self.rows.before[:, 0], self.tensions.uplift > 0.0)
+        movable = [*self.file.vessel, *self.file.others]
+        return found._replace(anchors=x[anchors], uplift=lifted[anchors], fairleads=x[movable])
+
+    def static_inputs(self, far: float = 0.0) -> FileInputs:
+        """Everything that the restoring curve depends on."""
+        bearing = math.radians(self.params.direction)
+        return FileInputs(self.params.moordyn_file, (math.cos(bearing), math.sin(bearing)), far)
+
+    def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
+        """The state for a file: name -> (array, unit)."""
+        tension = np.zeros(sum(line.segments for line in self.system.lines))
+        tension[self.rows.links.reshape(-1)] = self.tension.reshape(-1)
+        found: dict[str, tuple[NDArray[Any], str]] = {"vessel": (self.body_place(), "m")}
+        for line in self.system.lines:
+            found[f"x_{line.id}"] = (self.state.x[:, self.system.nodes_of[line.id]].T.copy(), "m")
+            found[f"tension_{line.id}"] = (tension[self.system.links_of[line.id]], "N")
+        found["end_tension"] = (self.end_tension(), "N")
+        return found
+
+
+def water_motion(sea: Waves | None, place: Any, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Displacement [m] and velocity [m/s] (3,) of the water at the surface above a place, by linear theory."""
+    if sea is None:
+        return np.zeros(3), np.zeros(3)
+    level = 1j / (sea.k * np.tanh(np.minimum(sea.k * sea.water.depth, 300.0)))
+    moved = np.column_stack((level * sea.kx, level * sea.ky, np.ones_like(level)))
+    X = np.column_stack((moved, -1j * sea.omega[:, None] * moved))
+    ((dx, dy, dz, u, v, w),) = sea.response([place[:2]], t, X)
+    return np.array((dx, dy, dz)), np.array((u, v, w))

@@ -1,0 +1,1 @@
+"""The drawing of bodies, lines, fire and cutaway."""

@@ -1,0 +1,1 @@
+"""The oil of the spill: its source, its budget, its chart."""

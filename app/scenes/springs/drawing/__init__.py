@@ -1,0 +1,1 @@
+"""The drawing that rope, race and cloth share."""

@@ -1,0 +1,1 @@
+"""Hulls: closed meshes, their files and their repair."""

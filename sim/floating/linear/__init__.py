@@ -1,0 +1,1 @@
+"""Linear hydrodynamics: coefficients, datasets, wave forces and responses."""

@@ -1,0 +1,190 @@
+"""Bodies in a sea: water, wave forces and `step`, from outside step by step, or for a time with frames.
+
+>>> from sim.floating import Body, Hull
+>>> from sim.ocean import Sea
+>>> sea = Sea(64, 128.0, "regular", wave_height=0.5, wave_period=6.0, wind_speed=0.0)
+>>> buoy = Body(Hull.cylinder(0.5, 1.0), mass=390.0, center_of_gravity=(0.0, 0.0, -0.25))
+>>> run = float_in(sea, [buoy.afloat()], duration=10.0, frames=101)
+>>> run.x.shape, run.lift.shape
+((101, 1, 3), (101, 1, 4))
+"""
+
+import math
+import warnings
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sim.floating.linear.excitation import LAST_RATES, WaveExcitation, rate_of_change
+from sim.floating.linear.hydrodynamics import check_water_depth
+from sim.floating.motion.body import Body, make_fleet
+from sim.floating.motion.fluid_state import make_water
+from sim.floating.motion.motion import STANDARD, MotionCoefficients, step
+from sim.floating.statics.equilibrium import Layers, check_layers
+from sim.floating.statics.stability import Loaded, is_stable, near_upright
+from sim.frames import Progress, frame_times, run_frames, steps_for
+from sim.interruption import raise_if_stopped
+from sim.ocean.any_sea import AnySea, SurfaceAt
+from sim.validation import argument_error, check_kind, check_number, is_whole_number
+
+LONGEST_STEP = 1 / 60  # [s]
+
+
+class FloatRun(NamedTuple):
+    """n bodies at frames of equal spacing."""
+
+    t: np.ndarray  # (frames,) [s]
+    x: np.ndarray  # (frames, n, 3) [m] of the centres of gravity
+    rotation: np.ndarray  # (frames, n, 4) quaternions (w, x, y, z) from body to world
+    velocity: np.ndarray  # (frames, n, 3) [m/s]
+    spin: np.ndarray  # (frames, n, 3) [rad/s] in world axes
+    # (frames, n, 4) [N] upward: buoyancy, waves, drag, and the reaction to the motion, mean over the last step
+    lift: np.ndarray
+    surface: np.ndarray  # (frames, n) [m] height of the water at the bodies, in the middle of the last step
+
+
+class FloatState:
+    """Bodies in a sea at time t [s]: `advance` takes them on, with the pulls in `fleet.mooring` (n, 6) [N, N m].
+
+    >>> from sim.floating import Body, FloatState, Hull
+    >>> from sim.ocean import Sea
+    >>> sea = Sea(64, 128.0, "regular", wave_height=0.5, wave_period=6.0, wind_speed=0.0)
+    >>> state = FloatState(sea, [Body(Hull.box(4.0, 2.0, 1.0), density=500.0).afloat()])
+    >>> for _ in range(6):
+    ...     state.fleet.mooring[0, 0] = -200.0 * state.fleet.velocity[0, 0]  # [N] of a damper
+    ...     state.advance(1 / 60, steps=1)
+    >>> round(state.t, 6), state.fleet.position.shape
+    (0.1, (1, 3))
+    """
+
+    def __init__(self, sea: AnySea, bodies: Sequence[Body], coefficients: MotionCoefficients = STANDARD) -> None:
+        """At the sea's time 0, where the bodies are. Raises ValueError as `float_in`."""
+        check_kind("sea", sea, AnySea, "a Sea, a NonlinearSea or a RadialSea")
+        check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
+        self.sea, self.layers, self.gravity = sea, sea.layers, sea.water.gravity
+        self.coefficients = coefficients._replace(gravity=self.gravity)
+        self.fleet = make_fleet(bodies, self.layers)
+        for i, body in enumerate(bodies):
+            check_water_depth(f"bodies[{i}]", body.hull, sea.water.depth)
+        self.widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
+        self.excitation = WaveExcitation(bodies, self.widths, self.layers) if sea.is_sum_of_waves else None
+        self.t = 0.0
+        self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water in the last steps, of h [s]
+        self.h = 0.0
+        # (n,) [m] height of the water at the bodies, in the middle of the last step
+        self.surface = sea.at(self.fleet.position[:, :2], 0.0, self.widths).height if len(bodies) else np.zeros(0)
+
+    def advance(self, h: float, steps: int) -> None:
+        """Go on by `steps` steps of h [s], of 1/60 s at most. Raises FloatingPointError as `step`."""
+        check_number("h", h, 0, LONGEST_STEP * (1.0 + 1e-9), "s", above=True)
+        if not is_whole_number(steps) or steps < 0:
+            raise argument_error("steps", steps, "a whole number from 0")
+        if h != self.h:  # rates of change are those over equal steps
+            self.h, self.rises = h, ()
+            if self.excitation is not None:
+                self.excitation.impulses = ()
+        begin = self.t
+        for i in range(steps if len(self.fleet.mass) else 0):
+            raise_if_stopped()
+            self.take_step(begin + (i + 0.5) * h, h)
+            self.t = begin + (i + 1) * h
+
+    def take_step(self, middle: float, h: float) -> None:
+        """A step of h [s] with the water of its middle [s]."""
+        sea, fleet = self.sea, self.fleet
+        at = sea.at(fleet.position[:, :2], middle, self.widths)
+        forces, acceleration = None, at.acceleration
+        if self.excitation is not None:
+            forces = self.excitation.forces(fleet, at.label, sea.waves_at(middle), middle, h)
+        else:  # along the way of the bodies, so that it has no mean (excitation.py)
+            self.rises = (at.velocity[:, 2].copy(), *self.rises[: len(LAST_RATES)])
+            if len(self.rises) > len(LAST_RATES):
+                acceleration = np.clip(rate_of_change(self.rises, h), -self.gravity, self.gravity)
+        interface = {} if len(self.layers) == 1 else interface_of(at, self.layers[0][1])
+        water = make_water(
+            fleet, self.layers, at.height, slope=at.slope, velocity=at.velocity, acceleration=acceleration,
+            excitation=forces, lead=h / 2, **interface,
+        )  # fmt: skip
+        step(fleet, water, h, self.coefficients)
+        self.surface = at.height
+
+
+class FloatFrames:
+    """Bodies on their way from frame to frame, with the results of each."""
+
+    def __init__(self, state: FloatState, t: np.ndarray, h: float, steps: int) -> None:
+        fleet = state.fleet
+        self.state, self.t, self.h, self.steps = state, t, h, steps
+        self.arrays = (fleet.position, fleet.rotation, fleet.velocity, fleet.spin, fleet.lift)
+        self.results = [np.empty((len(t), *array.shape)) for array in self.arrays]
+        self.surface = np.empty((len(t), len(fleet.mass)))
+
+    def advance(self, frame: int) -> None:
+        """Go on to a frame from the one before."""
+        self.state.t = float(self.t[frame - 1])
+        self.state.advance(self.h, self.steps)
+
+    @property
+    def is_bounded(self) -> bool:
+        """True: `step` raises an error for a state that is not finite."""
+        return True
+
+    def sample(self, frame: int) -> None:
+        """Keep the state as that of a frame."""
+        for result, array in zip(self.results, self.arrays, strict=True):
+            result[frame] = array
+        self.surface[frame] = self.state.surface
+
+
+def float_in(
+    sea: AnySea,
+    bodies: Sequence[Body],
+    duration: float,
+    frames: int = 61,
+    step: float = LONGEST_STEP,
+    *,
+    coefficients: MotionCoefficients = STANDARD,
+    progress: Progress = None,
+) -> FloatRun:
+    """Let bodies float in a sea from its time 0 for a duration [s]; `Body.afloat` lets them begin at rest.
+
+    On a sum of waves they feel linear wave forces; on the tiles those of waves long beside the hull (motion.py). The
+    gravity is the sea's.
+    step: [s], 1/60 s at most, shortened equally so that it divides a frame interval.
+    progress: called with (frames done, frames).
+    A UserWarning gives the GM of a body that is not stable upright. Raises ValueError for a value that is not allowed,
+    for a hull with a dataset of another depth or heading than the sea's, and as `make_fleet` and `RadialSea.at`.
+    """
+    t = frame_times(duration, frames, step, progress)
+    check_number("step", step, 0, LONGEST_STEP, "s", above=True)
+    state = FloatState(sea, bodies, coefficients)
+    for words in unstable(bodies, state.layers):
+        warnings.warn(words, UserWarning, stacklevel=2)
+    steps = steps_for(float(t[1]), step)
+    kept = FloatFrames(state, t, float(t[1]) / steps, steps)
+    run_frames(kept, len(t), progress)
+    x, rotation, velocity, spin, lift = kept.results
+    return FloatRun(t, x, rotation, velocity, spin, lift, kept.surface)
+
+
+def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:
+    """A sentence with the GM of each load of a hull that floats, but is not stable upright."""
+    fluids, found = check_layers(layers), {}
+    for i, body in enumerate(bodies):
+        load = body.loaded()
+        if load in found or load[1] > fluids[-1][0]:
+            continue
+        found[load], rest = "", near_upright(Loaded(*load, fluids))
+        if rest is not None and not is_stable(load[0], rest):
+            found[load] = f"bodies[{i}]: GM = {rest.least_height:.3g} m: it is not stable upright"
+    return [words for words in found.values() if words]
+
+
+def interface_of(at: SurfaceAt, thickness: float) -> dict[str, np.ndarray]:
+    """The interface under a layer [m], as `make_water` takes it, of a `SurfaceAt`."""
+    return {
+        "interface": at.interface - thickness,
+        "interface_slope": at.interface_slope,
+        "interface_rise": at.interface_rise,
+    }

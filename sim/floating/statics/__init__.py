@@ -1,0 +1,1 @@
+"""Bodies at rest: drafts, submerged parts and righting arms."""

@@ -1,0 +1,72 @@
+"""After the warm-up no kernel is compiled: a new signature would stop the page for 0.1 s or more."""
+
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[4]
+SIGNATURES = """
+import sys
+from numba.core.dispatcher import Dispatcher
+
+def signatures():
+    kernels = {id(k): k for m in list(sys.modules.values()) for k in vars(m).values() if isinstance(k, Dispatcher)}
+    return {(k.py_func.__module__, k.py_func.__name__, str(s)) for k in kernels.values() for s in k.signatures}
+"""
+# How the wheel of kernels is checked.
+SHOW = runpy.run_path(str(ROOT / ".ci" / "kernels.py"))["SHOW"]
+# In a process of its own, as other tests compile other signatures.
+PROGRAM = f"""{SIGNATURES}
+from app.scenes import warmup
+
+for piece, drawn in warmup.all_pieces(sys.argv[1]):
+    warmup.compile_piece(sys.argv[1], piece, drawn=drawn)
+before = signatures()
+{SHOW}
+print(sorted(signatures() - before))
+"""
+
+# Presets that need few pieces come first: what these compile is known before the others add to it.
+PRESETS = (
+    SIGNATURES
+    + """
+from app.scenes import scene_named, warmup
+from sim.parameters import check_record
+
+kind = scene_named(sys.argv[1])
+records = {preset: check_record(kind.params, values) for preset, values in kind.presets.items()}
+for preset in sorted(records, key=lambda preset: len(kind.needs(records[preset]))):
+    for piece in kind.needs(records[preset]):
+        warmup.compile_piece(kind.name, piece, drawn=False)
+    before = signatures()
+    scene = kind.make(records[preset])
+    for _ in range(5):
+        scene.advance(2)
+        scene.frame()
+        scene.readings()
+        scene.curves()
+    new = sorted(signatures() - before)
+    assert not new, (preset, new)
+"""
+)
+
+
+@pytest.mark.long  # compiles or loads all kernels of a scene in a process of its own
+def test_each_preset_of_the_radial_sea_runs_with_what_it_says_it_needs() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", PRESETS, "radial_sea"], cwd=ROOT, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.long  # compiles or loads all kernels of a scene in a process of its own
+@pytest.mark.parametrize(
+    "name", ["cloth", *(pytest.param(name, marks=pytest.mark.stress) for name in ("rope", "race"))]
+)
+def test_no_kernel_is_compiled_after_the_warm_up(name: str) -> None:
+    done = subprocess.run([sys.executable, "-c", PROGRAM, name], cwd=ROOT, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1] == "[]"

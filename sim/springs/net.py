@@ -325,6 +325,7 @@ class Net(PointSystem[Run]):
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             bands=self.bands,
             side=float(self.side_ratio),
+            is_conserving=not self.is_damped or self.damping_model == "axial",
             ends=ends,
             links=links,
         )

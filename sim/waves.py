@@ -43,7 +43,7 @@ from sim.validation import (
 from sim.water import Water
 
 STRETCHINGS = ("constant", "wheeler")
-MAX_TURN = 1e4  # of the search for the phases of a crest
+MAX_TURN, TURN_RESOLUTION = 1e4, 1e-14  # of the search for the phases of a crest
 LONGEST = 1e-12  # [rad/m] in place of a wavenumber of 0
 DEEPEST = 40.0  # kz beyond which the motion is under 1e-17 of that at the surface
 # Rows of `Waves.table`. k along x and y [turns/m], phase [turns], rate [turns/s], cos and sin of the bearing,
@@ -132,8 +132,11 @@ class Waves:
             """Phases after the flow theta' = -a sin(theta) for s/largest, which scales tan(theta/2)."""
             return 2.0 * np.arctan(np.exp(np.clip(-s / largest * self.amplitude, -300.0, 300.0)) * half)
 
-        s = narrowed(lambda s: float((self.amplitude * np.cos(turned(s))).sum()) - height, -MAX_TURN, MAX_TURN)[1]
-        return dataclasses.replace(self, phase=self.phase - theta + turned(s))
+        def excess(s: float) -> float:
+            return float((self.amplitude * np.cos(turned(s))).sum()) - height
+
+        found = turned(narrowed(excess, -MAX_TURN, MAX_TURN, TURN_RESOLUTION)[1])
+        return dataclasses.replace(self, phase=self.phase - theta + found)
 
     @functools.cached_property
     def table(self) -> np.ndarray:

@@ -27,7 +27,7 @@ C_LOOPS = {
 
 def run_ours(net: Net, name: str, h: float, steps: int) -> tuple[float, np.ndarray]:
     """Processor time [s] of some steps of ours, and the positions after them, (3, 1, points) [m]."""
-    x, v, account = net.x0.copy(), np.zeros_like(net.x0), np.zeros(2)
+    x, v, account = net.x0.copy(), np.zeros_like(net.x0), np.zeros(3)
     p = net.kernel_view(h)
     start = effort_clock()
     INTEGRATORS[name].advance(x.reshape(-1), v.reshape(-1), account, 0.0, h, steps, p, False)

@@ -74,6 +74,7 @@ class WideArrays(NamedTuple):
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # number of bands of rows; each thread computes the forces of one band
     side: float  # stiffness and damping of links along a side, over their family's
+    is_conserving: bool  # links and contacts keep the energy or the angular momentum exactly
     ends: NDArray[np.int64]  # (links, 3): both points of each, and its family
     links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m] of each
 

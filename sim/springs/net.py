@@ -314,6 +314,7 @@ class Net(PointSystem[Run]):
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             side=self.side_ratio,
+            is_conserving=not self.is_damped or self.damping_model == "axial",
             ends=ends,
             links=links,
             **components("wind_", air.wind),

@@ -263,6 +263,7 @@ def stepped(
         kept.h,
         record.name,
         kept.state.left_out,
+        kept.state.unsettled,
     )
 
 

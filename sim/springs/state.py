@@ -38,6 +38,7 @@ class State:
     force_evals: int = 0
     steps: int = 0
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
+    unsettled: int = 0  # steps of implicit methods that were taken before Newton's method had settled
 
     @classmethod
     def at_rest(cls, system: PointSystem) -> "State":
@@ -167,7 +168,7 @@ def advance(
     p = view_of(system, h, driven)
     set_lag(system, state, integrator.lag * h, driven)
     # The sums go on from where they are, so that they do not depend on how the steps are shared out among the calls.
-    ledger = np.array([state.dissipated, state.work])
+    ledger = np.array([state.dissipated, state.work, state.unsettled])
     if isinstance(system, Net) and system.bands > 1:
         set_threads(system.bands)
     most = max(1, int(POINT_EVALS / (system.evaluation_cost * integrator.evals)))
@@ -189,6 +190,7 @@ def advance(
         state.steps += count
         state.dissipated = float(ledger[0])
         state.work = float(ledger[1])
+        state.unsettled = int(ledger[2])
 
 
 def energy(system: PointSystem, state: State) -> Energy:

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-import viser
 from PIL import Image
 
 from app.render.coloured_mesh import ColouredMesh
 from app.render.material import Material
 from app.render.skies import set_sky
 from app.render.water import DrawnWater, Tile
+from app.server.web.guard import open_server
 from tests.browser.conftest import NO_NOTES, new_page
 from tests.browser.test_water import PANEL_HIDDEN, wait
 
@@ -53,7 +53,7 @@ class Picture:
 
     def __init__(self, chromium: Any, seed: int = 1) -> None:
         self.seen: dict[float, np.ndarray] = {}  # brightness by height
-        self.server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+        self.server = open_server("127.0.0.1", 0).server
         self.server.initial_camera.fov = FIELD_OF_VIEW
         sky = set_sky(self.server, "park")
         self.material = dataclasses.replace(sky, haze_distance=1e6, sun_disc=0.0, clouds=0.0)

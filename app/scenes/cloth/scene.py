@@ -256,8 +256,12 @@ class ClothScene(NetScene[ClothParams]):
 
     def readings(self) -> ClothReadings:
         """The worst stability of the last assessments, and the cost of the last steps."""
-        threads, left_out = self.tuner.threads, self.state.left_out
-        return self.stability._replace(corrections=self.motion.corrections, threads=threads, left_out=left_out)
+        return self.stability._replace(
+            corrections=self.motion.corrections,
+            threads=self.tuner.threads,
+            left_out=self.state.left_out,
+            unsettled=self.state.unsettled,
+        )
 
     def frame(self) -> ClothFrame:
         """Frame to draw; kept for a while, to be shown again if the run diverges."""

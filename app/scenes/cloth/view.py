@@ -152,6 +152,8 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         parts: list[Html] = []
         if readings.corrections:
             parts.append(fill("<div>{:.1f} Newton iterations a step</div>", readings.corrections))
+        if readings.unsettled:
+            parts.append(fill("<div>Newton's method had not settled in {} steps</div>", readings.unsettled))
         if readings.left_out:
             parts.append(fill("<div>too crowded: self-collision left out {} particles</div>", readings.left_out))
         if readings.threads > 1:

@@ -97,4 +97,4 @@ def wavenumber(omega: np.ndarray, water: FluidColumn | Conditions) -> np.ndarray
     if isinstance(water, Conditions):
         return water.wavenumber(omega)
     low, high = (np.log(factor * omega**2 / water.gravity) for factor in BRACKET)
-    return np.exp(narrowed(lambda logarithm: np.log(water.roots(np.exp(logarithm))[0] / omega), low, high)[1])
+    return np.exp(narrowed(lambda logarithm: np.log(water.roots(np.exp(logarithm))[0] / omega), low, high, 1e-14)[1])

@@ -58,4 +58,4 @@ def excess(coverage: float, frequency: float, lasting: float) -> float:
         # Phi(z) is erfc(-z/sqrt(2))/2.
         return coverage - 1.0 + 0.5 * math.erfc(-z * math.sqrt(0.5)) * math.exp(-rate * lasting)
 
-    return float(narrowed(too_little, -4.0, 8.0)[1])
+    return float(narrowed(too_little, -4.0, 8.0, 1e-14)[1])

@@ -1,8 +1,8 @@
 // What the page says while nothing is drawn, and after the server has ended.
 //
 // The cover is there from the first bytes of the page. It goes when the whole picture of the scene is drawn (frames.js);
-// while a scene is compiled it shows what the panel says of that (an element of class "springtide-progress"). It comes back
-// when the server does not answer.
+// while a scene is compiled it shows what the panel says of that (an element of class "springtide-progress"). It comes
+// back when the server does not answer.
 // Where the page cannot start it says why (before/failures.js).
 
 import { page } from "../core/life.js";

@@ -11,7 +11,7 @@
 
 import { page } from "../core/life.js";
 import { onControls, onFrame, onLook } from "../core/watch.js";
-import { fillsWindow, tickSize, typeFactor } from "./hall.js";
+import { tickSize, typeFactor } from "./hall.js";
 
 const BELOW = 4; // [pixels] of a pane below its charts
 const MIN_HEIGHT = 150; // [pixels] of a chart with its title, or as high as its pane
@@ -124,8 +124,7 @@ function fillPanes(charts) {
     const own = charts.filter(({ root }) => pane.contains(root) && root.offsetHeight);
     own.sort((a, b) => a.root.getBoundingClientRect().top - b.root.getBoundingClientRect().top);
     if (!own.length) continue;
-    const [first] = own, isPhone = PHONE.matches && !fillsWindow();
-    const whole = isPhone ? window.innerHeight * PHONE_SHARE : pane.clientHeight;
+    const [first] = own, whole = PHONE.matches ? window.innerHeight * PHONE_SHARE : pane.clientHeight;
     const top = first.root.getBoundingClientRect().top - pane.getBoundingClientRect().top + pane.scrollTop;
     const room = whole - top - BELOW, between = gapOf(own);
     const seen = Math.max(1, Math.min(own.length, Math.floor(room / (MIN_HEIGHT * typeFactor()))));

@@ -10,7 +10,7 @@ import { onChange, onLook } from "../core/watch.js";
 
 const ENLARGED = "springtide-enlarged", PROJECTING = "springtide-projecting"; // classes of the page
 const CHART = ".uplot-container", MARK = "springtideFillsWindow"; // of the chart that does
-const DOCKED = "[data-dock-region], .mantine-Tabs-root"; // where a chart can fill the window
+const DOCKED = "[data-dock-region]"; // where a chart can fill the window: elsewhere, as on a phone, viser shows its copy
 const TICK = 12; // [pixels] of the numbers of a chart
 const HALL_TICK = 22 / 800; // the same in a hall, over the height of the window
 const LARGE = 1.3; // factor of "Large text" (page.css)
@@ -21,7 +21,6 @@ words.innerHTML = `<span></span><button type="button" title="Key L, or Escape">E
 document.body.append(words);
 
 const isIn = (/** @type {string} */ name) => root.classList.contains(name);
-export const fillsWindow = () => isIn(ENLARGED);
 
 // [pixels] of the numbers of a chart.
 export function tickSize() {

@@ -38,7 +38,7 @@ SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
 OVERSHOT, FELL_SHORT, FARTHEST = 0.5, 0.3, 3.0
 USABLE = 1e-3  # the last correction, relative to the fastest velocity, of a stage that may be taken unsettled
 MOST_ITERATIONS = 500  # of conjugate gradients with new factors
-FEW = 4  # iterations of conjugate gradients that are quicker than new factors
+FEW = 7  # iterations of conjugate gradients that are quicker than new factors
 LOOSEST, TIGHTEST = 0.1, 1e-4  # reductions of the residual by conjugate gradients
 ROUND_OFF = 4e-15  # and to the farthest position over g, below which corrections are noise
 

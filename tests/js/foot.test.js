@@ -31,10 +31,14 @@ test("it stands beside a panel over the middle that leaves no room above it, whe
   assert.deepEqual(Object.values(footOf(scrolled, [box(300, 900, 20, 600)], HIGH)), [0, 300, 600]);
 });
 
-test("what panels leave is not taken where it is too narrow, nor what stands beside the scene", () => {
-  assert.deepEqual(foot(box(100, 900, 20, 600)), [0, 900, 600]);
+test("it covers the whole foot where panels leave too little of it", () => {
   assert.deepEqual(foot(box(160, 900, 20, 600)), [0, 160, 600]);
+  assert.deepEqual(foot(box(159, 900, 20, 600)), [0, 900, 600]);
+});
+
+test("a panel beside the scene, or beside what other panels leave of it, is not in its way", () => {
   assert.deepEqual(foot(box(900, 1200, 0, 600), box(-50, 0, 0, 600)), [0, 900, 600]);
+  assert.deepEqual(foot(box(0, 600, 20, 600), box(400, 500, 300, 600)), [600, 900, 600]);
 });
 
 test("a moment is said in seconds, and how far back it is", () => {

@@ -34,7 +34,7 @@ class StudentFunction:
     """A student's function, called with the types of the reference solution."""
 
     def __init__(self, runner: Runner, task: Task, *, is_watched: bool = True) -> None:
-        """is_watched: a call fails where the function does something besides its result."""
+        """is_watched: a call fails where the function has a side effect."""
         self.runner = runner
         self.task = task
         self.is_watched = is_watched

@@ -114,7 +114,7 @@ class Runner:
         return self._ask("call", file, function, list(arguments))
 
     def watch(self, file: str, function: str, *arguments: Any, twice: bool) -> Any:
-        """As `call`, of a function that does nothing besides its result. twice: two equal calls are compared.
+        """As `call`, of a function without side effects. twice: two equal calls are compared.
 
         Raises RunError with a kind of `effects.EFFECTS` too.
         """

@@ -7,7 +7,7 @@ It says `["loaded", file]` once it has run a file. With `["march", file, functio
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
 at many arguments (`tabulate.py`). `["watch", file, function, [twice, arguments]]` is a call that fails where the
-function does something besides its result (`diagnosis/effects.py`). `["edits", file, function, [far, arguments]]` calls
+function has a side effect (`diagnosis/effects.py`). `["edits", file, function, [far, arguments]]` calls
 its edits, and `["edited", file, function, [number, arguments]]` one of them (`diagnosis/edits.py`). During a long call
 it says `["at", file, line, function, processor time]` again and again on systems that do not tell the lab
 (`call_limit.py`). What a student prints is counted and dropped: the pipes are the lab's own.
@@ -202,7 +202,7 @@ class Worker:
             return ["failed", "raised", text[-1] if text else type(error).__name__, *self.place(file), loading]
 
     def watch(self, file: str, function: str, arguments: list[Any], *, twice: bool) -> Any:
-        """The result of a function that does nothing besides. Raises Effect."""
+        """The result of a function without side effects. Raises Effect."""
         module = self.modules[file]
         if file not in self.states:
             self.states[file] = state_of([module])

@@ -1,4 +1,4 @@
-"""What a student's function does besides its result is found, before anything else is said of it."""
+"""Side effects of a student's function are found, before anything else is said of it."""
 
 import inspect
 import textwrap
@@ -100,7 +100,7 @@ def copy(argument: str) -> str:
 
 
 @pytest.mark.parametrize("name", ARRAYS)
-def test_a_right_function_that_does_something_besides_is_wrong_and_nothing_else_is_blamed(
+def test_a_right_function_with_a_side_effect_is_wrong_and_nothing_else_is_blamed(
     desk: Runner, name: str
 ) -> None:
     task = TASKS[name]

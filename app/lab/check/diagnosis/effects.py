@@ -42,7 +42,7 @@ Anew: TypeAlias = Callable[[], tuple[Callable[..., Any], Sequence[ModuleType]]]
 
 
 class Effect(Exception):  # noqa: N818 - a judgement on a function, not an error of the program
-    """A function does something besides its result. kind: one of `EFFECTS`. file, line: of the cause, where known."""
+    """A function has a side effect. kind: one of `EFFECTS`. file, line: of the cause, where known."""
 
     def __init__(self, kind: str, text: str, file: str = "", line: int | None = None) -> None:
         super().__init__(text)
@@ -73,7 +73,7 @@ def watched(
     function: Callable[..., Any], modules: Sequence[ModuleType], arguments: Sequence[Any], folder: Path, anew: Anew,
     *, twice: bool,
 ) -> Any:  # fmt: skip
-    """The result of a function at these arguments. Raises Effect where it does something besides.
+    """The result of a function at these arguments. Raises Effect where it has a side effect.
 
     modules: in which it may keep something. folder: of the student's files. twice: also compare a second call with
     equal arguments.

@@ -100,9 +100,7 @@ def copy(argument: str) -> str:
 
 
 @pytest.mark.parametrize("name", ARRAYS)
-def test_a_right_function_with_a_side_effect_is_wrong_and_nothing_else_is_blamed(
-    desk: Runner, name: str
-) -> None:
+def test_a_right_function_with_a_side_effect_is_wrong_and_nothing_else_is_blamed(desk: Runner, name: str) -> None:
     task = TASKS[name]
     assert verdict_of(desk, task, right_but(task, "pass")).state == "right"
     for kind, words, lines in EFFECTS_OF_LINES:

@@ -38,7 +38,8 @@ def test_a_line_is_not_drawn_over_a_gap(shown: tuple[Viewer, Tab]) -> None:
     rows = [(float(time), *[float(value)] * len(lab.panel.kind.series)) for time, value in zip(t, y, strict=True)]
     lab.settings.set("plot_tip", True)
     tab.wait(lambda: "plot_tip" in plots.open)
-    lab.loop.run.snapshots.plot_rows.extend([(float("nan"),) * len(rows[0]), *rows])
+    run = lab.loop.latest.status.run._replace(number=lab.loop.latest.status.run.number + 1)
+    lab.loop.run.snapshots.plot_rows.extend((run, row) for row in rows)
 
     def drawn(first: float, last: float) -> float:
         found = tab.page.evaluate(DRAWN, [first, last])

@@ -100,7 +100,7 @@ def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp
         load(tab, tmp_path / "b.json", content)
         tab.wait(lambda words=words: words in tab.page.locator("body").inner_text(), 20)
         # Closed, as it would cover what other tests click.
-        notice = tab.page.locator(".mantine-Notification-root", has_text="not opened")
+        notice = tab.page.locator(".mantine-Notification-root", has_text="Couldn't open this set-up")
         notice.get_by_role("button").click()
         tab.wait(lambda notice=notice: notice.count() == 0, 20)
     assert vars(lab.settings.params)["points"] == 23

@@ -444,7 +444,7 @@ def test_the_panel_says_what_runs_and_what_is_wrong(right: Session) -> None:
     scene = make_scene(right)
     run(scene, 3)
     text = code_lines(right.state, right.rope.report, TableReport(), "rope")
-    assert "moves by <b>spring_force</b> (reference: step_rk4)" in text
+    assert "is driven by <b>spring_force</b> (reference: step_rk4)" in text
     assert "<b>Less than 1 µm</b>" in text
     assert "polyline" not in text
     save(right, with_line("return x1 + '<b>'"))

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from app.panel.controls import stability_map as live
-from app.scenes.rope import scene as rope
+from app.scenes.rope import SCENE
+from app.scenes.rope.parameters import RopeParams
+from app.scenes.rope.scene import build
 from sim.springs.analysis.growth import EXPLODING, STABLE
 from sim.springs.stability import critical_step
 from sim.validation import ConvergenceError
@@ -45,20 +47,20 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 def make(params: Any) -> tuple[live.StabilityMapPanel, dict[str, float]]:
     """A map and what its clicks have set."""
     taken: dict[str, float] = {}
-    return live.StabilityMapPanel(Gui(), rope.SCENE.stability_map, lambda: params, taken.update), taken
+    return live.StabilityMapPanel(Gui(), SCENE.stability_map, lambda: params, taken.update), taken
 
 
 @pytest.mark.usefixtures("small")
 @pytest.mark.parametrize("units", ["lab", "material"])
 def test_the_map_turns_at_the_critical_step(units: str):
-    params = rope.RopeParams(units=units, time_step=1 / 120, floor=False)
+    params = RopeParams(units=units, time_step=1 / 120, floor=False)
     shown, _ = make(params)
     shown.measure(shown.asked)
     shown.draw()
     assert shown.axes is not None
     assert len(shown.rows) == 5
     for stiffness, row in zip(shown.axes.stiffnesses, shown.rows, strict=True):
-        net = rope.build(dataclasses.replace(params, **{shown.axes.parameter: float(stiffness)}))
+        net = build(dataclasses.replace(params, **{shown.axes.parameter: float(stiffness)}))
         assert row.critical == pytest.approx(critical_step(net, "leapfrog"), rel=0.05)
         holds = shown.axes.steps < row.critical
         np.testing.assert_array_equal(row.outcomes == STABLE, holds)
@@ -85,7 +87,7 @@ def test_ticks_stand_at_their_values(across: bool) -> None:
 
 @pytest.mark.usefixtures("small")
 def test_a_click_sets_step_and_stiffness_within_the_map():
-    params = rope.RopeParams()
+    params = RopeParams()
     shown, taken = make(params)
     shown.go((0.5, 0.5))
     assert taken == {}  # no map yet
@@ -98,16 +100,16 @@ def test_a_click_sets_step_and_stiffness_within_the_map():
 
 
 def test_the_map_keeps_to_what_the_parameters_allow():
-    low = live.axes_of(rope.RopeParams(time_step=1e-5, stiffness=1.0), "stiffness")
+    low = live.axes_of(RopeParams(time_step=1e-5, stiffness=1.0), "stiffness")
     assert low.steps[0] == pytest.approx(1e-5)
     assert low.stiffnesses[0] == pytest.approx(1.0)
-    high = live.axes_of(rope.RopeParams(time_step=0.1, stiffness=1e9), "stiffness")
+    high = live.axes_of(RopeParams(time_step=0.1, stiffness=1e9), "stiffness")
     assert high.steps[-1] == pytest.approx(0.1)
     assert high.stiffnesses[-1] == pytest.approx(1e9)
 
 
 def test_a_map_of_other_parameters_says_so():
-    params = rope.RopeParams()
+    params = RopeParams()
     axes = live.axes_of(params, "stiffness")
     moved = dataclasses.replace(params, time_step=0.001, stiffness=5e3, colour="plain", plot_energy=True, speed=2.0)
     assert axes.is_of(moved)
@@ -119,7 +121,7 @@ def test_a_map_of_other_parameters_says_so():
 
 @pytest.mark.usefixtures("small")
 def test_a_method_that_takes_no_damping_says_so():
-    shown, _ = make(rope.RopeParams(integrator="pefrl"))
+    shown, _ = make(RopeParams(integrator="pefrl"))
     shown.measure(shown.asked)
     shown.draw()
     assert "PEFRL allows no damping" in shown.html.content
@@ -131,7 +133,7 @@ def test_a_network_that_does_not_come_to_rest_says_so(monkeypatch, capsys):
         raise ConvergenceError("a state of rest", "3 J of motion", 10)
 
     monkeypatch.setattr("sim.springs.analysis.stability_map.find_rest_positions", fail)
-    shown, _ = make(rope.RopeParams())
+    shown, _ = make(RopeParams())
     shown.measure(shown.asked)
     shown.draw()
     assert "The map could not be measured: a state of rest: no solution after 10 iterations" in shown.html.content
@@ -140,7 +142,7 @@ def test_a_network_that_does_not_come_to_rest_says_so(monkeypatch, capsys):
 
 @pytest.mark.usefixtures("small")
 def test_asking_again_ends_the_measurement_before():
-    shown, _ = make(rope.RopeParams())
+    shown, _ = make(RopeParams())
     shown.asked = 2
     before = set(threading.enumerate())
     shown.measure(1)
@@ -150,7 +152,7 @@ def test_asking_again_ends_the_measurement_before():
 
 @pytest.mark.usefixtures("small")
 def test_a_map_that_cannot_be_measured_says_why(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture):
-    shown, _ = make(rope.RopeParams())
+    shown, _ = make(RopeParams())
 
     def fail(*_: Any) -> None:
         raise ZeroDivisionError("no such net")
@@ -164,7 +166,7 @@ def test_a_map_that_cannot_be_measured_says_why(monkeypatch: pytest.MonkeyPatch,
 
 @pytest.mark.usefixtures("small")
 def test_leaving_the_scene_stops_the_measurement():
-    shown, _ = make(rope.RopeParams())
+    shown, _ = make(RopeParams())
     number = shown.asked
     shown.close()
     shown.measure(number)
@@ -176,8 +178,8 @@ def test_ticks_stand_at_the_decades():
     assert decades == [1e-3, 1e-2, 1e-1]
     assert others[:4] == [6e-4, 7e-4, 8e-4, 9e-4]
     assert [live.tick_text(value) for value in (1e-5, 1e-2, 1.0, 100.0, 1e4)] == ["10⁻⁵", "0.01", "1", "100", "10⁴"]
-    axes = live.axes_of(rope.RopeParams(), "stiffness")
-    picture = live.picture(axes, [], rope.RopeParams(), "")
+    axes = live.axes_of(RopeParams(), "stiffness")
+    picture = live.picture(axes, [], RopeParams(), "")
     assert "time step h [s]" in picture
     assert "stiffness [N/m]" in picture
     assert picture.count(">10⁴</text>") == 1

@@ -230,7 +230,7 @@ def test_corrections_are_force_evaluations_but_those_outside_of_newtons_method(n
     scene.advance(2)
     each = (scene.state.force_evals - before) / 2
     assert scene.readings().corrections == each - {"tr_bdf2": 1}.get(name, 0)
-    change(scene, integrator="rk4")
+    change(scene, integrator="rk4", time_step=1 / 1200)
     scene.advance(2)
     assert scene.readings().corrections == 0.0
 

@@ -174,6 +174,6 @@ def test_a_measured_spectrum_is_named_too(scene: str, tmp_path: Path, capsys: py
     assert str(tmp_path) not in text_of("run.npz", out.read_bytes())
     capsys.readouterr()
     assert main([*command, "--preset", str(out)]) == 0
-    assert "Start with --spectrum buoy.csv" in capsys.readouterr().err
+    assert "Restart with --spectrum buoy.csv" in capsys.readouterr().err
     assert main([*command, "--preset", str(out), "--spectrum", str(table)]) == 0
     assert "missing" not in capsys.readouterr().err

@@ -3,8 +3,9 @@
 import pytest
 
 from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take, TogglePlay
+from app.scenes import race
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
-from app.scenes.race import scene as race
+from app.scenes.race.parameters import RaceParams
 from app.scenes.rope import SCENE
 from app.server.loop.shared_clock import LEAD, Seat, SharedClock
 from app.server.loop.sim_loop import SimLoop
@@ -121,10 +122,10 @@ def test_what_begins_one_run_again_begins_all():
 
 
 def test_a_change_that_begins_one_run_again_begins_all():
-    ropes = race.SCENE.make(race.RaceParams(ropes=2))
+    ropes = race.SCENE.make(RaceParams(ropes=2))
     group = Group(rope(), ropes)
     group.run(0.5)
-    group.loops[1].commands.put(Take(race.RaceParams(ropes=1)))
+    group.loops[1].commands.put(Take(RaceParams(ropes=1)))
     group.run(0.2)
     assert len(ropes.frame().ropes) == 1
     assert 0.0 < max(group.times) < 0.3

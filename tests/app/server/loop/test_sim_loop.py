@@ -298,7 +298,7 @@ def test_a_frame_that_cannot_be_shown_pauses_the_run_and_the_last_good_one_stays
         loop.tick(FRAME_INTERVAL)
     assert loop.latest.frame == good
     assert not loop.run.running
-    assert "not finite" in loop.latest.status.halted or "division" in loop.latest.status.halted
+    assert "NaN or infinity" in loop.latest.status.halted or "division" in loop.latest.status.halted
     loop.commands.put(Reset())
     loop.tick(FRAME_INTERVAL)
     assert loop.run.running

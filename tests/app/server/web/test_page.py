@@ -8,7 +8,7 @@ import pytest
 from app.server.viewer import Viewer
 from app.server.web.page import ALIVE_PATH, COVER, SERVER_NAME, TITLE, covered
 
-MAX_START = 30_000  # characters before the end of the cover; viser's client has 800,000
+MAX_START = 40_000  # characters before the end of the cover; viser's client has 800,000
 
 
 def get(port: int, path: str, **headers: str) -> tuple[int, bytes, dict[str, str]]:

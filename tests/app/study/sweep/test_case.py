@@ -122,7 +122,7 @@ def test_an_integrator_that_would_be_replaced_is_a_failed_case(monkeypatch):
         note: str = "pefrl takes no damping, so leapfrog runs instead"
 
     kind = dataclasses.replace(app.scenes.rope.SCENE, make=Stub)
-    monkeypatch.setattr(app.scenes.rope.scene, "SCENE", kind)
+    monkeypatch.setattr(app.scenes.rope, "SCENE", kind)
     outcome = run_case("rope", {}, (1.0,))
     assert (outcome.end, outcome.message) == (FAILED, Stub.note)
 

@@ -118,6 +118,7 @@ export function paceFrames(renderer, life) {
   /** @type {{ fence: WebGLSync | null, compiled: boolean } | null} */
   let drawing = null; // of that frame while it is being drawn: its fence, and whether it had a new program
   let isWhole = false; // whether that frame has its sky, its light, and all of its shaders
+  let finishedWhole = false; // whether the last frame that is drawn had, and none has begun without since
   let length = 0; // [ms] of it
   let started = 0, pressed = 0, left = 0; // when it began, when something in the panel was pressed, frames left to the panel
 
@@ -128,6 +129,7 @@ export function paceFrames(renderer, life) {
     if (fence && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
     gl.deleteSync(fence);
     drawing = null;
+    finishedWhole = isWhole;
     length = performance.now() - started;
     QUALITY.take(length, started, compiled);
     return true;
@@ -153,7 +155,8 @@ export function paceFrames(renderer, life) {
     return true;
   }
 
-  springtide.showsWhole = () => isWhole && !drawing; // the cover goes then
+  // The cover goes then. In software a frame is being drawn at nearly every moment.
+  springtide.showsWhole = () => (drawing ? finishedWhole : isWhole);
   let knownPrograms = ""; // with the last frame
   const programs = () => `${renderer.info.programs?.at(-1)?.id} ${programsReady}`;
 
@@ -176,6 +179,7 @@ export function paceFrames(renderer, life) {
     earlier.call(this, scene, camera);
     last = inputs;
     isWhole = Boolean(own.environment) && !awaitsLight() && !lacksPrograms;
+    if (!isWhole) finishedWhole = false;
     const known = programs();
     awaitEnd(known !== knownPrograms);
     knownPrograms = known;

@@ -39,12 +39,9 @@ def figures_of(snapshot: Snapshot) -> str:
     found: MooringReadings = snapshot.readings
     if found.fault is not None and not snapshot.status.halted:  # which says it all
         return coloured(found.fault.short, WARNING_COLOUR)
-    line, t, most, used = (
-        read(QUANTITIES, name, snapshot)
-        for name in ("largest_tension_line", "largest_tension_time", "largest_tension", "breaking_load_use")
-    )
-    use = "" if math.isnan(used) else fill(" ({} of the breaking load)", percent(used))
-    return fill("Largest tension: {} kN{}, line {:.0f} at {}", bold(kilonewtons(most)), use, line, seconds(t))
+    most, used = (read(QUANTITIES, name, snapshot) for name in ("largest_tension", "breaking_load_use"))
+    use = "" if math.isnan(used) else fill(", {} of breaking load", percent(used))
+    return fill("Largest tension: {} kN{}", bold(kilonewtons(most)), use)
 
 
 def slack_text(found: LineReading, now: float) -> Html:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from app.messages import Command, GrabTo, Release
-from app.render.dragging import SurfaceDrag, drag
+from app.render.handles.dragging import SurfaceDrag, drag
 
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
 

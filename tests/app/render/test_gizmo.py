@@ -4,7 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from app.messages import Place
-from app.render.gizmo import Gizmo
+from app.render.handles.gizmo import Gizmo
 from tests import coroutines
 
 

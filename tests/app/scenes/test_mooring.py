@@ -26,12 +26,12 @@ from app.scenes.mooring.arrangement import (
 )
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.drawing.bed_view import BED_ROWS, bed_colours
-from app.scenes.mooring.excursion import MAX_PATH, PATH_INTERVAL
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import PRESETS, MooringParams
-from app.scenes.mooring.restoring import StaticInputs, static_curve
+from app.scenes.mooring.readings.excursion import MAX_PATH, PATH_INTERVAL
+from app.scenes.mooring.readings.restoring import StaticInputs, static_curve
+from app.scenes.mooring.readings.tensions import Tensions
 from app.scenes.mooring.start import NO_REST
-from app.scenes.mooring.tensions import Tensions
 from app.scenes.mooring.view import MooringView
 from app.server.loop.sim_loop import SimLoop
 from sim.mooring import balance, critical_step, interior

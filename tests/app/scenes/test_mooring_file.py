@@ -17,7 +17,7 @@ from app.scenes.mooring.files.file_scene import FileScene, water_motion
 from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import MooringParams, hidden
-from app.scenes.mooring.report import notes_of
+from app.scenes.mooring.readings.report import notes_of
 from app.scenes.quantities import measured
 from app.scenes.setups import described, missing_files, read_file, read_setup_text, write_file
 from app.server.loop.sim_loop import SimLoop

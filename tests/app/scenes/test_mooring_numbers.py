@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.scenes.mooring import SCENE, report
+from app.scenes.mooring import SCENE
 from app.scenes.mooring.arrangement import DENSITY, GRAVITY, bearings, first_places, line_types, sections
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.tensions import Tensions
+from app.scenes.mooring.readings import report
+from app.scenes.mooring.readings.tensions import Tensions
 from app.scenes.quantities import measured
 from sim.mooring import critical_step
 from sim.waves import AMPLITUDE

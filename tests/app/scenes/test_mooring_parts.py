@@ -13,13 +13,13 @@ from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.drawing.body_view import DrawnBody
 from app.scenes.mooring.drawing.square import square_faces, square_points
 from app.scenes.mooring.drawing.water_view import SeenWater
-from app.scenes.mooring.excursion import Excursion
 from app.scenes.mooring.files.file_scene import FileInputs
 from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.frame import EndStatistics
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.report import tension_table
-from app.scenes.mooring.restoring import StaticInputs, level_tension, static_curve
+from app.scenes.mooring.readings.excursion import Excursion
+from app.scenes.mooring.readings.report import tension_table
+from app.scenes.mooring.readings.restoring import StaticInputs, level_tension, static_curve
 from app.scenes.mooring.scene import needs
 from sim.mooring.statics import at_rest
 

@@ -15,7 +15,7 @@ from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.files.file_scene import FileScene
 from app.scenes.mooring.line_scene import LineScene
 from app.scenes.mooring.parameters import PRESETS, MooringParams
-from app.scenes.mooring.report import figures_of, marks_of, notes_of
+from app.scenes.mooring.readings.report import figures_of, marks_of, notes_of
 from app.scenes.mooring.scene import advice, remedy, scene_of, warnings
 from app.scenes.mooring.start import NO_REST
 from app.scenes.mooring.start_check import MAX_REST_STRETCH, rounded_up

@@ -14,8 +14,8 @@ from app.scenes.mooring import SCENE
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.files.file_scene import FileScene
 from app.scenes.mooring.parameters import PRESETS, MooringParams, hidden
-from app.scenes.mooring.report import figures_of, kilonewtons, notes_of, tension_tables
-from app.scenes.mooring.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
+from app.scenes.mooring.readings.report import figures_of, kilonewtons, notes_of, tension_tables
+from app.scenes.mooring.readings.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
 from app.scenes.quantities import measured
 from sim.extreme_values import LEAST_PEAKS
 from sim.parameters import check_record

@@ -12,7 +12,7 @@ import viser
 
 from app.messages import GrabTo, Release
 from app.render.colormap import css_scale
-from app.render.dragging import GRAB_COLOUR
+from app.render.handles.dragging import GRAB_COLOUR
 from app.scenes.race.parameters import RaceParams
 from app.scenes.race.scene import RaceScene
 from app.scenes.race.view import RaceView

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from app.commands.added_files import naming_extra
-from app.commands.mesh_facts import size_text, size_warning
+from app.commands.hulls.mesh_facts import size_text, size_warning
 from app.commands.options import add_mesh_reading, mesh_reading, quantity
 from app.formats import text_tables
 from sim.floating import Body, Hull, metacentric_height, righting_arm

@@ -28,9 +28,9 @@ COMMANDS = {
     "sweep": ("run a scene over ranges of its parameters, into one NetCDF file", "app.study.sweep.command"),
     "hydrodynamics": (
         "added mass, damping and wave forces of a hull of your own (needs the extra `bem`)",
-        "app.commands.hydrodynamics",
+        "app.commands.hulls.hydrodynamics",
     ),
-    "hull": ("size, volume, draft and stability of a mesh, and where it is open", "app.commands.hull"),
+    "hull": ("size, volume, draft and stability of a mesh, and where it is open", "app.commands.hulls.hull"),
     "lab": ("the course lab: make a folder of exercises, check it", "app.commands.lab"),
     "warmup": ("compile all kernels and plan all transforms, once", "app.commands.warmup"),
 }

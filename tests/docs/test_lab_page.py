@@ -85,6 +85,8 @@ def test_the_page_lists_every_entry_and_every_name_that_a_check_may_have() -> No
         assert re.search(rf"`[\[]*(question\.)?{word}[\]]*`", PAGE), word
     for kind in QUESTION_KINDS:
         assert f'`"{kind}"`' in PAGE
-    sources = "".join(path.read_text("utf-8") for path in (ROOT / "app" / "lab" / "tasks").glob("*.py"))
-    for name in {"inputs", *re.findall(r"^([A-Z]{5,}) = ", sources, re.MULTILINE)}:
+    sources = "".join(path.read_text("utf-8") for path in (ROOT / "app/lab/course/tasks").rglob("*.py"))
+    names = set(re.findall(r"^([A-Z]{5,}) = ", sources, re.MULTILINE))
+    assert {"CURVE", "MISTAKES"} <= names
+    for name in {"inputs", *names}:
         assert f"`{name}" in PAGE, name

@@ -11,14 +11,14 @@ from app.messages import GrabTo, PlotRow, Release, RestartStatistics, SceneComma
 from app.scenes.charts import Chart
 from app.scenes.moments import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
-from app.scenes.mooring.excursion import Excursion
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
-from app.scenes.mooring.restoring import CurveInputs, RestoringCurve
+from app.scenes.mooring.readings.excursion import Excursion
+from app.scenes.mooring.readings.restoring import CurveInputs, RestoringCurve
+from app.scenes.mooring.readings.tensions import Tensions
 from app.scenes.mooring.rows import LineRows
 from app.scenes.mooring.start import MooringStart, rest_or_start
 from app.scenes.mooring.start_check import Fault
-from app.scenes.mooring.tensions import Tensions
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.speed_advice import faster_steps

@@ -1,0 +1,1 @@
+"""What the mooring shows in numbers: tensions, statistics, restoring curve, and their texts."""

@@ -10,7 +10,7 @@ from app.messages import Pause
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
-SIZE = {"width": 800, "height": 460}
+WIDTH, HEIGHT = 800, 460  # [pixels]
 # What a browser has for itself.
 OWN = """() => { const { x, y, z } = window.__viserMutable.camera.position, { classList } = document.documentElement;
     const tabs = [...document.querySelectorAll("[role=tab]")];
@@ -30,7 +30,7 @@ def pair(chromium: Any) -> Iterator[Pair]:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("rope")
     viewer.loop.commands.put(Pause())
-    tabs = Tab(chromium, viewer.port, **SIZE), Tab(chromium, viewer.port, **SIZE)
+    tabs = Tab(chromium, viewer.port, WIDTH, HEIGHT), Tab(chromium, viewer.port, WIDTH, HEIGHT)
     yield viewer, tabs
     for tab in tabs:
         tab.page.close()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.scenes import NAMES
-from app.scenes.ahead import warmup
+from app.scenes.ahead import compiling
 
 ROOT = Path(__file__).parents[2]
 # Each part and packages that are not there once it has run, after those before it in the same process. Where scipy is
@@ -75,9 +75,9 @@ def test_a_headless_run_imports_no_viewer(tmp_path: Path) -> None:
 
 
 def test_scenes_that_are_compiled_are_not_imported_to_find_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(warmup, "is_kept", lambda name: "-everything-" in name)
-    monkeypatch.setattr(warmup, "scene_named", lambda name: pytest.fail(f"{name} is imported"))
-    assert all(warmup.missing(name) == () for name in NAMES)
+    monkeypatch.setattr(compiling, "is_kept", lambda name: "-everything-" in name)
+    monkeypatch.setattr(compiling, "scene_named", lambda name: pytest.fail(f"{name} is imported"))
+    assert all(compiling.uncompiled(name) == [] for name in NAMES)
 
 
 def test_the_process_of_a_student_s_functions_imports_little() -> None:

@@ -61,6 +61,7 @@ class MooringScene(LineScene):
             self.assess_stability()
         else:
             self.take_step()
+        self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
         """Go on with the mooring as it is arranged now."""

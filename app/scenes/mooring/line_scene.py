@@ -221,17 +221,22 @@ class LineScene(abc.ABC):
         if self.plot_rows.is_due(self.time):
             self.add_plot_row()
 
-    def measure(self) -> None:
-        """Take tensions, offset and path of the state."""
+    def find_tensions(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Find the tensions in the state; returns the forces (lines, 3) [N] at anchors and fairleads."""
         p, state = self.system.kernel_view(self.step)._replace(**self.driven()), self.state
         tension = np.empty(len(p.ends))
         v = velocities(self.system, state)
         set_line_tensions(state.x.reshape(-1), v.reshape(-1), p, tension)
         self.tension, self.points = tension[self.rows.links], self.rows.points(state.x)
+        return self.rows.end_forces(state.x, v, state.t, p)
+
+    def measure(self) -> None:
+        """Take tensions, offset and path of the state, into the statistics too."""
         if self.is_dragged:
-            self.tensions.leave_out(state.t, self.params.wave_period)
-        self.tensions.measure(state.t, self.tension, *self.rows.end_forces(state.x, v, state.t, p))
-        self.excursion.measure(state.t, self.body_place(), counts=self.tensions.counts)
+            self.tensions.leave_out(self.time, self.params.wave_period)
+        at_anchor, at_fairlead = self.find_tensions()
+        self.tensions.measure(self.time, self.tension, at_anchor, at_fairlead)
+        self.excursion.measure(self.time, self.body_place(), counts=self.tensions.counts)
 
     def add_plot_row(self) -> None:
         """Add tensions and offset at the scene's time."""
@@ -294,7 +299,7 @@ class LineScene(abc.ABC):
         restore(self, kept)
         self.grabbed = None
         self.take_step()
-        self.measure()
+        self.tensions.take_now(*self.find_tensions())
         self.plot_rows.resume()
         self.last_moments.clear()
 

@@ -15,11 +15,11 @@ from app.scenes import NAMES
 # In a separate process for each scene, with a cache of its own.
 PROGRAM = """
 import sys, time
-from app.scenes.ahead.warmup import all_pieces, compile_piece
-for piece, drawn in all_pieces(sys.argv[1]):
+from app.scenes.ahead.compiling import all_jobs, compile_job
+for job in all_jobs(sys.argv[1]):
     start = time.process_time()
-    compile_piece(sys.argv[1], piece, drawn=drawn)
-    print(piece, time.process_time() - start, sep="\\t", flush=True)
+    compile_job(job)
+    print(job.piece, time.process_time() - start, sep="\\t", flush=True)
 """
 
 

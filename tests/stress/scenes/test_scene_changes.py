@@ -8,7 +8,7 @@ import psutil
 import pytest
 
 from app.scenes import NAMES
-from app.scenes.ahead.warmup import prepare
+from app.scenes.ahead.compiling import prepare
 from app.server.viewer import Viewer
 from tests.stress.clients import clients_of, until
 from tests.stress.memory import GROWTH, resident

@@ -94,6 +94,7 @@ class FileScene(LineScene):
         self.sea = sea_of(params)
         self.take_system()
         self.take_step()
+        self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
         """Go on with the water as it is now."""

@@ -78,11 +78,15 @@ class Tensions:
         """False while the time is left out."""
         return self.time >= self.counted_from
 
+    def take_now(self, at_anchor: Array, at_fairlead: Array) -> None:
+        """Take the forces (lines, 3) at both ends [N], without the statistics."""
+        self.anchor, self.fairlead = (np.linalg.norm(force, axis=1) for force in (at_anchor, at_fairlead))
+        self.uplift = np.maximum(at_anchor[:, 2], 0.0)
+
     def measure(self, t: float, tension: Array, at_anchor: Array, at_fairlead: Array) -> None:
         """Take the tensions (lines, segments) and the forces (lines, 3) at both ends [N], at time t [s]."""
         duration, self.time = t - self.time, t
-        self.anchor, self.fairlead = (np.linalg.norm(force, axis=1) for force in (at_anchor, at_fairlead))
-        self.uplift = np.maximum(at_anchor[:, 2], 0.0)
+        self.take_now(at_anchor, at_fairlead)
         is_slack = tension.min(axis=1) <= 0.0
         self.slack_since = np.where(is_slack, np.where(np.isnan(self.slack_since), t, self.slack_since), math.nan)
         if not self.counts:

@@ -49,7 +49,8 @@ def test_a_folder_has_the_controls_of_its_group_and_no_others(scene: str, monkey
     made: list[tuple[str, str]] = []
     parameters = parameters_of(scene_named(scene).params)
     gui: Any = SimpleNamespace(add_folder=Folder)
-    controls = Controls(gui, scene_named(scene).params, lambda *_: None)
+    settings: Any = SimpleNamespace(params=scene_named(scene).params())
+    controls = Controls(gui, settings)
     monkeypatch.setattr(controls, "make", lambda folder, name: made.append((folder.title, name)))
     for group in dict.fromkeys(parameter.group for parameter in parameters.values()):
         controls.add_group(group, is_open=False)

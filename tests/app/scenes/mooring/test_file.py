@@ -1,5 +1,6 @@
 """The scene of a MoorDyn file: any number of lines, and the coupled points as one vessel."""
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -96,6 +97,17 @@ def test_the_vessel_moves_as_the_water_does_and_its_points_as_one():
     held = scene_of("shared_line", wave_height=3.0, wave_period=9.0, follow=0.0)
     run_for(held, 1.0)
     assert held.body_place() == pytest.approx(held.middle, abs=1e-12)
+
+
+def test_another_current_shows_in_the_tensions_before_the_next_step():
+    scene = scene_of("chain", wave_height=0.0)
+    run_for(scene, 0.5)
+    before = scene.end_tension()
+    scene.change_forces(dataclasses.replace(scene.params, current=2.0))
+    after = scene.end_tension()
+    assert not np.array_equal(before, after)
+    scene.resume(scene.keep())
+    np.testing.assert_array_equal(scene.end_tension(), after)
 
 
 def test_the_mouse_drags_the_vessel_no_farther_than_its_lines_reach():

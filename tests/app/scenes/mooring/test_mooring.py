@@ -231,6 +231,19 @@ def test_a_checkpoint_goes_on_as_the_run_did():
     assert scene.frame().offset == expected.offset
 
 
+def test_a_change_of_forces_shows_in_the_tensions_before_the_next_step_and_counts_in_no_statistics():
+    scene = MooringScene(MooringParams(**SMALL))
+    run(scene, 1.0)
+    before, readings = scene.end_tension(), scene.readings().lines[0]
+    scene.change_forces(dataclasses.replace(scene.params, axial_stiffness=2.0 * scene.params.axial_stiffness))
+    stiffer = scene.end_tension()
+    assert (abs(stiffer - before) > 1e-3 * before).all()
+    for _ in range(2):
+        scene.resume(scene.keep())
+        np.testing.assert_array_equal(scene.end_tension(), stiffer)
+    assert scene.readings().lines[0].at_fairlead == readings.at_fairlead
+
+
 def test_the_bed_is_darker_and_bluer_with_depth_and_is_lost_towards_the_sides():
     shallow, deep = (bed_colours(depth).reshape(BED_ROWS, BED_ROWS, 3) for depth in (8.0, 120.0))
     middle = slice(BED_ROWS // 2 - 5, BED_ROWS // 2 + 6)

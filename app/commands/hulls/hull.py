@@ -43,7 +43,7 @@ def print_facts(path: Path, reading: MeshReading, density: float, keel_to_gravit
     density [kg/m3] of the whole hull; keel_to_gravity [m]: height of the centre of gravity over the lowest point, None:
     that of the volume. Raises ValueError for a file that cannot be read, or a value that is not allowed.
     """
-    check_number("--density", density, 0.0, SEA_DENSITY, "kg/m3, that of sea water", above=True)
+    check_number("--density", density, "kg/m3, that of sea water", 0.0, SEA_DENSITY, above=True)
     vertices, faces = open_mesh_from_file(path, reading)
     if len(faces) and np.isfinite(vertices).all() and open_edges(faces):
         size = np.ptp(vertices[np.unique(faces)], axis=0)
@@ -66,7 +66,7 @@ def facts(hull: Hull, density: float, keel_to_gravity: float | None) -> list[str
     """Size, volume, draft and stability of a hull, one line each; arguments as for `show`."""
     body = Body(hull, density=density)
     if keel_to_gravity is not None:
-        height = check_number("--kg", keel_to_gravity, 0.0, float(hull.size[2]), "m, the height of the hull")
+        height = check_number("--kg", keel_to_gravity, "m, the height of the hull", 0.0, float(hull.size[2]))
         x, y, z = (float(one) for one in hull.centre)
         place = (x, y, z + float(hull.extents[2, 0]) + height)
         body = Body(hull, mass=density * hull.volume, center_of_gravity=place)

@@ -1,6 +1,7 @@
 """The first whole picture is the true one: its mean colour is that of half a minute later, at each quality.
 
-One preset is looked at by default; the others take minutes each, and are stress tests.
+The lab is paused: waves near the camera hide more of the sky, or less. One preset is looked at by default; the others
+take a minute each, and are stress tests.
 """
 
 import io
@@ -31,10 +32,10 @@ def mean_colour(page: Any) -> np.ndarray:
 
 
 def colours(chromium: Any, scene: str, preset: str, quality: str) -> tuple[np.ndarray, np.ndarray]:
-    """Mean colours of the first whole frame, and of the frame LATER seconds later, of a lab that runs."""
+    """Mean colours of the first whole frame, and of the frame LATER seconds later, of a lab that is paused."""
     lab = Viewer("127.0.0.1", 0)
     try:
-        lab.open(scene, make_setup(scene_named(scene), preset).params)
+        lab.open(scene, make_setup(scene_named(scene), preset).params, paused=True)
         page = new_page(chromium, 400, 260, drawn=True)
         errors: list[str] = []
         page.on("pageerror", lambda error: errors.append(str(error)))

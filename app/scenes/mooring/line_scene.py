@@ -44,6 +44,7 @@ class LineScene(abc.ABC):
     """Lines on the simulation thread, whatever holds them; see `app.scenes.contract.Scene`."""
 
     frame_interval = FRAME_INTERVAL
+    pace = 1.0
     note = ""
     changing: tuple[str, ...]  # attributes that a checkpoint holds
     system: System

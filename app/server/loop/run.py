@@ -132,7 +132,7 @@ class SceneRun:
     def keep_time(self, wall: float) -> bool:
         """Take the steps that are due; True where there were any."""
         frame = self.clock.frame_interval(self.scene.frame_interval)
-        n = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, frame)
+        n = self.pacer.steps(wall, self.scene.params.speed * self.scene.pace, self.scene.step, frame)
         if self.goal is not None:
             n = min(n, steps_to(self.scene, self.goal.until))
         return self.take_steps(n)
@@ -146,7 +146,8 @@ class SceneRun:
     def note_place(self) -> None:
         """Say at the clock of several loops where the run is."""
         if self.seat is not None:
-            self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
+            seat, scene = self.seat, self.scene
+            seat.note(scene.time, scene.step, scene.pace, running=self.running, halted=bool(self.stopped_by))
 
     def follow(self, seat: Seat, wall: float) -> bool:
         """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.

@@ -13,6 +13,7 @@ const PARTS = {
   display: () => import("../panel/display.js"),
   access: () => import("../panel/access.js"),
   reach: () => import("./reach.js"),
+  drag_hint: () => import("./drag_hint.js"),
   beside: () => import("./beside.js"),
 };
 

@@ -299,7 +299,7 @@ def test_the_guide_says_the_errors_of_a_race_as_its_table_does(monkeypatch: pyte
         update(panel, *arguments)
         notes = panel.controls_tab.readings.notes
         if panel.guide is not None and "Results" in notes:
-            table = re.findall(r"<tr><td>(?:<b>)?(.*?)(?:</b>)?</td>", notes["Results"][1].content)
+            table = re.findall(r"<tr><td>(?:<b>)?(.*?)(?:</b>)?</td>", notes["Results"].text.content)
             now = re.findall(r"Error of rope \d: <b>(.*?)</b>", panel.guide.readings.content)
             if now and table:
                 seen.append((now, table[: len(now)]))

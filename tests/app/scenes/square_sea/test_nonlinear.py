@@ -12,6 +12,7 @@ from app.formats.formatting import number
 from app.messages import Pause, Play, PointAlong, Reset, RunOn
 from app.scenes.quantities import measured
 from app.scenes.square_sea import SCENE, report
+from app.scenes.square_sea.nonlinear import crest_pace
 from app.scenes.square_sea.parameters import LINEAR_ONLY, PRESETS, SquareSeaParams, hidden, solved_points
 from app.scenes.square_sea.scene import SquareSeaScene
 from app.server.loop.sim_loop import SimLoop
@@ -55,6 +56,72 @@ def test_the_draupner_wave_is_as_high_as_it_was_measured(draupner: Any) -> None:
     assert 0.0 < found.lost < 0.02
 
 
+def test_time_slows_while_the_draupner_wave_passes_and_nearly_stands_at_its_crest() -> None:
+    scene = Scene(SquareSeaParams(**(PRESETS["Draupner"] | {"size": "64", "mesh": "32", "statistics": False})))
+    paces, heights = [], []
+    scene.advance(54 * 60)
+    while scene.time < 66.0:
+        scene.advance(6)
+        heights.append(scene.frame().gauge[2])
+        paces.append(scene.pace)
+    top = int(np.argmax(heights))
+    assert max(heights) > 14.0
+    assert min(paces) == pytest.approx(15.0 / 10.0 / 2.0 / 10.0, rel=0.1)  # the period over its 10 s, speed, slowest
+    assert abs(int(np.argmin(paces)) - top) <= 2
+    assert 1.0 == paces[0] == paces[-1] > paces[top - 12] > 3.0 * paces[top]
+    before = scene.pace
+    scene.params = dataclasses.replace(scene.params, slow_motion=False)
+    assert (before, scene.pace) == (1.0, 1.0)
+
+
+def test_slow_motion_can_be_switched_off_and_is_that_of_a_high_crest_only() -> None:
+    def pace(share: float, phase: float, speed: float = 1.0) -> float:
+        omega = 2.0 * math.pi / 10.0
+        return crest_pace(share * math.cos(phase), -share * omega * math.sin(phase), 1.0, 10.0, speed)
+
+    assert pace(1.2, 0.0) == pytest.approx(0.1)
+    assert pace(1.2, -1.0) == pytest.approx(math.sin(1.0))  # it is known to be high before it is
+    assert pace(1.2, -1.0, 8.0) == pytest.approx(math.sin(1.0) / 8.0)  # a wave takes as long at each speed
+    assert pace(1.2, 0.0, 0.05) == 1.0  # which is slower already
+    assert {pace(share, phase) for share in (0.0, 0.9) for phase in (-1.0, 0.0, 1.0)} == {1.0}
+    assert {pace(1.2, phase) for phase in (-1.6, 1.6, 3.0)} == {1.0}  # troughs
+    assert crest_pace(1.0, 0.0, 0.0, 10.0, 1.0) == crest_pace(1.0, 0.0, 1.0, 0.0, 1.0) == 1.0  # no waves
+    off, on = (Scene(SquareSeaParams(**STEEP, slow_motion=slow)) for slow in (False, True))
+    for scene in (off, on):
+        scene.advance(2)
+        scene.frame()
+        scene.gauge.trace.extend([(10.0, 2.2), (10.1, 2.2)])
+    assert (off.pace, on.pace < 0.2) == (1.0, True)
+    on.gauge.put((0.0, 0.0))
+    assert on.pace == 1.0  # it has read nothing there yet
+    assert Scene(SquareSeaParams()).pace == 1.0
+
+
+def test_the_draupner_sea_stands_beside_its_record(draupner: Any) -> None:
+    text = str(report.readout(SimLoop(draupner).latest))
+    assert "measured" in text
+    assert "18.5" in text
+    assert "12 to 13 s" in text
+    draupner.plot_rows.restart()
+    draupner.read_gauge()
+    assert draupner.take_plot_rows()[-1][2] == 18.5
+    other = Scene(dataclasses.replace(draupner.params, size="64", mesh="32", hs=6.0))
+    assert math.isnan(other.take_plot_rows()[-1][2])
+    assert "1995" not in str(report.readout(SimLoop(other).latest))
+
+
+def test_a_high_crest_comes_to_the_staff_of_the_steep_storm() -> None:
+    scene = Scene(SquareSeaParams(**PRESETS["Steep storm"]))
+    scene.advance(20 * 60)
+    heights, paces = [], []
+    for _ in range(30):
+        scene.advance(6)
+        heights.append(scene.frame().gauge[2])
+        paces.append(scene.pace)
+    assert max(heights) > 1.05 * scene.sea.significant_height
+    assert min(paces) < 0.2
+
+
 def test_order_1_is_the_linear_sea_and_a_rogue_wave_comes_by_linear_sums_too() -> None:
     scene = Scene(SquareSeaParams(size="64", mesh="32"))
     assert scene.marching is None
@@ -71,8 +138,14 @@ def test_the_breather_grows_from_even_waves() -> None:
     assert first.vertices[..., 2].max() == pytest.approx(1.3 * 0.635, rel=0.05)
     assert np.ptp(first.vertices[..., 2], axis=1).max() == 0.0  # long crests
     assert scene.marching.sea.size == (256, 1)
-    scene.advance(326 * 60)
-    assert scene.frame().vertices[..., 2].max() > 3.2 * 0.635
+    heights = []
+    for _ in range(8):
+        scene.advance(321 * 60 if scene.time == 0.0 else 60)
+        frame = scene.frame()
+        heights.append(frame.gauge[2])
+    assert frame.highest.place[2] > 3.2 * 0.635
+    assert max(heights) > 3.0 * 0.635  # and the staff stands where it comes
+    assert abs(frame.highest.place[0] - scene.gauge.at[0]) < 10.0
 
 
 @pytest.mark.parametrize("start", ["as set", "groups"])

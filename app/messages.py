@@ -53,7 +53,7 @@ def finite_vector(values: Iterable[object], max_distance: float = MAX_DISTANCE) 
 
 
 def where_not_finite(frame: object, name: str = "") -> str:
-    """Which part of a frame (records, tuples, float arrays) holds a NaN or an infinity; "" where none does."""
+    """The part of a frame (records, tuples, float arrays) that holds a NaN or an infinity; "" if none does."""
     if isinstance(frame, np.ndarray):
         return "" if frame.dtype.kind != "f" or np.isfinite(frame).all() else name or "an array"
     if isinstance(frame, float):
@@ -88,7 +88,7 @@ class StepOnce(NamedTuple):
 class RunOn(NamedTuple):
     """Run, and pause as soon as an event begins."""
 
-    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # whether it happens just now
+    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # True if it happens just now
 
 
 class Halt(NamedTuple):
@@ -146,7 +146,7 @@ class GrabTo(NamedTuple):
 
 
 class Release(NamedTuple):
-    """Release what a browser has grabbed."""
+    """Release everything that a browser has grabbed."""
 
     client: int = 0
 
@@ -186,7 +186,7 @@ class Advance(NamedTuple):
 
 SceneCommand = (
     Place | GrabTo | Release | PointAlong | RestartStatistics | StudentAnswer
-)  # what a scene handles; the rest is the loop's
+)  # for a scene; the rest is for the loop
 Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
 
 
@@ -195,7 +195,7 @@ class RunIdentity(NamedTuple):
 
     number: int = 1  # in the order in which the runs of a scene begin
     act: int = 1  # number of the person's act with which it began (`History`)
-    before: int = 0  # number of the run from a moment of which it goes on; 0: it began at the start of the scene
+    before: int = 0  # number of the run that it resumed; 0: it began at the start of the scene
     since: float = 0.0  # [s] of simulated time at that moment
 
 
@@ -239,17 +239,17 @@ class Status(NamedTuple):
     actual_speed: float  # real-time factor over the last second
     capped: bool  # time that could not be made up is being dropped
     frame_rate: float  # frames per second published
-    halted: str  # why the run stopped by itself, or ""
+    halted: str  # reason why the run stopped by itself, or ""
     run: RunIdentity = RunIdentity()
     # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
     replayed: tuple[Vector, Vector] | None = None
     unmade: bool = False  # the scene could not begin with its parameters
     restarted: bool = False  # an undo has lately found that the run was not kept, so it began again
-    faster: str = ""  # what would make a run that is capped faster, or ""
+    faster: str = ""  # advice that makes a capped run faster, or ""
 
 
 class ChartLine(NamedTuple):
-    """How one column of a chart is drawn."""
+    """Style of one column of a chart."""
 
     label: str
     colour: str  # CSS

@@ -167,7 +167,7 @@ class Opening:
         """make: the lab. show: opens its scene."""
         self.opened, self.make, self.show = opened, make, show
         self.viewer: Viewer | None = None
-        self.error: BaseException | None = None  # why it failed
+        self.error: BaseException | None = None  # reason why it failed
         self.done = threading.Event()  # the lab is to end, or could not be opened
         self.ended = threading.Event()  # the lab is to end
         self.thread = threading.Thread(target=self.run, name="opening", daemon=True)
@@ -225,7 +225,7 @@ def say(text: str) -> None:
     try:
         print(text, flush=True)
     except OSError:
-        # What could not be written stays in the buffer, and would fail again when Python ends.
+        # Unwritten text stays in the buffer, and would fail again when Python ends.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 

@@ -1,4 +1,4 @@
-"""The settings of the open scene: its parameters, the preset that they come from, and what an undo brings back."""
+"""The settings of the open scene: its parameters, the preset that they come from, and the history for Undo."""
 
 import dataclasses
 from collections.abc import Callable, Mapping

@@ -154,7 +154,7 @@ class ComparedLabs:
         self.clock.seats = tuple(self.seats[viewer] for viewer in self.viewers if viewer in self.seats)
 
     def audience(self) -> int:
-        """How many browsers see all panes: the clock stands still where one is not there yet."""
+        """Number of browsers that see all panes: the clock stands still until each one is there."""
         return min(viewer.visitors() for viewer in self.viewers)
 
     def words(self) -> tuple[PaneWords, ...]:

@@ -113,7 +113,7 @@ class Viewer:
     ) -> bool:
         """Show a scene, in place of the one that is open. Returns False where it was given up before it was there.
 
-        params: None for those that the scene was first given. Where there are none: with `first_look` those of a preset
+        params: None for those that the scene was first given. Without any: with `first_look` those of a preset
         that keeps moving, otherwise the defaults. first_look: a browser asked for it; parameters of a task of the lab
         are not kept. given_up: whether nobody waits for it any more. Whatever fails leaves a page that says why and
         offers the scenes; the exception is raised.
@@ -257,7 +257,7 @@ class Viewer:
         return self.served.commands
 
     def visitors(self) -> int:
-        """How many browsers are connected."""
+        """Number of connected browsers."""
         return len(self.server.get_clients())
 
     def newest_visitor(self, timeout: float) -> viser.ClientHandle | None:
@@ -267,7 +267,7 @@ class Viewer:
         return clients[max(clients)] if clients else None
 
     def audience(self) -> int:
-        """How many browsers look; at all labs, where several are side by side."""
+        """Number of browsers that look, of all labs if several are side by side."""
         comparison = self.comparison
         return self.visitors() if comparison is None else comparison.audience()
 

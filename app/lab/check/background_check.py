@@ -128,7 +128,7 @@ def end(process: "subprocess.Popen[str]") -> None:
     process.terminate()
     process.wait()
     for stream in (process.stdin, process.stdout):
-        with contextlib.suppress(OSError):  # what was not yet sent is dropped
+        with contextlib.suppress(OSError):  # unsent data is dropped
             if stream is not None:
                 stream.close()
 

@@ -37,7 +37,7 @@ class Student(NamedTuple):
     rope: RopePicture = RopePicture()
     at: str = ""  # name of the task whose result changed last; at first of the last that is begun
     changed_at: str = ""  # clock time of that
-    error: str = ""  # why the folder could not be checked, or its answers not be read
+    error: str = ""  # reason why the folder could not be checked, or its answers not be read
     name: str = ""  # as the student typed it
 
 
@@ -94,7 +94,7 @@ class Classroom:
         for folder in folders:
             check_is_folder(folder)
         self.students = {folder: Student(folder) for folder in dict.fromkeys(folders)}
-        self.revision = 0  # how often a student has changed
+        self.revision = 0  # number of changes of students
         self.news = threading.Condition()
         self.is_closed = threading.Event()
         self.turns = threading.Condition()

@@ -27,7 +27,7 @@ LOOK_INTERVAL = 0.5  # [s] between two looks
 SETTLE_TIME = 0.05  # [s] without a further change before a save is read: editors write a file in several steps
 MAX_SETTLE_TIME = 0.4  # [s]
 COARSE_TIME = 3.0  # [s] after a change during which files are read at each look
-MAX_WORKED = 2  # versions that worked of which each use keeps the copies
+MAX_WORKED = 2  # versions that worked, kept as copies for each use
 COSTLY = ("endless", "ended", "memory")  # kinds of errors that may end the process
 Stamps = frozenset[tuple[str, int, int, int]]
 Key: TypeAlias = tuple[str, int, bool]  # of a process: who asks, version, whether it compiles
@@ -81,7 +81,7 @@ class Look:
         return True
 
     def forget(self) -> None:
-        """Have the next look find a change, as what it found could not be taken up."""
+        """Have the next look report its changes again, as they could not be loaded."""
         self.seen = None
 
 
@@ -124,7 +124,7 @@ class Versions:
         self.newest: Saved | None = None
         # These four are replaced, never changed.
         self.of_file: Mapping[str, Saved] = {}  # file of tasks -> version in which its functions were saved last
-        self.errors: Mapping[Use, RunError] = {}  # what stops the newest version
+        self.errors: Mapping[Use, RunError] = {}  # of the newest version
         self.verdicts: Mapping[str, Verdict] = {}  # function -> outcome of its check as it was saved last
         self.compiled: Mapping[Use, Compiled] = {}
         self.judged: dict[str, int] = {}  # function -> version of its final verdict

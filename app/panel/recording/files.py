@@ -114,7 +114,7 @@ class Files:
     def check_open(self) -> None:
         """Raise ValueError where another scene is shown."""
         if not self.settings.is_open:
-            raise ValueError("another scene was opened before it was there")
+            raise ValueError("another scene was opened before it was ready")
 
     def film_file(self, client: viser.ClientHandle, work: LongWork) -> tuple[str, bytes]:
         """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.

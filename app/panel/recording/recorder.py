@@ -176,7 +176,7 @@ class Recorder:
         self.frames = frames
 
     def span(self) -> tuple[float, float]:
-        """Simulated times [s] of the first and the last frame; (0, 0) where there is none."""
+        """Simulated times [s] of the first and the last frame; (0, 0) without frames."""
         with self.lock:
             return (self.frames[0].time, self.frames[-1].time) if self.frames else (0.0, 0.0)
 
@@ -206,7 +206,7 @@ class Recorder:
             raise TimeoutError("the recording could not be shown") from None
 
     def note_sent(self, shown: Kept | None) -> None:
-        """The viewer's thread has sent what is shown: a frame of the recording, or None for the present."""
+        """Note that the viewer's thread has sent this: a frame of the recording, or None for the present."""
         if self.awaited is not None and self.awaited[0] is shown:
             _, sent = self.awaited
             self.awaited = None
@@ -262,7 +262,7 @@ class Recorder:
             return None if self.position is None else self.frames[self.position]
 
     def resumable(self) -> Kept | None:
-        """The last frame up to the one that is shown that has a state to go on from; None where there is none."""
+        """The last frame up to the shown one from whose state a run can resume, or None."""
         with self.lock:
             if self.position is None:
                 return None

@@ -26,7 +26,7 @@ class Change(NamedTuple):
     page: str  # word that the page which made it knows itself by (app/render/js/panel/share.js)
     scene: str  # that is shown after it
     subject: Setup | str  # that was opened: a set-up, or the name of a comparison
-    before: Setup  # what was shown
+    before: Setup  # the former set-up
     end: float = 0.0  # [s] of the monotonic clock until which it is shown; 0: not shown yet
 
     def words(self) -> str:

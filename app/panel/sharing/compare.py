@@ -29,7 +29,7 @@ class Beside(NamedTuple):
 
     compare: Callable[[Sequence[Setup], bool], None]  # show set-ups beside the lab; True: the first of them in the lab
     end: Callable[[], None]  # show the lab alone
-    panes: Callable[[], tuple[PaneWords, ...]]  # what is shown; () for a lab alone
+    panes: Callable[[], tuple[PaneWords, ...]]  # words of each pane; () for a lab alone
 
 
 class Compare:

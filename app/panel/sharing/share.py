@@ -87,10 +87,10 @@ class Share:
             self.add_line("This run")
         with gui.add_folder("This set-up"):
             self.name = gui.add_text(
-                "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
+                "Name", "", hint=f"Name of the set-up to save, keep or remove; at most {MAX_NAME} characters"
             )
             self.note = gui.add_text(
-                "Note in the file", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters"
+                "Note in the file", "", hint=f"Saved with the set-up; at most {MAX_NOTE} characters"
             )
             gui.add_button_group("", (COPY, SAVE)).on_click(self.on_link)
             gui.add_button_group("", (KEEP,)).on_click(self.on_own)

@@ -94,7 +94,7 @@ class LineScene(abc.ABC):
 
     @abc.abstractmethod
     def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
-        """The fault of a state to start with, None if there is none.
+        """The fault of a state to start with, or None.
 
         stretch: (lines,) over the length. failure: of the search for rest, or "".
         """
@@ -300,6 +300,6 @@ class LineScene(abc.ABC):
 
 
 def fade_at(t: float) -> float:
-    """Factor on what begins smoothly, at time t [s]."""
+    """Factor on loads that begin smoothly, at time t [s]."""
     fraction = min(t / FADE, 1.0)
     return fraction * fraction * (3.0 - 2.0 * fraction)

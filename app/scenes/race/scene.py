@@ -33,7 +33,7 @@ class RaceFrame(NamedTuple):
 
     params: RaceParams
     ropes: NDArray[np.float32]  # (ropes, points, 3) [m], C-contiguous, side by side
-    references: NDArray[np.float32] | None  # the same of the reference runs, or None where there are none to show
+    references: NDArray[np.float32] | None  # the same of the reference runs, or None if none is shown
     labels: tuple[str, ...]
     failed: tuple[bool, ...]
     root: Vector  # [m] where the roots are going to

@@ -87,7 +87,7 @@ def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
 
 
 def holding_step(step: float, gauge: Gauge) -> Advice | None:
-    """A time step, 1/n with a round n, that would have held in a run that diverged; None if there is none."""
+    """A time step, 1/n with a round n, that would have held in a run that diverged, or None."""
     largest = MARGIN * gauge.critical_step if gauge.share > 1.0 else step / 4
     if not SHORTEST_STEP <= largest < math.inf:
         return None

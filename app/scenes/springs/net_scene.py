@@ -65,7 +65,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @property
     def note(self) -> str:
-        """Why another method runs than the one chosen, or ""."""
+        """Reason why another method runs than the one chosen, or ""."""
         return "" if self.params.integrator == AUTO else self.fallback_note
 
     @property
@@ -79,7 +79,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @abc.abstractmethod
     def net_during(self, t: float, duration: float) -> Net:
-        """The net with the motions of what a user moves over the next `duration` [s] from time t [s]."""
+        """The net with the motions that a user causes over the next `duration` [s] from time t [s]."""
 
     @abc.abstractmethod
     def moved(self, good: State, steps: int, found: Extremes) -> None:

@@ -80,7 +80,9 @@ class SimLoop:
         """
         self.scene, self.admit = scene, admit
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
-        self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
+        self.waiting: list[
+            Command
+        ] = []  # for the next tick: the one that ended a sleep, and those that a solve did not answer
         self.clock = TickClock(clock, effort, sleep, gives_way=gives_way)
         self.run = SceneRun(scene, audience, self.clock, paused=paused)
         self.runs = Runs(self.run)

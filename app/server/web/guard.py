@@ -179,7 +179,7 @@ def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-# What kind of value each GUI element takes.
+# Type of the value of each GUI element.
 FLAGS = (viser.GuiCheckboxHandle, viser.GuiButtonHandle)
 NUMBERS = (viser.GuiSliderHandle, viser.GuiNumberHandle)
 CHOICES = (viser.GuiDropdownHandle, viser.GuiButtonGroupHandle)
@@ -207,7 +207,7 @@ def allowed_value(handle: GuiHandle, value: object) -> object:
     if issubclass(kind, CHOICES):
         return value if isinstance(value, str) and value in handle.options else None
     if issubclass(kind, viser.GuiTextHandle):
-        if handle.multiline:  # what is in it is judged where it is kept, which can say so
+        if handle.multiline:  # its content is judged where it is saved, which can say so
             return value[:MAX_TEXT_LENGTH] if isinstance(value, str) else None
         return value if isinstance(value, str) and len(value) <= MAX_FIELD_LENGTH and value.isprintable() else None
     return None
@@ -229,7 +229,7 @@ class Screen:
     def __init__(self, server: viser.ViserServer) -> None:
         self.server = server
         self.refused: collections.Counter[str] = collections.Counter()
-        self.is_in_place = False  # whether messages pass through this screen
+        self.is_in_place = False  # True if messages pass through this screen
 
     def __call__(self, message: ViserMessage) -> ViserMessage:
         """The message, with a value bounded where it only had to be bounded, or None where it is refused.
@@ -261,7 +261,7 @@ class Screen:
 
 
 def merge_key(message: ViserMessage) -> MergeKey | None:
-    """Key of messages of which only the latest counts. None for messages that are never coalesced."""
+    """Key by which messages are coalesced to the latest. None for messages that never are."""
     match kind := kind_of(message):
         case "GuiUpdateMessage" | "CommandTriggerMessage" | "GuiButtonHoldMessage":
             return kind, message.uuid
@@ -296,7 +296,7 @@ class Intake:
         self.unmerged = 0  # counts messages that are never merged, for keys of their own
         self.turn: asyncio.Task[None] | None = None
         self.turned_at = -math.inf  # [s] when a message was last handled
-        self.counted = False  # whether viser has had a camera message
+        self.counted = False  # True once viser has had a camera message
 
     def queue(self, client: ClientId, message: ViserMessage) -> None:
         """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""

@@ -29,9 +29,9 @@ QUEUE = 0.02  # [s] of the line's rate that may wait in front of it, beyond what
 MOST = 12  # pictures on the way, however much a line carries: 30 a second where a round trip takes 0.4 s
 QUICK = 0.01  # [s] from a picture to its pong, within which a line is so quick that not each picture is asked about
 MAX_UNASKED = 4  # pictures that go one after the other without a ping over such a line: each costs 0.1 ms
-SAMPLES = 5  # of the rate, of which the median counts: one pong may be late, and the next seem early
+SAMPLES = 5  # of the rate; their median counts: one pong may be late, and the next seem early
 PROBE_INTERVAL = 10.0  # [s] between two round trips that are measured while nothing else is on the way
-PROBES = 3  # of which the shortest counts
+PROBES = 3  # the shortest counts
 PATIENCE = 1.0  # [s] beyond four times what it should take, after which a pong is no longer waited for
 FIRST_PATIENCE = 10.0  # [s] the same while the rate is not known
 
@@ -61,7 +61,7 @@ class Pace:
         self.round_trip = 0.0  # [s] of a message with nothing in front of it; 0 while that is not known
         self.probe_at = -math.inf  # [s] when the round trip is measured next
         self.last_pong = -math.inf  # [s] when it came
-        self.is_quick = False  # whether it came within QUICK
+        self.is_quick = False  # True if it came within QUICK
         self.unasked = 0  # pictures since the last ping
 
     async def send(self, data: bytes) -> None:
@@ -101,7 +101,7 @@ class Pace:
 
     @property
     def patience(self) -> float:
-        """How long [s] a pong is waited for."""
+        """Time [s] to wait for a pong."""
         if not self.rate:
             return FIRST_PATIENCE
         return PATIENCE + 4.0 * (self.round_trip + self.bytes_on_the_way / self.rate)
@@ -154,7 +154,7 @@ def put_small_first(server: viser.ViserServer) -> None:
 async def small_first(windows: Windows, pace: Pace) -> Windows:
     """The same messages; where there is no room only small updates of the panel, and later the newest of the others."""
     loop = asyncio.get_running_loop()
-    held: dict[str, ViserMessage] = {}  # what waits, in order, by what supersedes it
+    held: dict[str, ViserMessage] = {}  # waiting messages, in order, by the key of the message that supersedes them
     more: asyncio.Future[Window] | None = None
     room: asyncio.Future[None] | None = None
     try:

@@ -102,7 +102,7 @@ function filledTexture(renderer, texture, width, height, halves, repeats) {
 }
 
 // The waves as the textures that the shader reads (WATER_GLSL.waves), where they have changed. The vertices of a tile are
-// rows and columns, of which the last ones close it; those of rings are the rings one after the other, and the middle.
+// rows and columns, and the last ones close it; those of rings are the rings one after the other, and the middle.
 /** @param {Sea} sea @param {three.Renderer} renderer @param {Float32Array} rest */
 function fillWaves(sea, renderer, rest) {
   const { position, slopeAndFoam } = sea.geometry.attributes;

@@ -103,7 +103,7 @@ class Reset(NamedTuple):
     act: int = 0  # number of the person's act that asks for it (`History`); 0: no person does
 
 
-class KeptState(NamedTuple):
+class Checkpoint(NamedTuple):
     """A state from which a scene can go on."""
 
     value: object  # as `Scene.keep` gave it
@@ -120,7 +120,7 @@ class Take(NamedTuple):
 
     params: BaseParams  # the scene's record
     start: bool = False  # begin again and run, whatever has changed, as for a preset
-    state: KeptState | None = None  # go on from here and run; of a scene that had these parameters
+    state: Checkpoint | None = None  # go on from here and run; of a scene that had these parameters
     act: int = 0  # number of the act with which the run of these parameters begins; 0: that of the present run
     back: bool = False  # go back to the last run of that act, as it was when it was left; `start`: if it was not kept
 
@@ -269,7 +269,7 @@ class Snapshot(NamedTuple, Generic[P, F, R]):
     readings: R  # the scene's own record
     params: P  # the parameters that this moment was made with
     curves: Mapping[str, object] | None = None  # parameter -> columns of its chart
-    state: KeptState | None = None  # of this moment, to go on from later; in some snapshots only
+    state: Checkpoint | None = None  # of this moment, to go on from later; in some snapshots only
 
 
 class Moment(NamedTuple):

@@ -1,6 +1,6 @@
 """The JavaScript of the page: the modules in `js/`, as they are written into a page.
 
-A page holds all of them in an import map, each as a `data:` address under a name such as "springtide/sea/half.js". So
+A page holds all of them in an import map, each as a `data:` address under a name such as "springtide/sea/water.js". So
 a page needs no further request, works at any path of a proxy, and a replay opens from a file. `shared.js` is made here:
 it has the constants that Python and JavaScript share. The scripts in `js/before` are no modules: they run before
 viser's client, each by itself.

@@ -124,7 +124,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def keep(self) -> object:
-        """Checkpoint: independent copies of everything that changes as the scene runs (`app/scenes/moments.py`)."""
+        """Checkpoint: independent copies of everything that changes as the scene runs (`app/scenes/checkpoints.py`)."""
         ...
 
     def resume(self, kept: object) -> None:

@@ -16,7 +16,7 @@ from app.lab.course.answers import DONE, FILE, SHOWN, Answers, Value, change_ans
 from app.lab.course.folder import MAX_PICTURES, PICTURES
 from app.lab.course.live_values import LiveNumber, LiveValues
 from app.lab.course.task import PREDICTION, Question, Task, TaskSetup
-from app.lab.student.versions import Look
+from app.lab.student.versions import FileWatch
 from app.render.markup.formula import formula
 from sim.files import replacing
 from sim.parameters import choice_error
@@ -51,7 +51,7 @@ class Workbook:
             check_laws(task)
         self.lock = threading.RLock()
         self.answers = Answers("", {})
-        self.file = None if folder is None else Look(folder, FILE, 0.0)
+        self.file = None if folder is None else FileWatch(folder, FILE, 0.0)
         self.revision: int = 0  # number of changes of the answers
         self.looked_at: set[str] = set()  # names of the tasks that show their answer, where there is no folder
         self.refresh()

@@ -26,8 +26,8 @@ import numpy as np
 
 from app.lab.process.call_limit import ASLEEP, COMPUTING, CallLimit
 from app.lab.process.call_limit import BUSY as BUSY_MACHINE
+from app.lab.process.child_processes import end_with_this_program, kill_with_children
 from app.lab.process.cloth_march import FILE as CLOTH_FILE
-from app.lab.process.job import end_with_this_program, kill_with_children
 from app.lab.process.rope_march import FILE as ROPE_FILE
 from app.lab.process.rope_march import MarchResult, Segment, packed
 from app.lab.process.shared import COMPILES, FORKS, TRACE_SIGNAL

@@ -21,7 +21,7 @@ from app.lab.process.rope_march import FILE as ROPE_FILE
 from app.lab.report.rope_picture import NOT_DRAWN, RopePicture, rope_picture
 from app.lab.student.saved import Saved
 from app.lab.student.source import read_source
-from app.lab.student.versions import LOOK_INTERVAL, Look, Versions
+from app.lab.student.versions import LOOK_INTERVAL, FileWatch, Versions
 
 WORKERS = 2  # folders that are checked at the same time
 MISSING = "The folder is not there."
@@ -45,7 +45,7 @@ class Desk:
     """One folder. It belongs to one thread at a time."""
 
     def __init__(self, folder: Path, tasks: Sequence[Task]) -> None:
-        self.tasks, self.versions, self.answers = tasks, Versions(folder, tasks), Look(folder, FILE)
+        self.tasks, self.versions, self.answers = tasks, Versions(folder, tasks), FileWatch(folder, FILE)
         self.student = Student(folder)
         self.drawn: Saved | None = None  # the version whose rope is drawn
         self.is_open = True  # something is to be looked at once more

@@ -53,7 +53,7 @@ def stamps(folder: Path, ending: str) -> Stamps | None:
     return frozenset(found)
 
 
-class Look:
+class FileWatch:
     """Looks at the files of a folder that have one ending."""
 
     def __init__(self, folder: Path, ending: str, max_settle: float = MAX_SETTLE_TIME) -> None:
@@ -120,7 +120,7 @@ class Versions:
         """time_limit: [s] of one call of a student's function."""
         self.folder, self.tasks, self.time_limit = folder, tasks, time_limit
         self.copies = Path(tempfile.mkdtemp(prefix="springtide-lab-"))
-        self.files = Look(folder, ".py")
+        self.files = FileWatch(folder, ".py")
         self.newest: Saved | None = None
         # These four are replaced, never changed.
         self.of_file: Mapping[str, Saved] = {}  # file of tasks -> version in which its functions were saved last

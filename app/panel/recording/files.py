@@ -15,7 +15,7 @@ from app.messages import Pause
 from app.panel.plots import Plots
 from app.panel.recording.long_work import LongWork
 from app.panel.recording.picture import take_picture
-from app.panel.recording.recorder import Kept, Recorder
+from app.panel.recording.recorder import RecordedFrame, Recorder
 from app.panel.recording.recording_files import Plotted, plots_csv, plots_svg, recording_npz
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_inside import uuid_of
@@ -45,7 +45,7 @@ PAGE_BUTTONS = (
 )
 
 Make = Callable[[viser.ClientHandle, LongWork], tuple[str, bytes]]  # name and content of a file
-MakeReplay = Callable[[AnyKind, Sequence[Kept], Plotted], str]
+MakeReplay = Callable[[AnyKind, Sequence[RecordedFrame], Plotted], str]
 
 
 class Files:

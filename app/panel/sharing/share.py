@@ -15,8 +15,8 @@ from app.panel.plots import Plots
 from app.panel.recording.files import Files, MakeReplay, file_name
 from app.panel.recording.recorder import Recorder
 from app.panel.settings import SceneSettings
-from app.panel.sharing.changes import Change, Changes, Notice
-from app.panel.sharing.compare import Beside
+from app.panel.sharing.changes import SceneSwitch, SceneSwitches, SwitchNotice
+from app.panel.sharing.compare import ComparisonCalls
 from app.panel.workbook.task_setups import read_link
 from app.render.cameras import place_camera
 from app.render.handles.viser_inside import uuid_of
@@ -54,9 +54,9 @@ class Share:
         make_replay: MakeReplay,
         *,
         head: viser.GuiFolderHandle,
-        changes: Changes,
+        changes: SceneSwitches,
         workbook: Workbook | None,
-        beside: Beside | None,
+        beside: ComparisonCalls | None,
     ) -> None:
         """make_replay: makes the page of a replay. head: holds the notice of a change. changes: those of this server.
 
@@ -71,7 +71,7 @@ class Share:
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         with head:
-            self.notice = Notice(gui, settings.kind.name, changes, self.restore)
+            self.notice = SwitchNotice(gui, settings.kind.name, changes, self.restore)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
         holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
@@ -153,13 +153,13 @@ class Share:
                 self.changes.latest = self.change(subject, page)
             self.show(subject, client.client_id)
 
-    def change(self, subject: Setup | str, page: str) -> Change:
+    def change(self, subject: Setup | str, page: str) -> SceneSwitch:
         """The change that a page makes by opening something."""
         settings = self.settings
         scene = comparison_named(subject)[0].scene if isinstance(subject, str) else subject.scene
-        return Change(page, scene, subject, Setup(settings.kind.name, settings.params, {}, settings.loaded))
+        return SceneSwitch(page, scene, subject, Setup(settings.kind.name, settings.params, {}, settings.loaded))
 
-    def restore(self, change: Change) -> None:
+    def restore(self, change: SceneSwitch) -> None:
         """Undo a change."""
         if isinstance(change.subject, str) and self.beside is not None:
             self.beside.end()

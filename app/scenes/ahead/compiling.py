@@ -13,7 +13,7 @@ import threading
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from app.lab.process.job import end_with_this_program
+from app.lab.process.child_processes import end_with_this_program
 from app.messages import BaseParams
 from app.scenes import NAMES
 from app.scenes.ahead.warmup import missing

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from app.messages import GrabTo, PlotRow, Release, RestartStatistics, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
-from app.scenes.moments import copied, restore
+from app.scenes.checkpoints import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
 from app.scenes.mooring.excursion import Excursion
 from app.scenes.mooring.frame import MooringFrame, MooringReadings

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from app.messages import PlotRow, SceneCommand, Vector
 from app.scenes.charts import Chart
+from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import FRAME_INTERVAL, Pieces
-from app.scenes.moments import copied, restore
 from app.scenes.race.charts import RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings, race_bound
 from app.scenes.race.names import rope_labels

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from app.messages import GrabTo, Place, PlotRow, Release, SceneCommand, StudentAnswer
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
+from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import Pieces
-from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.drawn_surface import DrawnSurface, Foam, tile_of

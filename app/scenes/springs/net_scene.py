@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import PlotRow
+from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import MethodParams
-from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.grab import ParticleGrab

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.messages import BaseParams, KeptState, Pause, Play, PlotRow, RunIdentity, Take
+from app.messages import BaseParams, Checkpoint, Pause, Play, PlotRow, RunIdentity, Take
 from app.panel.recording.recorder import FrameMemory
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
@@ -329,7 +329,7 @@ class LeftRun(NamedTuple):
 
     act: int  # with which it began
     params: BaseParams
-    state: KeptState
+    state: Checkpoint
     rows: tuple[PlotRow, ...]  # of its plots
     running: bool
 
@@ -364,7 +364,7 @@ class LeftRuns:
         return None
 
 
-class Runs:
+class RunSequence:
     """Lets the runs of a scene follow each other: which commands begin another one, and the undo that goes back."""
 
     def __init__(self, run: SceneRun) -> None:
@@ -437,7 +437,7 @@ class Runs:
         run.reset(act, None if left is None else lambda: self.return_to(left))
         run.running = not run.halted
 
-    def resume(self, params: BaseParams, state: KeptState, act: int) -> None:
+    def resume(self, params: BaseParams, state: Checkpoint, act: int) -> None:
         """The scene from a state that was kept, with the parameters that it had then, running."""
         run = self.run
         run.clear()

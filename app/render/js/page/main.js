@@ -11,7 +11,7 @@ const PARTS = {
   timeline: () => import("../panel/timeline.js"),
   share: () => import("../panel/share.js"),
   display: () => import("../panel/display.js"),
-  access: () => import("../panel/access.js"),
+  accessibility: () => import("../panel/accessibility.js"),
   reach: () => import("./reach.js"),
   beside: () => import("./beside.js"),
 };

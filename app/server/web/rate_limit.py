@@ -44,8 +44,8 @@ class Sent(NamedTuple):
     pong: "asyncio.Future[float]"
 
 
-class Pace:
-    """The pace of one browser's messages, on the event loop of its connection."""
+class RateLimit:
+    """The limit of one browser's messages, on the event loop of its connection."""
 
     def __init__(self, connection: ViserConnection) -> None:
         self.connection = connection
@@ -141,17 +141,17 @@ def has_come(pong: "asyncio.Future[float]") -> bool:
     return pong.done() and not pong.cancelled() and pong.exception() is None
 
 
-PACE: contextvars.ContextVar[Pace] = contextvars.ContextVar("pace")  # of the connection that a task serves
+LIMIT: contextvars.ContextVar[RateLimit] = contextvars.ContextVar("limit")  # of the connection that a task serves
 Window = Sequence[ViserMessage]
 Windows = AsyncGenerator[Window, None]
 
 
 def put_small_first(server: viser.ViserServer) -> None:
     """Delay messages to a server's browsers until their line has capacity; small panel updates go ahead."""
-    pass_windows_through(server, lambda windows: small_first(windows, PACE.get()))
+    pass_windows_through(server, lambda windows: small_first(windows, LIMIT.get()))
 
 
-async def small_first(windows: Windows, pace: Pace) -> Windows:
+async def small_first(windows: Windows, limit: RateLimit) -> Windows:
     """The same messages; where there is no room only small updates of the panel, and later the newest of the others."""
     loop = asyncio.get_running_loop()
     held: dict[str, ViserMessage] = {}  # waiting messages, in order, by the key of the message that supersedes them
@@ -161,7 +161,7 @@ async def small_first(windows: Windows, pace: Pace) -> Windows:
         while True:
             if held:
                 more = more or asyncio.ensure_future(anext(windows))
-                room = room or pace.room_from(loop)
+                room = room or limit.room_from(loop)
                 await asyncio.wait([more, room], return_when=asyncio.FIRST_COMPLETED)
                 if room.done():
                     room.result()
@@ -173,7 +173,7 @@ async def small_first(windows: Windows, pace: Pace) -> Windows:
                 window, more = await (more or anext(windows)), None
             except StopAsyncIteration:
                 return
-            if pace.has_room and not held:
+            if limit.has_room and not held:
                 yield window
             elif ahead := hold(held, window):
                 yield ahead

@@ -272,7 +272,7 @@ class Snapshot(NamedTuple, Generic[P, F, R]):
     state: Checkpoint | None = None  # of this moment, to go on from later; in some snapshots only
 
 
-class Moment(NamedTuple):
+class LastFrame(NamedTuple):
     """A frame of a run that diverged."""
 
     time: float  # [s] simulated

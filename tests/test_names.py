@@ -11,6 +11,7 @@ FORMER = {
     "KeptState": "Checkpoint",
     "Kept": "RecordedFrame",
     "Keeper": "SetupSaver",
+    "Moment": "LastFrame",
     "Beside": "ComparisonCalls",
     "Comparing": "Comparisons",
     "Screen": "MessageFilter",

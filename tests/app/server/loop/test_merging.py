@@ -17,7 +17,7 @@ from app.messages import (
     Command,
     GrabTo,
     Halt,
-    Moment,
+    LastFrame,
     Pause,
     Place,
     Play,
@@ -171,7 +171,7 @@ class Lane:
         )  # fmt: skip
 
 
-MOMENTS = tuple(Moment(0.1 * k, k, ORIGIN, ORIGIN) for k in range(3))
+MOMENTS = tuple(LastFrame(0.1 * k, k, ORIGIN, ORIGIN) for k in range(3))
 COMMANDS: tuple[Command, ...] = (
     Play(), Pause(), TogglePlay(), StepOnce(), StepOnce(2), Halt("no picture"), Reset(),
     Take(Params(grid=False)), Take(Params(stiffness=3.0)), Take(Params(points=5)), Take(Params()),

@@ -20,17 +20,17 @@ from sim.validation import ConvergenceError
 CLOSED_OUTPUT = 141  # exit status of a program that SIGPIPE ends, by convention of shells
 # Command -> what its help says, and its module, which has add_arguments(parser) and run(arguments).
 COMMANDS = {
-    "beside": ("two or three set-ups side by side, on one clock", "app.commands.beside"),
-    "run": ("run a scene without a browser, and write it to a file", "app.commands.run"),
+    "beside": ("open two or three set-ups side by side, on one clock", "app.commands.beside"),
+    "run": ("run a scene without a browser and write it to a file", "app.commands.run"),
     "export": ("write a sea or a cloth as a sequence of files for artists", "app.study.export.command"),
     "bench": ("measure run time against error, frames and start-up", "benchmarks.options"),
     "stability": ("measure stability maps and energy drift beside theory", "app.study.stability.command"),
-    "sweep": ("run a scene over ranges of its parameters, into one NetCDF file", "app.study.sweep.command"),
+    "sweep": ("run a scene over ranges of its parameters and write one NetCDF file", "app.study.sweep.command"),
     "hydrodynamics": (
-        "added mass, damping and wave forces of a hull of your own (needs the extra `bem`)",
+        "compute added mass, damping and wave forces of your own hull (needs the extra `bem`)",
         "app.commands.hulls.hydrodynamics",
     ),
-    "hull": ("size, volume, draft and stability of a mesh, and where it is open", "app.commands.hulls.hull"),
+    "hull": ("print the size, volume, draft, stability and gaps of a mesh", "app.commands.hulls.hull"),
     "lab": ("the course lab: make a folder of exercises, check it", "app.commands.lab"),
     "warmup": ("compile all kernels and plan all transforms, once", "app.commands.warmup"),
 }
@@ -68,9 +68,9 @@ def main(argv: list[str] | None = None) -> int:
 def drop_closed_output() -> bool:
     """Write no more if the reader of the output has closed it, as `head` does; returns True if it has."""
     try:
-        print(flush=True)  # what failed before may have been another pipe
+        print(flush=True)  # another pipe may have failed before
     except BrokenPipeError:
-        # What could not be written stays in the buffer, and would fail again when Python ends.
+        # Unwritten text stays in the buffer, and would fail again when Python ends.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return True
     return False
@@ -128,12 +128,12 @@ class Version(argparse.Action):
 
 
 def make_parser() -> Parser:
-    """The parser of all commands; what it returns has `command`, the function that runs the one that was named."""
+    """The parser of all commands; its result has `command`, the function that runs the named one."""
     parser = Parser(
         prog="springtide",
         description="An interactive 3-D lab for spring-mass systems and ocean waves, in a browser tab.",
     )
-    parser.add_argument("--version", nargs=0, action=Version, help="print what a report of a fault needs")
+    parser.add_argument("--version", nargs=0, action=Version, help="print the details that a bug report needs")
     open_lab.add_arguments(parser)
     parser.set_defaults(command=open_lab.run)
     commands = parser.add_subparsers(metavar="COMMAND")

@@ -53,7 +53,7 @@ def finite_vector(values: Iterable[object], max_distance: float = MAX_DISTANCE) 
 
 
 def where_not_finite(frame: object, name: str = "") -> str:
-    """Which part of a frame (records, tuples, float arrays) holds a NaN or an infinity; "" where none does."""
+    """The part of a frame (records, tuples, float arrays) that holds a NaN or an infinity; "" if none does."""
     if isinstance(frame, np.ndarray):
         return "" if frame.dtype.kind != "f" or np.isfinite(frame).all() else name or "an array"
     if isinstance(frame, float):
@@ -88,7 +88,7 @@ class StepOnce(NamedTuple):
 class RunOn(NamedTuple):
     """Run, and pause as soon as an event begins."""
 
-    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # whether it happens just now
+    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # True if it happens just now
 
 
 class Halt(NamedTuple):
@@ -103,7 +103,7 @@ class Reset(NamedTuple):
     act: int = 0  # number of the person's act that asks for it (`History`); 0: no person does
 
 
-class KeptState(NamedTuple):
+class Checkpoint(NamedTuple):
     """A state from which a scene can go on."""
 
     value: object  # as `Scene.keep` gave it
@@ -120,7 +120,7 @@ class Take(NamedTuple):
 
     params: BaseParams  # the scene's record
     start: bool = False  # begin again and run, whatever has changed, as for a preset
-    state: KeptState | None = None  # go on from here and run; of a scene that had these parameters
+    state: Checkpoint | None = None  # go on from here and run; of a scene that had these parameters
     act: int = 0  # number of the act with which the run of these parameters begins; 0: that of the present run
     back: bool = False  # go back to the last run of that act, as it was when it was left; `start`: if it was not kept
 
@@ -146,7 +146,7 @@ class GrabTo(NamedTuple):
 
 
 class Release(NamedTuple):
-    """Release what a browser has grabbed."""
+    """Release everything that a browser has grabbed."""
 
     client: int = 0
 
@@ -186,7 +186,7 @@ class Advance(NamedTuple):
 
 SceneCommand = (
     Place | GrabTo | Release | PointAlong | RestartStatistics | StudentAnswer
-)  # what a scene handles; the rest is the loop's
+)  # for a scene; the rest is for the loop
 Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
 
 
@@ -195,7 +195,7 @@ class RunIdentity(NamedTuple):
 
     number: int = 1  # in the order in which the runs of a scene begin
     act: int = 1  # number of the person's act with which it began (`History`)
-    before: int = 0  # number of the run from a moment of which it goes on; 0: it began at the start of the scene
+    before: int = 0  # number of the run that it resumed; 0: it began at the start of the scene
     since: float = 0.0  # [s] of simulated time at that moment
 
 
@@ -239,18 +239,18 @@ class Status(NamedTuple):
     actual_speed: float  # real-time factor over the last second
     capped: bool  # time that could not be made up is being dropped
     frame_rate: float  # frames per second published
-    halted: str  # why the run stopped by itself, or ""
+    halted: str  # reason why the run stopped by itself, or ""
     run: RunIdentity = RunIdentity()
     # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
     replayed: tuple[Vector, Vector] | None = None
     unmade: bool = False  # the scene could not begin with its parameters
     pace: float = 1.0  # factor on `speed` that the scene asks for: below 1 is slow motion
     restarted: bool = False  # an undo has lately found that the run was not kept, so it began again
-    faster: str = ""  # what would make a run that is capped faster, or ""
+    faster: str = ""  # advice that makes a capped run faster, or ""
 
 
 class ChartLine(NamedTuple):
-    """How one column of a chart is drawn."""
+    """Style of one column of a chart."""
 
     label: str
     colour: str  # CSS
@@ -270,10 +270,10 @@ class Snapshot(NamedTuple, Generic[P, F, R]):
     readings: R  # the scene's own record
     params: P  # the parameters that this moment was made with
     curves: Mapping[str, object] | None = None  # parameter -> columns of its chart
-    state: KeptState | None = None  # of this moment, to go on from later; in some snapshots only
+    state: Checkpoint | None = None  # of this moment, to go on from later; in some snapshots only
 
 
-class Moment(NamedTuple):
+class LastFrame(NamedTuple):
     """A frame of a run that diverged."""
 
     time: float  # [s] simulated

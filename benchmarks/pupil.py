@@ -129,7 +129,7 @@ class Pupil:
     async def act(self, action: str, change: Callable[[], Any], seen: Callable[[], bool]) -> None:
         """Do something, and note how long it took until it was seen."""
         start = time.monotonic()
-        self.clock.append((start, math.nan))  # what follows may set the clock back, or stop it
+        self.clock.append((start, math.nan))  # the next code may set the clock back, or stop it
         await change()
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(ANSWER_LIMIT):

@@ -1,4 +1,4 @@
-"""Folders of what is made once: compiled kernels and plans of transforms.
+"""Folders of caches: compiled kernels and plans of transforms.
 
 The user's folder comes first. Others are read and never written: those that `SPRINGTIDE_KERNELS` lists, that of the
 distribution `springtide-kernels`, and that of the installation, which `springtide warmup --into` fills. All of them

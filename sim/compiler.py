@@ -1,4 +1,4 @@
-"""How numba compiles kernels here: each kernel that Python calls becomes one piece of machine code, and no other does.
+"""Compilation of kernels by numba: each kernel that Python calls becomes one piece of machine code, and no other does.
 
 By default numba makes machine code, a wrapper for Python and one for C of every function, also of those that only
 other kernels call, and optimises each of them again inside every caller. That is most of the compile time, and callers
@@ -118,7 +118,7 @@ class KernelFiles:
         return self.own.locked() if self.own is not None else contextlib.nullcontext()
 
     def save(self, key: Any, data: Any) -> None:
-        """Keep what was compiled, where a folder is writable."""
+        """Save the compiled code, if a folder is writable."""
         if self.own is not None:
             self.own.save(without_processor(key), data)
         else:
@@ -161,7 +161,7 @@ def described(value: Any) -> Any:
 
 
 def contents(code: CodeType) -> tuple[Any, ...]:
-    """The code, names and constants of a function but strings, of which its docstring is one."""
+    """The code, names and constants of a function, without strings such as its docstring."""
     constants = [contents(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts if not isinstance(c, str)]
     return code.co_code, code.co_names, constants
 
@@ -220,7 +220,7 @@ class PartLibrary(KernelLibrary):
 
     def get_pointer_to_function(self, name: str) -> int:
         self._ensure_finalized()
-        return 0  # there is none
+        return 0  # no such function
 
     @property
     def has_dynamic_globals(self) -> bool:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sim.validation import argument_error, check_positive, is_whole_number
 
-MAX_FRAMES = 10_000_000  # what memory may hold, of a small system
+MAX_FRAMES = 10_000_000  # capacity of memory, for a small system
 
 Progress = Callable[[int, int], None] | None  # called with (frames done, frames)
 

@@ -41,7 +41,7 @@ MODULES_OF = re.compile(r"\bmodules_of\(__name__\)")
 # A string, or the rest of a line and the lines after it that hold nothing but spaces and comments.
 STRING = r'''"""(?:\\.|[^\\])*?"""|\'\'\'(?:\\.|[^\\])*?\'\'\'|"(?:\\.|[^\\\n"])*"|'(?:\\.|[^\\\n'])*\''''
 NO_CODE = re.compile(rf"({STRING})|(?:[ \t]*(?:#[^\n]*)?\n)+", re.DOTALL)
-# What a docstring follows: the last line of a `def` or `class`, or nothing.
+# Text before a docstring: the last line of a `def` or `class`, or nothing.
 DOCSTRING = re.compile(
     rf"(\A\n?|^[ \t]*(?:(?:async +)?def|class)\b[^\n]*:\n|^[ \t]*\)[^\n]*:\n)[ \t]*[rRuU]?(?:{STRING})\n",
     re.DOTALL | re.MULTILINE,
@@ -166,7 +166,7 @@ def folder_name(path: Path) -> str:
 
 @functools.cache
 def kernel_folder(path: Path) -> Path | None:
-    """The writable folder of a source's kernels; None also of what is typed in and has no file."""
+    """The writable folder of a source's kernels; None also for typed-in source without a file."""
     if CACHE is None or not path.is_file():
         return None
     try:
@@ -286,7 +286,7 @@ def kernel(
 
 
 def generated(source: str, names: dict[str, Any], module: str, **options: Any) -> Any:
-    """A kernel whose source, one function, was written by the program; kept with those of this module of ours.
+    """A kernel whose source, one function, was written by the program; saved with the kernels of this module of ours.
 
     names: the kernels that it calls, by their names in the source. options: as of `kernel`. Two kernels of one module
     must differ in the name of the function, as numba's own cache does not look at what names stand for.
@@ -363,7 +363,7 @@ def _is_stopped_interpreted(request: Any) -> bool:
     return bool(request[0])
 
 
-# Whether a long solve is to end, by the numbers of `sim.interruption`: the first, set by another thread or by a Ctrl-C.
+# True if a long solve is to end, by the numbers of `sim.interruption`: the first, set by another thread or by a Ctrl-C.
 # Where the third is set, the function of the fourth is called, which raises nothing.
 is_stopped: Any = kernel(_is_stopped_interpreted if numba.config.DISABLE_JIT else _is_stopped)  # type: ignore[attr-defined]
 

@@ -138,7 +138,7 @@ def with_parameters(declared: Mapping[str, Parameter], **changes: Any) -> Callab
     def add(cls: type[T]) -> type[T]:
         for name, known in declared.items():
             if name in cls.__annotations__:
-                raise argument_error("declared", name, f"names that {cls.__name__} has not yet")
+                raise argument_error("declared", name, f"names that {cls.__name__} does not have yet")
             cls.__annotations__[name] = known.kind
             setattr(
                 cls, name, dataclasses.field(default=known.default, metadata={"parameter": known._replace(**changes)})
@@ -220,7 +220,7 @@ def similar(word: object, names: Iterable[str]) -> list[str]:
 
 
 def choice_error(name: str, value: object, choices: Iterable[str], more: str = "") -> ValueError:
-    """The error for a value that is not one of the choices, with similar ones. more: what else is allowed."""
+    """The error for a value that is not one of the choices, with similar ones. more: further allowed values."""
     choices = tuple(choices)
     close = similar(value, choices) if isinstance(value, str) else []
     hint = f"; did you mean {' or '.join(close)}?" if close else ""

@@ -8,7 +8,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 PREFIXES = {"n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "k": 3, "K": 3, "M": 6, "G": 9}
-CENTI = {"c": -2}  # with a unit only: "5 c" is none
+CENTI = {"c": -2}  # with a unit only: "5 c" is not a number
 TIMES = {"min": 60, "h": 3600}  # [s] that are typed for seconds
 MAX_LENGTH = 64  # characters of a number
 MAX_EXPONENT = 400  # beyond it every float is 0 or infinite
@@ -61,7 +61,7 @@ def read_number(text: str, unit: str = "") -> float:
 
     It may be a quotient, have a decimal comma, and end in a prefix (n, µ or u, k, M, G), in the unit, or in both;
     "cm" too, and "min" or "h" for seconds.
-    Raises ValueError for text that is no number, for "1,000", whose meaning depends on the country, and for "5m" where
+    Raises ValueError for text that is not a number, for "1,000", which depends on the country, and for "5m" where
     the unit is not the metre: five thousandths, or five minutes.
     """
     word = text.strip().replace("\u2212", "-")

@@ -27,7 +27,7 @@ class ConvergenceError(RuntimeError):
     """A solver that ended without a solution, although its arguments are allowed; its message is one line."""
 
     def __init__(self, solver: str, residual: str, iterations: int) -> None:
-        """solver: what was sought. residual: what is left, its unit and its place. iterations: how many were done."""
+        """solver: name of the problem. residual: with its unit and its place. iterations: number done."""
         super().__init__(f"{solver}: no solution after {iterations} iterations; {residual} left")
         self.solver, self.residual, self.iterations = solver, residual, iterations
 
@@ -37,7 +37,7 @@ class ConvergenceError(RuntimeError):
 
 
 class DivergenceError(ArithmeticError):
-    """A run left any sane bound: the text says what was too much for the method, and what would hold."""
+    """A run left any sane bound: the text gives the cause, and a remedy."""
 
     def __init__(self, text: str, moments: tuple[Any, ...] = ()) -> None:
         """moments: the last ones before that, if there are any to show again slowly."""
@@ -69,7 +69,7 @@ class Refusals:
 
 
 def argument_error(name: str, value: object, allowed: str) -> ValueError:
-    """The one form of an argument error, in one line: the name, the value given, and the allowed values."""
+    """The form of every argument error, in one line: the name, the value given, and the allowed values."""
     shown = repr(value) if isinstance(value, str) else " ".join(repr(value).split())  # in one line, arrays too
     if len(shown) > (MAX_SHOWN_PATH if isinstance(value, str) and os.sep in value else MAX_SHOWN):
         is_record = dataclasses.is_dataclass(value) or hasattr(value, "_fields")

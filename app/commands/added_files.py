@@ -91,4 +91,4 @@ def naming_extra(extra: str, path: Path) -> Iterator[None]:
     try:
         yield
     except ModuleNotFoundError as error:
-        raise OSError(f"{path}: {error.name} is not installed; install it by: pip install '.[{extra}]'") from None
+        raise OSError(f"{path}: {error.name} is not installed; install it with: pip install '.[{extra}]'") from None

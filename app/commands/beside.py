@@ -7,7 +7,7 @@ from app.commands.options import add_address, say_missing_files, serving
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of the command."""
-    words = "SCENE, SCENE:PRESET, a link, a set-up file; or alone the name of a comparison that is ready"
+    words = "SCENE, SCENE:PRESET, a link or a set-up file; or, on its own, the name of a ready-made comparison"
     parser.add_argument("setups", nargs="+", metavar="SET-UP", help=words)
     add_address(parser)
 

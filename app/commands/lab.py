@@ -16,10 +16,10 @@ def add_arguments(lab: argparse.ArgumentParser) -> None:
     commands = lab.add_subparsers(metavar="DIR, new or check", required=True)
     lab.epilog = (
         "`springtide lab DIR` opens the scenes with the functions in that folder, live; "
-        "`springtide lab class/*` shows the teacher of a class who is at which task."
+        "`springtide lab class/*` shows the teacher the current task of each student."
     )
     live = commands.add_parser(LIVE, prog=lab.prog)
-    made = "a folder that `springtide lab new` has made; several: those of a class"
+    made = "a folder made by `springtide lab new`; several folders are a class"
     live.add_argument("folders", type=Path, nargs="+", metavar="DIR", help=made)
     open_lab.add_arguments(live)
     live.set_defaults(run=run_live)
@@ -29,16 +29,16 @@ def add_arguments(lab: argparse.ArgumentParser) -> None:
     new.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
     new.add_argument("--solutions", action="store_true", help="for teachers: with the reference solutions")
     new.set_defaults(run=run_new)
-    check = commands.add_parser("check", help="check the exercises; status 0 where all that is mandatory is right")
+    check = commands.add_parser("check", help="check the exercises; exit status 0 if all mandatory ones are right")
     check.add_argument("folders", type=Path, nargs="+", metavar="DIR", help="one folder, or those of a class")
     json = "write the results as JSON; without a file, print them"
     check.add_argument("--json", type=Path, nargs="?", const=Path("-"), metavar="FILE", help=json)
     check.add_argument("--csv", type=Path, metavar="FILE.csv", help="write a table, one row a folder")
-    check.add_argument("--all", action="store_true", help="list the tasks that are not begun, too")
+    check.add_argument("--all", action="store_true", help="also list the tasks that are not begun")
     check.add_argument("--report", type=Path, metavar="FILE.html", help="write the page to hand in")
     check.set_defaults(run=run_check)
     for command in (live, new, check):
-        more = "a folder with tasks of your own, beside those of the course; see docs/lab.md"
+        more = "a folder with your own tasks, added to those of the course; see docs/lab.md"
         command.add_argument("--tasks", type=Path, action="append", default=[], metavar="FOLDER", help=more)
 
 
@@ -96,7 +96,7 @@ def serve_class(arguments: argparse.Namespace) -> int:
     for name, default in vars(plain.parse_args([])).items():
         if name not in ("port", "no_open") and getattr(arguments, name) != default:
             option = f"--{name.replace('_', '-')}"
-            raise ValueError(f"{option}: the page of a class takes --port, --no-open and --tasks only")
+            raise ValueError(f"{option}: the class page takes --port, --no-open and --tasks only")
     return serve_page(arguments.folders, arguments.tasks, arguments.port, browser=not arguments.no_open)
 
 

@@ -39,7 +39,7 @@ def serve_class(folders: Sequence[Path], tasks: Sequence[Path], port: int, *, br
         try:
             with reached_host(LOOPBACK, bound) as reached:
                 address = f"http://{reached}:{bound}/{key}/"
-                say(f"The class is on {address}  (Ctrl-C ends it)")
+                say(f"The class page is on {address}  (Ctrl-C ends it)")
                 if browser:
                     webbrowser.open(address)
                 wait_until(threading.Event())

@@ -1,4 +1,4 @@
-"""Options that several commands share, and what they say: an address, a scene's parameters, the reading of a mesh."""
+"""Options that several commands share, and their meaning: an address, a scene's parameters, the reading of a mesh."""
 
 import argparse
 from collections.abc import Callable
@@ -30,9 +30,9 @@ def add_address(parser: argparse.ArgumentParser) -> None:
     """The options that say where and how the lab is served, whatever it shows."""
     parser.add_argument("--host", default="127.0.0.1", help="address to serve on; 0.0.0.0 shows the lab to the network")
     parser.add_argument("--port", type=int, default=8080, help="default: 8080; 0 for any free port")
-    path = "the path at which a proxy shows the lab, where it passes it on"
+    path = "the path at which a proxy shows the lab, if the proxy passes it on"
     parser.add_argument("--base-path", default="", metavar="PATH", help=path)
-    origin = "the address, as in a browser, of a proxy that pages may come through; may be given more than once"
+    origin = "the address, as in a browser, of a proxy that serves the page; may be given more than once"
     parser.add_argument("--allowed-origin", action="append", default=[], metavar="ORIGIN", help=origin)
     parser.add_argument("--no-open", action="store_true", help="do not open the browser")
     parser.add_argument("--paused", action="store_true", help="start paused")
@@ -65,14 +65,14 @@ def add_parameters(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--mooring", type=Path, metavar="FILE", help="open a MoorDyn file in the scene mooring")
     spectrum = "waves of a measured spectrum, in either sea: CSV, NDBC, WAVEWATCH III or SWAN; see docs/files.md"
     parser.add_argument("--spectrum", type=Path, metavar="FILE", help=spectrum)
-    parser.add_argument("--spectrum-time", metavar="TIME", help="of one of its records (default: the last one)")
+    parser.add_argument("--spectrum-time", metavar="TIME", help="time of the record to use (default: the last one)")
 
 
 def add_mesh_reading(parser: argparse.ArgumentParser) -> None:
     """The options that say how a mesh file is read; none is given as the default, which depends on the format."""
     unit = "unit of length in the mesh file (default: m, or that of the format)"
     parser.add_argument("--hull-unit", choices=("m", "cm", "mm", "ft"), default="", help=unit)
-    weld = "make corners nearer than this one, where a mesh has gaps"
+    weld = "merge corners nearer than this, to close gaps of a mesh"
     parser.add_argument("--weld", type=quantity("m"), default=0.0, metavar="METRES", help=weld)
     mirror = "add the other half of a mesh, across x = 0 or y = 0"
     parser.add_argument("--mirror", choices=("x", "y"), default="", help=mirror)
@@ -80,7 +80,7 @@ def add_mesh_reading(parser: argparse.ArgumentParser) -> None:
 
 
 def mesh_reading(arguments: argparse.Namespace) -> Any:
-    """How the options say that a mesh file is read."""
+    """Reading of a mesh file, by the options."""
     from sim.floating.hulls.hull import MeshReading
 
     return MeshReading(arguments.hull_unit, arguments.weld, arguments.mirror, arguments.cap)

@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run a scene into a file, or list what it has; returns the exit status."""
+    """Run a scene into a file, or list its contents; returns the exit status."""
     if arguments.list:
         return list_scene(scene_named(arguments.scene)) if arguments.scene else list_scenes()
     if not arguments.scene:
@@ -69,7 +69,7 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
     if running.note:
         # Nobody would notice in a file that another integrator ran than the one that was asked for.
         raise argument_error(
-            "integrator", params.integrator, "another, as this net is damped: by links, drag, air or contact"
+            "integrator", params.integrator, "a method with damping: this net is damped by links, drag, air or contact"
         )
     for warning in () if scene.warnings is None else scene.warnings(running):
         say(f"Warning: {warning}")

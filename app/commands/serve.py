@@ -138,7 +138,7 @@ def show_until_ended(opening: "Opening", host: str, access: Access, *, browser: 
     signal.signal(signal.SIGTERM, end)
     if before is signal.default_int_handler:  # not in a background job of a shell, which ignores it
         signal.signal(signal.SIGINT, end)
-    keeper = Keeper(opening)
+    saver = SetupSaver(opening)
     try:
         with reached_host(host, port) as reached:
             address = f"http://{reached}:{port}{access.base_path}"
@@ -148,14 +148,14 @@ def show_until_ended(opening: "Opening", host: str, access: Access, *, browser: 
             opening.start()
             if browser:
                 webbrowser.open(address)
-            wait_until(opening.done, keeper.store if resumes else lambda: None)
+            wait_until(opening.done, saver.store if resumes else lambda: None)
             opening.check()
     except KeyboardInterrupt:
         pass
     finally:
         signal.signal(signal.SIGINT, before)
         if resumes:
-            keeper.store()
+            saver.store()
         opening.shut()
     return 0
 
@@ -167,7 +167,7 @@ class Opening:
         """make: the lab. show: opens its scene."""
         self.opened, self.make, self.show = opened, make, show
         self.viewer: Viewer | None = None
-        self.error: BaseException | None = None  # why it failed
+        self.error: BaseException | None = None  # reason why it failed
         self.done = threading.Event()  # the lab is to end, or could not be opened
         self.ended = threading.Event()  # the lab is to end
         self.thread = threading.Thread(target=self.run, name="opening", daemon=True)
@@ -225,7 +225,7 @@ def say(text: str) -> None:
     try:
         print(text, flush=True)
     except OSError:
-        # What could not be written stays in the buffer, and would fail again when Python ends.
+        # Unwritten text stays in the buffer, and would fail again when Python ends.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
@@ -235,7 +235,7 @@ def wait_until(done: threading.Event, meanwhile: Callable[[], None] = lambda: No
         meanwhile()
 
 
-class Keeper:
+class SetupSaver:
     """Keeps the set-up of a lab as it changes: a lab that is killed loses half a second."""
 
     def __init__(self, opening: Opening) -> None:

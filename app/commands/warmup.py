@@ -18,9 +18,11 @@ from sim.validation import argument_error
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of the command."""
-    into = "for all users, into a folder that SPRINGTIDE_KERNELS names; without a name into that of the installation"
+    into = "compile for all users, into FOLDER, to be named by SPRINGTIDE_KERNELS (default: the installation's folder)"
     parser.add_argument("--into", nargs="?", const="", metavar="FOLDER", help=into)
-    level = "with --into: for all processors of a level (x86-64-v3, x86-64-v4, arm64), or all: each that this one has"
+    level = (
+        "with --into: for all processors of a level (x86-64-v3, x86-64-v4, arm64); all: every level that this one has"
+    )
     parser.add_argument("--processor", default="", metavar="LEVEL", help=level)
 
 
@@ -40,7 +42,7 @@ def warm_up() -> int:
         if not is_terminal:
             print(f"Compiling {name}", flush=True)
         compile_here(name, all_jobs(name))
-    print(f"Kept in {CACHE}" if CACHE else "Nothing could be kept: no cache directory is writable")
+    print(f"Saved in {CACHE}" if CACHE else "Nothing was saved: no cache directory is writable")
     return 0
 
 

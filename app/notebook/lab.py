@@ -146,14 +146,14 @@ class Lab:
         self.stop()
 
     def __getattr__(self, name: str) -> Any:
-        # What IPython asks every object for begins with "_", and is no parameter.
+        # Names that IPython asks every object for begin with "_", and are no parameters.
         if not name.startswith("_") and name in parameters_of(self._params):
             return getattr(self._params, name)
         raise AttributeError(str(unknown_parameter(name, parameters_of(self._params))))
 
     def __setattr__(self, name: str, value: Any) -> None:
         if hasattr(type(self), name):
-            raise AttributeError(f"{name}: no parameter, so it cannot be set")
+            raise AttributeError(f"{name}: not a parameter, so it cannot be set")
         self.set(**{name: value})
 
     def __dir__(self) -> list[str]:
@@ -181,7 +181,7 @@ class Lab:
 
     def _check_open(self) -> None:
         if self._viewer.ended:
-            raise RuntimeError("this lab was stopped; app.show opens another")
+            raise RuntimeError("this lab was stopped; app.show opens a new one")
 
     def _asked(self, read: Callable[[], T]) -> T:
         """Result of `read`, called between two steps of the simulation."""
@@ -198,7 +198,7 @@ class Lab:
                     return answer.result(POLL_INTERVAL)
                 self._check_open()
                 if not served.is_open:
-                    raise RuntimeError("another scene was opened meanwhile")
+                    raise RuntimeError("another scene was opened in the meantime")
         finally:
             answer.cancel()  # where the kernel was interrupted: the lab is not to wait for it
 

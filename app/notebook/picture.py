@@ -40,4 +40,4 @@ def take_still(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TI
     try:
         return Still(take_picture(client, (int(width), int(height)), timeout=timeout))
     except TimeoutError:
-        raise TimeoutError(f"the browser drew no picture within {timeout:g} s; the page has to be in sight") from None
+        raise TimeoutError(f"the browser drew no picture within {timeout:g} s; the page has to be visible") from None

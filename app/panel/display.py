@@ -1,4 +1,4 @@
-"""How a browser shows the lab: dark or light, how large its text is, and how finely it draws."""
+"""Display settings of a browser: dark or light, text size, and quality."""
 
 # pyright: reportPrivateUsage=false
 

@@ -30,7 +30,7 @@ class Head:
         """scenes: to choose from. reset_view: puts the camera of a browser where a new one would be."""
         self.view, self.settings, self.reset_view = view, settings, reset_view
         self.running = True  # as the buttons show it
-        self.told: tuple[object, ...] = ()  # what is shown at once when it changes
+        self.told: tuple[object, ...] = ()  # shown at once when it changes
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
             if len(scenes) > 1:
@@ -137,10 +137,10 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         "{} t = {:.2f} s{}{}{}{}{}{}{}</div>",
         "running" if s.running else "paused",
         snapshot.serial,  # so that one sees that it is fresh, where its words repeat
-        f"Simulated over real time, at {s.frame_rate:.0f} pictures a second" if s.running else "",
+        f"Simulated time over real time, at {s.frame_rate:.0f} pictures a second" if s.running else "",
         state,
         s.time,
-        fill(' · <span class="springtide-pace">{}</span>', pace) if s.running else "",
+        fill(' · <span class="springtide-speed">{}</span>', pace) if s.running else "",
         fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
         fill("<br>Faster: {}.", s.faster) if s.faster else "",

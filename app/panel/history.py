@@ -57,13 +57,13 @@ class History:
         self.number = ""
 
     def release(self, client: int) -> None:
-        """A browser holds no slider any more, or has left. What it sent last may still come."""
+        """Note that a browser holds no slider any more, or has left. Its last messages may still come."""
         if client in self.hands:
             self.hands.discard(client)
             self.changed_at = time.monotonic()
 
     def take_last(self) -> EarlierSettings | None:
-        """Settings before the last change that is still kept; None if there is none. Their run is the present one."""
+        """Settings before the last change in the history, or None. Their run is the present one."""
         self.number = ""
         if not self.settings:
             return None

@@ -23,8 +23,8 @@ from app.panel.recording.files import MakeReplay
 from app.panel.recording.recorder import Recorder
 from app.panel.recording.timeline import Timeline
 from app.panel.settings import SceneSettings
-from app.panel.sharing.changes import Changes
-from app.panel.sharing.compare import Beside, Compare
+from app.panel.sharing.changes import SceneSwitches
+from app.panel.sharing.compare import CompareFolder, ComparisonCalls
 from app.panel.sharing.share import Share
 from app.panel.workbook.guide import GuideTab
 from app.render.cameras import place_camera
@@ -53,8 +53,8 @@ class Panel:
         wake: Callable[[], None],
         make_replay: MakeReplay,
         session: "Session | None" = None,
-        beside: Beside | None = None,
-        changes: Changes,
+        beside: ComparisonCalls | None = None,
+        changes: SceneSwitches,
     ) -> None:
         """settings: shown and changed by the panel. scenes: to choose from. workbook: the tasks of the lab.
 
@@ -78,7 +78,7 @@ class Panel:
         )  # fmt: skip
         self.guide: GuideTab | None = None
         self.code: CodePanel | None = None
-        self.compare = None if beside is None else Compare(gui, self.head.buttons, settings, beside)
+        self.compare = None if beside is None else CompareFolder(gui, self.head.buttons, settings, beside)
         self.fill_tabs(session)
         settings.watchers.append(self.show_settings)
         self.show_settings()

@@ -308,7 +308,7 @@ def at_times(times: NDArray[np.float64], rows: NDArray[np.float64], column: int)
 
 
 def kept_line(line: ChartLine) -> ChartLine:
-    """How a line of an earlier run is drawn."""
+    """Style of a line of an earlier run."""
     return ChartLine(f"{line.label}, kept", line.colour + KEPT_OPACITY, 1.5, KEPT_DASH)
 
 

@@ -1,4 +1,4 @@
-"""The settings of the open scene: its parameters, the preset that they come from, and what an undo brings back."""
+"""The settings of the open scene: its parameters, the preset that they come from, and the history for Undo."""
 
 import dataclasses
 from collections.abc import Callable, Mapping
@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import viser
 
 from app.lab.course import task
-from app.messages import BaseParams, KeptState, Reset, Take
+from app.messages import BaseParams, Checkpoint, Reset, Take
 from app.panel.history import EarlierSettings, History
 from app.panel.workbook.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, client_cameras
@@ -140,7 +140,7 @@ class SceneSettings:
         """Show another scene in its first view."""
         self.open_scene(scene, None, None)
 
-    def resume(self, params: BaseParams, state: KeptState) -> None:
+    def resume(self, params: BaseParams, state: Checkpoint) -> None:
         """Have the scene go on from a state, with the parameters that it had then."""
         act = self.history.note(self.now(), begins=True, runs=True)
         self.take(Take(params, state=state, act=act), self.loaded)

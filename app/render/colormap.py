@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from app.render.brightness import DARK_LIFT, LUMA
 from sim.jit import kernel
 
-# What becomes of a disturbance, in the order of `sim.springs.analysis.growth`; light, medium and dark also in grey.
+# Fates of a disturbance, in the order of `sim.springs.analysis.growth`; light, medium and dark also in grey.
 OUTCOME_COLOURS = {"stable": "#CFE6F5", "bounded growth": "#E69F00", "exploding": "#8C2D04"}
 
 # Anchors of matplotlib's "plasma" without its darkest end, sRGB, from violet (low) to yellow (high).

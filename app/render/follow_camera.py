@@ -49,7 +49,7 @@ class FollowCamera:
     """Keeps the camera of each browser where its user has put it beside a body.
 
     A page reports the place of its camera late. A reported place counts as moved by the user only once the page has
-    taken the first one, and only if it is none of the last places where this class has put it.
+    taken the first one, and only if it is not one of the last places where this class has put it.
     """
 
     def __init__(self) -> None:

@@ -42,7 +42,7 @@ class ShaderInjector:
         self._watched: dict[str, float] = {}  # node -> since when it is watched [s]
         self._seen: dict[int, float] = {}  # client id -> when it was first looked for [s]
         self._drawn: dict[int, frozenset[str]] = {}  # client id -> nodes that it draws with their shader
-        self.is_recorded = False  # whether what is drawn is only recorded, for pages that have the script
+        self.is_recorded = False  # True if drawing is only recorded, for pages that have the script
         server.on_client_disconnect(self._forget)
         self.restart(server)
 

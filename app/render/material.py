@@ -1,4 +1,4 @@
-"""How water looks, as data: its colours, optics, ripples and sky, and how these numbers travel to the shader."""
+"""Appearance of water, as data: its colours, optics, ripples and sky, and the way of these numbers to the shader."""
 
 import functools
 import math
@@ -73,7 +73,7 @@ class Cutout:
 
 @dataclass(frozen=True)
 class Material:
-    """How a fluid looks, and how it is lit. Colours are sRGB in 0..1, angles in radians, z up."""
+    """Appearance and lighting of a fluid. Colours are sRGB in 0..1, angles in radians, z up."""
 
     deep_color: RGB = (0.0, 0.20, 0.31)  # of the light that comes back from deep water
     scatter_color: RGB = (0.10, 0.52, 0.50)  # of the light that crests, and water full of bubbles, scatter

@@ -1,6 +1,6 @@
 """The JavaScript of the page: the modules in `js/`, as they are written into a page.
 
-A page holds all of them in an import map, each as a `data:` address under a name such as "springtide/sea/half.js". So
+A page holds all of them in an import map, each as a `data:` address under a name such as "springtide/sea/water.js". So
 a page needs no further request, works at any path of a proxy, and a replay opens from a file. `shared.js` is made here:
 it has the constants that Python and JavaScript share. The scripts in `js/before` are no modules: they run before
 viser's client, each by itself.
@@ -51,7 +51,7 @@ def name_of(path: str) -> str:
 
 
 def import_map(sources: dict[str, str]) -> Html:
-    """An import map with these modules; what they import of each other is named as the map names it."""
+    """An import map with these modules, whose imports of each other use its names."""
 
     def address(path: str, source: str) -> str:
         def renamed(found: re.Match[str]) -> str:
@@ -65,7 +65,7 @@ def import_map(sources: dict[str, str]) -> Html:
 
 
 def tags(entry: str) -> Html:
-    """All modules, of which a page starts this one."""
+    """Tags with all modules; a page starts this one."""
     return Html(f'{import_map(modules())}<script type="module">import "{name_of(entry)}";</script>')
 
 

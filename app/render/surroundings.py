@@ -36,7 +36,7 @@ DARK = FloorColours((36, 42, 51), (48, 56, 67), (66, 76, 90))
 
 
 class SkyColours(NamedTuple):
-    """Of the sky behind rope, race and cloth, as in `js/page.css`: bright in the middle, dark at the corners."""
+    """Sky behind rope, race and cloth, as in `js/page.css`: bright in the middle, dark at the corners."""
 
     middle: Colour
     around: Colour  # at AROUND
@@ -44,7 +44,7 @@ class SkyColours(NamedTuple):
 
     @property
     def css(self) -> str:
-        """As a background in a style sheet."""
+        """The colours as a background in a style sheet."""
         x, y = (f"{100 * part:.0f}%" for part in MIDDLE)
         return f"radial-gradient(at {x} {y}, rgb{self.middle}, rgb{self.around} {100 * AROUND:.0f}%, rgb{self.corner})"
 

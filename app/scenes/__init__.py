@@ -29,7 +29,7 @@ def check_name(name: str) -> str:
 
 
 def scene_named(name: str) -> "AnyKind":
-    """The scene of a folder. Raises ValueError for a name that is none."""
+    """The scene of a folder. Raises ValueError for an unknown name."""
     return importlib.import_module(f"{__name__}.{check_name(name)}").SCENE
 
 

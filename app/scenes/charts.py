@@ -29,7 +29,7 @@ class PlotAxes(NamedTuple):
 
     @property
     def lines(self) -> tuple[ChartLine, ...]:
-        """How its series are drawn."""
+        """Styles of its series."""
         lines = lines_of(self.series)
         return dashed(lines) if self.dashed else lines
 

@@ -52,7 +52,7 @@ COMPARISONS = {
 
 
 def comparison_named(name: str) -> tuple[Setup, ...]:
-    """The set-ups of a comparison that is ready. Raises ValueError where there is none of that name."""
+    """The set-ups of a ready-made comparison. Raises ValueError for an unknown name."""
     if name not in COMPARISONS:
         raise choice_error("compare", shortened(name), COMPARISONS)
     return tuple(read_query(query) for query in COMPARISONS[name].queries)

@@ -76,7 +76,7 @@ class Scene(Protocol[P, F_co, R_co]):
 
     @property
     def note(self) -> str:
-        """Why something else runs than the parameters ask for, or ""."""
+        """Reason why something else runs than the parameters ask for, or ""."""
         ...
 
     @property
@@ -121,7 +121,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def curves(self) -> Mapping[str, Chart | Columns] | None:
-        """Parameter -> columns of its chart, for the charts that are not a course in time; None where there is none."""
+        """Parameter -> columns of its chart, for the charts that are no time series; None without a chart."""
         ...
 
     def arrays(self) -> Mapping[str, tuple[NDArray[np.generic], str]]:
@@ -129,7 +129,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def keep(self) -> object:
-        """Checkpoint: independent copies of everything that changes as the scene runs (`app/scenes/moments.py`)."""
+        """Checkpoint: independent copies of everything that changes as the scene runs (`app/scenes/checkpoints.py`)."""
         ...
 
     def resume(self, kept: object) -> None:
@@ -227,7 +227,7 @@ class Awaited(NamedTuple):
 
 
 class FramePacking(NamedTuple):
-    """How a recording keeps the frames of a scene in less memory. The packed form is a tuple."""
+    """Packing of a scene's frames for a recording. The packed form is a tuple."""
 
     pack: Callable[..., tuple[object, ...]]  # frame -> its packed form
     unpack: Callable[..., object]  # packed form -> a frame that looks the same
@@ -236,7 +236,7 @@ class FramePacking(NamedTuple):
 class FileFacts(NamedTuple):
     """Facts of a file that a scene runs."""
 
-    name: str  # what it is
+    name: str  # of the event
     facts: Mapping[str, object]  # as JSON holds them, in SI units
     unused: frozenset[str]  # names of the parameters that mean nothing with it
 
@@ -284,7 +284,7 @@ class SceneKind(Generic[P, F, R]):
     # Of parameters: lines on the files that they name, on what was read and what was left out. The command line prints
     # them, the page shows them under "Files", and files of runs and recordings keep them.
     notes: Callable[[P], Sequence[str]] = lambda params: ()
-    # What a file that the parameters name says in their stead; None: they name none.
+    # Content of a file that takes the place of parameters, or None.
     file_facts: Callable[[P], FileFacts | None] = lambda params: None
     warnings: Callable[..., Sequence[str]] | None = None  # of a scene that begins: sentences on its start
     awaited: Awaited | None = None  # event that the panel offers to run on to
@@ -292,7 +292,7 @@ class SceneKind(Generic[P, F, R]):
 
 
 PostCommand: TypeAlias = Callable[[Command], None]  # takes a command for the simulation
-# What the server and the panel work with: a scene of whatever parameters, frames and readings.
+# A scene of any parameters, frames and readings, for the server and the panel.
 AnyScene: TypeAlias = Scene[BaseParams, object, object]
 AnyView: TypeAlias = SceneView[BaseParams, object, object]
 AnyKind: TypeAlias = SceneKind[BaseParams, object, object]

@@ -21,7 +21,7 @@ def keep_last(query: str) -> None:
 
 
 def read_last() -> Setup | None:
-    """The set-up that was kept; None where there is none, or none that this version can read."""
+    """The set-up of the last lab; None if no file holds one that this version can read."""
     try:
         with last_path().open("rb") as file:
             return read_query(file.read(4 * MAX_LENGTH + 1).decode("utf-8"))

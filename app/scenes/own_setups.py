@@ -15,11 +15,11 @@ from sim.files import replacing
 from sim.validation import argument_error
 
 MAX_OWN = 100  # of one scene
-FILE_NAME = re.compile(r"[^a-z0-9]+")  # what is replaced in a name
+FILE_NAME = re.compile(r"[^a-z0-9]+")  # replaced in a name
 
 
 def data_folder() -> Path:
-    """Folder of what the user keeps."""
+    """Folder of the user's own set-ups."""
     return user_folder("SPRINGTIDE_DATA", platformdirs.user_data_dir)
 
 
@@ -68,8 +68,8 @@ def keep_own(kind: AnyKind, name: str, text: str) -> None:
 
 
 def remove_own(kind: AnyKind, name: str) -> None:
-    """Remove one. Raises ValueError where there is none of that name, and OSError where it cannot be removed."""
+    """Remove one. Raises ValueError for an unknown name, and OSError if it cannot be removed."""
     own = own_files(kind)
     if name not in own:
-        raise argument_error("name", name, "one of " + ", ".join(own) if own else "nothing, as none is kept")
+        raise argument_error("name", name, "one of " + ", ".join(own) if own else "none, as no set-up is saved")
     own[name][0].unlink()

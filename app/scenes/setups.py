@@ -101,7 +101,7 @@ def added_files(params: object) -> dict[str, str]:
 
 
 def missing_files(setup: Setup, present: object = None) -> str:
-    """How to add the files of a set-up, or "" if there are none or the parameters `present` have them."""
+    """Advice for adding the files of a set-up, or "" if it needs none or the parameters `present` have them."""
     missing = [(option, name) for option, name in setup.files.items() if added_files(present).get(option) != name]
     return " ".join(
         f"The {option} {name} is missing: the set-up only names it. Restart with --{option} {name} to add the file."
@@ -299,7 +299,7 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
     try:
         content = json.loads(text, object_pairs_hook=unique_keys)
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"{where}: not a file of JSON: {error}") from None
+        raise ValueError(f"{where}: not a JSON file: {error}") from None
     form = f'{{"version": {VERSION}, "scene": "{scene or "rope"}", "parameters": {{...}}}}'
     if not isinstance(content, dict) or not isinstance(content.get("parameters", {}), dict):
         raise argument_error(where, shortened(text), f"a file {form}")
@@ -328,10 +328,10 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
 
 
 def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    """An object of JSON. Raises ValueError where a key is there twice: which value counts would be unclear."""
+    """An object of JSON. Raises ValueError where a key appears twice: which value counts would be unclear."""
     found = dict(pairs)
     if len(found) < len(pairs):
-        raise ValueError("a key is there twice")
+        raise ValueError("a key appears twice")
     return found
 
 
@@ -354,7 +354,7 @@ def read_text(what: str, text: object, max_length: int) -> str:
 
 
 def kind_named(name: object) -> AnyKind:
-    """The scene of a set-up. Raises ValueError where there is none of that name."""
+    """The scene of a set-up. Raises ValueError for an unknown name."""
     if not isinstance(name, str) or name not in NAMES:
         raise choice_error("scene", name, NAMES)
     return scene_named(name)
@@ -401,7 +401,7 @@ def read_setup_text(what: str, path: Path) -> str:
     except OSError as error:
         raise unreadable(what, path, error) from None
     except UnicodeDecodeError:
-        raise argument_error(what, str(path), "a file of JSON in UTF-8") from None
+        raise argument_error(what, str(path), "a JSON file in UTF-8") from None
     except UNREADABLE:
         raise argument_error(what, str(path), FORMS) from None
 
@@ -415,7 +415,7 @@ def replayed_setup(page: str) -> str:
 def recorded_setup(file: BinaryIO) -> str:
     """The parameters of a recording as the text of a set-up file.
 
-    Raises ValueError, KeyError or an error of `zipfile` where the file is none.
+    Raises ValueError, KeyError or an error of `zipfile` for any other file.
     """
     with zipfile.ZipFile(file) as parts:
         about = parts.getinfo("about.npy")

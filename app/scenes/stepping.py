@@ -1,4 +1,4 @@
-"""How many steps lead a scene to a time."""
+"""Number of steps that lead a scene to a time."""
 
 import math
 from typing import Any

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from typing import TYPE_CHECKING
 
-from app.messages import Ask, BaseParams, KeptState
+from app.messages import Ask, BaseParams, Checkpoint
 from app.panel.sharing.compare import PaneWords
 from app.scenes.comparisons import check_count, headings, middle_of, shared_parameters, with_shared
 from app.scenes.setups import Setup
@@ -91,7 +91,7 @@ class ComparedLabs:
         self.clock = SharedClock()
         self.seats: dict[Viewer, Seat] = {}  # of the loops that run
         self.changing, self.ended = threading.Lock(), False  # of `seats`
-        self.left: tuple[SimLoop, BaseParams, KeptState] | None = None  # the run of the first lab, as it was before
+        self.left: tuple[SimLoop, BaseParams, Checkpoint] | None = None  # the run of the first lab, as it was before
         self.shared = SharedRecord(lambda: self.viewers)
 
     def begin(self, others: Sequence[Setup], *, resume: bool) -> None:
@@ -117,7 +117,7 @@ class ComparedLabs:
         first.comparison = self
         self.seat(first)
 
-    def kept(self) -> tuple[SimLoop, BaseParams, KeptState] | None:
+    def kept(self) -> tuple[SimLoop, BaseParams, Checkpoint] | None:
         """The run of the first lab, to go on from later; None where it does not answer."""
         loop = self.first.loop
         answer: Future[object] = Future()
@@ -126,7 +126,7 @@ class ComparedLabs:
             state = answer.result(KEEP_TIMEOUT)
         except Exception:
             return None
-        return (loop, self.first.settings.params, state) if isinstance(state, KeptState) else None
+        return (loop, self.first.settings.params, state) if isinstance(state, Checkpoint) else None
 
     def seat(self, viewer: "Viewer") -> None:
         """Give the lab's loop a place at the clock, in place of that of an earlier loop of it; all begin again.
@@ -154,7 +154,7 @@ class ComparedLabs:
         self.clock.seats = tuple(self.seats[viewer] for viewer in self.viewers if viewer in self.seats)
 
     def audience(self) -> int:
-        """How many browsers see all panes: the clock stands still where one is not there yet."""
+        """Number of browsers that see all panes: the clock stands still until each one is there."""
         return min(viewer.visitors() for viewer in self.viewers)
 
     def words(self) -> tuple[PaneWords, ...]:
@@ -185,7 +185,7 @@ class ComparedLabs:
             first.call(lambda: first.settings.resume(params, state))
 
 
-class Comparing:
+class Comparisons:
     """Begins and ends comparisons, one after the other, on separate threads."""
 
     def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:

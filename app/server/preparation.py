@@ -33,7 +33,7 @@ class Preparation:
     ) -> None:
         """say: prints a line. ahead: compile for later too (`go_on`)."""
         self.server, self.compiling, self.say, self.ahead = server, compiling, say, ahead
-        self.notice = ""  # what is compiled before something else can be shown
+        self.notice = ""  # on the compilation that the next scene waits for
 
     def compile(self, kind: AnyKind, params: BaseParams, *, covers: bool, given_up: Callable[[], bool]) -> bool:
         """Compile the kernels of a scene. Returns False if it was given up before they were all there.

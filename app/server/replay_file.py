@@ -15,7 +15,7 @@ import numpy as np
 from app.formats.packing import is_packed
 from app.messages import BaseParams
 from app.panel.recording.files import REPLAY_DURATION
-from app.panel.recording.recorder import Kept, arrays_of_frame
+from app.panel.recording.recorder import RecordedFrame, arrays_of_frame
 from app.panel.recording.recording_files import Plotted, plot_charts
 from app.render.cameras import place_cameras
 from app.render.handles.viser_inside import change_buffers
@@ -55,7 +55,7 @@ def rounded(buffer: memoryview) -> memoryview:
     return np.ascontiguousarray(np.round(values / step) * step, np.float32).data
 
 
-def thinned(frames: Sequence[Kept]) -> list[Kept]:
+def thinned(frames: Sequence[RecordedFrame]) -> list[RecordedFrame]:
     """The frames of the last `REPLAY_DURATION`, evenly thinned to keep within `MAX_FRAMES` and `MAX_RAW_BYTES`.
 
     frames: at least one.
@@ -64,14 +64,14 @@ def thinned(frames: Sequence[Kept]) -> list[Kept]:
     size = sum(arrays_of_frame(last.frame).values())
     span = min(last.wall - frames[0].wall, REPLAY_DURATION)
     interval = span / max(1, min(MAX_FRAMES, int(MAX_RAW_BYTES / max(size, 1))))
-    chosen: list[Kept] = []
+    chosen: list[RecordedFrame] = []
     for kept in (kept for kept in frames if last.wall - kept.wall < span + TOLERANCE):
         if not chosen or kept.wall - chosen[-1].wall >= interval - TOLERANCE:
             chosen.append(kept)
     return chosen
 
 
-def replay_html(kind: AnyKind, frames: Sequence[Kept], plotted: Plotted) -> str:
+def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted) -> str:
     """The page of a replay of the last of these frames. plotted: the data of the plots.
 
     Raises ValueError where there is no frame.

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from app.messages import BaseParams, Command, Halt
 from app.panel.panel import Panel
-from app.panel.recording.recorder import Kept
+from app.panel.recording.recorder import RecordedFrame
 from app.panel.settings import SceneSettings
-from app.panel.sharing.compare import Beside
+from app.panel.sharing.compare import ComparisonCalls
 from app.render.markup.html import note
 from app.scenes import NAMES, view_named
 from app.scenes.ahead.compiling import describe
@@ -53,7 +53,7 @@ class ServedScene:
         scene: has the parameters that are wanted, or others where it cannot begin with those. commands: for it.
         """
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
-        self.recorded: Kept | None = None  # the frame of the recording that is shown
+        self.recorded: RecordedFrame | None = None  # the frame of the recording that is shown
         self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
         self.stop = threading.Event()
         self.is_open = True
@@ -63,10 +63,11 @@ class ServedScene:
         self.view = view_named(kind.name)(self.server, self.commands.put)
         self.cameras = CameraPlacing(self.server, self.view, params)
         self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want)
+        labs = viewer.comparing
         self.panel = Panel(
             self.server, self.view, self.settings, scenes=NAMES, workbook=viewer.workbook, session=viewer.session,
             wake=lambda: self.loop.run.snapshots.fresh.set(), make_replay=replay_html, changes=viewer.changes,
-            beside=None if viewer.pane_of else Beside(viewer.comparing.want, viewer.comparing.end, viewer.pane_words),
+            beside=None if viewer.pane_of else ComparisonCalls(labs.want, labs.end, viewer.pane_words),
         )  # fmt: skip
         self.settings.watchers.append(lambda: viewer.share_parameters(self.settings.params))
         self.loop = SimLoop(self.scene, self.commands, viewer.audience, paused=paused)

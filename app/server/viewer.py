@@ -18,7 +18,7 @@ from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
 from app.panel.settings import SceneSettings
-from app.panel.sharing.changes import Changes
+from app.panel.sharing.changes import SceneSwitches
 from app.panel.sharing.compare import PaneWords
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.handles.viser_inside import send_at_once
@@ -28,7 +28,7 @@ from app.scenes import NAMES, scene_named
 from app.scenes.ahead.compiling import Compiling
 from app.scenes.contract import AnyKind, AnyScene, AnyView, PostCommand
 from app.scenes.setups import make_setup
-from app.server.beside import ComparedLabs, Comparing
+from app.server.beside import ComparedLabs, Comparisons
 from app.server.loop.sim_loop import SimLoop
 from app.server.preparation import Preparation, cover
 from app.server.requests import SceneRequest, SceneRequests
@@ -76,18 +76,18 @@ class Viewer:
         if beside is not None:
             opened = open_pane(beside[0].panes, beside[1])
         opened = opened or open_server(host, port, access)
-        self.server, self.screen = opened.server, opened.screen
+        self.server, self.message_filter = opened.server, opened.message_filter
         self.panes: Panes = opened.panes
         self.plain, self.pane_of = plain, beside
         self.comparison: ComparedLabs | None = None
-        self.comparing = Comparing(self, self.make_pane)
+        self.comparing = Comparisons(self, self.make_pane)
         if plain:
             disable_shaders(self.server)
         send_at_once(self.server)
         self.transport = Transport(self.server)
         self.preparation = Preparation(self.server, self.compiling, say, ahead=compile_ahead)
         self.port = self.server.get_port()
-        self.changes = Changes()
+        self.changes = SceneSwitches()
         self.ended = False
         self.came = threading.Event()  # a browser is connected, or the lab has ended
         self.current: ServedScene | None = None  # the scene that was opened last; it may be closed
@@ -113,7 +113,7 @@ class Viewer:
     ) -> bool:
         """Show a scene, in place of the one that is open. Returns False where it was given up before it was there.
 
-        params: None for those that the scene was first given. Where there are none: with `first_look` those of a preset
+        params: None for those that the scene was first given. Without any: with `first_look` those of a preset
         that keeps moving, otherwise the defaults. first_look: a browser asked for it; parameters of a task of the lab
         are not kept. given_up: whether nobody waits for it any more. Whatever fails leaves a page that says why and
         offers the scenes; the exception is raised.
@@ -257,7 +257,7 @@ class Viewer:
         return self.served.commands
 
     def visitors(self) -> int:
-        """How many browsers are connected."""
+        """Number of connected browsers."""
         return len(self.server.get_clients())
 
     def newest_visitor(self, timeout: float) -> viser.ClientHandle | None:
@@ -267,7 +267,7 @@ class Viewer:
         return clients[max(clients)] if clients else None
 
     def audience(self) -> int:
-        """How many browsers look; at all labs, where several are side by side."""
+        """Number of browsers that look, of all labs if several are side by side."""
         comparison = self.comparison
         return self.visitors() if comparison is None else comparison.audience()
 

@@ -30,7 +30,7 @@ Arguments = tuple[Any, ...]
 
 
 class Killed(NamedTuple):
-    """In place of a result: the process that ran the task was killed, even when it ran nothing else."""
+    """Stands for a result: the process that ran the task was killed, even when it ran nothing else."""
 
     reason: str = "the process that ran it was killed (out of memory?)"
 

@@ -154,7 +154,7 @@ class Eliminated:
     """The matrix K of a system with its chains eliminated, to be solved for several forces."""
 
     def __init__(self, chains: Chains, links: Array, nodes: Array) -> None:
-        """links: (links, 3, 3) block H of each, which stands for [H -H; -H H]. nodes: (nodes, 3, 3) what is added to
+        """links: (links, 3, 3) block H of each, which stands for [H -H; -H H]. nodes: (nodes, 3, 3) added to
         each node's block.
         """
         self.chains, p, m = chains, chains.p, chains.points

@@ -78,7 +78,7 @@ class LineType(NamedTuple):
 
     @property
     def volume(self) -> float:
-        """Of a metre of line [m^3/m]."""
+        """Volume of a metre of line [m^3/m]."""
         return math.pi / 4.0 * self.diameter**2
 
 
@@ -239,7 +239,7 @@ class System(PointSystem[MooringRun]):
         if not math.sqrt(sum(c * c for c in check_vector(name, direction, ""))) > 0.0:
             raise argument_error(name, direction, "a direction")
         if kind.bending == 0.0 or self.points[[p.id for p in self.points].index(end)].kind not in ("fixed", "coupled"):
-            raise argument_error(name, direction, "None, but for a line with EI at a fixed or coupled point")
+            raise argument_error(name, direction, "None, except for a line with EI at a fixed or coupled point")
 
     def at_rest(self) -> Rest:
         """The static state: see `sim.mooring.statics.at_rest`."""
@@ -300,7 +300,7 @@ class System(PointSystem[MooringRun]):
         return len(self.points) + sum(line.segments - 1 for line in self.lines)
 
     def kernel_view(self, h: float) -> LineArrays:
-        """The kernels' view for steps of h [s]. Its arrays are shared, but for the one that kernels fill."""
+        """The kernels' view for steps of h [s]. Its arrays are shared, except the one that kernels fill."""
         view = self._unit_step_view
         return view._replace(stop_rate=1.0 / h, stop=stop_request(), inertia=np.zeros_like(view.inertia))
 
@@ -403,7 +403,7 @@ class System(PointSystem[MooringRun]):
 
 
 def loads_on(points: Sequence[Point], n: int) -> NDArray[np.float64]:
-    """Steady force (n, 3) [N] on each of the kernels' points, of which `points` are the first; (0, 3) without any."""
+    """Steady force (n, 3) [N] on each of the kernels' points, `points` first; (0, 3) without any."""
     found = np.zeros((n if any(any(point.force) for point in points) else 0, 3))
     if len(found):
         for i, point in enumerate(points):
@@ -472,7 +472,7 @@ def check_ids(name: str, items: Sequence[Any]) -> None:
         if not is_whole_number(one):
             raise argument_error(f"{name}: id", one, "a whole number")
     if len(set(ids)) < len(ids):
-        raise argument_error(f"{name}: id", ids, "a number of its own for each")
+        raise argument_error(f"{name}: id", ids, "a different number for each")
 
 
 def check_type(kind: LineType) -> None:

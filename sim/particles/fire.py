@@ -81,7 +81,7 @@ class Fire:
         self.life = np.zeros(count, np.float32)
         self.heat = np.zeros(count, np.float32)
         self.spread = np.zeros(count, np.float32)  # radius of the plume where a parcel is
-        self.turn = np.zeros(count, np.uint32)  # how often each parcel has started
+        self.turn = np.zeros(count, np.uint32)  # number of starts of each parcel
         # Before the first start a parcel waits its share of a life: `age` counts up from it.
         self.age = (-(np.arange(count) + 0.5) / count * life).astype(np.float32)
         self.mean_life = life

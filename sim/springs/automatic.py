@@ -15,7 +15,7 @@ from sim.springs.integrators import Integrator, discover
 from sim.springs.net import Net
 from sim.springs.stability import gershgorin
 
-AUTO = "auto"  # what takes the place of a method's name
+AUTO = "auto"  # in place of a method's name
 SOFT = 100.0  # radians of the fastest vibration while gravity moves the net by its size: a softer net excites it
 WEAK = 1e3  # rtol over zeta^2 above which damping does not shorten rkn8's steps, over 1e-6
 QUINTIC = 0.5  # h omega of dopri5 at rtol 1e-6 where accuracy sets the step; it goes with the fifth root
@@ -48,7 +48,7 @@ def choose_for_step(net: Net, h: float) -> Choice:
     """The embedded method with the fewest evaluations that holds at steps of h [s], or the one that is nearest to."""
     omega, rate = gershgorin(net)
     embedded = sorted((r for r in discover().values() if r.adaptive), key=lambda r: r.evals)
-    # What nothing but damping holds, as a rope's links across themselves, is the most damped.
+    # A motion that only damping holds, as a rope's links across themselves, is the most damped.
     modes = [*((part * omega, part**2 * rate) for part in PARTS), (0.0, rate)]
     limits = [min(record.stable_step(*mode) for mode in modes) for record in embedded]
     for record, limit in zip(embedded, limits, strict=True):

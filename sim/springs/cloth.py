@@ -130,7 +130,7 @@ def cells_around(rows: int, cols: int) -> NDArray[np.float64]:
 
 
 def pinned_particles(pinned: object, rows: int, cols: int) -> frozenset[tuple[int, int]]:
-    """`cloth`'s pinned as (row, column) pairs; raises ValueError for one that is none of its particles."""
+    """`cloth`'s pinned as (row, column) pairs; raises ValueError for one that is not a particle."""
     if isinstance(pinned, str):
         return held(pinned, rows, cols)
     if not isinstance(pinned, Iterable):

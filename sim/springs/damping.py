@@ -153,8 +153,8 @@ def set_link_shares(link, latest, s, p, decay):
 
 @kernel
 def make_net_decay(p, s):
-    """(families + 1, rows cols): the share of each family's link that begins at a point, then what drag leaves of each
-    point's velocity, 1 of pins.
+    """Array (families + 1, rows cols): the share of each family's link that begins at a point; last the fraction of
+    a point's velocity that drag leaves, 1 for pins.
 
     Where links are not damped at any length, the shares once more: `damp` has those that act just now in the first.
     """

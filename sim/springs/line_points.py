@@ -19,21 +19,21 @@ from sim.springs.pins import set_paths
 
 @kernel(inline=True)
 def six(y, n, j):
-    """Displacement and rotation of the body whose two points begin at j."""
+    """Displacement and rotation of the body with its two points from j on."""
     k = j + 1
     return y[j], y[n + j], y[2 * n + j], y[k], y[n + k], y[2 * n + k]
 
 
 @kernel(inline=True)
 def set_six(y, n, j, q):
-    """Set the six numbers of the body whose two points begin at j."""
+    """Set the six numbers of the body with its two points from j on."""
     k = j + 1
     y[j], y[n + j], y[2 * n + j], y[k], y[n + k], y[2 * n + k] = q
 
 
 @kernel(inline=True)
 def add_six(y, n, j, d):
-    """Add to the six numbers of the body whose two points begin at j."""
+    """Add to the six numbers of the body with its two points from j on."""
     q = six(y, n, j)
     set_six(y, n, j, (q[0] + d[0], q[1] + d[1], q[2] + d[2], q[3] + d[3], q[4] + d[4], q[5] + d[5]))
 
@@ -84,7 +84,7 @@ def pushed_body(p, i, fx, fy, fz):
 
 @kernel(inline=True)
 def set_carried(y, p):
-    """Set what bodies carry, of velocities or accelerations y (3 n,)."""
+    """Set the rows of y (3 n,), velocities or accelerations, of points that bodies carry."""
     n = p.cols
     for i in range(p.carried.shape[0]):
         j = p.carried[i, 0]

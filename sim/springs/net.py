@@ -219,7 +219,7 @@ class Net(PointSystem[Run]):
     def check_integrator(self, integrator: Integrator) -> None:
         """Raises ValueError where a damped net is given to a method that takes none."""
         if integrator.undamped_only and self.is_damped:
-            allowed = "another, as this net is damped: by links, drag or contact"
+            allowed = "a method with damping: this net is damped by links, drag or contact"
             raise argument_error("integrator", integrator.name, allowed)
 
     @property
@@ -239,7 +239,7 @@ class Net(PointSystem[Run]):
         return link_ratios(self.shape, di, dj, self.side_ratio)
 
     def spacing(self, di: int, dj: int) -> float:
-        """Rest length [m] of the links from (i, j) to (i + di, j + dj), FARTHEST where there are none."""
+        """Rest length [m] of the links from (i, j) to (i + di, j + dj), FARTHEST without such links."""
         return next((float(f.rest) for f in self.families if f[:2] == (di, dj)), FARTHEST)
 
     def with_stiffness(self, stiffness: float) -> "Net":
@@ -258,7 +258,7 @@ class Net(PointSystem[Run]):
         return max(1, min(self.threads, MAX_THREADS, self.shape[0] // LEAST_BAND))
 
     def kernel_view(self, h: float) -> Any:
-        """The kernels' view of this net for steps of h [s]. Its arrays are shared, but for those the kernels fill."""
+        """The kernels' view of this net for steps of h [s]. Its arrays are shared, except those that kernels fill."""
         view = self._unit_step_view._replace(stop_rate=1.0 / h, stop=stop_request())
         if self.thickness == 0.0:
             return view
@@ -407,7 +407,7 @@ def check_family(family: Family) -> None:
 
 
 def check_particle(name: str, value: Any, rows: int, cols: int) -> tuple[int, int]:
-    """`value` as the (row, column) of a particle. Raises ValueError where there is none."""
+    """`value` as the (row, column) of a particle. Raises ValueError outside the net."""
     pair = tuple(value) if isinstance(value, tuple | list | np.ndarray) else ()
     if len(pair) == 2 and all(map(is_whole_number, pair)) and 0 <= pair[0] < rows and 0 <= pair[1] < cols:
         return int(pair[0]), int(pair[1])

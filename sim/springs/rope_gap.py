@@ -27,7 +27,7 @@ def rope_gaps_merge(p):
     return p.damped and not (p.axial or other_acts(p))
 
 
-# Whether `cross_gap` knows the net's damping.
+# True if `cross_gap` knows the net's damping.
 gaps_merge = by_net(rope=rope_gaps_merge, grid=never, lines=never)
 
 
@@ -37,7 +37,7 @@ class Gap(NamedTuple):
     v: NDArray[np.float64]  # velocities
     first: NDArray[np.float64]  # by what part of their relative velocity the link after a point moves this point
     second: NDArray[np.float64]  # and the next one
-    keep: NDArray[np.float64]  # what drag leaves of a point's velocity
+    keep: NDArray[np.float64]  # fraction of a point's velocity that drag leaves
 
 
 @kernel
@@ -121,7 +121,7 @@ def cross_rope_gap(v, a, s, gap, p, reverse):
             kick_out(gap.v, pad + np.uint64(e) * width, v, a, np.uint64(e) * n, n, s)
     if reverse and p.drag > 0.0:
         multiply(gap.v, gap.keep, np.uint64(gap.v.shape[0]))
-    # A pair that begins before the first point is none: it moves nothing.
+    # A pair that begins before the first point moves nothing.
     start = pad - np.uint64(1) if reverse else pad
     damp_twice(gap.v, gap.first, gap.second, gap.keep, start, size // np.uint64(2) + np.uint64(2))
     if not reverse and p.drag > 0.0:

@@ -27,13 +27,13 @@ CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of
 STEP = 1 / 1200  # [s], or SAFETY of the critical step where that is shorter
 SAFETY = 0.5
 RTOL, ATOL = 1e-6, 1e-9  # of adaptive methods
-LEAST_RTOL, LEAST_ATOL = 1e-14, 1e-18  # below, round-off asks for ever shorter steps
+LEAST_RTOL, LEAST_ATOL = 1e-14, 1e-18  # below, round-off asks for shorter and shorter steps
 MOST_STEPS = 1e10  # of a run: hours of a rope
 FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
 
 
 class Simulated(NamedTuple):
-    """How `simulate` runs the systems of one class."""
+    """Way in which `simulate` runs the systems of one class."""
 
     run: Callable[..., Any]  # (system, t, step, integrator, with_account, progress, **options) -> record of the run
     duration: float  # [s] by default
@@ -149,7 +149,7 @@ def run_net(
         raise argument_error("grab.damping", net.grab.damping, f"0, as {record.name} takes no damping")
     if record.adaptive and step is None:
         may_be_endless = duration * max(gershgorin(net)) > MOST_STEPS
-        longest = (may_be_endless and critical_step(net, record)) or math.inf  # 0 where no step is stable for ever
+        longest = (may_be_endless and critical_step(net, record)) or math.inf  # 0 where no step stays stable
         check_steps(duration, longest, MOST_STEPS, False)
         run = marched(net, velocity, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
     else:
@@ -234,7 +234,7 @@ class NetFrames:
         """The time [s] of the first bad step before a frame; all results from then on become NaN."""
         steps = self.steps * (frame - self.calm_frame)
         diverged_at = first_insane_time(self.net, self.calm, self.record, self.h, steps)
-        # What blows up may have passed the bound between frames, and come back for one.
+        # A run that diverges may have passed the bound between frames, and come back for one.
         for rows in (self.x, self.v, self.ledger):
             rows[self.t >= diverged_at] = np.nan
         return diverged_at

@@ -1,4 +1,4 @@
-"""How large a step a net allows: its extreme modes, and each integrator's limit at their damping.
+"""Largest step that a net allows: its extreme modes, and each integrator's limit at their damping.
 
 Explicit integrators blow up from the top of the spectrum, a sawtooth along the links. An integrator declares the
 largest stable step of an oscillator of any frequency and damping rate, so a net's largest stable step is the least of
@@ -403,7 +403,7 @@ def critical_stiffness(
 
 
 def largest_scale(modes: list[Mode], integrator: Integrator, h: float) -> float:
-    """How many times as stiff the links of `modes` may be at step h [s]: 0 for under 1e-12, inf for over 1e12.
+    """Factor by which the links of `modes` may be stiffer at step h [s]: 0 for under 1e-12, inf for over 1e12.
 
     Few of the modes ever limit the step: the search asks these, and all of them only where it has ended.
     """
@@ -458,7 +458,7 @@ def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes:
 
 
 def gauge_of(modes: list[Mode], record: Integrator, h: float) -> Gauge:
-    """h omega of the mode nearest to its limit at step h [s], and that limit; of no modes there is none."""
+    """h omega of the mode nearest to its limit at step h [s], and that limit; 0 without modes."""
     mode = min(modes, key=lambda mode: step_limit(mode, record), default=Mode(0.0, 0.0, 0.0))
     longest = step_limit(mode, record)
     # Of a mode that slides the damping depends on the step, so that the limit is that of the longest step.

@@ -32,7 +32,7 @@ WORDS = tuple(
 
 
 class Convention(NamedTuple):
-    """Of a direction: its zero, its sense of turning, and whether waves come from it or go to it."""
+    """Convention of a direction: its zero, its sense of turning, and whether waves come from it or go to it."""
 
     zero: float  # [rad] from +x
     turn: int  # 1 counterclockwise, -1 clockwise

@@ -42,7 +42,7 @@ def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
         viewer.loop.commands.put(Play())
         (folder / "rope.py").write_text(RIGHT.replace("    r = np", "    r = nq\n    r = np"), "utf-8")
         tab.wait(lambda: tab.page.get_by_text("rope.py, line 11: NameError: name 'nq' is not defined").count())
-        assert tab.page.get_by_text("The last version that worked goes on.").count() == 1
+        assert tab.page.get_by_text("The last version that worked stays in use.").count() == 1
         (folder / "rope.py").write_text(RIGHT, "utf-8")
         tab.wait(lambda: tab.page.locator("[data-function=spring_force][data-state=right]").count())
         assert tab.page.get_by_text("NameError").count() == 0

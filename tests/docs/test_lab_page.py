@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.__main__ import main
+from app.lab import checking
 from app.lab.course.live_values import LiveNumber, fill_in
 from app.lab.course.task import QUESTION_KINDS, load_tasks
 from app.render.markup.formula import formula
@@ -80,13 +81,17 @@ def test_the_mistakes_of_the_example_are_named(teacher: Path, capsys, body: str,
     assert f'"mistake": "{said}"' in capsys.readouterr().out
 
 
-def test_the_page_lists_every_entry_and_every_name_that_a_check_may_have() -> None:
+def test_the_page_lists_every_entry_of_a_task() -> None:
     for word in ("item", "title", "file", "optional", "order", "statement", "setup", "question", "typical_error"):
         assert re.search(rf"`[\[]*(question\.)?{word}[\]]*`", PAGE), word
     for kind in QUESTION_KINDS:
         assert f'`"{kind}"`' in PAGE
-    sources = "".join(path.read_text("utf-8") for path in (ROOT / "app/lab/course/tasks").rglob("*.py"))
-    names = set(re.findall(r"^([A-Z]{5,}) = ", sources, re.MULTILINE))
-    assert {"CURVE", "MISTAKES"} <= names
-    for name in {"inputs", *names}:
-        assert f"`{name}" in PAGE, name
+
+
+def test_the_docstring_of_the_check_lists_every_name_that_a_task_may_have() -> None:
+    sources = [path.read_text("utf-8") for path in (ROOT / "app" / "lab" / "course" / "tasks").rglob("*.py")]
+    names = {"inputs", *re.findall(r"^([A-Z]{5,}) = ", "".join(sources), re.MULTILINE)}
+    assert {"MISTAKES", "CURVE", "METHOD", "TERMS"} <= names
+    assert "`python -m pydoc app.lab.checking`" in PAGE
+    for name in names:
+        assert f"`{name}" in (checking.__doc__ or ""), name

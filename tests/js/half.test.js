@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { toHalf } from "./js/sea/half.js";
+import { toHalf } from "./js/sea/half_floats.js";
 
 const LARGEST = 0x7bff;
 

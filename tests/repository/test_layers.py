@@ -43,7 +43,7 @@ def module_of(path: Path) -> str:
 
 
 def for_types_only(node: ast.AST) -> bool:
-    """Whether this is `if TYPE_CHECKING:`."""
+    """True for `if TYPE_CHECKING:`."""
     return isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
 
 

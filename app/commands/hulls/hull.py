@@ -23,10 +23,10 @@ OPEN = 1  # exit status for a mesh that is not closed
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of the command."""
-    parser.add_argument("hull", type=Path, metavar="FILE", help="a mesh, as of --hull")
-    density = "of the whole hull, mass over volume (default: 500)"
+    parser.add_argument("hull", type=Path, metavar="FILE", help="a mesh file, as for --hull")
+    density = "density of the whole hull: mass over volume (default: 500)"
     parser.add_argument("--density", type=quantity("kg/m3"), default=500.0, metavar="KG/M3", help=density)
-    gravity = "height of the centre of gravity over the keel (default: that of the volume)"
+    gravity = "height of the centre of gravity over the keel (default: centre of volume)"
     parser.add_argument("--kg", type=quantity("m"), metavar="METRES", help=gravity)
     add_mesh_reading(parser)
 
@@ -43,7 +43,7 @@ def print_facts(path: Path, reading: MeshReading, density: float, keel_to_gravit
     density [kg/m3] of the whole hull; keel_to_gravity [m]: height of the centre of gravity over the lowest point, None:
     that of the volume. Raises ValueError for a file that cannot be read, or a value that is not allowed.
     """
-    check_number("--density", density, "kg/m3, that of sea water", 0.0, SEA_DENSITY, above=True)
+    check_number("--density", density, "kg/m3, the density of sea water", 0.0, SEA_DENSITY, above=True)
     vertices, faces = open_mesh_from_file(path, reading)
     if len(faces) and np.isfinite(vertices).all() and open_edges(faces):
         size = np.ptp(vertices[np.unique(faces)], axis=0)

@@ -21,10 +21,10 @@ DRAFT_SHARES = (0.15, 0.3, 0.5, 0.7, 0.85)  # of the height of a hull, at which 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of the command."""
-    parser.add_argument("hull", type=Path, nargs="?", metavar="HULL", help="a closed mesh, as of --hull")
+    parser.add_argument("hull", type=Path, nargs="?", metavar="HULL", help="a closed mesh, as for --hull")
     out = "where to write the table (default: HULL.hydrodynamics.npz, where --hull finds it)"
     parser.add_argument("--out", type=Path, metavar="FILE.npz", help=out)
-    compare = "in a checkout: set the shipped shapes beside Capytaine, live"
+    compare = "in a checkout: compare the shipped shapes with Capytaine"
     parser.add_argument("--compare", action="store_true", help=compare)
     add_mesh_reading(parser)
 
@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
 def require_capytaine() -> None:
     """Raises OSError where Capytaine is not installed."""
     if importlib.util.find_spec("capytaine") is None:
-        raise OSError("Capytaine is not installed; install it by: pip install '.[bem]'")
+        raise OSError("Capytaine is not installed; install it with: pip install '.[bem]'")
 
 
 def make(hull_file: Path, out: Path | None, reading: MeshReading = AS_IT_IS) -> int:

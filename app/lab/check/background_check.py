@@ -16,7 +16,7 @@ import msgspec
 
 from app.lab.check.program_check import Verdict, check_program, not_checked
 from app.lab.course.task import Task, load_tasks
-from app.lab.process.job import end_with_this_program
+from app.lab.process.child_processes import end_with_this_program
 from app.lab.process.runner import ROOT, Runner, unexpected
 from app.lab.process.shared import BACKGROUND_NICENESS, lower_priority
 from app.lab.student.saved import Saved
@@ -128,7 +128,7 @@ def end(process: "subprocess.Popen[str]") -> None:
     process.terminate()
     process.wait()
     for stream in (process.stdin, process.stdout):
-        with contextlib.suppress(OSError):  # what was not yet sent is dropped
+        with contextlib.suppress(OSError):  # unsent data is dropped
             if stream is not None:
                 stream.close()
 

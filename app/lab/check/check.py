@@ -24,7 +24,7 @@ class TaskResult:
 
     @property
     def state(self) -> str:
-        """The first of these that a part of the task has, or what they come to.
+        """The first of these states that a part of the task has, or their sum.
 
         "failed", "wrong", "not checked", "not begun", "incomplete", "right".
         """
@@ -37,7 +37,7 @@ class TaskResult:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """The parts that are not right, each with its place and what to do."""
+        """The parts that are not right, each with its place and advice."""
         texts, program = [], self.program
         if program is not None and program.file:
             texts.append(program.sentence)
@@ -71,7 +71,7 @@ class FolderResult:
         return all(result.state == "right" for result in self.tasks if not result.task.optional)
 
     def count(self, *, optional: bool) -> tuple[int, int]:
-        """How many of the mandatory or optional tasks are right, and how many there are."""
+        """The numbers of mandatory or optional tasks that are right, and of all of them."""
         chosen = [result for result in self.tasks if result.task.optional == optional]
         return sum(result.state == "right" for result in chosen), len(chosen)
 

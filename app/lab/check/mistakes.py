@@ -56,7 +56,7 @@ def answer_text(answer: object) -> str:
 
 
 def standing(results: Sequence[TaskResult]) -> str:
-    """How many tasks have each state: "right 3, wrong 1, not begun 22"."""
+    """Number of tasks in each state: "right 3, wrong 1, not begun 22"."""
     numbers = Counter(result.state for result in results)
     return ", ".join(f"{words} {numbers[state]}" for state, words in STATES.items() if numbers[state])
 
@@ -68,6 +68,6 @@ def present_task(results: Sequence[TaskResult], at: str = "") -> TaskResult | No
 
 
 def present_mistake(results: Sequence[TaskResult], at: str = "") -> str:
-    """The first mistake in a student's present task, or in any task; "" if there is none."""
+    """The first mistake in a student's present task, or in any task; "" without a mistake."""
     present = present_task(results, at)
     return next((text for result in (*([present] if present else []), *results) for text in result.problems), "")

@@ -88,7 +88,7 @@ def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
 
 
 def not_checked(why: str) -> Verdict:
-    """The verdict on a function that could not be run by no fault of its own."""
+    """The verdict on a function that could not be run for a reason outside it."""
     return Verdict("not checked", f"could not be checked ({why})")
 
 

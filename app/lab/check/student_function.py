@@ -45,9 +45,9 @@ class StudentFunction:
     def __call__(self, *arguments: Any) -> Any:
         """The result, in the form of the reference's. Raises RunError or Wrong."""
         if self.runner.effort - self.effort > TASK_LIMIT:
-            raise RunError("endless", f"{self.task.name} is too slow: {TASK_LIMIT:g} s are over", self.task.file)
+            raise RunError("endless", f"{self.task.name} is too slow: {TASK_LIMIT:g} s have passed", self.task.file)
         if time.monotonic() - self.started > MAX_WAIT * TASK_LIMIT:
-            raise RunError(BUSY, f"the machine is busy: {MAX_WAIT * TASK_LIMIT:g} s are over", self.task.file)
+            raise RunError(BUSY, f"the machine is busy: {MAX_WAIT * TASK_LIMIT:g} s have passed", self.task.file)
         if self.is_watched:
             value = self.runner.watch(self.task.file, self.task.name, *arguments, twice=self.twice)
         else:

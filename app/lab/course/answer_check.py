@@ -31,7 +31,7 @@ def check_answer(question: Question, answer: Value | None) -> AnswerVerdict:
     if question.kind == "number" and not isinstance(answer, float):
         return AnswerVerdict(question, answer, "wrong", "This is not a number.")
     if question.kind == "choice" and answer not in question.choices:
-        return AnswerVerdict(question, answer, "wrong", "This is none of the choices: " + ", ".join(question.choices))
+        return AnswerVerdict(question, answer, "wrong", "Not one of the choices: " + ", ".join(question.choices))
     if question.right is None:
         return AnswerVerdict(question, answer, "given")
     if is_right(question, answer):

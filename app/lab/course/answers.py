@@ -32,7 +32,7 @@ class Answers(NamedTuple):
     error: str = ""
 
     def of(self, task: Task, question: Question) -> Value | None:
-        """The answer, None where there is none; a number as a number, also where it was written as text."""
+        """The answer, or None; a number as a number, also if it was written as text."""
         value = self.values.get((task.name, question.key))
         if isinstance(value, str):
             value = value.strip()
@@ -169,7 +169,7 @@ def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
     left = dict(answers.values)
     lines = [
         "# Your answers. Write between the quotation marks; a number needs none.",
-        "# A prediction is kept as you made it: write it down before you try.",
+        "# A prediction cannot be changed later: write it down before you try.",
         "",
         f"name = {quoted(answers.name)}",
     ]
@@ -184,7 +184,9 @@ def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
             elif question.kind == "number":
                 lines += [f"# A number{f' in {question.unit}' if question.unit else ''}"]
             lines += [f"{question.key} = {quoted(left.pop((task.name, question.key), ''))}"]
-        rest = [key for owner, key in left if owner == task.name]  # what the workbook keeps, and former questions
+        rest = [
+            key for owner, key in left if owner == task.name
+        ]  # entries that the workbook keeps, and former questions
         lines += ["", *(f"{quoted(key)} = {quoted(left.pop((task.name, key)))}" for key in rest)] if rest else []
     for name in sorted({name for name, _ in left}):
         lines += ["", "", f"[{quoted(name)}]"]

@@ -125,13 +125,13 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
         "Run these commands in the folder above this one:",
         "",
         f"- `springtide lab {quoted}` opens the scenes in a browser. They run your functions as you save them.",
-        "  The tab Lab of the panel has the tasks below. It sets them up, keeps answers and takes pictures.",
+        "  The tab Lab of the panel has the tasks below. It sets them up, saves your answers and takes pictures.",
         f"- `springtide lab check {quoted}` says what is right, and what is wrong and why.",
         f"- `springtide lab check {quoted} --report report.html` writes the page that you hand in.",
         f"  It includes the pictures (PNG or JPEG) in `{PICTURES}`; those named after a task appear in that task.",
         "",
-        "Functions take and return numpy arrays and numbers. Loops are as right as array operations. You may write",
-        "functions and files of your own beside those that are asked for.",
+        "Functions take and return numpy arrays and numbers. Loops are as good as array operations. You may add",
+        "functions and files of your own.",
     ]
     section = ""
     for task in tasks:

@@ -88,7 +88,7 @@ class NamesOnly(string.Formatter):
     """Formats live values by name; a field is never more than a name."""
 
     def get_field(self, field_name: str, args: Any, kwargs: Any) -> tuple[Any, str]:
-        """The value of a field, or that there is none."""
+        """The value of a field, or `UNKNOWN`."""
         return kwargs.get(field_name, UNKNOWN), field_name
 
     def format_field(self, value: Any, format_spec: str) -> str:

@@ -59,7 +59,7 @@ class Question(TomlTable, frozen=True):
         if kind not in QUESTION_KINDS:
             raise argument_error(where, kind, "one of " + ", ".join(QUESTION_KINDS))
         if kind == "choice" and (len(self.choices) < 2 or right not in (None, *self.choices)):
-            raise argument_error(where, right, "at least two choices, one of them the right one")
+            raise argument_error(where, right, "at least two choices, one of them right")
         if kind == "number" and not math.isfinite(as_float(0.0 if right is None else right)):
             raise argument_error(where, right, "a finite number")
         if not math.isfinite(self.tolerance):
@@ -81,7 +81,7 @@ class TaskSetup(TomlTable, frozen=True):
     """Set-up of Springtide that shows the task."""
 
     scene: str
-    look: str  # what to do and to look at
+    look: str  # advice on things to do and to look at
     preset: str = ""
     parameters: dict[str, Any] = {}  # beside the preset
     show: tuple[str, ...] = ()  # names of the live values to keep in sight
@@ -134,7 +134,7 @@ class TaskFile(TomlTable, frozen=True):
             raise argument_error("file", self.file, "the name of a Python file")
         keys = [question.key for question in self.questions]
         if len(set(keys)) < len(keys):
-            raise argument_error("question", ", ".join(keys), "a key of its own for each question")
+            raise argument_error("question", ", ".join(keys), "a different key for each question")
 
 
 class Task(TaskFile, frozen=True, kw_only=True):

@@ -16,7 +16,7 @@ from app.lab.course.answers import DONE, FILE, SHOWN, Answers, Value, change_ans
 from app.lab.course.folder import MAX_PICTURES, PICTURES
 from app.lab.course.live_values import LiveNumber, LiveValues
 from app.lab.course.task import PREDICTION, Question, Task, TaskSetup
-from app.lab.student.versions import Look
+from app.lab.student.versions import FileWatch
 from app.render.markup.formula import formula
 from sim.files import replacing
 from sim.parameters import choice_error
@@ -51,8 +51,8 @@ class Workbook:
             check_laws(task)
         self.lock = threading.RLock()
         self.answers = Answers("", {})
-        self.file = None if folder is None else Look(folder, FILE, 0.0)
-        self.revision: int = 0  # how often the answers have changed
+        self.file = None if folder is None else FileWatch(folder, FILE, 0.0)
+        self.revision: int = 0  # number of changes of the answers
         self.looked_at: set[str] = set()  # names of the tasks that show their answer, where there is no folder
         self.refresh()
         self.index = 0 if folder is None else self.first_open()
@@ -72,7 +72,7 @@ class Workbook:
         return next((i for i in is_open if i >= last), is_open[0] if is_open else 0)
 
     def named(self, name: str) -> Task:
-        """The task with this name, or the first with this item (3.2-1). Raises ValueError if there is none."""
+        """The task with this name, or the first with this item (3.2-1). Raises ValueError for an unknown one."""
         for task in self.tasks:
             if name in (task.name, task.item):
                 return task
@@ -125,7 +125,7 @@ class Workbook:
         return "begun" if answered or self.done(task) or program not in ("", "not begun") else "open"
 
     def hidden(self) -> frozenset[str]:
-        """Parameters and headings whose lines would answer a question of the task that is shown."""
+        """Parameters and headings whose lines would answer a question of the shown task."""
         task = self.task
         judged = (question for question in task.questions if question.right is not None)
         if self.folder is None or all(self.verdict(task, q).state != "not begun" for q in judged):
@@ -156,7 +156,7 @@ class Workbook:
         """The answers as they are in the file. Raises ValueError where it cannot be read."""
         found = read_answers(folder)
         if found.error and (folder / FILE).exists():
-            raise ValueError(f"{found.error}. Nothing is written until this is repaired.")
+            raise ValueError(f"{found.error}. Nothing is saved until you repair this.")
         return found
 
     def store(self, task: str, key: str, value: Value) -> None:
@@ -231,21 +231,21 @@ def check_laws(task: Task) -> None:
 def answer_of(question: Question, text: str) -> Value:
     """Stored form of a text from outside. Raises ValueError, with a line for the student, if it is not allowed."""
     if len(text) > MAX_TEXT:
-        raise ValueError(f"An answer has at most {MAX_TEXT} characters. This one has more, and is not kept.")
+        raise ValueError(f"An answer has at most {MAX_TEXT} characters. This one is longer and was not saved.")
     if any(unicodedata.category(c) in ("Cc", "Cs") and c not in ALLOWED_CONTROLS for c in text):
-        raise ValueError("The answer has control characters, and is not kept.")
+        raise ValueError("The answer has control characters and was not saved.")
     word = text.strip()
     if not word or question.kind == "text":
         return word
     if question.kind == "choice":
         if word not in question.choices:
-            raise ValueError(f"{word!r} is none of the choices.")
+            raise ValueError(f"{word!r} is not one of the choices.")
         return word
     try:
         return read_number(word, question.unit)
     except ValueError as reason:
         unit = f" in {question.unit}" if question.unit else ""
-        raise ValueError(f"{word!r} is not kept: {reason}. Write a number{unit}, such as 0.5.") from None
+        raise ValueError(f"{word!r} was not saved: {reason}. Write a number{unit}, such as 0.5.") from None
 
 
 def read_off(question: Question, values: LiveValues) -> str:

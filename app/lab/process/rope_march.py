@@ -82,7 +82,7 @@ class Segment(NamedTuple):
     # rest. A rope has one, its root.
     path: np.ndarray
     since: float = 0.0  # time t [s] of the first step, for the path and the sphere
-    sheet: ClothData | None = None  # what a cloth is made of; None for a rope
+    sheet: ClothData | None = None  # data of a cloth; None for a rope
     end: float = 0.0  # time [s] of the scene at its end
     x: np.ndarray | None = None  # (n, 3) [m] the program's net at its end; None within a segment that was divided
 
@@ -352,7 +352,7 @@ class Functions:
         size = len(value) if isinstance(value, tuple | list) or np.ndim(value) else 0
         if size != 2:
             form = entries(size) if size else f"a value of type {type(value).__name__}"
-            text = f"{self.step} returns {form}; expected are two arrays, the new positions and velocities"
+            text = f"{self.step} returns {form}; expected two arrays, the new positions and velocities"
             raise Unfit("wrong shape" if size else "wrong type", text, self.get(self.step))
         x_new, v_new = self.fit(self.step, value[0], x.shape), self.fit(self.step, value[1], x.shape)
         if np.isnan(x_new.sum() + v_new.sum()) and (np.isnan(x_new).any() or np.isnan(v_new).any()):

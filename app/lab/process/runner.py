@@ -26,8 +26,8 @@ import numpy as np
 
 from app.lab.process.call_limit import ASLEEP, COMPUTING, CallLimit
 from app.lab.process.call_limit import BUSY as BUSY_MACHINE
+from app.lab.process.child_processes import end_with_this_program, kill_with_children
 from app.lab.process.cloth_march import FILE as CLOTH_FILE
-from app.lab.process.job import end_with_this_program, kill_with_children
 from app.lab.process.rope_march import FILE as ROPE_FILE
 from app.lab.process.rope_march import MarchResult, Segment, packed
 from app.lab.process.shared import COMPILES, FORKS, TRACE_SIGNAL
@@ -146,7 +146,7 @@ class Runner:
         answer = self._ask("march", file, step, arguments)
         if not is_march(answer, x.shape):
             self.close()
-            raise RunError("ended", f"{step} wrote into the pipe of the lab", file)
+            raise RunError("ended", f"{step} wrote into the lab's pipe", file)
         return MarchResult(*answer)
 
     def table(
@@ -164,7 +164,7 @@ class Runner:
             is_table = isinstance(part, np.ndarray) and part.dtype == np.float64
             if not is_table or part.shape != (len(rows[0]), *(shape or ())) or not np.isfinite(part).all():
                 self.close()
-                raise RunError("ended", f"{function} wrote into the pipe of the lab", file)
+                raise RunError("ended", f"{function} wrote into the lab's pipe", file)
             parts.append(part)
         return np.concatenate(parts)
 
@@ -253,11 +253,11 @@ class Runner:
                 reply = compute(functions, answer)
             except RunError as error:
                 if error.kind == "memory":
-                    self.close()  # what it holds is given back
+                    self.close()  # frees its resources
                 raise
             except (LookupError, TypeError, ValueError):
                 self.close()
-                raise RunError("ended", f"{function} wrote into the pipe of the lab", file) from None
+                raise RunError("ended", f"{function} wrote into the lab's pipe", file) from None
             self._say(process, reply)
 
     def close(self) -> None:
@@ -360,7 +360,7 @@ class Runner:
             if state == BUSY_MACHINE:
                 text = f"{inner} got {limit.taken:.2g} s of the processor within {limit.wall:g} s"
                 raise RunError(BUSY, f"the machine is busy: {text}", where, line)
-            why = "it waits, and does not compute" if state == ASLEEP else "is there an infinite loop?"
+            why = "it is waiting, not computing" if state == ASLEEP else "is there an infinite loop?"
             text = f"{inner} did not finish within {limit.seconds:g} s: {why}"
             raise RunError("endless", text, where, line, loading=loading)
         if answer is None:
@@ -439,7 +439,7 @@ def dispose(process: Process, trace: IO[bytes] | None) -> None:
     """Wait for the end of a process, reap it, and close its files."""
     has_ended(process, block=True)
     for stream in (process.stdin, process.stdout, trace):
-        with contextlib.suppress(OSError):  # what was not yet sent is dropped
+        with contextlib.suppress(OSError):  # unsent data is dropped
             if stream is not None:
                 stream.close()
     process.wait()
@@ -467,7 +467,7 @@ def unexpected(error: Exception, file: str) -> RunError:
 
 
 def is_march(answer: Any, shape: tuple[int, ...]) -> bool:
-    """True if an answer holds what a `MarchResult` of points (n, 3) does: a student's function may have forged it."""
+    """True if an answer has the entries of a `MarchResult` of points (n, 3): a student may have forged it."""
     if not isinstance(answer, tuple) or len(answer) != len(MarchResult._fields):
         return False
     x, v, steps, seconds, effort, left = answer
@@ -483,4 +483,4 @@ def compute(functions: list[Callable[..., Any]], answer: list[Any]) -> list[Any]
     try:
         return ["value", pack(function(*arguments), lambda _: 0)]
     except Exception as error:  # whatever the student's function handed over
-        return ["refused", f"the function that was handed over cannot take these arguments: {error}"]
+        return ["refused", f"the function passed in cannot take these arguments: {error}"]

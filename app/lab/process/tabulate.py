@@ -48,7 +48,7 @@ def tabulate(
             is_fit = (allowed.low <= value) & (value <= allowed.high) & ~np.isinf(value)
             if not is_fit.all():
                 arguments = ", ".join(np.array2string(column[i], precision=4) for column in columns)
-                text = f"{name}({arguments}) returns {value[~is_fit][0]:.4g}; possible is {allowed}"
+                text = f"{name}({arguments}) returns {value[~is_fit][0]:.4g}; expected {allowed}"
                 raise Unfit("out of range", text, function)
             table[i] = value
     return table

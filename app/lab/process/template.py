@@ -1,4 +1,4 @@
-"""Processes forked from one that has imported what a student's functions need: a fork takes a few milliseconds.
+"""Processes forked from one that has imported all that a student's functions need: a fork takes a few milliseconds.
 
 The template waits at a socket. A request with three files forks a process that has these as standard input, standard
 output and trace; another one reaps a process that has ended, which keeps its number until then. The template ends with
@@ -123,7 +123,7 @@ class Template:
         return self.connection
 
     def watch(self, pid: int) -> int:
-        """A file that is readable once a process has ended. Raises OSError, and ends the process, if there is none."""
+        """A file that is readable once a process has ended. Without one, ends the process and raises OSError."""
         try:
             return os.pidfd_open(pid)
         except OSError:
@@ -160,18 +160,18 @@ class Template:
         Raises ConnectionError where no template runs, TimeoutError where it does not answer, another OSError of a fork.
         """
         if self.connection is None:
-            raise ConnectionError("nothing forks processes yet")
+            raise ConnectionError("the fork server has not started yet")
         try:
             socket.send_fds(self.connection, [REQUEST.pack(request, pid)], files)
             answer = self.connection.recv(ANSWER.size)
         except TimeoutError:
             self.disconnect()
-            raise TimeoutError(f"the process that forks others does not answer within {ANSWER_LIMIT:g} s") from None
+            raise TimeoutError(f"the fork server did not answer within {ANSWER_LIMIT:g} s") from None
         except OSError:
             answer = b""
         if not answer:
             self.disconnect()
-            raise ConnectionError("the process that forks others has ended")
+            raise ConnectionError("the fork server has ended")
         found = ANSWER.unpack(answer)[0]
         if request != REAP and found <= 0:
             raise OSError(-found, os.strerror(-found))

@@ -190,7 +190,7 @@ class Worker:
         except PrintedTooMuchError:
             return ["failed", "printed", f"prints more than {MAX_LINES} lines at a time", *self.place(file), loading]
         except MemoryError:
-            text = f"asks for more memory than the {MEMORY // 2**20} MiB that a call may take"
+            text = f"asks for more memory than a call may take, {MEMORY // 2**20} MiB"
             return ["failed", "memory", text, *self.place(file), loading]
         except SystemExit:
             return ["failed", "ended", "calls exit(), which ends the program", *self.place(file), loading]
@@ -302,7 +302,7 @@ def limit_memory() -> None:
 
 
 def end_with_parent(parent: int) -> None:
-    """End this process, and what it has started, when the lab has ended, also in the middle of an endless loop.
+    """End this process and its children when the lab has ended, also in the middle of an infinite loop.
 
     parent: the number of the process that started this one.
     """

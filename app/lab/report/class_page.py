@@ -87,12 +87,12 @@ def rows(students: Sequence[Student]) -> Html:
     names = folder_names(student.folder for student in students)
     body = join(student_row(student, names[student.folder]) for student in students)
     return fill(
-        '<h1>Class of {}</h1><p class="faint">{} have begun{}. The page follows as files are saved.</p>{}'
+        '<h1>Class of {}</h1><p class="faint">{} have begun{}. The page updates as files are saved.</p>{}'
         '<h2>Students</h2><table class="class"><thead><tr><th>Folder</th><th>Current task and mistake</th>'
         '<th class="number">Right</th><th>Tasks</th><th class="wide">Rope</th></tr></thead>'
         "<tbody>{}</tbody></table>"
         '<p class="faint small">✓ right, ✗ wrong or does not run, ● not complete, · not begun. Ropes fall '
-        "for one second from the level; the reference's last shape is dashed.</p>",
+        "for one second from the horizontal; the reference's last shape is dashed.</p>",
         len(students), begun, busy, mistakes_table(ready, names), body,
     )  # fmt: skip
 

@@ -21,7 +21,7 @@ from app.lab.process.rope_march import FILE as ROPE_FILE
 from app.lab.report.rope_picture import NOT_DRAWN, RopePicture, rope_picture
 from app.lab.student.saved import Saved
 from app.lab.student.source import read_source
-from app.lab.student.versions import LOOK_INTERVAL, Look, Versions
+from app.lab.student.versions import LOOK_INTERVAL, FileWatch, Versions
 
 WORKERS = 2  # folders that are checked at the same time
 MISSING = "The folder is not there."
@@ -37,7 +37,7 @@ class Student(NamedTuple):
     rope: RopePicture = RopePicture()
     at: str = ""  # name of the task whose result changed last; at first of the last that is begun
     changed_at: str = ""  # clock time of that
-    error: str = ""  # why the folder could not be checked, or its answers not be read
+    error: str = ""  # reason why the folder could not be checked, or its answers not be read
     name: str = ""  # as the student typed it
 
 
@@ -45,7 +45,7 @@ class Desk:
     """One folder. It belongs to one thread at a time."""
 
     def __init__(self, folder: Path, tasks: Sequence[Task]) -> None:
-        self.tasks, self.versions, self.answers = tasks, Versions(folder, tasks), Look(folder, FILE)
+        self.tasks, self.versions, self.answers = tasks, Versions(folder, tasks), FileWatch(folder, FILE)
         self.student = Student(folder)
         self.drawn: Saved | None = None  # the version whose rope is drawn
         self.is_open = True  # something is to be looked at once more
@@ -94,7 +94,7 @@ class Classroom:
         for folder in folders:
             check_is_folder(folder)
         self.students = {folder: Student(folder) for folder in dict.fromkeys(folders)}
-        self.revision = 0  # how often a student has changed
+        self.revision = 0  # number of changes of students
         self.news = threading.Condition()
         self.is_closed = threading.Event()
         self.turns = threading.Condition()

@@ -173,7 +173,7 @@ def program_text(entry: TaskResult) -> Html:
     if program.state == "right":
         behaviour = inspect.getdoc(getattr(entry.task.check, "behaviour", None)) or ""
         told = behaviour if is_answered(entry) else ""
-        text = f"As the reference at {SAMPLES} random inputs. {told and 'Behaviour: '}{told}"
+        text = f"Matches the reference at {SAMPLES} random inputs. {told and 'Behaviour: '}{told}"
     return fill(
         '<p>Function <code>{}</code>: <b class="{}">{}</b>. {}</p>{}',
         entry.task.name, state_class(program.state), program.state, text,
@@ -193,7 +193,7 @@ def answers_of(answers: Answers, entry: TaskResult) -> Html:
     cells = {part: [answer for answer in entry.answers if answer.question.part == part] for part in PARTS}
     above = [part for part in ("Predict", "Measure") if cells[part]]
     explained = join(answer_text(answer) for answer in cells["Explain"])
-    looked_at = "The answer of the program was looked at in the panel."
+    looked_at = "The program's answer was viewed in the panel."
     return fill(
         '<table class="answers"><tr>{}</tr><tr>{}</tr>{}</table>{}',
         join(fill('<th colspan="{}">{}</th>', 3 - len(above), PARTS[part]) for part in above),

@@ -56,10 +56,10 @@ def rope_picture(runner: Runner, saved: Saved) -> RopePicture:
         return RopePicture(reference=reference, text=text)
     inside = int(np.logical_and.accumulate((np.abs(found.x) < FAR).all(axis=(1, 2))).sum())
     if inside < POSES:
-        return RopePicture(found.x[:inside], reference, f"Apart within {(inside + 1) * POSE_STEPS * STEP:.1f} s.")
+        return RopePicture(found.x[:inside], reference, f"Flies apart within {(inside + 1) * POSE_STEPS * STEP:.1f} s.")
     apart = float(np.linalg.norm(found.x - reference, axis=2).max())
     return RopePicture(
-        found.x, reference, "As the reference." if apart < SAME else f"{apart:.2g} m from the reference."
+        found.x, reference, "Matches the reference." if apart < SAME else f"{apart:.2g} m from the reference."
     )
 
 

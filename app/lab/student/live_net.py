@@ -42,10 +42,10 @@ class StudentReport(NamedTuple):
     seconds: float = 0.0  # for each step, lately
     step: float = 0.0  # h [s]
     behind: float = 0.0  # [s] of simulated time
-    restarts: int = 0  # how often it was too late and started again from the program's rope
+    restarts: int = 0  # number of restarts from the program's rope, after it was too late
     left_at: float = math.nan  # [s] when it left its bounds
     difference: float = math.nan  # [m] largest distance between the same points of both; NaN where they have others
-    unlike: tuple[str, ...] = ()  # why a right solution differs from the program's, beginning with the parameter
+    unlike: tuple[str, ...] = ()  # reason why a right solution differs from the program's, beginning with the parameter
     grid: tuple[int, int] = (0, 0)  # rows and columns of the student's cloth, where it is coarser than the program's
     times: NDArray[np.float64] = np.zeros(0)  # (rows,) [s]
     differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]

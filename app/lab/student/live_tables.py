@@ -27,7 +27,7 @@ class Call(NamedTuple):
     """A function at some arguments."""
 
     columns: tuple[NDArray[np.float64], ...]  # (n, ...) each: row i holds the arguments of call i
-    allowed: Interval  # what the function may return
+    allowed: Interval  # range of the function's values
     shape: tuple[int, ...] | None = ()  # of what it returns; None: its number of entries counts
     program: float = math.nan  # the program's own result, where there is one call
 
@@ -51,7 +51,7 @@ class TableReport(NamedTuple):
 
     running: Mapping[str, str] = {}  # function -> what it moves
     idle: Mapping[str, str] = {}  # function -> why the scene has no use for it just now
-    differences: tuple[tuple[str, float, float, str], ...] = ()  # what, the student's, the program's, unit
+    differences: tuple[tuple[str, float, float, str], ...] = ()  # name, the student's, the program's, unit
     off: bool = False  # the scene could run by them, and runs by the program's
 
 
@@ -82,7 +82,7 @@ class LiveTables(Service):
         """lane: of the versions, for these tables."""
         self.versions = versions
         self.uses = {task.name: Use(lane, task.name, task.file) for task in tasks}
-        self.shown = True  # whether the scene runs by the student's functions, or by the program's
+        self.shown = True  # the scene uses the student's functions instead of the program's
         self.tables: Mapping[str, Table] = {}  # function -> its table; replaced, never changed
         self.calls: Mapping[str, Call] = {}
         self.asked: dict[str, tuple[Saved, Call]] = {}  # function -> newest version and arguments of the last attempt

@@ -26,8 +26,8 @@ class CodeState(NamedTuple):
 
     version: int = 0  # of the files as saved last
     saved_at: str = ""  # clock time
-    error: RunError | None = None  # what stops the newest version
-    not_compiled: str = ""  # why a function of the version that runs could not be compiled
+    error: RunError | None = None  # of the newest version
+    not_compiled: str = ""  # reason why a function of the version that runs could not be compiled
 
 
 class Session:
@@ -44,7 +44,7 @@ class Session:
         self.folder, self.tasks = folder, tasks
         self.versions = Versions(folder, tasks, time_limit)
         self.saved_at = ""
-        self.trouble: RunError | None = None  # why the files could not be taken up
+        self.trouble: RunError | None = None  # reason why the files could not be taken up
         self.compiler = Service("student's compiler")
         self.rope = LiveNet(ROPE, self.versions, lambda: self.compiler.do(self.compile))
         self.cloth = LiveNet(CLOTH, self.versions)
@@ -104,8 +104,8 @@ class Session:
         self.versions.compile(ROPE.use)
 
     def note_trouble(self, error: Exception) -> None:
-        """The files could not be taken up, by no fault of theirs: a full disk, or no more processes."""
-        text = f"the saved files cannot be taken up: {error}"
+        """Report that the files could not be loaded for a reason outside them: a full disk, or no more processes."""
+        text = f"the saved files could not be loaded: {error}"
         if self.trouble is None or self.trouble.text != text:  # it is tried again twice a second
             traceback.print_exception(error)
             self.trouble = RunError("ended", text, str(self.folder))

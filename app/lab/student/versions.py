@@ -27,7 +27,7 @@ LOOK_INTERVAL = 0.5  # [s] between two looks
 SETTLE_TIME = 0.05  # [s] without a further change before a save is read: editors write a file in several steps
 MAX_SETTLE_TIME = 0.4  # [s]
 COARSE_TIME = 3.0  # [s] after a change during which files are read at each look
-MAX_WORKED = 2  # versions that worked of which each use keeps the copies
+MAX_WORKED = 2  # versions that worked, kept as copies for each use
 COSTLY = ("endless", "ended", "memory")  # kinds of errors that may end the process
 Stamps = frozenset[tuple[str, int, int, int]]
 Key: TypeAlias = tuple[str, int, bool]  # of a process: who asks, version, whether it compiles
@@ -53,7 +53,7 @@ def stamps(folder: Path, ending: str) -> Stamps | None:
     return frozenset(found)
 
 
-class Look:
+class FileWatch:
     """Looks at the files of a folder that have one ending."""
 
     def __init__(self, folder: Path, ending: str, max_settle: float = MAX_SETTLE_TIME) -> None:
@@ -81,7 +81,7 @@ class Look:
         return True
 
     def forget(self) -> None:
-        """Have the next look find a change, as what it found could not be taken up."""
+        """Have the next look report its changes again, as they could not be loaded."""
         self.seen = None
 
 
@@ -120,11 +120,11 @@ class Versions:
         """time_limit: [s] of one call of a student's function."""
         self.folder, self.tasks, self.time_limit = folder, tasks, time_limit
         self.copies = Path(tempfile.mkdtemp(prefix="springtide-lab-"))
-        self.files = Look(folder, ".py")
+        self.files = FileWatch(folder, ".py")
         self.newest: Saved | None = None
         # These four are replaced, never changed.
         self.of_file: Mapping[str, Saved] = {}  # file of tasks -> version in which its functions were saved last
-        self.errors: Mapping[Use, RunError] = {}  # what stops the newest version
+        self.errors: Mapping[Use, RunError] = {}  # of the newest version
         self.verdicts: Mapping[str, Verdict] = {}  # function -> outcome of its check as it was saved last
         self.compiled: Mapping[Use, Compiled] = {}
         self.judged: dict[str, int] = {}  # function -> version of its final verdict

@@ -212,5 +212,5 @@ class Control:
 def float_or_int(value: Value) -> float:
     """A numeric parameter's value, an int where it is one. Raises TypeError for anything else."""
     if isinstance(value, bool | str):
-        raise TypeError(f"{value!r} is no number")
+        raise TypeError(f"{value!r} is not a number")
     return value

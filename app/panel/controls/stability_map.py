@@ -107,8 +107,8 @@ class StabilityMapPanel:
         self.click = gui.add_multi_slider(" ", 0.0, 1.0, step=1e-4, initial_value=(0.0, 0.0), visible=False)
         self.axes: Axes | None = None
         self.rows: list[MapRow] = []
-        self.problem = ""  # why there is no map, or no more of it
-        self.asked = 0  # how often: a thread that is no longer the latest stops
+        self.problem = ""  # reason why there is no map, or no more of it
+        self.asked = 0  # number of requests: a thread that is no longer the latest stops
 
         @self.button.on_click
         async def _(_: ViserEvent) -> None:

@@ -15,7 +15,7 @@ from app.messages import Pause
 from app.panel.plots import Plots
 from app.panel.recording.long_work import LongWork
 from app.panel.recording.picture import take_picture
-from app.panel.recording.recorder import Kept, Recorder
+from app.panel.recording.recorder import RecordedFrame, Recorder
 from app.panel.recording.recording_files import Plotted, plots_csv, plots_svg, recording_npz
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_inside import uuid_of
@@ -45,7 +45,7 @@ PAGE_BUTTONS = (
 )
 
 Make = Callable[[viser.ClientHandle, LongWork], tuple[str, bytes]]  # name and content of a file
-MakeReplay = Callable[[AnyKind, Sequence[Kept], Plotted], str]
+MakeReplay = Callable[[AnyKind, Sequence[RecordedFrame], Plotted], str]
 
 
 class Files:
@@ -114,7 +114,7 @@ class Files:
     def check_open(self) -> None:
         """Raise ValueError where another scene is shown."""
         if not self.settings.is_open:
-            raise ValueError("another scene was opened before it was there")
+            raise ValueError("another scene was opened before it was ready")
 
     def film_file(self, client: viser.ClientHandle, work: LongWork) -> tuple[str, bytes]:
         """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.

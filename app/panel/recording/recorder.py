@@ -10,9 +10,9 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from app.messages import BaseParams, KeptState, RunLine
+from app.messages import BaseParams, Checkpoint, RunLine
+from app.scenes.checkpoints import arrays_in
 from app.scenes.contract import AnySnapshot, FramePacking
-from app.scenes.moments import arrays_in
 
 MAX_BYTES = 150e6  # of the arrays of all frames and states that are kept
 MAX_DURATION = 180.0  # [s] of simulated time that is kept
@@ -27,7 +27,7 @@ DRAWN_TIMEOUT = 5.0  # [s] for the viewer's thread to send a frame of the record
 STATE_INTERVAL = 0.1  # [s] in which the next frame with a state comes, where copies of states cost little
 
 
-class Kept(NamedTuple):
+class RecordedFrame(NamedTuple):
     """One frame of the recording."""
 
     time: float  # [s] simulated
@@ -35,7 +35,7 @@ class Kept(NamedTuple):
     packed: object  # the scene's own record, or its packed form
     params: BaseParams
     arrays: Mapping[int, int]  # identity -> bytes of each array of frame and state; some are shared with other frames
-    state: KeptState | None = None  # to go on from
+    state: Checkpoint | None = None  # to go on from
     packing: FramePacking | None = None
 
     @property
@@ -92,7 +92,7 @@ class Recorder:
         """packing: of the scene. wake: has the viewer's thread look at the recording at once."""
         self.packing, self.wake = packing, wake
         self.lock = threading.Lock()
-        self.frames: collections.deque[Kept] = collections.deque()
+        self.frames: collections.deque[RecordedFrame] = collections.deque()
         self.memory = FrameMemory()
         self.spacing = 0.0  # time between frames over their age when frames were taken out last
         self.noted_at = 0.0  # [s] of the clock, of the last frame
@@ -104,7 +104,7 @@ class Recorder:
         self.loops = False
         self.advanced_at = 0.0  # [s] of the clock
         self.played = 0.0  # [s] of wall time since the frame at `position` was shown
-        self.awaited: tuple[Kept, Future[None]] | None = None  # a frame that is to be sent
+        self.awaited: tuple[RecordedFrame, Future[None]] | None = None  # a frame that is to be sent
 
     def follow(self, snapshot: AnySnapshot) -> None:
         """Follow the lab by a snapshot: it goes on, began again or went back, which decides the shown frame."""
@@ -140,13 +140,13 @@ class Recorder:
             packed = snapshot.frame if self.packing is None else self.packing.pack(snapshot.frame)
             arrays = arrays_of_frame(packed) | ({} if state is None else dict(state.arrays))
             self.memory.add(arrays)
-            self.frames.append(Kept(status.time, played, packed, snapshot.params, arrays, state, self.packing))
+            self.frames.append(RecordedFrame(status.time, played, packed, snapshot.params, arrays, state, self.packing))
             while status.time - self.frames[0].time > MAX_DURATION:
                 self.forget(self.frames.popleft())
             if self.memory.bytes > MAX_BYTES:
                 self.make_room()
 
-    def forget(self, kept: Kept) -> None:
+    def forget(self, kept: RecordedFrame) -> None:
         """Give up a frame that is no longer among the others."""
         self.memory.remove(kept.arrays)
 
@@ -163,7 +163,7 @@ class Recorder:
     def thin(self, spacing: float) -> None:
         """Take out the frames that come sooner after another than `spacing` times their age."""
         newest, last, last_state = self.frames[-1].time, -math.inf, -math.inf
-        frames: collections.deque[Kept] = collections.deque()
+        frames: collections.deque[RecordedFrame] = collections.deque()
         for kept in self.frames:
             least = spacing * (newest - kept.time)
             wait = least if least * MAX_RATE <= 1.0 else least + STATE_INTERVAL  # for one with a state
@@ -176,7 +176,7 @@ class Recorder:
         self.frames = frames
 
     def span(self) -> tuple[float, float]:
-        """Simulated times [s] of the first and the last frame; (0, 0) where there is none."""
+        """Simulated times [s] of the first and the last frame; (0, 0) without frames."""
         with self.lock:
             return (self.frames[0].time, self.frames[-1].time) if self.frames else (0.0, 0.0)
 
@@ -188,13 +188,13 @@ class Recorder:
                 self.position = max(0, bisect.bisect_right(times, time + 1e-9) - 1)
                 self.playing, self.played = False, 0.0
 
-    def show_frame(self, kept: Kept) -> None:
+    def show_frame(self, kept: RecordedFrame) -> None:
         """Show one frame, unless it is no longer kept."""
         with self.lock:
             self.position = next((i for i, one in enumerate(self.frames) if one is kept), self.position)
             self.playing, self.played = False, 0.0
 
-    def send_frame(self, kept: Kept) -> None:
+    def send_frame(self, kept: RecordedFrame) -> None:
         """Show one frame, and wait until the viewer's thread has sent it. Raises TimeoutError."""
         self.show_frame(kept)
         sent: Future[None] = Future()
@@ -205,8 +205,8 @@ class Recorder:
         except TimeoutError:
             raise TimeoutError("the recording could not be shown") from None
 
-    def note_sent(self, shown: Kept | None) -> None:
-        """The viewer's thread has sent what is shown: a frame of the recording, or None for the present."""
+    def note_sent(self, shown: RecordedFrame | None) -> None:
+        """Note that the viewer's thread has sent this: a frame of the recording, or None for the present."""
         if self.awaited is not None and self.awaited[0] is shown:
             _, sent = self.awaited
             self.awaited = None
@@ -256,20 +256,20 @@ class Recorder:
                 self.playing = False
 
     @property
-    def shown(self) -> Kept | None:
+    def shown(self) -> RecordedFrame | None:
         """The frame to show instead of the present; None for the present."""
         with self.lock:
             return None if self.position is None else self.frames[self.position]
 
-    def resumable(self) -> Kept | None:
-        """The last frame up to the one that is shown that has a state to go on from; None where there is none."""
+    def resumable(self) -> RecordedFrame | None:
+        """The last frame up to the shown one from whose state a run can resume, or None."""
         with self.lock:
             if self.position is None:
                 return None
             before = (self.frames[i] for i in range(self.position, -1, -1))
             return next((kept for kept in before if kept.state is not None), None)
 
-    def kept(self) -> tuple[Kept, ...]:
+    def kept(self) -> tuple[RecordedFrame, ...]:
         """All frames, the oldest first."""
         with self.lock:
             return tuple(self.frames)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import PlotRow
-from app.panel.recording.recorder import Kept
+from app.panel.recording.recorder import RecordedFrame
 from app.render.markup.line_chart import WIDTH, Drawing, line_chart
 from app.scenes.charts import Chart, Column, Columns, chart_of, numbers_of, with_numbers
 from app.scenes.contract import AnyKind
@@ -33,7 +33,7 @@ def arrays_of(frame: object, before: str = "") -> Iterator[tuple[str, NDArray[np
             yield from arrays_of(value, f"{before}{name}_")
 
 
-def recording_npz(kind: AnyKind, frames: Sequence[Kept]) -> bytes:
+def recording_npz(kind: AnyKind, frames: Sequence[RecordedFrame]) -> bytes:
     """The arrays that were drawn as an .npz file: each (frames, ...) under its name, `t` [s], and `about` as JSON.
 
     `about` holds the scene, the parameters at the end, and the unit of each array. The file holds the last frames that

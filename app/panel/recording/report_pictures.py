@@ -34,5 +34,5 @@ class ReportPictures:
         """
         picture = take_picture(client, (PICTURE_WIDTH, 0), jpeg=True)
         if not is_shown():
-            raise ValueError("another task or scene was opened before it was there")
+            raise ValueError("another task or scene was opened before it was ready")
         return f"The report has the picture “{self.workbook.add_picture(task, name, picture)}”."

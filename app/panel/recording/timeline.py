@@ -26,7 +26,7 @@ class Timeline:
     def __init__(self, gui: viser.GuiApi, recorder: Recorder, settings: SceneSettings) -> None:
         self.recorder, self.settings = recorder, settings
         self.span_at = 0.0
-        self.told: tuple[object, ...] = ()  # what the pages know of: the shown frame, whether it plays, and the run
+        self.told: tuple[object, ...] = ()  # known to the pages: the shown frame, whether it plays, and the run
         self.is_running = False  # the lab, at the last update
         self.ran_before = False  # the lab ran when a page chose a frame of the recording
         self.actions: dict[str, Callable[[float], None]] = {

@@ -20,13 +20,13 @@ SHOWN_TIME = 5.0  # [s] for which a change is shown
 UNDO = "Undo this change"
 
 
-class Change(NamedTuple):
+class SceneSwitch(NamedTuple):
     """A change of the whole lab."""
 
     page: str  # word that the page which made it knows itself by (app/render/js/panel/share.js)
     scene: str  # that is shown after it
     subject: Setup | str  # that was opened: a set-up, or the name of a comparison
-    before: Setup  # what was shown
+    before: Setup  # the former set-up
     end: float = 0.0  # [s] of the monotonic clock until which it is shown; 0: not shown yet
 
     def words(self) -> str:
@@ -45,13 +45,13 @@ class Change(NamedTuple):
         )  # fmt: skip
 
 
-class Changes:
+class SceneSwitches:
     """The last change of one server."""
 
     def __init__(self) -> None:
-        self.latest: Change | None = None
+        self.latest: SceneSwitch | None = None
 
-    def shown_in(self, scene: str) -> Change | None:
+    def shown_in(self, scene: str) -> SceneSwitch | None:
         """The change to show in the panel of a scene; its time begins in that of the scene that it opened."""
         change = self.latest
         if change is None or change.scene != scene:
@@ -64,10 +64,12 @@ class Changes:
         return change
 
 
-class Notice:
+class SwitchNotice:
     """The line in one panel."""
 
-    def __init__(self, gui: viser.GuiApi, scene: str, changes: Changes, restore: Callable[[Change], None]) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, scene: str, changes: SceneSwitches, restore: Callable[[SceneSwitch], None]
+    ) -> None:
         """Add it to the container that is open. restore: undoes a change."""
         self.scene, self.changes, self.restore = scene, changes, restore
         self.text = gui.add_html("", visible=False)

@@ -24,18 +24,18 @@ class PaneWords(NamedTuple):
     connected: bool
 
 
-class Beside(NamedTuple):
+class ComparisonCalls(NamedTuple):
     """Calls to the viewer. Each returns at once."""
 
     compare: Callable[[Sequence[Setup], bool], None]  # show set-ups beside the lab; True: the first of them in the lab
     end: Callable[[], None]  # show the lab alone
-    panes: Callable[[], tuple[PaneWords, ...]]  # what is shown; () for a lab alone
+    panes: Callable[[], tuple[PaneWords, ...]]  # words of each pane; () for a lab alone
 
 
-class Compare:
+class CompareFolder:
     """The folder, and a line that only the page reads."""
 
-    def __init__(self, gui: viser.GuiApi, buttons: GuiHandle, settings: SceneSettings, beside: Beside) -> None:
+    def __init__(self, gui: viser.GuiApi, buttons: GuiHandle, settings: SceneSettings, beside: ComparisonCalls) -> None:
         """buttons: that play, step and reset. settings: with the presets to compare with.
 
         The line and its button stand in no tab: the page reads them also where no tab was opened.

@@ -15,8 +15,8 @@ from app.panel.plots import Plots
 from app.panel.recording.files import Files, MakeReplay, file_name
 from app.panel.recording.recorder import Recorder
 from app.panel.settings import SceneSettings
-from app.panel.sharing.changes import Change, Changes, Notice
-from app.panel.sharing.compare import Beside
+from app.panel.sharing.changes import SceneSwitch, SceneSwitches, SwitchNotice
+from app.panel.sharing.compare import ComparisonCalls
 from app.panel.workbook.task_setups import read_link
 from app.render.cameras import place_camera
 from app.render.handles.viser_inside import uuid_of
@@ -54,9 +54,9 @@ class Share:
         make_replay: MakeReplay,
         *,
         head: viser.GuiFolderHandle,
-        changes: Changes,
+        changes: SceneSwitches,
         workbook: Workbook | None,
-        beside: Beside | None,
+        beside: ComparisonCalls | None,
     ) -> None:
         """make_replay: makes the page of a replay. head: holds the notice of a change. changes: those of this server.
 
@@ -71,7 +71,7 @@ class Share:
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         with head:
-            self.notice = Notice(gui, settings.kind.name, changes, self.restore)
+            self.notice = SwitchNotice(gui, settings.kind.name, changes, self.restore)
         self.inbox: GuiHandle = gui.add_text("From the page", "", multiline=True, visible=False)
         self.inbox.on_update(self.on_inbox)
         holder = fill('<span data-springtide-inbox="{}"></span>', uuid_of(self.inbox))
@@ -87,10 +87,10 @@ class Share:
             self.add_line("This run")
         with gui.add_folder("This set-up"):
             self.name = gui.add_text(
-                "Name", "", hint=f"Of the set-up that is saved, kept or removed, at most {MAX_NAME} characters"
+                "Name", "", hint=f"Name of the set-up to save, keep or remove; at most {MAX_NAME} characters"
             )
             self.note = gui.add_text(
-                "Note in the file", "", hint=f"Kept with the set-up, at most {MAX_NOTE} characters"
+                "Note in the file", "", hint=f"Saved with the set-up; at most {MAX_NOTE} characters"
             )
             gui.add_button_group("", (COPY, SAVE)).on_click(self.on_link)
             gui.add_button_group("", (KEEP,)).on_click(self.on_own)
@@ -153,13 +153,13 @@ class Share:
                 self.changes.latest = self.change(subject, page)
             self.show(subject, client.client_id)
 
-    def change(self, subject: Setup | str, page: str) -> Change:
+    def change(self, subject: Setup | str, page: str) -> SceneSwitch:
         """The change that a page makes by opening something."""
         settings = self.settings
         scene = comparison_named(subject)[0].scene if isinstance(subject, str) else subject.scene
-        return Change(page, scene, subject, Setup(settings.kind.name, settings.params, {}, settings.loaded))
+        return SceneSwitch(page, scene, subject, Setup(settings.kind.name, settings.params, {}, settings.loaded))
 
-    def restore(self, change: Change) -> None:
+    def restore(self, change: SceneSwitch) -> None:
         """Undo a change."""
         if isinstance(change.subject, str) and self.beside is not None:
             self.beside.end()

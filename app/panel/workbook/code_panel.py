@@ -49,7 +49,7 @@ HINTS = {  # scene -> what to begin with
     "cloth": "Write cloth_forces or cloth_links in cloth.py and save it: the cloth uses it right away.",
     "square_sea": "Write gravity, spectrum or dispersion in square_sea.py and save it: the sea uses it right away.",
     "radial_sea": "Write mixture_viscosity, wave_decay, reflectance or draft in radial_sea.py and save it: the sea "
-    "runs by it at once.",
+    "uses it right away.",
 }
 
 
@@ -111,7 +111,7 @@ def place_of(error: RunError) -> str:
 
 
 def is_busy(state: CodeState) -> bool:
-    """True if the newest version could not be run, by no fault of its own."""
+    """True if the newest version could not be run for a reason outside it."""
     return state.error is not None and state.error.kind == BUSY
 
 
@@ -157,7 +157,7 @@ def code_lines(state: CodeState, report: StudentReport, tables: TableReport, sce
         place = bold(place_of(state.error))
         said.append(fill('<div class="springtide-code-error">{}: {}</div>', place, state.error.text))
         if runs:
-            said.append(fill("The last version that worked goes on."))
+            said.append(fill("The last version that worked stays in use."))
     if report.version:
         said += net_texts(state, report, scene)
     return lines([*said, *sea_texts(tables)])
@@ -174,7 +174,7 @@ def sea_texts(tables: TableReport) -> list[Html]:
     for name, own, program, unit in tables.differences:
         value, reference = (f"{number(x, 3)} {unit}" if x == x else "…" for x in (own, program))
         said.append(fill("{} {} (program {})", name, bold(value), reference))
-    said += [faint(f"{name}: {why}, and it runs here.") for name, why in tables.idle.items()]
+    said += [faint(f"To use your {name} here: {why}.") for name, why in tables.idle.items()]
     return said
 
 
@@ -231,7 +231,7 @@ def length_text(length: float) -> str:
 
 
 def difference_chart(report: StudentReport) -> Html:
-    """The course of the difference as a line; nothing where there was none.
+    """The course of the difference as a line; nothing without a difference.
 
     A chart of viser's (uPlot) in a folder widens the panel with each change of its axes.
     """

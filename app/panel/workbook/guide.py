@@ -37,7 +37,7 @@ UNANSWERED = "Choose …"  # in the list of choices
 SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
 PICTURE = "Take a picture"
 STATE_COLOURS = {"right": GOOD_COLOUR, "wrong": ERROR_COLOUR, "given": GOOD_COLOUR}
-STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Kept."}
+STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Saved."}
 
 
 class SnapshotValues(Mapping[str, LiveValue]):
@@ -215,10 +215,10 @@ class GuideTab:
         """
         self.gui, self.kind, self.workbook, self.set_up = gui, kind, workbook, set_up
         self.values: LiveValues = {}
-        self.stale = True  # whether something other than live values is to be shown anew
+        self.stale = True  # True if something other than live values has to be shown anew
         self.revision: int = workbook.revision
-        self.refusal = ""  # why the last thing that was asked for was not possible
-        self.unwritten = ""  # why a step could not be ticked off at the last look
+        self.refusal = ""  # reason why the last thing that was asked for was not possible
+        self.unwritten = ""  # reason why a step could not be ticked off at the last look
         self.pictures = ReportPictures(workbook)
         self.shown: Task | None = None
         self.questions: list[QuestionWidgets] = []
@@ -282,7 +282,7 @@ class GuideTab:
         """
         now = time.monotonic()
         task = self.workbook.task  # callbacks turn to others meanwhile
-        stale, self.stale = self.stale, False  # what is asked for meanwhile is for the next update
+        stale, self.stale = self.stale, False  # requests from now on are for the next update
         for widgets in self.questions:
             widgets.flush(now)
         if refresh:

@@ -15,7 +15,7 @@ class TaskList:
 
     def __init__(self, gui: viser.GuiApi, workbook: Workbook) -> None:
         self.workbook = workbook
-        self.judged: tuple[object, ...] = ()  # what the signs before the titles come from
+        self.judged: tuple[object, ...] = ()  # source of the signs before the titles
         self.titles = self.titles_now()
         self.chooser = gui.add_dropdown("Task", self.titles, initial_value=self.titles[workbook.index])
         self.chooser.on_update(self.on_chooser)

@@ -1,4 +1,4 @@
-"""Dragging with the mouse: commands to the simulation, and the line from what is grabbed to the mouse."""
+"""Dragging with the mouse: commands to the simulation, and the line from the grabbed point to the mouse."""
 
 from collections.abc import Callable
 from typing import Any

@@ -23,7 +23,7 @@ Handler = Callable[[int, ViserMessage], Awaitable[None]]
 Taker = Callable[[int, ViserMessage], None]
 
 UNKNOWN: GuiHandle = object()
-LOST: dict[str, str] = {}  # what the lab goes without -> the reason
+LOST: dict[str, str] = {}  # lost function -> the reason
 
 
 def lose(what: str, reason: str) -> None:
@@ -50,7 +50,7 @@ def connection_of(server: viser.ViserServer) -> ViserConnection:
 
 def uuid_of(handle: GuiHandle) -> str:
     """The name of a GUI element in viser's messages and page; "" if it is not known."""
-    return attempt(lambda: handle._impl.uuid, "", "the page does not find the controls that it works by itself")
+    return attempt(lambda: handle._impl.uuid, "", "the page does not find its own controls")
 
 
 def input_of(server: viser.ViserServer, uuid: str) -> GuiHandle | None:
@@ -70,7 +70,7 @@ def update_node(client: viser.ClientHandle, node: str, **properties: Any) -> Non
     attempt(
         lambda: client._websock_connection.queue_message(messages.SceneNodeUpdateMessage(node, properties)),
         None,
-        "a floor that does not become dark",
+        "the floor does not turn dark",
     )
 
 
@@ -114,7 +114,7 @@ def change_buffers(recording: Any, change: Callable[[Any], Any]) -> None:
     def replace() -> None:
         recording._binary_buffers = [change(buffer) for buffer in recording._binary_buffers]
 
-    attempt(replace, None, "larger files of replays")
+    attempt(replace, None, "replay files are larger")
 
 
 def refuse_requests(server: viser.ViserServer, *names: str) -> None:
@@ -192,7 +192,7 @@ def pass_windows_through(server: viser.ViserServer, change: Callable[[Any], Any]
 
         buffer.window_generator = changed
 
-    attempt(put, None, "no pacing of slow lines")
+    attempt(put, None, "slow connections are not paced")
 
 
 def watch_messages(server: viser.ViserServer, take: Callable[[ViserMessage], bool]) -> Callable[[Sequence[Any]], None]:

@@ -16,7 +16,7 @@ import threading
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from app.lab.process.job import end_with_this_program
+from app.lab.process.child_processes import end_with_this_program
 from app.messages import BaseParams
 from app.scenes import NAMES, scene_named, view_named
 from sim.jit import CACHE, ROOT, is_kept, keep, reachable_hash

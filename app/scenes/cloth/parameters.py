@@ -31,9 +31,9 @@ class ClothParams:
 
     start: str = in_cloth(
         "hanging", choices={"hanging": "Hanging", "level": "Level", "flag": "Flag on a pole"},
-        doc="How the cloth starts", affects="start",
+        doc="Shape of the cloth at the start", affects="start",
     )  # fmt: skip
-    pinned: str = in_cloth("edge", choices=PIN_CHOICES, doc="Which particles are pinned")
+    pinned: str = in_cloth("edge", choices=PIN_CHOICES, doc="Pinned particles")
     rows: int = in_cloth(32, 4, 128, "", "Particles down the cloth")
     cols: int = in_cloth(32, 4, 128, "", "Particles across the cloth", title="Columns")
     width: float = in_cloth(1.6, 0.2, 4.0, "m", "Width at rest")
@@ -59,7 +59,9 @@ class ClothParams:
     )  # fmt: skip
 
     gravity: float = in_surroundings(9.81, 0.0, 30.0, "m/s²", "Gravity, downwards")
-    wind_direction: float = in_surroundings(90.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y")
+    wind_direction: float = in_surroundings(
+        90.0, -180.0, 180.0, "°", "Direction that the wind blows to, from +x towards +y"
+    )
     gust: float = in_surroundings(0.5, 0.0, 1.0, "", "Strength of the gusts; 0 is a steady wind", title="Gusts")
     air: float = in_surroundings(1.2, 0.0, 5.0, "kg/m³", "Density of the air; 0 is no air", title="Air density")
     floor: bool = in_surroundings(True, doc="Floor at height 0")
@@ -81,7 +83,7 @@ class ClothParams:
     speed: float = speed_parameter(0.01, 4.0)
 
     colour: str = in_look(
-        "fabric", choices={"fabric": "Fabric", "strain": "Strain"}, doc="What the colour of the cloth shows"
+        "fabric", choices={"fabric": "Fabric", "strain": "Strain"}, doc="Quantity that the colour of the cloth shows"
     )
     full_strain: float = in_look(
         5.0, 0.1, 100.0, "%", "Strain at the end of the colour scale", log_from=0.1, title="Strain scale"

@@ -1,4 +1,4 @@
-"""How a cloth starts: hanging in pleats, level, or from a pole."""
+"""Start of a cloth: hanging in pleats, horizontal, or from a pole."""
 
 import dataclasses
 

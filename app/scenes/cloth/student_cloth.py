@@ -131,9 +131,9 @@ def unlike(params: ClothParams) -> tuple[str, ...]:
     """The parameters that the functions of the tasks do not feel as the program's cloth does, a line each."""
     lines: list[str] = []
     if params.integrator not in CLOTH.exact:
-        lines.append("Method: your cloth steps by symplectic Euler, the program's by the method that you chose.")
+        lines.append("Method: your cloth uses symplectic Euler, the program's the method that you chose.")
     if params.law != SPRING:
-        lines.append("Link: the program's pulls as you chose, that of your cloth as a spring.")
+        lines.append("Link: the program's cloth has the law that you chose, yours has springs.")
     if params.thickness > 0.0:
         lines.append("Self-collision distance: the points of your cloth do not push each other.")
     return tuple(lines)

@@ -164,7 +164,7 @@ def first_line(params: MooringParams) -> tuple[LineType, float]:
 
 
 def sections(params: MooringParams) -> tuple[tuple[LineType, float, int], ...]:
-    """Of a line from its anchor: (type, length [m], segments) of each part."""
+    """Parts of a line from its anchor: (type, length [m], segments) of each."""
     plain, lifted = line_types(params)
     if not params.floats:
         return ((plain, params.length, params.segments),)

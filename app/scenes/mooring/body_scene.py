@@ -41,7 +41,7 @@ class MooringScene(LineScene):
         return self.body.place
 
     def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
-        """The fault of a state to start with, None if there is none; see `LineScene`."""
+        """The fault of a state to start with, or None; see `LineScene`."""
         found = fault_of(self.params, self.attached.places, self.body.place, stretch)
         return found or (overload_of(self.params) if failure else None)
 
@@ -111,7 +111,7 @@ class MooringScene(LineScene):
         return paths
 
     def driven(self) -> dict[str, NDArray[np.float64]]:
-        """Those of waves and current, and the mouse's pull."""
+        """Loads of waves and current, and the mouse's pull."""
         found = super().driven()
         if self.grabbed is not None:
             found["steady"] = self.system.kernel_view(self.step).steady + self.grab_force()

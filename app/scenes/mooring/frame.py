@@ -26,7 +26,7 @@ class MooringFrame(NamedTuple):
     side: float  # [m] of the square that it covers, about the origin
     path: NDArray[np.float32]  # (k, 2) [m] where the body has been
     rest: Vector  # [m] where the body's centre rests
-    offset: float  # [m] largest level distance from there
+    offset: float  # [m] largest horizontal distance from there
     anchors: NDArray[np.float32]  # (a, 3) [m]
     fairleads: NDArray[np.float32]  # (f, 3) [m], and other points that move
     uplift: NDArray[np.bool_]  # (a,) whether an anchor is pulled upwards
@@ -61,7 +61,7 @@ class MooringReadings(NamedTuple):
     """Numbers for the panel."""
 
     lines: tuple[LineReading, ...]
-    offset: float  # [m] level distance of the body from its place of rest
+    offset: float  # [m] horizontal distance of the body from its place of rest
     most_offset: float  # [m] since the statistics began
     most_at: tuple[int, float]  # line, from 0, and time [s] of the largest tension
     stability: Gauge
@@ -69,4 +69,4 @@ class MooringReadings(NamedTuple):
     since: float  # [s] when the statistics began
     duration: float  # [s] of the statistics: without drags and what they leave behind
     counts: bool  # False while the time is left out
-    dragged: float  # [N] largest tension at a fairlead in the time that was left out; NaN: there was none
+    dragged: float  # [N] largest tension at a fairlead in the time that was left out; NaN without such a time

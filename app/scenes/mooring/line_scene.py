@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from app.messages import GrabTo, PlotRow, Release, RestartStatistics, SceneCommand, Vector, vector_of
 from app.scenes.charts import Chart
-from app.scenes.moments import copied, restore
+from app.scenes.checkpoints import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
@@ -95,7 +95,7 @@ class LineScene(abc.ABC):
 
     @abc.abstractmethod
     def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
-        """The fault of a state to start with, None if there is none.
+        """The fault of a state to start with, or None.
 
         stretch: (lines,) over the length. failure: of the search for rest, or "".
         """
@@ -306,6 +306,6 @@ class LineScene(abc.ABC):
 
 
 def fade_at(t: float) -> float:
-    """Factor on what begins smoothly, at time t [s]."""
+    """Factor on loads that begin smoothly, at time t [s]."""
     fraction = min(t / FADE, 1.0)
     return fraction * fraction * (3.0 - 2.0 * fraction)

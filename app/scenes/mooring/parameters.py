@@ -27,7 +27,7 @@ class MooringParams:
     )
     length: float = in_main(96.0, 2.0, 1000.0, "m", "Length of each line, unstretched", log_from=2.0, affects="start")
     reach: float = in_main(
-        80.0, 0.5, 900.0, "m", "Level distance from the body's middle to each anchor", log_from=0.5, affects="start",
+        80.0, 0.5, 900.0, "m", "Horizontal distance from the body to each anchor", log_from=0.5, affects="start",
         title="Distance of anchors",
     )  # fmt: skip
     depth: float = in_main(40.0, 2.0, 500.0, "m", "Depth of the water", log_from=2.0, affects="start")
@@ -70,12 +70,12 @@ class MooringParams:
 
     regular: bool = in_sea(False, doc="One regular wave instead of many waves", title="Regular wave")
     direction: float = in_sea(
-        0.0, -180.0, 180.0, "°", "Where waves, current and steady force go to, from +x towards +y"
+        0.0, -180.0, 180.0, "°", "Direction of waves, current and steady force, from +x towards +y"
     )
     current: float = in_sea(0.0, 0.0, 4.0, "m/s", "Speed of the water, the same at all depths")
     steady_force: float = in_sea(0.0, 0.0, 5000.0, "kN", "Force of the wind on the body", log_from=0.1)
     follow: float = in_sea(
-        1.0, 0.0, 1.0, "", "Motion of the vessel over that of the water where it is; 0 holds it",
+        1.0, 0.0, 1.0, "", "Motion of the vessel over the water's there; 0 holds it still",
         title="Vessel follows waves",
     )  # fmt: skip
     friction: float = in_sea(0.3, 0.0, 2.0, "", "Coefficient of friction of the bed")
@@ -93,7 +93,7 @@ class MooringParams:
     )
     plot_anchor: bool = in_plots(False, doc="Tension at the anchor of each line over time", title="Tension at anchors")
     plot_offset: bool = in_plots(
-        False, doc="Level distance of the body from its place of rest, over time", title="Offset"
+        False, doc="Horizontal distance of the body from its place of rest, over time", title="Offset"
     )
     plot_restoring: bool = in_plots(
         False, doc="Static force of all lines over the offset, and the force now", title="Restoring force"
@@ -141,7 +141,7 @@ ABOUT = {  # preset -> what it shows and what to try
 }
 
 
-# What a MoorDyn file says itself, or what a vessel without a hull does not have.
+# Given by a MoorDyn file itself, or not part of a vessel without a hull.
 OF_NO_FILE = {
     "lines", "length", "reach", "depth", "friction", "steady_force", "handles",
     *(name for name, one in parameters_of(MooringParams).items() if one.group in ("Line", "Body")),

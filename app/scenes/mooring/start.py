@@ -11,7 +11,7 @@ from sim.mooring import System, at_rest
 from sim.mooring.statics import Rest, rest_of, straight
 from sim.validation import ConvergenceError
 
-NO_REST = "The lines find no state of rest"
+NO_REST = "No state of rest was found for the lines"
 LEAST_SCALE = 1.0  # [N]
 
 
@@ -21,7 +21,7 @@ class MooringStart(NamedTuple):
     scale: float  # [N] largest tension, for the colours
     stretch: NDArray[np.float64]  # (lines,) over the length
     fault: Fault | None
-    failure: str  # why no state of rest was found, or ""; then nothing moves
+    failure: str  # reason why no state of rest was found, or ""; then nothing moves
 
     @classmethod
     def of(cls, rest: Rest, stretch: NDArray[np.float64], fault: Fault | None, failure: str) -> "MooringStart":
@@ -33,7 +33,7 @@ class MooringStart(NamedTuple):
 
 
 def rest_or_start(system: System) -> tuple[Rest, str]:
-    """The state of rest in still water: a current would carry away what lies, which only friction holds.
+    """The state of rest in still water: a current would carry away lines on the bed, which only friction holds.
 
     If none is found, the shape that the search begins with, and the reason: the panel stays, and nothing moves.
     """

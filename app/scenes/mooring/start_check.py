@@ -47,7 +47,7 @@ def advice_on(name: str, least: float) -> Advice | None:
 
 
 def fault_of(params: MooringParams, places: Places, body: Vector, stretch: NDArray[np.float64]) -> Fault | None:
-    """The fault of a mooring of the parameters, None if there is none.
+    """The fault of a mooring of the parameters, or None.
 
     body: [m] where it rests without lines. stretch: (lines,) at rest, over the length.
     """
@@ -78,7 +78,7 @@ def fault_of(params: MooringParams, places: Places, body: Vector, stretch: NDArr
 
 
 def overload_of(params: MooringParams) -> Fault | None:
-    """The steady force, if it is beyond what lines or body bear: the fault of a mooring without a state of rest.
+    """The steady force, if lines or body cannot bear it: the fault of a mooring without a state of rest.
 
     Of n lines one carries at least the nth part of a level force. A force beyond the buoyancy of the whole body turns
     it over or lifts it, and its statics are those of small angles.
@@ -101,7 +101,7 @@ def overload_of(params: MooringParams) -> Fault | None:
 
 
 def fault_of_file(file: FileMooring, stretch: NDArray[np.float64]) -> Fault | None:
-    """The fault of a mooring from a file, None if there is none. stretch: (lines,) at rest, over the length."""
+    """The fault of a mooring from a file, or None. stretch: (lines,) at rest, over the length."""
     points = {point.id: point for point in file.system.points}
     found: list[tuple[float, str]] = []
     for line in file.system.lines:

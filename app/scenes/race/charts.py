@@ -69,7 +69,7 @@ class RaceCharts:
         return float(np.max([self.race.error_floor(entrant) for entrant in self.race.entrants]))
 
     def charts(self) -> dict[str, Chart]:
-        """By parameter; the same objects until there is a new row."""
+        """The charts by parameter; the same objects until there is a new row."""
         if not self.drawn:
             race, table = self.race, self.rows[: self.count].T.copy()
             stiffness_differs = race.ratio != 1.0

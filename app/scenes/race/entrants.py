@@ -48,10 +48,10 @@ class Result(NamedTuple):
     evals: float  # force evaluations a step, lately
     corrections: float  # Newton corrections a step, lately; 0 for explicit methods
     step_time: float  # [s] of processor time that a step takes
-    error: float  # [m] largest distance of a point from the reference run; NaN where there is none
-    error_floor: float  # [m] smallest error that the reference run can tell; NaN where there is none
+    error: float  # [m] largest distance of a point from the reference run; NaN without one
+    error_floor: float  # [m] smallest error that the reference run can tell; NaN without one
     numerical_dissipation: float  # [J] that the method took, negative where it fed the motion
-    failure: str  # why it has stopped, or ""
+    failure: str  # reason why it has stopped, or ""
 
 
 class RaceReadings(NamedTuple):
@@ -59,7 +59,7 @@ class RaceReadings(NamedTuple):
 
     results: tuple[Result, ...]
     reference_horizon: float | None  # [s] when chaos made the reference run meaningless
-    no_reference: str  # why there is none, or ""
+    no_reference: str  # reason, or ""
 
 
 def evals_of(net: Net, record: Integrator, h: float) -> float:

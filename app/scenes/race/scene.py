@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from app.messages import PlotRow, SceneCommand, Vector
 from app.scenes.charts import Chart
+from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import FRAME_INTERVAL, Pieces
-from app.scenes.moments import copied, restore
 from app.scenes.race.charts import RaceCharts
 from app.scenes.race.entrants import Race, RaceReadings, race_bound
 from app.scenes.race.names import rope_labels
@@ -33,7 +33,7 @@ class RaceFrame(NamedTuple):
 
     params: RaceParams
     ropes: NDArray[np.float32]  # (ropes, points, 3) [m], C-contiguous, side by side
-    references: NDArray[np.float32] | None  # the same of the reference runs, or None where there are none to show
+    references: NDArray[np.float32] | None  # the same of the reference runs, or None if none is shown
     labels: tuple[str, ...]
     failed: tuple[bool, ...]
     root: Vector  # [m] where the roots are going to

@@ -89,7 +89,7 @@ def place_of_file_hull(hull: Hull, size: float) -> tuple[float, float]:
 
 
 def box_of(bodies: "FloatingBodies") -> int | None:
-    """The number of the first box, None where there is none."""
+    """The number of the first box, or None."""
     return next((i for i, kind in enumerate(bodies.body_kinds) if kind.shape.name == "box"), None)
 
 

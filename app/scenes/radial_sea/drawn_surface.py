@@ -1,4 +1,4 @@
-"""The drawn surface of the radial sea, its foam and its cutaway, and what the two ways to compute it cost."""
+"""The drawn surface of the radial sea, its foam and its cutaway, and the cost of the two ways to compute it."""
 
 import dataclasses
 import math
@@ -30,7 +30,7 @@ COST_MEMORY = 0.9  # share of the old value in the running mean of a surface's c
 FOAM_RADIUS = 80.0  # [m] within which the foam threshold is measured
 FOAM_GAIN = 0.05  # share of the new value in the running mean of the foam threshold
 FOAM_WIDTH = 0.07  # change of the Jacobian over which foam goes from none to full
-MAX_FOAM_JACOBIAN = 0.97  # threshold above which nothing is foam: the surface is not pressed together anywhere
+MAX_FOAM_JACOBIAN = 0.97  # threshold above which nothing is foam: the surface is not compressed anywhere
 TILE_SIZE, TILE_LENGTH = 128, 256.0  # points a side (as many vertices as the rings have) and side [m] of the square sea
 
 
@@ -63,7 +63,7 @@ class DrawnSurface:
 
     def __init__(self) -> None:
         self.drawn: tuple[object, ...] = ()  # time, parameters and camera of the surface
-        self.known_clean: tuple[Waves, tuple[float, float, float]] | None = None  # what `clean_waves` found, of which
+        self.known_clean: tuple[Waves, tuple[float, float, float]] | None = None  # waves, and their `clean_waves`
         self.spectrum_energy: tuple[WaveChoice, NDArray[np.float64], NDArray[np.float64]] | None = None
         self.decayed_height: tuple[tuple[object, ...], float] | None = None  # Hs [m] of the spectrum
         self.forget_costs()

@@ -116,4 +116,4 @@ class RadialReadings(NamedTuple):
     surfaces: dict[str, SurfaceReading]  # radial and square sea side by side; empty unless asked for
     age: float  # [s] for which the waves have run under the oil
     past: Mapping[FluidColumn, float]  # fluids that the waves have run on -> [s]
-    weathering: Weathering | None  # the spill over five days; None where there is none to follow
+    weathering: Weathering | None  # the spill over five days; None without one

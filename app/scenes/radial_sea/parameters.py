@@ -57,12 +57,12 @@ class RadialSeaParams:
         affects="look", title="Cutaway",
     )  # fmt: skip
     follow: str = in_main(
-        "free", choices=CAMERA_TARGETS, doc="What the camera looks at and moves with", affects="look",
+        "free", choices=CAMERA_TARGETS, doc="Target that the camera looks at and moves with", affects="look",
         title="Camera follows",
     )  # fmt: skip
 
     waves: bool = in_waves(True, doc="Waves; without them the sea is level")
-    wind_direction: float = in_main(25.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y")
+    wind_direction: float = in_main(25.0, -180.0, 180.0, "°", "Direction that the wind blows to, from +x towards +y")
     spectrum: str = in_waves("jonswap", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
     wave_count: int = in_waves(
         96, 8, 512, "", "Number of waves in the sum, whose height and slope the panel tells; each has the same energy",
@@ -92,7 +92,7 @@ class RadialSeaParams:
     )  # fmt: skip
     film: bool = in_oil(False, doc="A surface film that cannot be stretched, which damps ripples", title="Surface film")
     exposure: float = in_oil(
-        60.0, 0.0, 3600.0, "s", "For how long the oil has damped the waves at the start", log_from=1.0,
+        60.0, 0.0, 3600.0, "s", "Time for which the oil has damped the waves at the start", log_from=1.0,
         title="Age at the start",
     )  # fmt: skip
     ageing: bool = in_oil(True, doc="Keep damping the waves as time passes", title="Keep damping")
@@ -149,7 +149,7 @@ class RadialSeaParams:
 
     surface: str = in_grid(
         "sum", choices={"sum": "Sum of waves (radial)", "fft": "FFT (the square sea)"},
-        doc="How the surface is computed; both are drawn on the same radial grid",
+        doc="Method that computes the surface; both are drawn on the same radial grid",
     )  # fmt: skip
     centre: str = in_grid(
         "fixed", choices={"fixed": "At the bodies", "camera": "Below the camera"}, doc="Where the grid is dense",
@@ -159,7 +159,7 @@ class RadialSeaParams:
     spokes: int = in_grid(128, 16, 256, "", "Points on a ring", affects="look")
     ring_law: str = in_grid(
         "geometric", choices={LAWS[0]: "Geometric", LAWS[1]: "Power (lab)"},
-        doc="How the spacing of the rings grows outwards", affects="look", title="Ring spacing",
+        doc="Law by which the spacing of the rings grows outwards", affects="look", title="Ring spacing",
     )  # fmt: skip
     compare: bool = in_grid(
         False, doc="Time both surfaces every 2 s, for the table 'Radial or square'", affects="look",
@@ -175,7 +175,7 @@ class RadialSeaParams:
     plot_surface: bool = in_plots(
         False, doc="Height of the sea at the first buoy, and of the buoy, over time", title="Buoy and sea"
     )
-    plot_budget: bool = in_plots(False, doc="Where the oil of the spill is, over five days", title="Oil budget")
+    plot_budget: bool = in_plots(False, doc="Fate of the spilled oil over five days", title="Oil budget")
 
     # Files are named on the command line only, never by a browser.
     hull: str = ""  # a mesh that floats too
@@ -341,5 +341,5 @@ def conditions_of(params: RadialSeaParams) -> Conditions:
 
 
 def exposure_of(params: RadialSeaParams) -> float:
-    """For how long the waves have run under oil at the start [s]."""
+    """Time [s] for which the waves have run under oil at the start."""
     return params.exposure if params.spill != "none" else 0.0

@@ -38,7 +38,7 @@ OF_BODY: Quantities = {  # of a `BodyReading`
     "mean_buoyancy": Quantity("N", "mean buoyancy over the last minute", lambda body: body.mean_lift[0]),
     "wet_volume_above": Quantity("m³", "wet volume in the upper fluid", lambda body: body.wet_volume[0]),
     "wet_volume_below": Quantity("m³", "wet volume in the lower fluid", lambda body: body.wet_volume[1]),
-    "offset": Quantity("m", "level distance from where its lines hold it", lambda body: body.offset),
+    "offset": Quantity("m", "horizontal distance from where its lines hold it", lambda body: body.offset),
     "line_tension": Quantity("N", "largest tension of its mooring lines", lambda body: body.tension),
     "heave_period": Quantity("s", "heave period as measured", lambda body: body.period),
     "heave_period_theory": Quantity("s", "heave period by theory", lambda body: body.prediction.period),

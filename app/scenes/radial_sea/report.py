@@ -61,7 +61,7 @@ def bold_draft(value: float) -> Html:
 
 
 def body_table(title: str, bodies: Sequence[BodyReading], *columns: tuple[str, str, Callable[[float], object]]) -> Html:
-    """Quantities of bodies. columns: name of the quantity, heading, and what writes the number."""
+    """Quantities of bodies. columns: name of the quantity, heading, and writer of the number."""
     heads = ((title, ""), *((heading, OF_BODY[name].unit) for name, heading, _ in columns))
     return table(
         heads, [(one.title, *(write(read(OF_BODY, name, one)) for name, _, write in columns)) for one in bodies]
@@ -101,7 +101,7 @@ def forces_html(readings: RadialReadings) -> Html:
     outside = [
         faint(
             f"{body.title}: {body.prediction.outside} is outside the table of coefficients: added mass, damping and "
-            "wave forces are those of its border."
+            "wave forces are taken from its edge."
         )
         for body in readings.bodies
         if body.prediction.outside
@@ -304,5 +304,5 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
 
 @functools.lru_cache(maxsize=64)
 def decay_rate(column: FluidColumn, k: float) -> float:
-    """Of the waves of wavenumber k [1/m], in 1/s; kept, as it is asked for in each picture."""
+    """Decay rate [1/s] of the waves of wavenumber k [1/m]; cached, as each frame needs it."""
     return float(column.roots(np.array([k]))[1][0])

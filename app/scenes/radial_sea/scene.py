@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from app.messages import GrabTo, Place, PlotRow, Release, SceneCommand, StudentAnswer
 from app.scenes.charts import Chart, CurveAxes, PlotAxes
+from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import Pieces
-from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.radial_sea.bodies import FloatingBodies, box_of, kind_of
 from app.scenes.radial_sea.drawn_surface import DrawnSurface, Foam, tile_of
@@ -216,7 +216,7 @@ class RadialSeaScene:
         other_fluids = column != self.column or exposure_of(params) != exposure_of(old)
         other_waves = choice != self.wave_choice
         self.column, self.wave_choice = column, choice
-        # What oil took stays taken; only another age at the start, set by hand, begins anew.
+        # Energy that oil took stays taken; only another age at the start, set by hand, begins anew.
         set_anew = params.spill != "none" and params.exposure != old.exposure
         if other_waves or other_fluids:
             waves = draw(choice) if other_waves else None
@@ -388,7 +388,7 @@ class RadialSeaScene:
 
     @property
     def weathering(self) -> Weathering | None:
-        """The spill over five days; None where there is none to follow."""
+        """The spill over five days; None without a spill."""
         spill = spill_of(self.params)
         return None if spill is None else weather(spill)
 

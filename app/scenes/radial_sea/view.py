@@ -216,7 +216,7 @@ class RadialSeaView(SceneView[RadialSeaParams, RadialFrame, RadialReadings]):
 
 
 def keel_of(frame: RadialFrame) -> float | None:
-    """Height [m] of the lowest point of the first body; None where there is none."""
+    """Height [m] of the lowest point of the first body; None without bodies."""
     if not frame.kinds:
         return None
     w, i, j, k = frame.rotations[0].tolist()

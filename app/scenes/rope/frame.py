@@ -38,5 +38,5 @@ class RopeReadings(NamedTuple):
     stability: Gauge
     parameter: str  # name of the stiffness parameter in use
     largest_stiffness: float  # in that parameter's unit
-    note: str  # why another method runs than the one chosen, or ""
+    note: str  # reason why another method runs than the one chosen, or ""
     cost: NumericalCost | None  # None for explicit methods

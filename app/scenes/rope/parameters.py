@@ -15,7 +15,9 @@ class RopeParams(SharedRopeParams):
     sphere_radius: float = in_surroundings(0.75, 0.05, 3.0, "m", "Radius of the sphere")
 
     colour: str = in_look(
-        "tension", choices={"tension": "Tension", "plain": "One colour"}, doc="What the colour of the rope shows"
+        "tension",
+        choices={"tension": "Tension", "plain": "One colour"},
+        doc="Quantity that the colour of the rope shows",
     )
     plot_energy: bool = in_plots(False, doc="Energies over time", title="Energy")
     plot_losses: bool = in_plots(

@@ -33,9 +33,9 @@ def unlike(params: RopeParams) -> tuple[str, ...]:
             "Method: the program's takes damping exactly; a right step_leapfrog differs by a centimetre or so."
         )
     elif method not in ROPE.exact:
-        lines.append(f"Method: your rope steps by {ROPE.step_of(method)}, the program's by the method that you chose.")
+        lines.append(f"Method: your rope uses {ROPE.step_of(method)}, the program's the method that you chose.")
     if params.law != SPRING:
-        lines.append("Link: the program's pulls as you chose, that of spring_force as a spring.")
+        lines.append("Link: the program's rope has the law that you chose, spring_force is a spring.")
     if params.damping_model == "axial":
         lines.append("Damping model: the program's acts along the link, that of spring_force in all directions.")
     if params.sphere and params.contact_law == "lab":

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.formats.formatting import longest_step, number, percent, time_step
-from app.messages import Moment, vector_of
+from app.messages import LastFrame, vector_of
 from app.scenes.contract import Advice
 from app.scenes.springs.methods import method_name
 from sim.springs import INTEGRATORS
@@ -39,9 +39,9 @@ class LastMoments:
         """The run begins again."""
         self.frames.clear()
 
-    def __iter__(self) -> Iterator[Moment]:
+    def __iter__(self) -> Iterator[LastFrame]:
         """The moments, with the box about their points: only a divergence asks for it."""
-        return (Moment(t, frame, vector_of(x.min(axis=0)), vector_of(x.max(axis=0))) for t, frame, x in self.frames)
+        return (LastFrame(t, frame, vector_of(x.min(axis=0)), vector_of(x.max(axis=0))) for t, frame, x in self.frames)
 
 
 def stability_number(value: float) -> str:
@@ -87,7 +87,7 @@ def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
 
 
 def holding_step(step: float, gauge: Gauge) -> Advice | None:
-    """A time step, 1/n with a round n, that would have held in a run that diverged; None if there is none."""
+    """A time step, 1/n with a round n, that would have held in a run that diverged, or None."""
     largest = MARGIN * gauge.critical_step if gauge.share > 1.0 else step / 4
     if not SHORTEST_STEP <= largest < math.inf:
         return None

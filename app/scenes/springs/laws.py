@@ -12,7 +12,7 @@ SPRING = next(iter(LAWS))  # the law whose kernels are compiled ahead
 
 def law_parameter(group: str) -> Any:
     """The parameter of the links' law."""
-    doc = "How a link pulls: as a spring, as a line, which never pushes, or harder the more it is stretched"
+    doc = "Law of a link: a spring, a line that never pushes, or a spring that stiffens with its stretch"
     choices = {name: law.title for name, law in LAWS.items()}
     return parameter(SPRING, choices=choices, doc=doc, group=group, title="Link")
 

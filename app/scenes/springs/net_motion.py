@@ -16,7 +16,7 @@ Bound: TypeAlias = Callable[[Net, State], float]  # net and state -> its largest
 
 
 class NetMotion:
-    """A spring network in motion: its last good state, its method and step, its bounds, and what its steps cost."""
+    """A spring network in motion: its last good state, its method and step, its bounds, and the cost of its steps."""
 
     def __init__(self, net: Net, method: Integrator, step: float, bound: Bound) -> None:
         """Start at rest. step: [s]. bound: distance [m] from the first particle beyond which the net has diverged."""
@@ -65,7 +65,7 @@ class NetMotion:
         self.account = EnergyAccount(self.net, self.state)
 
     def take_steps(self, net: Net, state: State, steps: int, *, with_account: bool = True) -> None:
-        """Advance a copy of the state in place. net: with the motions of what a user moves."""
+        """Advance a copy of the state in place. net: with the motions that a user causes."""
         advance(net, state, self.method, self.step, steps, with_account=with_account)
 
     def holds(self, found: Extremes) -> bool:

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import PlotRow
+from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import MethodParams
-from app.scenes.moments import copied, restore
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import MAX_OVERSHOOT, LastMoments, divergence_text
 from app.scenes.springs.grab import ParticleGrab
@@ -66,7 +66,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @property
     def note(self) -> str:
-        """Why another method runs than the one chosen, or ""."""
+        """Reason why another method runs than the one chosen, or ""."""
         return "" if self.params.integrator == AUTO else self.fallback_note
 
     @property
@@ -80,7 +80,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @abc.abstractmethod
     def net_during(self, t: float, duration: float) -> Net:
-        """The net with the motions of what a user moves over the next `duration` [s] from time t [s]."""
+        """The net with the motions that a user causes over the next `duration` [s] from time t [s]."""
 
     @abc.abstractmethod
     def moved(self, good: State, steps: int, found: Extremes) -> None:

@@ -13,7 +13,7 @@ class Gauged(Protocol):
 
     @property
     def stability(self) -> Gauge:
-        """Of the time step."""
+        """Stability of the time step."""
         ...
 
 

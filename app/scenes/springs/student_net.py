@@ -27,7 +27,7 @@ MAX_PART = 16  # steps of a job at least: a slow function must not seem endless 
 class StudentNet:
     """Used by a scene on the simulation thread."""
 
-    sheet: ClothData | None = None  # what a cloth is made of; None for a rope
+    sheet: ClothData | None = None  # data of a cloth; None for a rope
     unlike: tuple[str, ...] = ()  # of `StudentReport`, with the parameters as they are
 
     def __init__(self, live: LiveNet) -> None:
@@ -37,7 +37,7 @@ class StudentNet:
         self.rows: collections.deque[tuple[float, float]] = collections.deque(maxlen=MAX_ROWS)  # (t, m)
         self.waiting: collections.deque[Segment] = collections.deque()
         self.sent: list[Segment] = []  # that are being taken
-        self.points: NDArray[np.float64] | None = None  # (n, 3) [m]; None: there is none of the student's
+        self.points: NDArray[np.float64] | None = None  # (n, 3) [m]; None without a net of the student's
         self.matched: NDArray[np.float64] | None = None  # (n, 3) [m] the program's at the same moment
 
     @property

@@ -1,4 +1,4 @@
-"""How far the water has to be pressed together to be foam, so that as much of the sea is foam as is expected."""
+"""Compression of the water above which it is foam, chosen so that foam covers the expected part of the sea."""
 
 import math
 

@@ -71,7 +71,7 @@ class SeaReadings(NamedTuple):
     expected_foam_cover: float  # by Monahan's law, times the fraction of the slope that is left
     slope_left: float  # fraction of the mean square slope that damping and a small height factor leave
     foam_limit: float  # Jacobian below which there is foam; -inf without foam
-    is_choppy: bool  # whether water moves level at all, which presses the surface together
+    is_choppy: bool  # True if water moves horizontally, which compresses the surface
     viscous_area: float  # [m2] sum of viscosity times time, since the start
     rain: RainReadings | None
     report: Report | None

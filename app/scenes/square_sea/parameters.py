@@ -45,7 +45,7 @@ SURFACE_TENSION = 0.0728  # [N/m] of water against air
 MAX_POINTS, MAX_POINTS_OF_HIGH_ORDER = 256, 128  # of a nonlinear sea, up to order 3 and above
 LONG_CRESTED_STARTS = ("breather", "groups")
 MARCHING_STARTS = (*LONG_CRESTED_STARTS, "rogue")  # solved step by step, at order 1 too
-# What only a linear sea has, and the values of a sea that is solved step by step.
+# Parameters of a linear sea only, and their values in a sea that is solved step by step.
 LINEAR_ONLY = {"choppiness": 1.0, "transition": 0.0, "viscosity": 0.0, "dispersion_scale": 1.0, "loop_period": 0.0,
                "rings": 0.0}  # fmt: skip
 in_foam = functools.partial(parameter, group="Foam and rain")
@@ -59,13 +59,13 @@ class SquareSeaParams:
 
     wind_speed: float = in_main(8.0, 0.0, 60.0, "m/s", "Wind speed 10 m above the sea")
     rain: float = in_main(0.0, 0.0, 200.0, "mm/h", "Rainfall; 0 is no rain", log_from=0.1)
-    planet: str = in_main("by mass", choices=PLANET_TITLES, doc="What sets the gravity")
+    planet: str = in_main("by mass", choices=PLANET_TITLES, doc="Source of the gravity")
     planet_mass: float = in_main(1.0, 0.01, 100.0, "Earths", "Mass of the planet", log_from=0.01, title="Mass")
     gravity: float = in_main(9.81, 0.01, 1000.0, "m/s²", "Gravity", log_from=0.01)
-    view: str = in_main("deck", choices=VIEW_TITLES, doc="Where the camera stands", affects="look")
+    view: str = in_main("deck", choices=VIEW_TITLES, doc="Place of the camera", affects="look")
 
     spectrum: str = in_waves("pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
-    wind_direction: float = in_main(20.0, -180.0, 180.0, "°", "Where the wind goes to, from +x towards +y")
+    wind_direction: float = in_main(20.0, -180.0, 180.0, "°", "Direction that the wind blows to, from +x towards +y")
     transition: float = in_waves(
         3.0, 0.0, 600.0, "s", "Time for the sea to adapt to new weather", log_from=0.1, title="Time to adapt"
     )
@@ -85,7 +85,7 @@ class SquareSeaParams:
     )  # fmt: skip
 
     radius_rule: str = in_water(
-        "same_density", choices=tuple(RADIUS_RULES), doc="How the radius of the planet depends on its mass",
+        "same_density", choices=tuple(RADIUS_RULES), doc="Rule for the radius of the planet, from its mass",
         title="Planet radius",
     )  # fmt: skip
     deep: bool = in_water(True, doc="Deep water; off: water of the depth below", title="Deep water")
@@ -144,7 +144,7 @@ class SquareSeaParams:
     grid: bool = in_look(False, doc="Lines of the drawn grid (key G)")
     gauge: bool = in_look(True, doc="Draw the wave gauge, a buoy", title="Wave gauge")
     sky: str = in_look("park", choices=SKY_TITLES, doc="Sky and its light")
-    sun: float = in_look(18.0, -180.0, 180.0, "°", "Where the sun stands, from +x towards +y", title="Sun direction")
+    sun: float = in_look(18.0, -180.0, 180.0, "°", "Direction of the sun, from +x towards +y", title="Sun direction")
     clouds: float = in_look(0.4, 0.0, 1.0, "", "Fraction of the sky that clouds cover", title="Cloud cover")
     daylight: float = in_look(0.85, 0.05, 3.0, "", "Brightness", title="Brightness")
     visibility: float = in_look(3000.0, 50.0, 20000.0, "m", "Distance at which haze hides the sea", log_from=50.0)

@@ -39,7 +39,7 @@ class RainFrame(NamedTuple):
 
 
 class RainReadings(NamedTuple):
-    """How much of the rain is drawn."""
+    """Fraction of the rain that is drawn."""
 
     rate: float  # [mm/h]
     drawn: int  # drops in the air that are drawn

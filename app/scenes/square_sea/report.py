@@ -113,7 +113,7 @@ def foam_text(r: "SeaReadings", g: float) -> str:
     """Foam cover of the sea, and the law that it is compared with."""
     covered = f"Foam covers {percent(r.foam_cover)} of the sea"
     if not r.is_choppy:
-        return "No foam: without choppiness the surface is not pressed together anywhere."
+        return "No foam: without choppiness the surface is not compressed anywhere."
     if r.slope_left < MIN_SLOPE_LEFT:
         left = percent(r.slope_left)
         return f"{covered}; expected {percent(r.expected_foam_cover)}: Monahan's law times the {left} of slope left."
@@ -150,7 +150,7 @@ def fetch_line(c: FetchConditions) -> str:
 
 
 def rain_text(rain: "RainReadings") -> str:
-    """How much of the rain is shown."""
+    """Sentence on the fraction of the rain that is shown."""
     rings = "The grid is too coarse for rings."
     if rain.drops_per_ring:
         rings = f"Each ring stands for {count(rain.drops_per_ring)} drops."
@@ -226,7 +226,7 @@ def marks(snapshot: Snapshot) -> dict[str, str]:
         "size": f"grid spacing {metres(cell)}, shortest wave {metres(2 * cell)}"
         + (f"; at this order {points} × {points} at most" if points < int(p.size) else ""),
         "mesh": f"grid spacing {metres(p.length / len(snapshot.frame.vertices))}",
-        "foam_by_wind": f"foam where the surface is pressed below {percent(limit)} of its area"
+        "foam_by_wind": f"foam where the surface is compressed below {percent(limit)} of its area"
         if math.isfinite(limit)
         else "no foam",
     }
@@ -266,7 +266,7 @@ def radius_line(params: SquareSeaParams) -> str:
 
 
 def low_pass_line(params: SquareSeaParams) -> str:
-    """How long fluids at rest take to lower a wave of wavenumber 1/l as the low pass l does: by e^(-1/2)."""
+    """Time that fluids at rest take to lower a wave of wavenumber 1/l as the low pass l does: by e^(-1/2)."""
     if params.low_pass == 0.0:
         return "no wave is left out"
     k, g = 1.0 / params.low_pass, gravity(params)
@@ -275,7 +275,7 @@ def low_pass_line(params: SquareSeaParams) -> str:
 
 
 def viscosity_line(params: SquareSeaParams, area: float) -> str:
-    """How fast viscosity damps a wave of 1 m, and the lab's length l for the decay so far; area [m2]: of nu T."""
+    """Rate at which viscosity damps a wave of 1 m, and the lab's length l for the decay so far; area [m2]: of nu T."""
     length = 2.0 * math.sqrt(area)
     so_far = ""
     if length > 0.0 and is_weak(1.0 / length, params.viscosity, gravity(params)):

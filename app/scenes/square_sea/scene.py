@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from app.messages import PlotRow, PointAlong, SceneCommand, Snapshot, StudentAnswer
 from app.scenes.charts import CurveAxes, PlotAxes
+from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import Pieces
-from app.scenes.moments import copied, restore
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
 from app.scenes.square_sea.foam import MeshFoam, WavePace

@@ -61,7 +61,7 @@ def measure(
 
 
 def dominant(sea: Sea, t: float, period: float) -> tuple[float, float]:
-    """Length [m] and phase speed [m/s] of the waves about the peak period [s]; nan where there are none."""
+    """Length [m] and phase speed [m/s] of the waves about the peak period [s]; nan without waves."""
     if not period > 0.0:
         return math.nan, math.nan
     peak = 2.0 * math.pi / period

@@ -45,7 +45,7 @@ class StudentSea(TableUser):
         if p.spectrum_file or p.spectrum != PHILLIPS.name:
             idle[SPECTRUM] = f"choose the spectrum {PHILLIPS.title}"
         elif p.wind_speed < MIN_WIND_SPEED:
-            idle[SPECTRUM] = "there is no wind"
+            idle[SPECTRUM] = "set a wind speed"
         else:
             calls[SPECTRUM] = spectrum_call(p, self.gravity(p))
         calls[DISPERSION] = dispersion_call(p, self.gravity(p))

@@ -150,7 +150,7 @@ class Fields(NamedTuple):
     """A sea on its grid."""
 
     height: NDArray[np.floating]  # (n, n) [m]
-    displacement: NDArray[np.floating] | None = None  # (n, n, 2) [m]; None: there is none
+    displacement: NDArray[np.floating] | None = None  # (n, n, 2) [m], or None
     jacobian: NDArray[np.floating] | None = None  # (n, n) that makes foam; None: that of the displacement
     highest: Highest | None = None  # of a nonlinear sea
 

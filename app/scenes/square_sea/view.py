@@ -55,7 +55,7 @@ TARGETS = {  # [m] of each view: how far ahead its target is, and the target's h
 }
 # Of the significant height: where the camera stands beside the wave gauge, and the height of its target there.
 GAUGE_VIEW = (-2.0, -6.0, 0.8), 0.5
-MIN_GAUGE_VIEW_HEIGHT = 1.0  # [m] of the waves, of which the distance of that camera is a multiple
+MIN_GAUGE_VIEW_HEIGHT = 1.0  # [m] of the waves, for the distance of that camera, a multiple of it
 CAMERA_SETBACK = 0.14  # of the tile's side: how far the camera stands behind the middle of the tile,
 MAX_CAMERA_SETBACK = 20.0  # [m] but no farther than this, so that it is near the rain
 OVERCAST_TINT = (0.80, 0.92, 1.02)  # colour filter on the sky where clouds cover all of it
@@ -116,7 +116,7 @@ class SquareSeaView(SceneView[SquareSeaParams, SeaFrame, SeaReadings]):
         self.view = DEFAULTS.view
         self.sky: tuple[str, float] | None = None  # name of the sky and direction of the sun as shown
         self.sky_material = self.material = Material()
-        self.made_of: tuple[object, ...] = ()  # what the material was made of
+        self.made_of: tuple[object, ...] = ()  # arguments of the material
         self.last: SeaFrame | None = None
         server.scene.on_click()(self.on_click)  # type: ignore[arg-type]  # it takes coroutines, as on_drag does
 
@@ -343,7 +343,7 @@ class WaveStaff:
     """A staff that stands in the sea: bands, a ring at still water, and the height at every second band."""
 
     def __init__(self, server: viser.ViserServer, place: Vector) -> None:
-        """place: x and y [m], and the significant height of the waves [m], of which the bands are a part."""
+        """place: x and y [m], and the significant height of the waves [m], which sets the bands."""
         x, y, height = self.place = place
         band = round_step(max(height, MIN_GAUGE_VIEW_HEIGHT) / 3.0)
         above, below = math.ceil(2.0 * height / band) + 1, math.ceil(1.5 * height / band) + 1
@@ -372,7 +372,7 @@ class WaveStaff:
 
 
 def waterlines_of(gauge: Vector | None) -> list[Waterline]:
-    """Float and spar of a wave gauge at this position [m], as the water mirrors them; None: there is none."""
+    """Float and spar of a wave gauge at this position [m], as the water mirrors them, or None."""
     if gauge is None:
         return []
     x, y, z = gauge

@@ -38,7 +38,7 @@ class TickClock:
         self.wall += wall
         was_late, self.is_late = self.is_late, False
         self.begin_work()
-        self.turn_at -= PATIENCE * was_late  # what ended the last tick has waited long enough
+        self.turn_at -= PATIENCE * was_late  # the command that ended the last tick has waited long enough
         return was_late
 
     def end_tick(self) -> None:
@@ -120,7 +120,7 @@ class FixedStep:
         return due
 
     def most(self, due: int, frame: float) -> int:
-        """How many of the steps that are due fit the budget of a frame of `frame` [s]."""
+        """Number of due steps that fit the budget of a frame of `frame` [s]."""
         if self.cost <= 0:
             return due
         return min(due, max(1, int(SOLVE_SHARE * max(frame, FRAME_INTERVAL) / self.cost)))

@@ -198,7 +198,7 @@ class CompileGate:
             if self.jobs[params]:
                 self.compiling.want(self.jobs[params])
                 names = ", ".join(job.piece for job in self.jobs[params])
-                self.notice = f"Compiling {names}: starts by itself when it is ready."
+                self.notice = f"Compiling {names}: starts by itself when ready."
         self.jobs[params] = [job for job in self.jobs[params] if job not in self.compiling.settled]
         return not self.jobs[params]
 

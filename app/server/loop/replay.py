@@ -1,6 +1,6 @@
 """The last moments of a run that diverged, shown one after the other, so that the divergence is seen."""
 
-from app.messages import Moment
+from app.messages import LastFrame
 
 MOMENT_INTERVAL = 1 / 12  # [s] of wall time for which each moment is shown
 
@@ -8,14 +8,14 @@ MOMENT_INTERVAL = 1 / 12  # [s] of wall time for which each moment is shown
 class Replay:
     """Plays the moments of one divergence once; there is at least one moment."""
 
-    def __init__(self, moments: tuple[Moment, ...], reason: str) -> None:
+    def __init__(self, moments: tuple[LastFrame, ...], reason: str) -> None:
         """reason: why the run diverged."""
         self.moments, self.reason = moments, reason
         self.number = 0  # of the moment that is shown
         self.shown_for = 0.0  # [s] of wall time
 
     @property
-    def moment(self) -> Moment:
+    def moment(self) -> LastFrame:
         """The moment that is shown; the last one at the end."""
         return self.moments[self.number]
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.messages import BaseParams, KeptState, Pause, Play, PlotRow, RunIdentity, Take
+from app.messages import BaseParams, Checkpoint, Pause, Play, PlotRow, RunIdentity, Take
 from app.panel.recording.recorder import FrameMemory
 from app.scenes.contract import FRAME_INTERVAL, AnyScene, AnySnapshot
 from app.scenes.stepping import steps_to
@@ -25,7 +25,7 @@ from sim.validation import DivergenceError
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
 MAX_BYTES = 100e6  # of all runs that are kept for an undo; beyond that the oldest are dropped
 ROW_BYTES = 32  # of a number in a plot row, with its place in the tuple
-BEGUN = "the lab was begun again or went on from another moment"  # why the time that a program waits for does not come
+BEGUN = "the lab was reset or went on from another moment"  # answer to a program that waits for a time
 
 
 class Goal(NamedTuple):
@@ -45,7 +45,7 @@ class Goal(NamedTuple):
 
 
 class AwaitedEvent:
-    """Event at whose beginning the run pauses; of one that happens just now, when it happens again."""
+    """Event at whose beginning the run pauses; if it happens just now, when it happens again."""
 
     def __init__(self, reached: Callable[[AnySnapshot], bool], latest: AnySnapshot) -> None:
         """reached: whether it happens in a snapshot."""
@@ -65,7 +65,7 @@ class SceneRun:
         """The arguments are those of `SimLoop`."""
         self.scene, self.audience, self.clock = scene, audience, clock
         self.identity, self.numbers = RunIdentity(), itertools.count(2)  # of this run; of those to come
-        self.request = np.zeros(4, np.int64)  # what the solve that runs looks at: see sim/interruption.py
+        self.request = np.zeros(4, np.int64)  # for the running solve: see sim/interruption.py
         self.activity = NOTHING
         self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
         self.unmade = False  # the scene could not begin: it waits for other values
@@ -81,7 +81,7 @@ class SceneRun:
 
     @property
     def stopped_by(self) -> str:
-        """Why the run can go no further, or ""; known before its last moments have been shown again."""
+        """Reason why the run can go no further, or ""; known before its last frames have been shown again."""
         return self.halted if self.replay is None else self.replay.reason
 
     def cancel(self, how: int = 1) -> None:
@@ -318,7 +318,7 @@ class SceneRun:
 
 
 def failure_words(error: Exception, *, begins: bool) -> str:
-    """Why a scene stopped, for the panel. Prints the traceback, unless a scene cannot begin with a user's values."""
+    """Reason why a scene stopped, for the panel. Prints the traceback, unless a user's values are the cause."""
     if begins and isinstance(error, ValueError):
         return f"The scene cannot begin with these values. {error}"
     traceback.print_exception(error)
@@ -330,7 +330,7 @@ class LeftRun(NamedTuple):
 
     act: int  # with which it began
     params: BaseParams
-    state: KeptState
+    state: Checkpoint
     rows: tuple[PlotRow, ...] | None  # of its plots; None: it was to go on from a moment, and has not begun
     running: bool
 
@@ -366,7 +366,7 @@ class LeftRuns:
         return None
 
 
-class Runs:
+class RunSequence:
     """Lets the runs of a scene follow each other: which commands begin another one, and the undo that goes back."""
 
     def __init__(self, run: SceneRun) -> None:
@@ -439,7 +439,7 @@ class Runs:
         run.reset(act, None if left is None else lambda: self.return_to(left))
         run.running = not run.halted
 
-    def resume(self, params: BaseParams, state: KeptState, act: int) -> None:
+    def resume(self, params: BaseParams, state: Checkpoint, act: int) -> None:
         """The scene from a state that was kept, with the parameters that it had then, running."""
         run = self.run
         run.clear()

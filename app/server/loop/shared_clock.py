@@ -36,7 +36,7 @@ class Seat:
         return self.clock.seats[:1] == (self,)
 
     def due(self, time: float, step: float) -> int:
-        """How many steps [s] of a scene at `time` [s] lead to the clock's time."""
+        """Number of steps [s] of a scene at `time` [s] to the clock's time."""
         return max(0, int((self.clock.time - self.offset - time) / step * (1 + 1e-9) + 1e-6))
 
     def note(self, time: float, step: float, pace: float, *, running: bool, halted: bool) -> None:
@@ -90,7 +90,7 @@ class SharedClock:
         self.time = 0.0  # [s] simulated
         self.origin = 0.0  # [s] of `time`, at which the runs were last begun
         self.debt = 0.0  # [s] simulated by which `time` is late
-        self.late = False  # whether time that could not be made up is being dropped
+        self.late = False  # True while time that could not be made up is dropped
         self.seats: tuple[Seat, ...] = ()
 
     def advance(self, wall: float, speed: float) -> None:

@@ -45,7 +45,7 @@ from app.server.loop.commands import (
     is_urgent,
     merged,
 )
-from app.server.loop.run import Runs, SceneRun
+from app.server.loop.run import RunSequence, SceneRun
 from app.server.loop.shared_clock import Seat
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 
@@ -80,10 +80,12 @@ class SimLoop:
         """
         self.scene, self.admit = scene, admit
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
-        self.waiting: list[Command] = []  # what ended a sleep, and what a solve did not answer, for the next tick
+        self.waiting: list[
+            Command
+        ] = []  # for the next tick: the one that ended a sleep, and those that a solve did not answer
         self.clock = TickClock(clock, effort, sleep, gives_way=gives_way)
         self.run = SceneRun(scene, audience, self.clock, paused=paused)
-        self.runs = Runs(self.run)
+        self.runs = RunSequence(self.run)
 
     @property
     def latest(self) -> AnySnapshot:

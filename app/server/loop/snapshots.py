@@ -6,9 +6,9 @@ import traceback
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.messages import BaseParams, KeptState, PlotRow, RunLine, RunRow, Snapshot, Status, where_not_finite
+from app.messages import BaseParams, Checkpoint, PlotRow, RunLine, RunRow, Snapshot, Status, where_not_finite
+from app.scenes.checkpoints import arrays_in
 from app.scenes.contract import AnySnapshot
-from app.scenes.moments import arrays_in
 from app.server.loop.commands import NOTHING, STEPS, Activity
 from sim.interruption import InterruptionError
 from sim.validation import DivergenceError
@@ -128,7 +128,7 @@ class Snapshots:
         self.run.scene.take_plot_rows()
         self.hand_over(rows)
 
-    def keep_state(self) -> KeptState | None:
+    def keep_state(self) -> Checkpoint | None:
         """The state of a running scene, a few times a second; seldom where copying it takes long."""
         run, clock = self.run, self.run.clock
         if not run.running or run.activity == STEPS or run.replay is not None:
@@ -176,7 +176,7 @@ class Snapshots:
         self.restarted_until = self.run.clock.wall + RESTARTED_SHOWN
 
 
-def kept_state(run: "SceneRun") -> KeptState:
+def kept_state(run: "SceneRun") -> Checkpoint:
     """The state of a run, to go on from."""
     value = run.scene.keep()
-    return KeptState(value, arrays_in(value), run.identity.number)
+    return Checkpoint(value, arrays_in(value), run.identity.number)

@@ -1,4 +1,4 @@
-"""Access beyond the browsers of this machine, and the path of the lab. By default there is none.
+"""Access beyond the browsers of this machine, and the path of the lab. Without either by default.
 
 Behind a proxy the page has an address that is not the server's own. What the proxy does has to be said:
 
@@ -75,7 +75,7 @@ def read_origin(text: str) -> str:
 
 
 def read_key(text: str) -> str:
-    """A key from the environment; "" where there is none. Raises ValueError for one that could be guessed."""
+    """A key from the environment, or "". Raises ValueError for one that could be guessed."""
     if text and not KEY.fullmatch(text):
         raise argument_error(KEY_VARIABLE, f"{len(text)} characters", "16 to 200 letters, digits, _ and -")
     return text

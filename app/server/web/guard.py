@@ -2,8 +2,8 @@
 
 viser checks neither the Origin of a websocket nor any value that arrives on it, so any page in the user's browser could
 drive a loopback server, and any client could set a slider out of its range or open the public share tunnel. Everything
-from a browser passes `screen`: a short list of message types, only finite bounded numbers, and GUI values within what
-their control offers. If viser has changed so that this is not possible, only loopback addresses are served.
+from a browser passes `MessageFilter`: a short list of message types, only finite bounded numbers, and GUI values within
+the range of their control. If viser has changed so that this is not possible, only loopback addresses are served.
 """
 
 # pyright: reportPrivateUsage=false
@@ -43,9 +43,9 @@ from app.render.handles.viser_inside import (
 )
 from app.render.handles.viser_types import GuiHandle, ViserConnection, ViserMessage
 from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, refusal
-from app.server.web.pace import PACE, Pace, put_small_first
 from app.server.web.page import own_answer, with_cover
 from app.server.web.panes import Panes
+from app.server.web.rate_limit import LIMIT, RateLimit, put_small_first
 
 MAX_NUMBER = 1e6  # any number in a message beyond this is refused
 MAX_LENGTH = 1000  # of a text, or of a list
@@ -138,9 +138,9 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
             return answer or with_cover(request, process_request(connection, request))
 
         async def serve_pane(connection: ViserConnection) -> None:
-            pace = Pace(connection)
-            connection.send = pace.send
-            PACE.set(pace)
+            limit = RateLimit(connection)
+            connection.send = limit.send
+            LIMIT.set(limit)
             await panes.serve(connection, handler)
 
         started.append(bound)
@@ -179,7 +179,7 @@ def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-# What kind of value each GUI element takes.
+# Type of the value of each GUI element.
 FLAGS = (viser.GuiCheckboxHandle, viser.GuiButtonHandle)
 NUMBERS = (viser.GuiSliderHandle, viser.GuiNumberHandle)
 CHOICES = (viser.GuiDropdownHandle, viser.GuiButtonGroupHandle)
@@ -207,7 +207,7 @@ def allowed_value(handle: GuiHandle, value: object) -> object:
     if issubclass(kind, CHOICES):
         return value if isinstance(value, str) and value in handle.options else None
     if issubclass(kind, viser.GuiTextHandle):
-        if handle.multiline:  # what is in it is judged where it is kept, which can say so
+        if handle.multiline:  # its content is judged where it is saved, which can say so
             return value[:MAX_TEXT_LENGTH] if isinstance(value, str) else None
         return value if isinstance(value, str) and len(value) <= MAX_FIELD_LENGTH and value.isprintable() else None
     return None
@@ -223,13 +223,13 @@ def kind_of(message: ViserMessage) -> str:
     return type(message).__name__
 
 
-class Screen:
+class MessageFilter:
     """Filter of a browser's messages: passes the allowed ones and counts the others."""
 
     def __init__(self, server: viser.ViserServer) -> None:
         self.server = server
         self.refused: collections.Counter[str] = collections.Counter()
-        self.is_in_place = False  # whether messages pass through this screen
+        self.is_in_place = False  # True if messages pass through it
 
     def __call__(self, message: ViserMessage) -> ViserMessage:
         """The message, with a value bounded where it only had to be bounded, or None where it is refused.
@@ -261,7 +261,7 @@ class Screen:
 
 
 def merge_key(message: ViserMessage) -> MergeKey | None:
-    """Key of messages of which only the latest counts. None for messages that are never coalesced."""
+    """Key by which messages are coalesced to the latest. None for messages that never are."""
     match kind := kind_of(message):
         case "GuiUpdateMessage" | "CommandTriggerMessage" | "GuiButtonHoldMessage":
             return kind, message.uuid
@@ -290,18 +290,18 @@ class Intake:
     until then: a page may send the link in its address first.
     """
 
-    def __init__(self, screen: Callable[[ViserMessage], ViserMessage], handlers: "list[Handler]") -> None:
-        self.screen, self.handlers = screen, handlers
+    def __init__(self, message_filter: Callable[[ViserMessage], ViserMessage], handlers: "list[Handler]") -> None:
+        self.message_filter, self.handlers = message_filter, handlers
         self.waiting: dict[MergeKey, ViserMessage] = {}
         self.unmerged = 0  # counts messages that are never merged, for keys of their own
         self.turn: asyncio.Task[None] | None = None
         self.turned_at = -math.inf  # [s] when a message was last handled
-        self.counted = False  # whether viser has had a camera message
+        self.counted = False  # True once viser has had a camera message
 
     def queue(self, client: ClientId, message: ViserMessage) -> None:
         """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
         if kind_of(message) not in ALLOWED:
-            self.screen(message)  # refused and counted
+            self.message_filter(message)  # refused and counted
             return
         key = merge_key(message)
         if key is None:
@@ -336,7 +336,7 @@ class Intake:
 
     async def handle(self, client: ClientId, message: ViserMessage) -> None:
         """Screen a message and call its handlers; one that fails is reported, and the others are called."""
-        good = self.screen(message)
+        good = self.message_filter(message)
         if good is None:
             return
         for handle in self.handlers:
@@ -347,12 +347,12 @@ class Intake:
         self.counted = True
 
 
-def put_intakes(server: viser.ViserServer, screen: Screen) -> bool:
+def put_intakes(server: viser.ViserServer, message_filter: MessageFilter) -> bool:
     """Pass every message of a browser through its intake before viser's handlers see it. False: it is not possible."""
     intakes: dict[ClientId, Intake] = {}
 
     def join(client: ClientId, handlers: list[Handler]) -> Taker:
-        intakes[client] = intake = Intake(screen, handlers)
+        intakes[client] = intake = Intake(message_filter, handlers)
         return intake.queue
 
     def leave(client: ClientId) -> None:
@@ -386,12 +386,12 @@ class Opened(NamedTuple):
     """A server that listens."""
 
     server: viser.ViserServer
-    screen: Screen
+    message_filter: MessageFilter
     panes: Panes  # the labs that are reached through its port
 
 
 def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> Opened:
-    """A viser server that only our own page may connect to, with its messages filtered by `Screen`.
+    """A viser server that only our own page may connect to, with its messages filtered by `MessageFilter`.
 
     access: who else may connect. Raises OSError where the port is busy or may not be bound.
     """
@@ -406,11 +406,11 @@ def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> Opened
         raise OSError(f"port {port} was taken while starting")
     if not started:
         lose("other pages of the browser may connect", "it does not call websockets.asyncio.server.serve")
-    screen = guarded(server)
-    if not (started and screen.is_in_place) and not is_loopback(host):
+    message_filter = guarded(server)
+    if not (started and message_filter.is_in_place) and not is_loopback(host):
         server.stop()
         raise OSError(f"with viser {viser.__version__} the lab serves loopback addresses only")
-    return Opened(server, screen, panes)
+    return Opened(server, message_filter, panes)
 
 
 def open_pane(panes: Panes, number: int) -> Opened:
@@ -420,10 +420,10 @@ def open_pane(panes: Panes, number: int) -> Opened:
     return Opened(server, guarded(server), panes)
 
 
-def guarded(server: viser.ViserServer) -> Screen:
+def guarded(server: viser.ViserServer) -> MessageFilter:
     """Filter the messages of a server's browsers, and limit the rate of the messages to them."""
-    screen = Screen(server)
+    message_filter = MessageFilter(server)
     refuse_requests(server, "ShareUrlRequest", "ShareUrlDisconnect")
-    screen.is_in_place = put_intakes(server, screen)
+    message_filter.is_in_place = put_intakes(server, message_filter)
     put_small_first(server)
-    return screen
+    return message_filter

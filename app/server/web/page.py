@@ -18,7 +18,7 @@ from websockets.http11 import Request, Response
 
 from app.render.scripts import PAGE, before_tags, tags
 
-ALIVE_PATH = "/springtide-alive"  # what the page asks for, to see whether the server is still there
+ALIVE_PATH = "/springtide-alive"  # requested by the page, to see whether the server is still there
 # The answer to that: another name is another server, which knows nothing of the page.
 SERVER_NAME = secrets.token_hex(8)
 TITLE = "<title>Springtide</title>"

@@ -98,7 +98,7 @@ class Panes:
         self.wanted: weakref.WeakKeyDictionary[ViserConnection, int] = weakref.WeakKeyDictionary()
 
     def read(self, connection: ViserConnection, request: Request) -> Request | None:
-        """The request with its path as the pane has it, or as it is where it names none; None where there is none."""
+        """The request with its path as the pane has it, or unchanged if it names no pane; None without a request."""
         found = PANE_PATH.match(request.path)
         if found is None:
             return request

@@ -91,5 +91,5 @@ class Transport:
             given.set()
 
     def wait(self) -> None:
-        """Wait until viser has the last picture: what another thread removes must not come before it."""
+        """Wait until viser has the last frame, before another thread removes nodes."""
         self.given.wait(MAX_WAIT)

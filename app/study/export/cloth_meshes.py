@@ -35,7 +35,9 @@ class ClothMeshes:
         if self.scene.note:
             # Nobody would notice in a file that another integrator ran than the one that was asked for.
             raise argument_error(
-                "integrator", params.integrator, "another, as this net is damped: by links, drag, air or contact"
+                "integrator",
+                params.integrator,
+                "a method with damping: this net is damped by links, drag, air or contact",
             )
         self.bytes_per_frame = BYTES_PER_PARTICLE * params.rows * params.cols
         self.rest = rest_of_obj(params.rows, params.cols)

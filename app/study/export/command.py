@@ -99,7 +99,7 @@ def export(scene: str, params: Any, seconds: float, rate: float, start: float, f
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    say(f"{len(times)} frames, {form}; sequence.json says what they hold", out)
+    say(f"{len(times)} frames, {form}; sequence.json describes them", out)
     if problem:
         say(f"The run ended early. {problem}")
         return 1

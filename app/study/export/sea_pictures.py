@@ -99,8 +99,8 @@ class SeaPictures:
     def about(self) -> dict[str, Any]:
         """Size, places and units."""
         meaning = {
-            "displacement": "x, y (level) and z (up) of the water from its place at rest",
-            "foam": "share of foam, 0 to 1",
+            "displacement": "x, y (horizontal) and z (up) of the water from its place at rest",
+            "foam": "fraction of foam, 0 to 1",
         }
         if self.form == "png":
             scales = {name: {"unit": "m", "zero": ZERO, "step": unit} for name, unit in self.unit_per_pixel.items()}

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 class Sequence(Protocol):
     """One run of a scene, written frame by frame into a folder."""
 
-    passes: int  # how often the run is made: work of `write`, in frames, over the number of frames
+    passes: int  # number of runs: work of `write`, in frames, over the number of frames
     bytes_per_frame: int  # before anything is compressed
 
     def write(self, folder: Path, start: float, count: int) -> Iterator[float | None]:
@@ -24,7 +24,7 @@ class Sequence(Protocol):
 
 
 class Exporter(NamedTuple):
-    """How one scene is written."""
+    """Writer of one scene."""
 
     formats: tuple[str, ...]  # the first is the default
     make: Callable[[Any, float, str], Sequence]  # of the parameters, the frame interval [s] and the format

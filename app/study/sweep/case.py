@@ -26,7 +26,7 @@ class Outcome(NamedTuple):
     """The result of a case; `_asdict()` of it can be written as JSON."""
 
     end: str  # one of ENDS
-    message: str  # why it did not finish, or ""
+    message: str  # reason why it did not finish, or ""
     diverged_at: float  # [s] the last time with a finite, bounded state; NaN where it did not diverge
     run_time: float  # [s] of processor time
     measures: dict[str, list[float]]  # one value for each time; NaN for times that were not reached

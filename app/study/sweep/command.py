@@ -112,7 +112,7 @@ def run_missing(spec: Spec, store: Any, run: Run) -> dict[int, Outcome]:
                 outcomes[number] = outcome
                 advance(outcome)
     except KeyboardInterrupt:
-        say(f"stopped; {len(outcomes)} of {total} cases are kept, and the same command goes on", store.path)
+        say(f"stopped; {len(outcomes)} of {total} cases are kept; the same command resumes", store.path)
         raise
     return outcomes
 

@@ -56,12 +56,12 @@ def to_dataset(spec: Spec, outcomes: dict[int, Outcome]) -> Any:
     variables["run_time"] = per_case([o.run_time for o in ordered], long_name="Processor time", units="s")
     variables["end"] = per_case(
         [np.int8(ENDS.index(o.end)) for o in ordered],
-        long_name="How the case ended",
+        long_name="Outcome of the case",
         flag_values=np.arange(len(ENDS), dtype=np.int8),
         flag_meanings=" ".join(ENDS),
     )
     variables["message"] = per_case(
-        [o.message for o in ordered], long_name="Why the case did not finish; empty where it did"
+        [o.message for o in ordered], long_name="Reason why the case did not finish; empty if it did"
     )
     return xr.Dataset(variables, coordinates, about(spec))
 

@@ -43,7 +43,7 @@ class Spec:
 
     @property
     def times(self) -> tuple[float, ...]:
-        """When each case is measured [s]."""
+        """Times [s] at which each case is measured."""
         return (self.seconds,) if self.frames == 1 else tuple(np.linspace(0.0, self.seconds, self.frames).tolist())
 
     @property
@@ -107,7 +107,7 @@ def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = Non
     seed = None
     if design == "random":
         if "cases" not in content:
-            raise ValueError("cases: missing; a random design says how many")
+            raise ValueError("cases: missing; a random design needs their number")
         seed = whole(content, "seed", 0, 0, 2**32 - 1)
         cases = hypercube(axes, known, whole(content, "cases", 0, 1, MAX_CASES), seed)
         values = {k: tuple(case[k] for case in cases) for k in axes}
@@ -171,10 +171,10 @@ def read_axis(name: str, parameter: Parameter, given: Any, design: str) -> Axis:
         raise argument_error(f"{name}.from", low, "above 0 where log is true")
     if design == "random":
         if "count" in given:
-            raise ValueError(f"{name}.count: belongs to a grid; in a random design `cases` says how many")
+            raise ValueError(f"{name}.count: belongs to a grid; in a random design `cases` is their number")
         return Range(low, high, 0, log)
     if "count" not in given:
-        raise ValueError(f"{name}.count: missing; a grid says how many values")
+        raise ValueError(f"{name}.count: missing; a grid needs the number of values")
     return Range(low, high, whole(given, "count", 0, 2, MAX_CASES, name), log)
 
 
@@ -198,7 +198,7 @@ def check_swept_parameters_matter(spec: Spec, scene: SceneKind[Any, Any, Any]) -
 
 
 def table(content: dict[str, Any], key: str) -> dict[str, Any]:
-    """The TOML table at `key`, empty where there is none. Raises ValueError where it is something else."""
+    """The TOML table at `key`, or an empty one. Raises ValueError for anything else."""
     found = content.get(key, {})
     if not isinstance(found, dict):
         raise argument_error(key, found, f"a table, [{key}]")

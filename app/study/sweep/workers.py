@@ -15,7 +15,7 @@ from app.study.pool import Killed, run_tasks
 from app.study.sweep.case import Outcome, failed, program, run_case
 from sim.validation import argument_error
 
-Job = tuple[str, dict[str, Any], tuple[float, ...]]  # what run_case takes
+Job = tuple[str, dict[str, Any], tuple[float, ...]]  # arguments of run_case
 MAX_ANSWER_TIME = 20.0  # [s] for a scheduler to answer, and for its first worker
 
 

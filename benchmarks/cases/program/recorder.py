@@ -4,7 +4,7 @@ from typing import Any
 
 from app.panel.recording.recorder import Recorder
 from app.scenes import NAMES, scene_named
-from app.scenes.moments import arrays_in
+from app.scenes.checkpoints import arrays_in
 from app.scenes.setups import make_setup
 from app.scenes.timer import effort_clock
 from app.server.loop.sim_loop import SimLoop

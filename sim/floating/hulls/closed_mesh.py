@@ -73,7 +73,9 @@ def checked_mesh(vertices: np.ndarray, faces: np.ndarray, name: str = "faces") -
         raise argument_error(name, "a coordinate that is not finite", "finite coordinates")
     gaps = open_edges(faces)
     if gaps:
-        raise argument_error(name, f"{gaps} edges without their one opposite", "a closed mesh, faces turned one way")
+        raise argument_error(
+            name, f"{gaps} edges without exactly one opposite", "a closed mesh, all faces turned outward or all inward"
+        )
     size = np.ptp(vertices, axis=0)
     if not (size >= MIN_LENGTH).all() or not (size <= MAX_LENGTH).all():
         raise argument_error(name, tuple(size.tolist()), f"extents of {MIN_LENGTH:g} to {MAX_LENGTH:g} m")
@@ -96,7 +98,7 @@ def check_parts(vertices: np.ndarray, faces: np.ndarray, name: str) -> None:
     """Raises ValueError where a part of a mesh is inside out or overlaps another one, which would count twice.
 
     Close to each face inside it the mesh encloses a point once, outside not at all, or once where another part
-    touches. Looked at are up to MAX_SAMPLES places on the faces of a mesh of several parts, but for faces without area,
+    touches. Looked at are up to MAX_SAMPLES places on the faces of a mesh of several parts, except faces without area,
     which have no two sides.
     """
     part = parts_of(faces, len(vertices))
@@ -114,7 +116,9 @@ def check_parts(vertices: np.ndarray, faces: np.ndarray, name: str) -> None:
         inside, outside = enclosed(triangles, place - step), enclosed(triangles, place + step)
         if inside != 1 or outside not in (0, 1):
             where = tuple(round(float(x), 6) for x in place)
-            raise argument_error(name, f"parts that overlap, or one inside out, at {where}", "parts apart, all outward")
+            raise argument_error(
+                name, f"parts that overlap, or one inside out, at {where}", "separate parts, all turned outward"
+            )
 
 
 def parts_of(faces: np.ndarray, count: int) -> np.ndarray:

@@ -32,7 +32,7 @@ FILE_TITLE = "From file"
 
 
 class MeshReading(NamedTuple):
-    """How a mesh file is read; see `Hull.load`."""
+    """Reading of a mesh file; see `Hull.load`."""
 
     unit: str = ""
     weld: float = 0.0  # [m]
@@ -139,7 +139,7 @@ def mesh_from_file(path: str | Path, reading: MeshReading = AS_IT_IS) -> ClosedM
     vertices, faces = open_mesh_from_file(path, reading)
     if len(faces) and np.isfinite(vertices).all() and open_edges(faces):
         help = remedy(vertices, faces)
-        allowed = "a closed mesh, faces turned one way" + (f"; {help} closes it" if help else "")
+        allowed = "a closed mesh, all faces turned outward or all inward" + (f"; {help} closes it" if help else "")
         raise argument_error(str(path), place_of_gaps(vertices, faces), allowed)
     size = float(np.ptp(vertices, axis=0).max()) if len(faces) else 0.0
     if not reading.unit and size > MAX_LENGTH:

@@ -29,7 +29,7 @@ def triangles_of(corners: np.ndarray) -> np.ndarray:
 
 
 def degenerate(faces: np.ndarray) -> np.ndarray:
-    """Which of faces (m, 3) repeat a corner."""
+    """Mask (m,) of the faces (m, 3) that repeat a corner."""
     return (faces[:, 0] == faces[:, 1]) | (faces[:, 1] == faces[:, 2]) | (faces[:, 2] == faces[:, 0])
 
 
@@ -154,7 +154,7 @@ def loops_of(edges: np.ndarray) -> list[list[int]]:
 def capped(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The mesh with a deck over each open loop in its upper half.
 
-    Raises ValueError where there is none, or one that crosses itself as seen from above.
+    Raises ValueError without a loop, or for one that crosses itself as seen from above.
     """
     z = vertices[np.unique(faces), 2]
     middle = 0.5 * (z.min() + z.max())
@@ -233,7 +233,7 @@ def place_of_gaps(vertices: np.ndarray, faces: np.ndarray) -> str:
     edges = open_boundary(faces)
     low, high = vertices[np.unique(edges)].min(axis=0), vertices[np.unique(edges)].max(axis=0)
     box = ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b in zip("xyz", low, high, strict=True))
-    return f"{open_edges(faces)} edges without their one opposite, at {box} m"
+    return f"{open_edges(faces)} edges without exactly one opposite, at {box} m"
 
 
 def remedy(vertices: np.ndarray, faces: np.ndarray) -> str:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 MOTIONS = ("Surge", "Sway", "Heave", "Roll", "Pitch", "Yaw")
-FREQUENCIES = ("omega", "period", "wavelength", "freq", "wavenumber")  # coordinates, of which a dataset has one as axis
+FREQUENCIES = ("omega", "period", "wavelength", "freq", "wavenumber")  # coordinates; a dataset has one of them as axis
 MATRICES, FORCES = ("added_mass", "radiation_damping"), ("diffraction_force", "Froude_Krylov_force")
 AXES = {  # after omega
     **dict.fromkeys(MATRICES, ("influenced_dof", "radiating_dof")),
@@ -90,7 +90,7 @@ def with_dataset(
 
 
 def read_dataset(path: str | Path) -> "Dataset":
-    """The dataset in a file. Raises ValueError if there is none, ModuleNotFoundError without xarray."""
+    """The dataset in a file. Raises ValueError for any other file, ModuleNotFoundError without xarray."""
     check_kind("path", path, str | os.PathLike, "the name of a file")
     import xarray  # half a second, and not needed by most
 
@@ -213,7 +213,7 @@ def check_asked(
 
 
 def with_speed_zero(dataset: "Dataset", path: str) -> "Dataset":
-    """The part of a dataset without forward speed. Raises ValueError where there is none."""
+    """The part of a dataset without forward speed. Raises ValueError if all of it has speed."""
     if "forward_speed" not in dataset.variables:
         return dataset
     speeds = np.atleast_1d(numbers(dataset, "forward_speed", None, path))
@@ -328,7 +328,7 @@ def centre_of(dataset: "Dataset", path: str, body: str, given: Sequence[float] |
 
 
 def scalar(dataset: "Dataset", name: str, path: str) -> float:
-    """The one number of a variable. Raises ValueError for several."""
+    """The only number of a variable. Raises ValueError for several."""
     values = np.asarray(dataset[name].values)
     if values.size != 1 or values.dtype.kind not in "iuf":
         here = f"{values.size} of type {values.dtype}"
@@ -352,7 +352,7 @@ def numbers(
     values: Any = dataset[name]
     if "complex" in values.dims and sorted(map(str, values["complex"].values)) == ["im", "re"]:
         values = values.sel(complex="re") + 1j * values.sel(complex="im")
-    # what has one place along a further axis lies there
+    # a variable with one place along a further axis lies there
     values = values.squeeze([axis for axis in values.dims if axes and axis not in axes and values.sizes[axis] == 1])
     if axes is not None and set(values.dims) != set(axes):
         along = ", ".join(map(str, values.dims)) or "none"
@@ -394,7 +394,7 @@ def resampled(X: np.ndarray, headings: np.ndarray, path: str) -> np.ndarray:
     for end, factor in ((math.pi / 2, MIRROR_X), (math.pi, MIRROR_Y)):
         if abs(headings[0]) < 1e-6 and abs(headings[-1] - end) < 1e-6:
             mirrored, at = X * factor, headings < end - 1e-6
-            # what the mirror turns round is 0 in a wave that it leaves
+            # a component that the mirror turns round is 0 in a wave that it leaves
             still = X[:, -1:] if factor is MIRROR_X else X[:, [0, -1]]
             if np.abs(still[:, :, factor < 0]).max() > SYMMETRY * np.abs(X).max():
                 allowed = "directions all around a hull that is not symmetric, or one chosen by `heading`"

@@ -47,7 +47,7 @@ PIECE = 64  # waves at a time: the solve yields in between
 BEYOND = 1.0  # [lengths] of 1/k over which the force fades beyond the highest frequency of a table
 LONG_NODES = 3  # frequencies of a table, up to which the force of long waves is taken off before interpolation
 LONG_POWERS = np.array([1.0, 1.0, 1.0, 1.0, 1.0, 2.0])  # of k, by which what is left is divided there
-# Of k, by which what is left at the first frequency fades below it; but for yaw faster than by its law, since it is
+# Of k, by which the rest at the first frequency fades below it; except for yaw faster than by its law, since it is
 # small, and wrong where a hull has the coefficients of a box.
 FADING_POWERS = np.array([3.0, 3.0, 3.0, 3.0, 3.0, 2.0])
 LEVEL_MOTIONS = [0, 1, 5]  # surge, sway, yaw: water that is higher, and level, does not push along them
@@ -276,7 +276,7 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
     beyond = outside_table(hull, draft)
     if beyond:
         advice = "`with_dataset` takes a table by Capytaine, and `springtide hydrodynamics` makes one for a mesh file"
-        words = f"{hull.shape.name}: {beyond} is outside; added mass, damping and wave forces are those of the border"
+        words = f"{hull.shape.name}: {beyond} is outside; added mass, damping and wave forces are taken from the edge"
         warnings.warn(f"{words}; {advice}", UserWarning, stacklevel=2)
     low = float(hull.extents[2, 0])
     if is_sunken(hull, draft):
@@ -324,7 +324,7 @@ def linear_hull(hull: Hull, draft: float) -> LinearHull:
 def long_wave_force(plane: PlaneForce, cut: Submerged, added: np.ndarray) -> LongWaveForce:
     """The force of long waves on a hull of added mass (6, 6), and the part of it that is wet at rest.
 
-    The mass displaced, times the acceleration of the water, is in the force of the plane but for its vertical part.
+    The mass displaced, times the acceleration of the water, is in the force of the plane except for its vertical part.
     """
     weight = cut.volume * np.array([0.0, 0.0, 1.0, cut.centre[1], -cut.centre[0], 0.0])
     return LongWaveForce(plane.rise, -added[:, 2] - weight, plane.slope - added[:, :2].T)

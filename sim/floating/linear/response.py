@@ -33,7 +33,7 @@ MAX_MISS = 1e-6  # [rad] from the only heading of a dataset
 
 
 class LinearForces(NamedTuple):
-    """Of a body about its centre of gravity: (-w^2 (M + A) - i w B + C) xi = X in waves of amplitude 1 m.
+    """Linear forces of a body about its centre of gravity: (-w^2 (M + A) - i w B + C) xi = X in waves of amplitude 1 m.
 
     ...: the shape of the frequencies, () for a single one.
     """
@@ -65,7 +65,7 @@ def response_amplitude(
     f = linear_forces(body, frequency, heading, layers, gravity)
     w = np.asarray(frequency, dtype=float)[..., None, None]
     D = f.stiffness - w * w * (f.mass + f.added) - 1j * w * f.damping
-    # what nothing restores is in units of 1/w, or its rows would be lost in long waves beside those of the stiffness
+    # motions without a restoring force in units of 1/w, or their rows would be lost in long waves beside the stiffness
     unit = np.ones((*w.shape[:-2], 6, 1))
     unit[..., LEVEL_MOTIONS, :] = 1.0 / w
     scaled = np.linalg.solve(unit * D * unit.swapaxes(-1, -2), unit * f.excitation[..., None])

@@ -62,7 +62,7 @@ class Body(NamedTuple):
         if self.mass is None:
             density = UNIFORM_DENSITY if self.density is None else check_positive("density", self.density, "kg/m3")
         elif self.density is not None:
-            raise argument_error("density", self.density, "None where a mass is given")
+            raise argument_error("density", self.density, "None if a mass is given")
         else:
             density = check_positive("mass", self.mass, "kg") / self.hull.volume
         if self.center_of_gravity is None and self.inertia is None:

@@ -21,7 +21,7 @@ class WindowMean:
     """
 
     def __init__(self, n: int, numbers: int) -> None:
-        """For n bodies with so many numbers each."""
+        """n: number of bodies. numbers: readings of each."""
         self.samples = np.zeros((round(MEAN_DURATION / SAMPLE_DURATION), n, numbers))
         self.sum, self.filled = np.zeros((n, numbers)), 0.0  # of the sample that is being taken, and how long it is [s]
         self.count = 0  # of samples taken
@@ -70,7 +70,7 @@ class HeaveMeter:
         self.mean = WindowMean(n, 1)  # [m] of the drafts
         self.age = np.zeros(n)  # [s] since the averages of a body began
         self.baseline = np.zeros(n)  # [m] mean of the last seconds
-        self.below = np.zeros(n, bool)  # whether a draft was clearly below its mean since the last crossing
+        self.below = np.zeros(n, bool)  # True if a draft was clearly below its mean since the last crossing
         self.deviation = np.zeros(n)  # [m] running mean of the distance from the mean
         self.crossings: list[list[float]] = [[] for _ in range(n)]  # [s] times, the last few of each body
 

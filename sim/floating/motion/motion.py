@@ -381,7 +381,7 @@ def set_wet(fleet, i, density, own, top, scratch):
 
 @kernel(inline=True)
 def set_mass(fleet, coefficients, i, density, own, scratch):
-    """Set mass (6, 6) of body i, with the added mass of what is wet."""
+    """Set mass (6, 6) of body i, with the added mass of its wet part."""
     s, L, wet, mass = fleet.linear_hull[i], fleet.linear.added_factor, scratch.wet, scratch.mass
     for c in range(6):
         for d in range(c + 1):

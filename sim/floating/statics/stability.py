@@ -37,12 +37,12 @@ if TYPE_CHECKING:
 Quaternion = tuple[float, float, float, float]
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 MAX_TILT = math.radians(60.0)  # of a body at rest
-LEVEL = 1e-9  # share of the size of a hull: an arm below it is none
-NEUTRAL = 1e-3  # share of the size of a hull: a GM is none if it is nearer to 0, as that of a ball of 500 triangles
+LEVEL = 1e-9  # share of the size of a hull: an arm below it counts as 0
+NEUTRAL = 1e-3  # share of the size of a hull: a GM nearer to 0 counts as 0, as that of a ball of 500 triangles
 FIRST_LEAN = 0.05  # [rad] from an unstable rest, where the search for a stable one begins
 MAX_TURN = 0.2  # [rad] of one turn of the search for rest
 MAX_TURNS = 60  # of that search
-ROUND_OFF = 1e-15  # share of the height of a hull that is none
+ROUND_OFF = 1e-15  # share of the height of a hull that counts as 0
 
 
 class Balance(NamedTuple):
@@ -133,7 +133,7 @@ def balance_at(loaded: Loaded, rotation: Quaternion) -> Balance:
     x = np.ascontiguousarray(rotation_matrix(np.array(rotation)) @ hull.vertices.T)
     faces, vertical = np.ascontiguousarray(hull.faces.T), np.ascontiguousarray(area_vectors(x.T, hull.faces)[:, 2])
 
-    @functools.lru_cache(maxsize=2)  # of the bracket's ends, at the last one of which the search has been already
+    @functools.lru_cache(maxsize=2)  # of the bracket's ends; the search has been at the last one already
     def under(level: float) -> np.ndarray:
         """The integrals (10,) of `add_displaced`, times density, under a surface at this level."""
         return sum((change * displaced(x, faces, vertical, level - top - x[2]) for change, top in steps), np.zeros(10))
@@ -168,7 +168,7 @@ def near_upright(loaded: Loaded) -> Balance | None:
 def rest_of(loaded: Loaded) -> Balance:
     """The body at stable rest: next to upright, or where it comes to rest when it turns over from there.
 
-    Raises ValueError where that is none within MAX_TILT, ConvergenceError where the search does not end.
+    Raises ValueError if no such angle is within MAX_TILT, ConvergenceError where the search does not end.
     """
     start = balance_at(loaded, UPRIGHT)
     found = near_upright(loaded)

@@ -20,7 +20,7 @@ def arms_of(body: FileBody, points: Iterable[Point]) -> NDArray[np.float64]:
 
 
 def is_point(body: FileBody, points: Iterable[Point]) -> bool:
-    """True for a free body without inertia whose points all are in its middle: no force can turn it."""
+    """True for a free body without inertia with all its points in the middle: no force can turn it."""
     arms = arms_of(body, points)
     return body.inertia.max() == 0.0 and not body.centre.any() and bool(len(arms)) and np.abs(arms).max() < SAME_PLACE
 
@@ -81,7 +81,7 @@ def free_body(body: FileBody, least_mass: float, least_inertia: float, gravity: 
     mass[3:, :3] = body.mass * cross
     mass[:3, 3:] = mass[3:, :3].T
     lift = (density * body.volume - body.mass) * gravity
-    # What sinks hangs below the middle, and what floats is above it; the other way round nothing but lines turns it.
+    # A sinking body hangs below the middle, a floating one is above it; the other way round only lines turn it.
     upright = max(lift * float(arm[2]), 0.0)
     held = HELD * max(abs(lift), body.mass * gravity, 1.0)
     stiffness = np.diag([0.0, 0.0, 0.0, upright + held, upright + held, held])

@@ -63,9 +63,7 @@ def add_option(found: Options, row: Row) -> None:
         field = FIELDS[key]
         number = number_in(where, value)
         if found.fields.get(field, number) != number:
-            raise argument_error(
-                where, number, f"the number of the other option of that meaning, {found.fields[field]:g}"
-            )
+            raise argument_error(where, number, f"the number of its synonym in this file, {found.fields[field]:g}")
         found.fields[field] = number
     else:
         found.warnings.append(f"{name} {value}: an unknown option, left out")

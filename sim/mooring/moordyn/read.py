@@ -96,7 +96,7 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> 
     if free:
         system = turned(system, options.warnings)
     if options.steering:
-        left.append(f"left out, as they steer MoorDyn only: {', '.join(options.steering)}")
+        left.append(f"left out, as they control MoorDyn only: {', '.join(options.steering)}")
     if say is not None:
         for text in filter(None, left):
             say(text)
@@ -142,7 +142,7 @@ def read_rows(
         with wrong:
             one = read(row)
             if key_of(one) in found:
-                raise argument_error(f"{name}, line {row.number}: {key}", key_of(one), "one that no other has")
+                raise argument_error(f"{name}, line {row.number}: {key}", key_of(one), "one that no other row has")
             found[key_of(one)] = one
     return found
 
@@ -160,7 +160,7 @@ def depth_of(fields: Mapping[str, float], points: Iterable[Point], said: list[st
 
 
 def column_left_out(section: Section) -> str:
-    """A line on the tenth column of points, which MoorDyn does not read, "" where there is none."""
+    """A line on the tenth column of points, which MoorDyn does not read, or ""."""
     if all(len(row.words) != 10 for row in section.rows):
         return ""
     name = section.columns[9] if len(section.columns) == 10 else "without a name"

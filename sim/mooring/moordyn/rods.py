@@ -1,4 +1,4 @@
-"""Rods of a MoorDyn file: rigid lines with volume, drag and added mass along them, from whose ends lines hang.
+"""Rods of a MoorDyn file: rigid lines with volume, drag and added mass along them; lines hang from their ends.
 
 A rod that is held, or moves with the vessel, is the two points at its ends. One on a free body is a row of points of
 that body. One that is free, or pinned at its first end, is a line that is so stiff that it stays straight. Drag and

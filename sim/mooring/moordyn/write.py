@@ -52,11 +52,11 @@ def check_writable(system: System) -> None:
     none = {"bodies": system.bodies, "waves": system.waves, "current": any(system.current)}
     for name, value in {**none, "clamps of lines": clamped, "forces on points": pushed}.items():
         if value:
-            raise argument_error(f"system: {name}", value, "none: a MoorDyn file of lines and points holds none")
+            raise argument_error(f"system: {name}", value, "none: a MoorDyn file of lines and points cannot hold them")
     kinds = {line.type for line in system.lines}
     names = sorted(kind.name for kind in kinds)
     if len(set(names)) < len(names):
-        raise argument_error("system: line types", names, "a name of its own for each type")
+        raise argument_error("system: line types", names, "a different name for each type")
     for name in names:
         if not name or len(name.split()) != 1 or name.startswith(("#", "!", "---")):
             raise argument_error("system: line types", name, "names without spaces")

@@ -1,7 +1,7 @@
 """Fluids under the waves: clean water, a layer of oil on water, or a mixture; dispersion and decay of waves on them.
 
 Choose a thickness for oil on water, as in nature; `mixed` for the lab's other reading. Limits: only the surface mode
-is excited (the interfacial one, slow and hidden, is not), and both fluids are at rest but for the waves.
+is excited (the interfacial one, slow and hidden, is not), and both fluids are at rest except for the waves.
 """
 
 import dataclasses

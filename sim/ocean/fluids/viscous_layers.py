@@ -43,7 +43,7 @@ class Layers(NamedTuple):
     interface_omega: np.ndarray  # [rad/s] of the interfacial one
 
     def of(self, which: np.ndarray) -> "Layers":
-        """Those of some of the wavenumbers."""
+        """The layers at some of the wavenumbers."""
         return self._replace(
             **{n: getattr(self, n)[which] for n in ("k", "surface_restoring", "interface_restoring",
                                                     "surface_omega", "interface_omega")}

@@ -240,7 +240,7 @@ def sum_row(count, order):
 
 @kernel(noalias=True, inline=True)
 def set_linear(total, first, square, elevation, potential):
-    """Set the terms without gradients; first: W_1, of which the rate is linear."""
+    """Set the terms without gradients; first: W_1, in which the rate is linear."""
     for i in range(elevation.size):
         elevation[i] = total[i] - first[i]
         potential[i] = 0.5 * square[i]

@@ -12,7 +12,7 @@ from sim.ocean.nonlinear.surface import NonlinearSurface
 
 
 class NonlinearInstant:
-    """Spectra at one time and what follows from them, computed when first read."""
+    """Spectra at one time and their results, computed when first read."""
 
     def __init__(self, equations: WaveEquations, transforms: PaddedTransforms, u: np.ndarray, t: float) -> None:
         """u (2, rows, columns): spectra of elevation [m] and surface potential [m2/s], at time t [s]."""

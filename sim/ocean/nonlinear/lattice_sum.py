@@ -51,7 +51,7 @@ def set_elevations(points, length, parts, out):
 def add_row(parts, term, i, kx, ky, c, s, cos, sin, value, slope, out):
     """Add the waves of row i to out (functions, 4): the functions and their derivatives along x, y and z.
 
-    parts (terms, functions, 2, rows, columns), of which one term; c, s: phase of the row; value, slope (columns,):
+    parts (terms, functions, 2, rows, columns), here one term; c, s: phase of the row; value, slope (columns,):
     factors of depth on the functions and on their vertical derivatives.
     """
     for f in range(out.shape[0]):

@@ -1,4 +1,4 @@
-"""Steps in time of waves of which only the nonlinear part is integrated; the linear part is exact.
+"""Steps in time of nonlinear waves: only the nonlinear part is integrated, and the linear part is exact.
 
 In the interaction picture, v = E(-t) u with E the linear evolution, linear waves stand still. The classical method of
 Runge and Kutta, order 4, integrates the rest. One more evaluation at the end of a step, the first of the next, gives a

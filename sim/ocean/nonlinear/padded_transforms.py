@@ -53,7 +53,7 @@ class PaddedTransforms:
         """shape (rows, cells): of the grid, along y and x."""
         self.shape = rows, cells = shape
         self.work = work
-        # What is not written stays 0: rows between those of a spectrum in `spectrum`, the last columns of `_half`.
+        # Unwritten entries stay 0: rows between those of a spectrum in `spectrum`, the last columns of `_half`.
         self._half = aligned((rows, cells // 2 + 1), np.complex128)
         self.spectrum = self._half[:, :columns] if rows == 1 else aligned((rows, columns), np.complex128)
         self._other = aligned((rows, cells // 2 + 1), np.complex128)

@@ -29,7 +29,7 @@ class Start(NamedTuple):
 
 
 def started(start: Any, size: Any, length: Any, water: dict[str, Any], time: float) -> Start:
-    """The start of a `NonlinearSea`, of which these are arguments; water: depth, gravity and density, or None for each.
+    """The start of a `NonlinearSea`, from its arguments; water: depth, gravity and density, or None for each.
 
     Raises ValueError for a value that is not allowed or not that of the start.
     """

@@ -1,4 +1,4 @@
-"""Which waves each band of a radial grid shows, and their sums at its vertices."""
+"""Waves that each band of a radial grid shows, and their sums at its vertices."""
 
 import math
 

@@ -59,7 +59,7 @@ class RadialSea(AnySea):
         self._time = 0.0
         self.choppiness = check_number("choppiness", choppiness, "", 0.0)
         self._departing: DepartingWaves | None = None
-        self.slick: SlickCover | None = None  # what calms the waves under it
+        self.slick: SlickCover | None = None  # it calms the waves under it
         self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
         self.past: dict[FluidColumn, float] = {}
         check_carried(waves, column)
@@ -112,7 +112,7 @@ class RadialSea(AnySea):
         self._interface: tuple[Waves | None, np.ndarray, np.ndarray] = None, rate, rate
 
     def _forget_wavenumbers(self) -> None:
-        """Forget what is kept of the wavenumbers of `waves_at`."""
+        """Clear the cache of the wavenumbers of `waves_at`."""
         self._plan: BandPlan | None = None
         self._footprints: Footprints | None = None
 
@@ -134,7 +134,7 @@ class RadialSea(AnySea):
 
     @property
     def water(self) -> Water:
-        """The fluid on top, which is deep but for a layer of oil, under the column's gravity."""
+        """The fluid on top, which is deep except for a layer of oil, under the column's gravity."""
         return self._own.water
 
     @property
@@ -254,7 +254,7 @@ class RadialSea(AnySea):
 
 
 def check_carried(waves: Waves, column: FluidColumn) -> None:
-    """Raises ValueError for waves that are none, of water of a finite depth, or under another gravity than the column.
+    """Raises ValueError for other types than Waves, for shallow water, or under another gravity than the column.
 
     The column's fluids are deep.
     """

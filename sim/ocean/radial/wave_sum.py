@@ -75,7 +75,7 @@ def wave_rows(
 
 
 class Factors(NamedTuple):
-    """Of a wave, times its weight; its cosine or sine at a vertex is multiplied by these for each of the sums."""
+    """Factors, one for each sum, on a wave's cosine or sine at a vertex, times its weight."""
 
     z: np.float32
     X: np.float32

@@ -8,7 +8,7 @@
     >>> bool(abs(sea.at([[0.0, 0.0]], t=33.0).height[0] - np.interp(33.0, t, eta)) < 1e-2)
     True
 
-The record is the sum of its Fourier components, each of which becomes one wave. It begins again after its length, so
+The record is the sum of its Fourier components, and each becomes one wave. It begins again after its length, so
 that its ends meet there. Of linear waves this is the only sea whose crests are all at right angles to the direction.
 """
 
@@ -70,7 +70,7 @@ def recorded_waves(
     X = np.fft.rfft(heights - heights.mean())[1:] / n
     f = np.arange(1, len(X) + 1) / (n * step)
     amplitude = 2.0 * np.abs(X)
-    if n % 2 == 0:  # half the rate of the samples, of which a transform has the whole amplitude
+    if n % 2 == 0:  # half the rate of the samples: a transform has its whole amplitude
         amplitude[-1] *= 0.5
     energy = 0.5 * amplitude**2
     if not energy.sum() > 0.0:

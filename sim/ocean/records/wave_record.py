@@ -21,7 +21,7 @@ from sim.validation import argument_error, as_array
 
 
 class ZeroCrossings(NamedTuple):
-    """The whole waves of a record; means are nan where there are none."""
+    """The whole waves of a record; means are nan without any."""
 
     number: int
     significant_height: float  # [m] H1/3, mean of the highest third

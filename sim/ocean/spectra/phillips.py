@@ -44,7 +44,7 @@ def significant_height(c: PhillipsConditions) -> float:
 
 
 def peak(c: PhillipsConditions) -> float:
-    """Of S(omega) ~ k^-5/2 exp(-1/(kL)^2), deep water: k_p = sqrt(4/5)/L, omega_p = sqrt(g k_p) [rad/s]."""
+    """Peak of S(omega) ~ k^-5/2 exp(-1/(kL)^2), deep water: k_p = sqrt(4/5)/L, omega_p = sqrt(g k_p) [rad/s]."""
     return math.sqrt(math.sqrt(0.8)) * c.gravity / c.wind_speed
 
 

@@ -50,7 +50,7 @@ class Conditions:
     )  # fmt: skip
     second_period: float = parameter(12.0, 1.0, 30.0, "s", "Peak period of the second system", title="Second system Tp")
     second_direction: float = parameter(
-        0.5 * math.pi, -math.pi, math.pi, "rad", "Where the second system goes to, from +x towards +y",
+        0.5 * math.pi, -math.pi, math.pi, "rad", "Direction that the second system goes to, from +x towards +y",
         title="Second system direction",
     )  # fmt: skip
 
@@ -113,7 +113,7 @@ class Spectrum(NamedTuple, Generic[C]):
     # S(omega) [m2 s] over all directions, where it is known; without it `density` is integrated
     frequency: Callable[[np.ndarray, C], np.ndarray] | None = None
     wind_height: float = 10.0  # [m] of the wind speed that it takes
-    by_wind: bool = True  # whether the wind makes its waves: without wind there are none
+    by_wind: bool = True  # the wind makes its waves: no wind, no waves
     line: Callable[[C], tuple[float, float, float]] | None = None  # (kx, ky [rad/m], m0 [m2]) of one regular wave
     notes: tuple[str, ...] = ()  # of one from a file: lines on what was read, and on what was left out
 

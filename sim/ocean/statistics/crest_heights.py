@@ -32,7 +32,7 @@ def high_crests(sea: "Sea", t: float | None = None) -> HighCrests:
     """Theory of the highest crest, skewness and kurtosis of a tile at time t [s], by default the sea's own.
 
     The highest crest of an area: Adler 1981, The Geometry of Random Fields, Th. 6.9.3; of a line: Rice 1944. Crests of
-    second order: `forristall_crest`. Moments: `narrow_band_moments`. All 0 on a level sea, but for the kurtosis.
+    second order: `forristall_crest`. Moments: `narrow_band_moments`. All 0 on a level sea, except the kurtosis.
     """
     energy = sea.energy_at(sea.time if t is None else t)
     m0, kx, ky = float(energy.sum()), sea.k[:, None], sea.k[None, :]

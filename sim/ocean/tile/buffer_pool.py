@@ -12,11 +12,11 @@ ALIGNMENT = 64  # [bytes] what the widest vector instructions like
 
 
 def references(blocks: list[np.ndarray], i: int) -> int:
-    """How many hold block i, counted the same way each time."""
+    """Number of holders of block i, counted the same way each time."""
     return sys.getrefcount(blocks[i])
 
 
-UNUSED_REFERENCES = references([np.empty(0)], 0)  # what a block counts that only its list holds
+UNUSED_REFERENCES = references([np.empty(0)], 0)  # count of a block that only its list holds
 
 
 class BufferPool:

@@ -159,7 +159,7 @@ class Ripples:
         """t [s] as a float. Raises ValueError for a time before that of the last change of the rings."""
         t = check_number("t", t, "s")
         if t < self.time and (self.alive or self.mean):
-            raise argument_error("t", t, f"{self.time:g} s or later: rings do not run back before the last impulse")
+            raise argument_error("t", t, f"{self.time:g} s or later: rings cannot go back before the last impulse")
         check_number("leak", self.leak, "1/s", 0.0)
         return t
 

@@ -53,7 +53,7 @@ class Surface:
 
     @property
     def mean_height(self) -> float:
-        """Mean [m] of `height` over the labels but for rings, choppiness sum k |h(k)|^2: the mean level in place is 0.
+        """Mean [m] of `height` over the labels without rings, choppiness sum k |h(k)|^2: the mean level in place is 0.
 
         Displaced points gather at the crests, so that a place sees the mean of h J, J the Jacobian. That of the waves
         alone is lower by this sum, to third order in steepness; their spectrum has no mean. A particle's mean level is

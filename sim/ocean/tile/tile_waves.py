@@ -1,4 +1,4 @@
-"""Sizes and phases of a tile's waves in time: they approach those of the conditions, and decay in what they run in.
+"""Sizes and phases of a tile's waves in time: they approach those of the conditions, and decay in the medium.
 
 Full and quarter planes are as in `wavenumbers.py`. No array is changed in place.
 """
@@ -97,7 +97,9 @@ class TileWaves:
         """Raises ValueError for a time that is not finite, or before the last change where waves decay or relax."""
         t = check_number("t", t, "s")
         if t < self.base and (self.relax > 0.0 or self.decays):
-            raise argument_error("t", t, f"{self.base:g} s or later: decaying and relaxing waves do not run back")
+            raise argument_error(
+                "t", t, f"{self.base:g} s or later: decaying and relaxing waves cannot go back in time"
+            )
         return t
 
     def lost_at(self, t: float) -> np.ndarray:

@@ -158,7 +158,7 @@ def pseudo_components(oil: str) -> PseudoComponents:
     boiled[-1] = 1.0
     last = int(np.argmax(boiled >= 1.0))  # the cut with which all has boiled off
     cut = np.diff(boiled[: last + 1], prepend=0.0)[1:]
-    cut[0] = boiled[1]  # what boils below the first bound counts with the first cut
+    cut[0] = boiled[1]  # the part that boils below the first bound counts with the first cut
     boiling = 0.5 * (CUT_BOUNDS[1:] + CUT_BOUNDS[:-1])[:last]
     boiling, cut = boiling[boiled[1 : last + 1] > 0.0], cut[boiled[1 : last + 1] > 0.0]
 

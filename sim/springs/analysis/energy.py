@@ -78,7 +78,7 @@ def add_power(x, v, t, p, with_damping, weight, ledger):
     ledger[1] += weight * work
 
 
-# What moving pins put in [W] through all damping.
+# Power [W] that moving pins put in through all damping.
 pins_damping_power = each("pins_power", "x, v, p", "sum")
 
 

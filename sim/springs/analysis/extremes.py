@@ -1,4 +1,4 @@
-"""How far and how fast the particles of a net are: the check that a motion has not diverged."""
+"""Reach and speed of a net's particles: the check that a motion has not diverged."""
 
 from typing import NamedTuple
 

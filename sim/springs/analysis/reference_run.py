@@ -45,7 +45,7 @@ class ReferenceRun:
         self.separation = PERTURBATION  # [m]
         self.horizon: float | None = None  # [s] when chaos took it
         self.count = count
-        self.failure = ""  # why there is none, or ""
+        self.failure = ""  # reason why the reference is missing, or ""
         self.update(net)
 
     @property
@@ -94,14 +94,14 @@ class ReferenceRun:
             v.reshape(3, -1)[:, 0] = 0.0
 
     def distance(self, x: NDArray[np.float64]) -> float:
-        """Largest distance [m] of a point of x (3, 1, points) from the reference's; NaN where there is none."""
+        """Largest distance [m] of a point of x (3, 1, points) from the reference's; NaN without a reference."""
         if not self.is_available:
             return math.nan
         return float(np.linalg.norm(x[:, 0] - self.x, axis=0).max())
 
 
 def too_costly(net: Net, count: int) -> str:
-    """Why `count` references of about this net cannot be followed in real time, or ""."""
+    """Reason why `count` references of about this net cannot be followed in real time, or ""."""
     # The shortest steps are about 0.7/omega, and stay below 3.3/rate where damping is strong; six evaluations each, in
     # two runs.
     omega, rate = gershgorin(net)

@@ -1,4 +1,4 @@
-"""How far the links of a net are stretched or pressed."""
+"""Strain of a net's links."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -42,9 +42,9 @@ class Summation(NamedTuple):
     """Sums of the results of forces in a kernel of `each`."""
 
     start: str  # its first line
-    call: str  # what is done with the `call` of a force that acts
+    call: str  # statement with the `call` of an acting force
     end: str  # its last line
-    nothing: str  # what a force that a net does not have returns
+    nothing: str  # result of a force that a net does not have
 
 
 SUMMATIONS = {
@@ -116,7 +116,7 @@ def each(
 
 def check_forces(forces: Any) -> tuple[Any, ...]:
     """The numbers of the forces that a net declares, as they are. Raises ValueError for others."""
-    known = f"numbers of the forces of sim.springs.forces: {', '.join(one.__name__ for one in OWN) or 'there are none'}"
+    known = f"numbers of the forces of sim.springs.forces: {', '.join(one.__name__ for one in OWN) or 'none so far'}"
     if not isinstance(forces, tuple) or any(type(one) not in OWN for one in forces):
         raise argument_error("forces", forces, known)
     if len({type(one) for one in forces}) < len(forces):

@@ -71,7 +71,7 @@ def add_bending_tension(x, p, out):
 
 @kernel
 def set_line_tensions(x, v, p, out):
-    """Set the tension (links,) [N] of every link of lines, with its damping and what bending adds."""
+    """Set the tension (links,) [N] of every link of lines, with its damping and the part from bending."""
     set_tensions(x, v, p, out)
     add_bending_tension(x, p, out)
 

@@ -13,7 +13,7 @@ from sim.springs.laws import damps, force_density, stiffness, tension
 from sim.springs.laws import energy as link_energy
 from sim.springs.line_points import kick, mobility
 
-MOST_OF_PULL = 1.0 - 1e-15  # what damping may take of a line's pull, so that round-off does not make it push
+MOST_OF_PULL = 1.0 - 1e-15  # fraction of a line's pull that damping may take, so that round-off does not make it push
 
 
 @kernel(noalias=True, inline=True)
@@ -106,7 +106,7 @@ def set_tensions(link, x, v, p, out):
 
 @each_link(noalias=True)
 def accelerate(link, x, v, t, p, with_damping, f, a):
-    """Of lines; those of nets are in `sim.springs.acceleration`."""
+    """Accelerations of lines; those of nets are in `sim.springs.acceleration`."""
     rx, ry, rz, length = stretch(x, p, link)
     s = force_density(link.law, link.stiffness, link.rest, length)
     if with_damping:
@@ -118,7 +118,7 @@ def accelerate(link, x, v, t, p, with_damping, f, a):
 
 @each_link("sum")
 def damp(link, x, v, t, s, p, reverse):
-    """Of lines: the closing speed of a link's nodes decays exponentially. That of nets is in `sim.springs.damping`."""
+    """Damp lines: the closing speed of a link's nodes decays exponentially. For nets: `sim.springs.damping`."""
     rx, ry, rz, _ = stretch(x, p, link)
     length, rate, damping = lengthening(x, v, p, link)
     rx, ry, rz = rx / length, ry / length, rz / length
@@ -132,7 +132,7 @@ def damp(link, x, v, t, s, p, reverse):
 
 @each_link("sum")
 def energy(link, x, t, p):
-    """Of the links [J]."""
+    """Energy of the links [J]."""
     return link_energy(link.law, link.stiffness, link.rest, stretch(x, p, link)[3])
 
 

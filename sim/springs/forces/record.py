@@ -18,7 +18,7 @@ def of_nets(springs: Any = None, lines: Any = None) -> dict[type, Any]:
 
 
 def no_bound(numbers: Any) -> tuple[float, float]:
-    """Of a constant force."""
+    """No bound of a constant force."""
     return 0.0, 0.0
 
 

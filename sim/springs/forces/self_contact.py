@@ -41,7 +41,7 @@ def find_pairs(x, p):
 
     Where p.pairs is full, the particles after that are left out; its last row keeps the largest number of them.
 
-    There are none where p.stop asks for an end: who calls a kernel that may end in here looks at p.stop afterwards.
+    No pairs where p.stop asks for an end: who calls a kernel that may end in here looks at p.stop afterwards.
     """
     n = p.rows * p.cols
     reach = (1.0 + SKIN) * p.thickness
@@ -176,7 +176,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 @kernel(allocates=False)
 def damp(x, v, t, s, p, reverse):
-    """Damping of touching pairs alone for a time s [s]: exact, but for separating pairs at most their push."""
+    """Damping of touching pairs alone for a time s [s]: exact, except that separating pairs get at most their push."""
     n = p.rows * p.cols
     count = refresh_pairs(x, p)
     for turn in range(count):

@@ -174,7 +174,7 @@ def damp(x, v, t, s, p, reverse):
 
 @kernel(allocates=False)
 def energy(x, t, p):
-    """Of buoyancy in still water [J], that of prescribed nodes too: it depends on the free ones beside them."""
+    """Energy of buoyancy in still water [J], that of prescribed nodes too: it depends on the free ones beside them."""
     up, total = 2 * p.cols, 0.0
     for i in range(p.places.shape[0]):
         z = x[up + p.places[i, 0]]

@@ -36,7 +36,7 @@ class Integrator(NamedTuple):
     undamped_order: int = 0  # where it differs from `order`
     implicit: bool = False  # a force evaluation is then one correction of Newton's method, `evals` the least number
     evals_outside_newton: int = 0  # of implicit methods: force evaluations a step beside those corrections
-    l_stable: bool = False  # what it cannot follow decays within a step
+    l_stable: bool = False  # motions that it does not resolve decay within a step
     undamped_only: bool = False  # refuses nets with damping
     march: Callable[..., tuple[int, int, int, float]] | None = None  # adaptive methods: with steps of its own choosing
 

@@ -58,6 +58,6 @@ def stable_step(omega: float, rate: float) -> float:
 
 RECORD = Integrator(
     "dop853", 8, False, 12, stable_step, partial(take_steps, METHOD),
-    "For the truth: eighth order, chooses its own steps, errors to 1e-12.",
+    "For references: eighth order, chooses its own steps, errors to 1e-12.",
     march=partial(march, METHOD),
 )  # fmt: skip

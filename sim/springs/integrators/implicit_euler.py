@@ -18,6 +18,6 @@ def stable_step(omega: float, rate: float) -> float:
 
 RECORD = Integrator(
     "implicit_euler", 1, False, 1, stable_step, partial(advance_implicit, EULER),
-    "For looks at any stiffness: damps what it cannot follow.",
+    "For appearance at any stiffness: damps what its step does not resolve.",
     implicit=True, l_stable=True,
 )  # fmt: skip

@@ -72,6 +72,6 @@ def stable_step(omega: float, rate: float) -> float:
 
 RECORD = Integrator(
     "rkn8", 5, False, 8, stable_step, functools.partial(take_steps, METHOD),
-    "For the truth of stiff or weakly damped nets: chooses its own steps.",
+    "For references of stiff or weakly damped nets: chooses its own steps.",
     undamped_order=8, march=functools.partial(march, METHOD),
 )  # fmt: skip

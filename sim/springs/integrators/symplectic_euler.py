@@ -57,5 +57,5 @@ RECORD = Integrator(
     1,
     stable_step,
     advance,
-    "What the lab's code calls Euler: cheap and steady, first order.",
+    "For the lab's code, which calls it Euler: cheap, stable, first order.",
 )

@@ -1,4 +1,4 @@
-"""`Law`: what a file of `sim.springs.laws` declares."""
+"""`Law`: the declaration of a file of `sim.springs.laws`."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

@@ -53,7 +53,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> Callable[[str, int], str]:
     monkeypatch.setattr(serve, "open_server", lambda host, port, _: SimpleNamespace(server=FakeServer(host, port)))
     monkeypatch.setattr(serve.Opening, "start", lambda _: None)
     monkeypatch.setattr(serve, "wait_until", lambda *_: None)
-    monkeypatch.setattr(serve.Keeper, "store", lambda _: pytest.fail("the set-up is kept without --resume"))
+    monkeypatch.setattr(serve.SetupSaver, "store", lambda _: pytest.fail("the set-up is kept without --resume"))
     monkeypatch.setattr(serve.webbrowser, "open", addresses.append)
 
     def opened_by(host: str, port: int) -> str:

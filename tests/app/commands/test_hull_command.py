@@ -49,7 +49,8 @@ def test_an_open_mesh_is_shown_with_its_place_and_the_remedy(tmp_path, capsys):
     assert main(["hull", str(path)]) == 1
     said = " ".join(capsys.readouterr().out.split())
     assert (
-        "open: 4 edges without their one opposite, at x -10 to 10, y -3 to 3, z 3 to 3 m closed by: --cap deck" in said
+        "open: 4 edges without exactly one opposite, at x -10 to 10, y -3 to 3, z 3 to 3 m closed by: --cap deck"
+        in said
     )
     assert main(["hull", str(path), "--cap", "deck"]) == 0
     assert "closed" in capsys.readouterr().out

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from app.__main__ import main
-from app.commands.serve import Keeper
+from app.commands.serve import SetupSaver
 from app.scenes import scene_named
 from app.scenes.last_setup import keep_last, last_path, read_last
 
@@ -53,15 +53,15 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> Callable[..., tuple[Any, ...]]:
 def test_the_next_start_has_the_setup_that_was_left(data: Path, opened: Callable[..., tuple[Any, ...]]) -> None:
     assert opened("--resume") == opened()  # nothing was left
     lab = lab_with(STIFF)
-    keeper = Keeper(lab)
-    keeper.store()
+    saver = SetupSaver(lab)
+    saver.store()
     assert opened("--resume", "--scene", "cloth") == ("rope", STIFF)
     assert opened() != ("rope", STIFF)
     written = last_path().stat().st_mtime_ns
-    keeper.store()
+    saver.store()
     assert last_path().stat().st_mtime_ns == written  # nothing has changed
     lab.viewer.current.settings.params = ROPE.params()
-    keeper.store()
+    saver.store()
     assert opened("--resume") == ("rope", ROPE.params())
 
 
@@ -74,9 +74,9 @@ def test_what_cannot_be_read_is_as_if_nothing_was_left(data: Path, text: str) ->
 def test_where_nothing_can_be_written_the_lab_goes_on(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (data / "file").write_text("", "utf-8")
     monkeypatch.setenv("SPRINGTIDE_DATA", str(data / "file" / "below"))
-    Keeper(lab_with(STIFF)).store()
+    SetupSaver(lab_with(STIFF)).store()
     for viewer in (None, SimpleNamespace(current=None)):  # before there is a lab, and before a scene is open
-        Keeper(SimpleNamespace(viewer=viewer)).store()  # type: ignore[arg-type]
+        SetupSaver(SimpleNamespace(viewer=viewer)).store()  # type: ignore[arg-type]
     assert read_last() is None
 
 

@@ -18,7 +18,7 @@ from app.lab.course.workbook import Workbook
 from app.lab.student.session import Session
 from app.messages import Command
 from app.panel.sharing import share
-from app.panel.sharing.compare import Beside
+from app.panel.sharing.compare import ComparisonCalls
 from app.scenes import NAMES
 from app.server.viewer import Viewer
 from tests.waiting import wait_for
@@ -81,7 +81,7 @@ class Pressed:
         monkeypatch.setattr(viewer.settings, "open_scene", lambda *scene: self.asked.append(scene))
         monkeypatch.setattr(self.panel.recorder, "wake", self.update)
         assert self.panel.compare is not None
-        asked = Beside(lambda *given: self.asked.append(given), lambda: self.asked.append("end"), lambda: ())
+        asked = ComparisonCalls(lambda *given: self.asked.append(given), lambda: self.asked.append("end"), lambda: ())
         monkeypatch.setattr(self.panel.compare, "beside", asked)
 
     def buttons(self) -> Iterator[tuple[Any, str]]:

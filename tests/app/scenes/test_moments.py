@@ -8,7 +8,7 @@ import pytest
 
 from app.messages import GrabTo, Place, Release
 from app.scenes import scene_named
-from app.scenes.moments import arrays_in
+from app.scenes.checkpoints import arrays_in
 
 CASES = {
     "rope": ({"points": 8, "integrator": "rk4", "sphere": True}, 40),

@@ -6,7 +6,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from app.panel.sharing.changes import SHOWN_TIME, UNDO, Change, Changes, Notice
+from app.panel.sharing.changes import SHOWN_TIME, UNDO, SceneSwitch, SceneSwitches, SwitchNotice
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
@@ -36,8 +36,8 @@ def test_the_time_of_a_change_begins_in_the_scene_that_it_opened(monkeypatch: py
     clock = [100.0]
     monkeypatch.setattr("app.panel.sharing.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
     before = make_setup(scene_named("rope"))
-    changes = Changes()
-    changes.latest = Change("page", "cloth", make_setup(scene_named("cloth")), before)
+    changes = SceneSwitches()
+    changes.latest = SceneSwitch("page", "cloth", make_setup(scene_named("cloth")), before)
     for _ in range(2):  # while the cloth is compiled
         assert changes.shown_in("rope") is None
         clock[0] += 2.0 * SHOWN_TIME
@@ -48,11 +48,11 @@ def test_the_time_of_a_change_begins_in_the_scene_that_it_opened(monkeypatch: py
 
 
 def test_a_change_is_undone_once() -> None:
-    undone: list[Change] = []
-    changes, gui = Changes(), Mock()
-    notice = Notice(gui, "rope", changes, undone.append)
+    undone: list[SceneSwitch] = []
+    changes, gui = SceneSwitches(), Mock()
+    notice = SwitchNotice(gui, "rope", changes, undone.append)
     rope = make_setup(scene_named("rope"))
-    changes.latest = change = Change("page", "rope", rope, rope)
+    changes.latest = change = SceneSwitch("page", "rope", rope, rope)
     for _ in range(2):
         coroutines.run(notice.on_undo(Mock()))
     assert undone == [change]

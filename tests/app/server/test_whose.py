@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.messages import Moment
+from app.messages import LastFrame
 from app.server.viewer import Viewer
 from sim.validation import DivergenceError
 from tests import coroutines
@@ -64,7 +64,7 @@ def test_a_camera_that_was_moved_to_show_a_divergence_goes_back_unless_a_person_
     def diverge(steps: int) -> None:
         advance(steps)
         low, high = (-50.0, -50.0, -50.0), (50.0, 50.0, 50.0)
-        raise DivergenceError("it diverged", (Moment(scene.time, scene.frame(), low, high),) * 3)
+        raise DivergenceError("it diverged", (LastFrame(scene.time, scene.frame(), low, high),) * 3)
 
     async def look() -> None:
         async with visitor(lab) as first, visitor(lab) as second:

@@ -131,9 +131,9 @@ def broken_meshes():
     infinite = box.vertices.copy()
     infinite[2, 1] = math.inf
     return {
-        "open": (box.vertices, box.faces[:-1], "edges without their one opposite"),
-        "one face turned": (box.vertices, turned, "edges without their one opposite"),
-        "doubled": (box.vertices, np.concatenate([box.faces, box.faces]), "edges without their one opposite"),
+        "open": (box.vertices, box.faces[:-1], "edges without exactly one opposite"),
+        "one face turned": (box.vertices, turned, "edges without exactly one opposite"),
+        "doubled": (box.vertices, np.concatenate([box.faces, box.faces]), "edges without exactly one opposite"),
         "not finite": (infinite, box.faces, "not finite"),
         "flat": (box.vertices * [1, 1, 0], box.faces, "extents"),
         "no such vertex": (box.vertices, box.faces + 1, "vertex 8"),

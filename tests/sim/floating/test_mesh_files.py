@@ -124,7 +124,9 @@ def test_the_other_half_is_added(tmp_path):
 def test_a_deck_is_added_and_a_bottom_is_not(tmp_path):
     path = stl(tmp_path / "shell.stl", VERTICES, SIDES)
     assert_refused(
-        str(path), lambda: Hull.load(path), "4 edges without their one opposite, at x -10 to 10, y -3 to 3, z 3 to 3 m"
+        str(path),
+        lambda: Hull.load(path),
+        "4 edges without exactly one opposite, at x -10 to 10, y -3 to 3, z 3 to 3 m",
     )
     hull = Hull.load(path, cap="deck")
     assert hull.volume == pytest.approx(VOLUME)

@@ -125,7 +125,7 @@ def changed(tmp_path, *replacements: tuple[str, str]) -> Path:
 def test_options_that_only_steer_moordyn_are_listed_in_one_line():
     said: list[str] = []
     read_moordyn(FILES / "chain.txt", said.append)
-    assert said == ["left out, as they steer MoorDyn only: cfl, ICgenDynamic, dtWave"]
+    assert said == ["left out, as they control MoorDyn only: cfl, ICgenDynamic, dtWave"]
 
 
 WATER = [

@@ -5,7 +5,7 @@ import pytest
 
 from app.panel.recording.recorder import MAX_BYTES, Recorder, arrays_of_frame
 from app.scenes import scene_named
-from app.scenes.moments import arrays_in
+from app.scenes.checkpoints import arrays_in
 from app.server.loop.sim_loop import SimLoop
 
 RATE = 30  # [1/s] frames

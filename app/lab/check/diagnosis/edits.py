@@ -287,12 +287,12 @@ def explain_edit(
             continue
         right, wrong = (ASARRAY.sub(r"\1", text).replace("np.", "") for text in (right, wrong))
         if edit.condition:
-            text = f"The result is that of a function in which the condition {right} {edit.condition} holds."
+            text = f"The result matches a function in which the condition {right} {edit.condition} holds."
             return Explanation(f"{right} is not tested", text, form=edit.function)
         if not wrong:
-            return Explanation(f"{right} is missing", "The result is that without it.", form=edit.function)
+            return Explanation(f"{right} is missing", "The result matches the formula without it.", form=edit.function)
         equation = Equation("it has", (Piece(wrong, wrong=True),), right)
-        text = f"The result is that of {wrong}; it must be {right}."
+        text = f"The result matches {wrong}; it must be {right}."
         return Explanation(f"{wrong} in place of {right}", text, (equation,), edit.function)
     return None
 

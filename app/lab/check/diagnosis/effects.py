@@ -27,10 +27,10 @@ MAX_CODE = 70  # characters of a line that is shown
 WRITES = frozenset(("os.mkdir", "os.remove", "os.rename", "os.rmdir", "os.truncate"))  # audit events beside "open"
 RANDOM = ("numpy's random numbers", "Python's random numbers")
 SETTINGS = frozenset((
-    *RANDOM, "numpy's handling of errors", "the way numpy prints", "the working folder", "the environment variables",
-    "Python's limit of recursion", "the folders of modules",
+    *RANDOM, "numpy's error handling", "numpy's print options", "the working folder", "the environment variables",
+    "Python's recursion limit", "the module search path",
 ))  # fmt: skip
-HIDDEN = "something is kept from one call to the next, or drawn at random. Compute everything from the arguments."
+HIDDEN = "something carries over between calls, or is drawn at random. Compute everything from the arguments."
 OPERATORS: dict[type[ast.operator], str] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**", ast.FloorDiv: "//", ast.Mod: "%",
     ast.MatMult: "@",
@@ -116,7 +116,7 @@ def argument_effect(function: Callable[..., Any], names: Sequence[str], place: C
 
 
 def advice(function: Callable[..., Any], name: str, place: CodeLine | None) -> str:
-    """How to leave an argument as it is."""
+    """Advice for leaving an argument unchanged."""
     statement = statement_at(place)
     if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
         left, sign = statement.target.id, OPERATORS.get(type(statement.op))
@@ -268,12 +268,12 @@ def state_of_function(name: str, function: types.FunctionType) -> Mapping[str, A
 def settings() -> dict[str, Any]:
     """Settings of Python and numpy that a function may change, as of `state_of`."""
     found: dict[str, Any] = {
-        "numpy's handling of errors": tuple(np.geterr().values()),
-        "the way numpy prints": repr(np.get_printoptions()),
+        "numpy's error handling": tuple(np.geterr().values()),
+        "numpy's print options": repr(np.get_printoptions()),
         "the working folder": os.getcwd(),
         "the environment variables": hash(frozenset(os.environ.items())),
-        "Python's limit of recursion": sys.getrecursionlimit(),
-        "the folders of modules": tuple(sys.path),
+        "Python's recursion limit": sys.getrecursionlimit(),
+        "the module search path": tuple(sys.path),
     }
     if (numpy_random := sys.modules.get("numpy.random")) is not None:
         found[RANDOM[0]] = digest(numpy_random.get_state(), 3)

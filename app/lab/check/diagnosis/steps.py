@@ -67,11 +67,7 @@ def order_sentence(found: StepTableau, reference: StepTableau) -> str:
     has, needs = order_of(found), order_of(reference)
     if has >= needs:
         return ""
-    return (
-        f"It has order {has} instead of {needs}."
-        if has
-        else "It does not come nearer to the motion with smaller steps."
-    )
+    return f"It has order {has} instead of {needs}." if has else "Smaller steps do not bring it closer to the motion."
 
 
 def mistake_of(row: ComparedRow) -> tuple[str, str]:

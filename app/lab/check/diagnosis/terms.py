@@ -77,11 +77,11 @@ class Unit(NamedTuple):
     formula: str
     members: tuple[int, ...]
     forms: tuple[Form, ...]
-    like: tuple[int, ...] = ()  # terms of which a further term is a form
+    like: tuple[int, ...] = ()  # terms that a further term is a form of
 
     @property
     def terms(self) -> tuple[int, ...]:
-        """The terms of which it has forms."""
+        """Terms that this term may be a form of."""
         return self.members or self.like
 
 
@@ -101,7 +101,7 @@ class Inputs:
         self, names: Sequence[str], samples: Sequence[tuple[Any, ...]], results: Sequence[np.ndarray],
         found: Sequence[np.ndarray],
     ) -> None:  # fmt: skip
-        """results, found: the right ones and the student's, the larger of which set the scale at each input."""
+        """results, found: the right ones and the student's; the larger sets the scale at each input."""
         self.names, self.samples = tuple(names), samples
         self.shapes = [result.shape for result in results]
         self.lengths = np.array([result.size for result in results])
@@ -410,7 +410,7 @@ def without_row(block: np.ndarray, row: int) -> np.ndarray:
 def one_change(
     y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[ChangedForm]]
 ) -> list[Finding]:
-    """Find the form of one unit that explains the results; an empty list if there is none."""
+    """Find the form of one unit that explains the results; an empty list if no form does."""
     best: Finding | None = None
     for unit, forms in zip(units, changes, strict=True):
         left = y - total_of(right, set(range(len(right))) - set(unit.members))
@@ -445,7 +445,7 @@ def one_more(
 def two_changes(
     y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[ChangedForm]]
 ) -> list[Finding]:
-    """Find the forms of two units that explain the results; an empty list if there are none."""
+    """Find the forms of two units that explain the results; an empty list if no pair does."""
     best: tuple[float, list[Finding]] | None = None
     for (one, ones), (other, others) in itertools.combinations(zip(units, changes, strict=True), 2):
         if set(one.members) & set(other.members):
@@ -476,7 +476,7 @@ def two_changes(
 
 
 def factor_between(left: np.ndarray, form: ChangedForm) -> float:
-    """The factor of a form that leaves nothing of values; 0 if there is none."""
+    """The factor of a form that explains all values; 0 if no factor does."""
     factor = float(left @ form.vector / (form.vector @ form.vector))
     return factor if np.abs(left - factor * form.vector).max() <= TOLERANCE else 0.0
 
@@ -531,7 +531,7 @@ def mistake_of(finding: Finding) -> tuple[str, str]:
             return "sign reversed", "Every result has the right size and the wrong sign."
         if not is_simple(factor):
             size = f"{100.0 * abs(factor - 1.0):.2g} % too {'large' if factor > 1.0 else 'small'}"
-            return "another constant", f"The law is right. Every result is {size}: a constant in it is another one."
+            return "another constant", f"The law is right. Every result is {size}: a constant in it has another value."
         return "constant factor", f"Every result is {factor_text(factor)} times what it must be."
     if unit.name == WHOLE and change.text.startswith(UNUSED):
         name = change.text.removeprefix(UNUSED)

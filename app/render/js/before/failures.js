@@ -1,4 +1,4 @@
-// What the page says where it cannot start: on the cover, in a sentence, with what to do. Written for old browsers too.
+// Words of the page where it cannot start: on the cover, in a sentence, with advice. Written for old browsers too.
 
 (function () {
   "use strict";
@@ -37,7 +37,7 @@
     return !has || !maps || !Element.prototype.checkVisibility || !("ariaPressed" in Element.prototype);
   }
 
-  // viser's client ends where the browser names a language that is none, as with LANG=C.
+  // viser's client ends where the browser names an unknown language, as with LANG=C.
   function mendLanguage() {
     try {
       new Intl.NumberFormat(navigator.language);

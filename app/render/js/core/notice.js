@@ -1,6 +1,6 @@
 // A sentence over the page that stays until it is closed.
 
-// id: of the element, of which there is one. A text that is "" takes it away.
+// id: of its only element. A text that is "" takes it away.
 /** @param {string} id @param {string} text */
 export function notice(id, text) {
   document.getElementById(id)?.remove();

@@ -1,7 +1,7 @@
 // The local storage of the browser, which may refuse: cookies are blocked, or another site shows the page in a frame.
 
 /** @type {Map<string, string>} */
-const unstored = new Map(); // what was refused, kept for as long as the page
+const unstored = new Map(); // refused values, for as long as the page
 
 /** @param {string} key */
 export function stored(key) {

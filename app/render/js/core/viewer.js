@@ -1,4 +1,4 @@
-// What all files use of viser's window.__viserMutable, which tests of its own read.
+// Access of all files to viser's window.__viserMutable, which its own tests read.
 
 export const viewer = () => window.__viserMutable;
 

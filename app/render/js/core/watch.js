@@ -6,7 +6,7 @@
 import { page } from "./life.js";
 
 const STATUS = ".springtide-panel, [data-springtide-time]"; // written anew in each frame
-const CONTROL = "button, label, [role]"; // what parts read the words of
+const CONTROL = "button, label, [role]"; // elements with the words that parts read
 const LOOK_INTERVAL = 200; // [ms] between two looks at where things are
 
 /** @typedef {(now: number) => void} Part */
@@ -18,7 +18,7 @@ const isElement = (node) => node.nodeType === Node.ELEMENT_NODE;
 /** @type {(node: Node) => boolean} */
 const isStatus = (node) => isElement(node) && node.matches(STATUS);
 
-// Whether a change may be one of controls.
+// True if a change may be one of controls.
 /** @param {MutationRecord} change */
 function isOfControls({ type, target, addedNodes, removedNodes }) {
   const at = isElement(target) ? target : target.parentElement;

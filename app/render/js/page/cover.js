@@ -1,4 +1,4 @@
-// What the page says while nothing is drawn, and after the server has ended.
+// Words of the page while nothing is drawn, and after the server has ended.
 //
 // The cover is there from the first bytes of the page. It goes when the whole picture of the scene is drawn (frames.js);
 // while a scene is compiled it shows what the panel says of that (an element of class "springtide-progress"). It comes
@@ -22,7 +22,7 @@ const words = /** @type {HTMLElement} */ (document.getElementById("springtide-co
 const path = location.pathname.replace(/(pane\/\d+\/)?(index\.html)?$/, "");
 const restart = path === "/" ? "Start it again with the command: springtide" : "Reload this page to start it again.";
 let unanswered = 0;
-let server = ""; // what the server calls itself: another one has another name
+let server = ""; // name of the server: another one has another name
 
 /** @param {string | null} text @param {boolean} hidden */
 function say(text, hidden) {
@@ -35,7 +35,7 @@ let opened = null; // the panel whose picture is awaited, by its field for repor
 let openedAt = 0; // [ms] since when
 let pictured = ""; // the panel whose picture was whole
 
-// Whether the picture of the panel's scene is still to come. A lab that draws by viser's public interface has no such field,
+// True if the picture of the panel's scene is still to come. A lab that draws by viser's public interface has no such field,
 // and another one has it after its status line.
 function awaitsPicture() {
   const field = document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "";
@@ -65,7 +65,7 @@ function update() {
   return say(springtide.failure || waiting, false);
 }
 
-// What the server calls itself; "" where it does not answer.
+// Name of the server; "" where it does not answer.
 async function askServer() {
   try {
     const answer = await fetch("springtide-alive", { cache: "no-store", signal: AbortSignal.timeout(ANSWER_TIME) });

@@ -2,7 +2,7 @@
 
 const MIN_FREE = 120; // [pixels] of a side of the free rectangle: a smaller one is not used
 
-// What a panel leaves of a rectangle: the largest of the parts left of it, right of it, above and below.
+// Part of a rectangle that a panel leaves free: the largest of the parts left of it, right of it, above and below.
 /** @param {Box} box @param {Edges} panel @returns {Box} */
 export function without(box, panel) {
   const right = box.x + box.width, bottom = box.y + box.height;

@@ -1,4 +1,4 @@
-// How this browser shows the panel: light or dark, and the size of its text. Each browser remembers its own.
+// Display settings of this browser: light or dark, and the size of its text. Each browser remembers its own.
 //
 // Without a choice the panel is as dark as the system asks for. The server is told, which gives this browser viser's dark
 // theme and a dark floor; the colour scheme is set here at once, so that nothing flashes in between.

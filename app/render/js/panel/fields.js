@@ -10,13 +10,13 @@ import { onControls } from "../core/watch.js";
 import { stepped } from "./numbers.js";
 
 const FIELD = "input.mantine-TextInput-input";
-const NAMED = `${FIELD}, textarea, .mantine-Slider-thumb, .mantine-NumberInput-input`; // what viser gives no name
+const NAMED = `${FIELD}, textarea, .mantine-Slider-thumb, .mantine-NumberInput-input`; // elements without a name by viser
 const ofValue = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value");
 const { set: setText } = /** @type {{ set(text: string): void }} */ (ofValue);
 /** @type {WeakMap<HTMLInputElement, string>} */
 const before = new WeakMap(); // its text when it was entered
 /** @type {WeakMap<HTMLInputElement, string>} */
-const drafts = new WeakMap(); // what was typed since
+const drafts = new WeakMap(); // text typed since
 const DRAGGED = 4; // [pixels] from which on a press with the mouse is a drag
 let sending = false;
 
@@ -118,7 +118,7 @@ page.listen(document, "click", (event) => {
   if (used && event.detail > 0) /** @type {HTMLElement | null} */ (document.activeElement)?.blur();
 });
 
-// What a slider sets until it is let go is one change for Undo: the lab is told when it is held, and when no longer.
+// All values of a slider until it is let go are one change for Undo: the lab is told when it is held, and when no longer.
 let held = false;
 /** @param {boolean} now */
 function tellHeld(now) {
@@ -184,7 +184,7 @@ function markLab() {
   }
 }
 
-// One stop of Tab for the buttons of the block, and one for the tabs: the arrows go on from there. A tab alone is none.
+// One stop of Tab for the buttons of the block, and one for the tabs: the arrows go on from there. A single tab is not a stop.
 function roveStops() {
   for (const alone of document.querySelectorAll('[role="tab"]:only-child')) if (!alone.tabIndex) alone.tabIndex = -1;
   const groups = [

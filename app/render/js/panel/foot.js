@@ -20,7 +20,7 @@ export function footOf(canvas, panels, height) {
   return right - left < MIN_WIDTH ? { left: canvas.left, right: canvas.right, bottom: canvas.bottom } : { left, right, bottom };
 }
 
-// What the time line says of a moment [s] of a recording up to `high` [s]: the moment, and how far back it is.
+// Words of the time line for a moment [s] of a recording up to `high` [s]: the moment, and how far back it is.
 /** @param {number} at @param {number} high @param {boolean} isPast */
 export const wordsOf = (at, high, isPast) =>
   ({ moment: isPast ? `t = ${at.toFixed(2)} s` : "Live", back: `${(high - at).toFixed(1)} s back` });

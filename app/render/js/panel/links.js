@@ -1,4 +1,4 @@
-// What stands in the address of the page, and in a replay, for the lab.
+// Set-up for the lab in the address of the page, and in a replay.
 
 const BLOCK = '<script type="application/json" id="springtide-setup">'; // holds the set-up file in a replay
 const BLOCK_END = "</script>";

@@ -185,7 +185,7 @@ function saveCharts(button) {
 page.listen(document, ["pointerdown", "keydown"], ({ isTrusted, target }) => {
   if (isTrusted && target instanceof Element && target.closest('[role="tab"]')) showsLab = false;
 }, { capture: true });
-// What is chosen in a list of the panel, if it is there.
+// Choice in a list of the panel, if it is there.
 /** @param {string} selector */
 const choiceOf = (selector) => /** @type {HTMLSelectElement | null} */ (document.querySelector(selector))?.value;
 page.listen(document, "click", (event) => {
@@ -206,7 +206,7 @@ page.listen(document, "change", async (event) => {
   if (text.trimStart().startsWith("<") && file.size <= MAX_REPLAY) {
     text = setupIn(await file.text()) ?? text;
   }
-  // What is too long is sent as far as the lab reads, so that the lab says what is wrong with it.
+  // A text that is too long is sent as far as the lab reads, so that the lab gives the error.
   send(text.slice(0, MAX_LENGTH) || " ");
   field.value = "";
 });

@@ -57,12 +57,12 @@ const MATT_GLSL = `
 export const skyTerms = { value: null }; // the nine terms, and the least light of all directions
 const LIKELY_SKY = [0.7, 0.75, 0.8]; // until the photograph is read
 export let skiesRead = 0; // frames.js draws when it changes
-let isReading = false; // whether the photograph is on its way from the graphics card
-// Whether rough surfaces still have a light that is not of the sky that is seen.
+let isReading = false; // true while the photograph is on its way from the graphics card
+// True if rough surfaces still have a light that is not of the visible sky.
 export const awaitsLight = () => isReading;
 /** @type {Float32Array | null} */
 let photographed = null; // the light of the photograph in DIRECTIONS, red, green, blue and one more number each
-let litAs = ""; // what the terms are of
+let litAs = ""; // sky of the terms
 /** @type {Table | null} */
 let samples = null; // the table with which the photograph is read
 
@@ -172,7 +172,7 @@ export function setTerms(numbers) {
   least.max(color.set(0, 0, 0));
 }
 
-// Whether a material is lit so. At the lowest quality everything is.
+// True if a material is lit so. At the lowest quality everything is.
 /** @param {three.Material} material */
 export const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0;
 

@@ -117,12 +117,12 @@ export function paceFrames(renderer, life) {
   let last = null; // the inputs of the frame that the canvas shows
   /** @type {{ fence: WebGLSync | null, compiled: boolean } | null} */
   let drawing = null; // of that frame while it is being drawn: its fence, and whether it had a new program
-  let isWhole = false; // whether that frame has its sky, its light, and all of its shaders
-  let finishedWhole = false; // whether the last frame that is drawn had, and none has begun without since
+  let isWhole = false; // true if that frame has its sky, its light, and all of its shaders
+  let finishedWhole = false; // true if the last drawn frame had, and none has begun without since
   let length = 0; // [ms] of it
   let started = 0, pressed = 0, left = 0; // when it began, when something in the panel was pressed, frames left to the panel
 
-  // Whether the last frame is drawn. Its length is the time until the page gets its next one.
+  // True if the last frame is drawn. Its length is the time until the page gets its next one.
   function isDrawn() {
     if (!drawing) return true;
     const { fence, compiled } = drawing;
@@ -147,7 +147,7 @@ export function paceFrames(renderer, life) {
     requestAnimationFrame(look);
   }
 
-  // Whether the next frame has to wait: for the last one, or for the panel to show what was pressed in it.
+  // True if the next frame has to wait: for the last one, or for the panel to show what was pressed in it.
   function hasToWait() {
     if (!isDrawn()) return true; // in some frames this comes before `look`
     if (length < LONG_FRAME || pressed < started || left >= FRAMES_LEFT) return false;

@@ -1,4 +1,4 @@
-// Where labels stand: one that would cover another is raised above it.
+// Places of labels: one that would cover another is raised above it.
 
 const GAP = 0.15; // between two labels, in heights of a label
 const MAX_RAISE = 12; // [heights of a label] by which one is raised: one that had to be higher is hidden

@@ -4,7 +4,7 @@
 // pixels, and half a second for the copy. viser draws the photograph once, so that it is lost with the context: its numbers
 // are read once, beside the page, and it is made of them again.
 
-import { toHalf } from "../sea/half.js";
+import { toHalf } from "../sea/half_floats.js";
 import { contextNumber } from "../shading/context.js";
 import { QUALITY } from "../shading/quality.js";
 import { FLOAT, HALF_FLOAT, LINEAR } from "../shading/three.js";
@@ -12,7 +12,7 @@ import { FLOAT, HALF_FLOAT, LINEAR } from "../shading/three.js";
 const SMALL_SKY = 256; // [pixels] width of the copy; the table of the sky has as many columns
 const KEPT_SKY = 512; // [pixels] width, at most, of what is made again
 /** @type {WeakMap<three.Texture, three.Texture | null>} */
-const halves = new WeakMap(); // photograph or copy -> copy of half its width; null where it cannot be made
+const smallerCopies = new WeakMap(); // photograph or copy -> copy of half its width; null where it cannot be made
 /**
  * Of a photograph or copy. context: number of the one that it was drawn in; again: the texture made of what is kept.
  * @typedef {{ numbers: Uint16Array, width: number, height: number }} Kept
@@ -98,8 +98,8 @@ function stateOf(renderer, photograph) {
 export function preparePhotograph(renderer, scene) {
   while (QUALITY.isSoftware() && scene.environment && scene.environment.image?.width > SMALL_SKY) {
     const larger = scene.environment;
-    if (!halves.has(larger)) halves.set(larger, halve(renderer, larger));
-    const smaller = halves.get(larger);
+    if (!smallerCopies.has(larger)) smallerCopies.set(larger, halve(renderer, larger));
+    const smaller = smallerCopies.get(larger);
     if (!smaller) break;
     known.set(smaller, stateOf(renderer, larger));
     scene.environment = smaller;

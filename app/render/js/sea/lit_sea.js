@@ -33,7 +33,7 @@ const PLACES_FRAGMENT = `
     gl_FragColor = vec4(at, distance(at, eye));
     restAndSteps = vec4(vRest, stepsAt(at));
   }`;
-// Which tiles of the view hold sea, and which hold anything else, with the pixels around them. A software renderer computes
+// Tiles of the view that hold sea, and those that hold anything else, with the pixels around them. A software renderer computes
 // the light of a pixel that is hidden or discarded, too: tiles without sea, or without sky, are not drawn at all.
 const TILES_FRAGMENT = `
   uniform highp sampler2D seaPlaces;

@@ -62,7 +62,7 @@ const OPEN_GLSL = `
     up.y = abs(up.y);
     return vec4(mirroredSky(normalize(up)), min(mirrored(dot(-d, normal)), 0.75));
   }
-  // What is seen along d of a colour under water, through the level sea where its mesh does not draw it.
+  // Visible part along d of a colour under water, through the level sea where its mesh does not draw it.
   vec3 seenThrough(vec3 color, vec3 d) {
     if (cameraPosition.y < 0.0 || d.y >= 0.0) return color;
     float away = -cameraPosition.y / d.y, lost = smoothstep(6.0, 90.0, away / openWater[0].z);
@@ -138,7 +138,7 @@ const openUniforms = { openWater: openWaterUniform, openTime: { value: 0 }, farD
 /** @type {{ mesh: three.Mesh, dome: three.Mesh } | null} */
 let openDome = null; // { mesh of the surface, dome }
 
-// What a mesh with colours at its vertices has to do with open water: "surface", "bed" or "".
+// Role in open water of a mesh with colours at its vertices: "surface", "bed" or "".
 /** @param {string} base @param {object | null} underwater */
 export function openPartOf(base, underwater) {
   if (meshOf(`${base}/open_water`)) return "surface";

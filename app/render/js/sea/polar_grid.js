@@ -19,7 +19,7 @@ export const POLAR = [
   { rings: 240, spokes: 72, step: 0.03 },
 ];
 
-// How fine the grid is for a canvas and details of the shaders, 0 to 2: a triangle of a few pixels costs as much as one of many.
+// Fineness of the grid for a canvas and details of the shaders, 0 to 2: a triangle of a few pixels costs as much as one of many.
 /** @param {WebGL2RenderingContext} canvas @param {number} details */
 export function finenessOf({ drawingBufferWidth, drawingBufferHeight }, details) {
   if (details === 0) return 0;

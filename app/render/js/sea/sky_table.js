@@ -10,7 +10,7 @@ import { CLAMP, HALF_FLOAT, LINEAR, REPEAT, RGBA } from "../shading/three.js";
 import { makeDome } from "./dome.js";
 import { SKY_BLUR, SKY_COLUMNS, SKY_ROWS, SKY_TABLE, WATER_GLSL } from "./water_shader.js";
 
-const SKY_UNIFORMS = ["skyline", "skyFold", "skyTint", "sunDirection"]; // of which it is a function
+const SKY_UNIFORMS = ["skyline", "skyFold", "skyTint", "sunDirection"]; // its arguments
 // Of a triangle that covers what it is drawn into.
 export const TARGET_VERTEX = "void main() { gl_Position = vec4(position.xy, 0.5, 1.0); }";
 const SKY_TABLE_FRAGMENT = `
@@ -40,7 +40,7 @@ const SKY_TABLE_FRAGMENT = `
 const SKY_PATIENCE = 3000; // [ms] for which a sea waits for its photograph
 let skyWanted = Infinity; // [ms] when it began to
 
-// Whether a sea still waits for the photograph of the sky: without it its programs are others, which compile for seconds.
+// True if a sea still waits for the photograph of the sky: without it its programs are others, which compile for seconds.
 /** @param {three.Scene} scene */
 export function awaitsSky(scene) {
   return !scene.environment && performance.now() < skyWanted + SKY_PATIENCE;

@@ -1,6 +1,6 @@
-// What is seen of water from below its surface, on a mesh with colours at its vertices (vertex_colors.js) that has a child
+// View of water from below its surface, on a mesh with colours at its vertices (vertex_colors.js) that has a child
 // "<name>/underwater": webs of light that waves focus, which fade with depth, and particles. The first vertex of that
-// child is the uniform below, but for the time. Where the colour is redder than blue there is oil, and neither.
+// child is the uniform below, except for the time. Where the colour is redder than blue there is oil, and neither.
 
 import { insertAfter, meshOf } from "../shading/shaders.js";
 

@@ -12,7 +12,7 @@ import { keyWithDetails, QUALITY } from "../shading/quality.js";
 import { disposeMaterials, dress, isLinked, meshOf, refused } from "../shading/shaders.js";
 import { MAX_WATERLINES, WATER_UNIFORMS } from "../shared.js";
 import { makeDome, makeGrid } from "./dome.js";
-import { writeHalves } from "./half.js";
+import { writeHalfFloats } from "./half_floats.js";
 import { disposeLit, lightSea, LIT_FRAGMENT, PLACED } from "./lit_sea.js";
 import { aimPolar, finenessOf, setFineness } from "./polar_grid.js";
 import { awaitsSky, drawSkyTable, wantSky, withSky } from "./sky_table.js";
@@ -67,7 +67,7 @@ function makeSea(mesh, uniforms) {
 
 /** @typedef {{ isTexture: boolean, version: number, size: string }} FilledTexture */
 
-// Fill a texture with width x height x 4 half-precision numbers (half.js), and its smaller copies with their means where
+// Fill a texture with width x height x 4 half-precision numbers (half_floats.js), and its smaller copies with their means where
 // it repeats both ways. three binds it but does not fill it: its own class is not in scope, and it takes any object with
 // this version for one whose data needs no upload.
 /**
@@ -102,7 +102,7 @@ function filledTexture(renderer, texture, width, height, halves, repeats) {
 }
 
 // The waves as the textures that the shader reads (WATER_GLSL.waves), where they have changed. The vertices of a tile are
-// rows and columns, of which the last ones close it; those of rings are the rings one after the other, and the middle.
+// rows and columns, and the last ones close it; those of rings are the rings one after the other, and the middle.
 /** @param {Sea} sea @param {three.Renderer} renderer @param {Float32Array} rest */
 function fillWaves(sea, renderer, rest) {
   const { position, slopeAndFoam } = sea.geometry.attributes;
@@ -122,8 +122,8 @@ function fillWaves(sea, renderer, rest) {
       const x = position.array[from] - rest[from] - middle[0], y = position.array[from + 1] - rest[from + 1] - middle[1];
       const z = position.array[from + 2] - rest[from + 2];
       const a = slopeAndFoam.array[from], b = slopeAndFoam.array[from + 1], foam = slopeAndFoam.array[from + 2];
-      writeHalves(places, to, x, y, z, 0);
-      writeHalves(slopes, to, a, b, foam, a * a + b * b);
+      writeHalfFloats(places, to, x, y, z, 0);
+      writeHalfFloats(slopes, to, a, b, foam, a * a + b * b);
       widest = Math.max(widest, Math.abs(x), Math.abs(y));
       highest = Math.max(highest, Math.abs(z));
     }

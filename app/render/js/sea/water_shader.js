@@ -27,7 +27,7 @@ export const WATER_GLSL = {
     uniform vec3 grid; // rows and columns of vertices, side of the tile or radius of the last ring [m]
     uniform vec3 ringLaw; // rings: exponent of their radii (0: geometric), radius of the first [m], ratio of their steps
     uniform vec3 gridMiddle; // x, y [m] of the middle of the rings, unused
-    uniform vec3 shown; // whether the sky is drawn, whether the lines of the grid are, unused
+    uniform vec3 shown; // 1 if the sky is drawn, 1 if the lines of the grid are, unused
     uniform vec3 gaugePlace; // x, y [m] around which the sea is the tile however far it is, and whether there is such a place
     const float PIECE = 0.7; // side of the triangles that pieces are blended on, in sides of the tile
 
@@ -51,7 +51,7 @@ export const WATER_GLSL = {
       return w * w * w / dot(w * w, w);
     }
 
-    // What a texture of the tile has at x [m], as a mean over texels of 2^level cells.
+    // Value of a texture of the tile at x [m], as a mean over texels of 2^level cells.
     vec4 tileAt(sampler2D tile, vec2 x, float level) {
       return textureLod(tile, x.yx / grid.z + 0.5 / (grid.yx - 1.0), level);
     }
@@ -83,7 +83,7 @@ export const WATER_GLSL = {
       return ringLaw.z > 1.0001 ? log(1.0 + r * (ringLaw.z - 1.0) / ringLaw.y) / log(ringLaw.z) : r / ringLaw.y;
     }
 
-    // What a texture of rings, a row each, has at x [m]. Rings of even number are turned by half a spoke.
+    // Value of a texture of rings, a row each, at x [m]. Rings of even number are turned by half a spoke.
     vec4 ringsAt(sampler2D rings, vec2 x) {
       vec2 p = x - gridMiddle.xy;
       float ring = min(ringAt(length(p)), grid.x - 1.001), low = floor(ring), turned = 0.5 / grid.y * (1.0 - mod(low, 2.0));
@@ -93,7 +93,7 @@ export const WATER_GLSL = {
       return mix(inner, outer, ring - low);
     }
 
-    // How flat a sea of rings is drawn at x: 1 from the last ring on.
+    // Flatness of a sea of rings at x: 1 from the last ring on.
     float ringFlatness(vec2 x) { return smoothstep(0.8, 1.0, distance(x, gridMiddle.xy) / grid.z); }`,
 
 
@@ -281,7 +281,7 @@ export const WATER_GLSL = {
       return 0.5 * p * p * (1.0 + q * q);
     }
 
-    // What a rough sea mirrors, seen at the cosine c of the angle to its normal: (reflectance, mean slope of the facets
+    // Reflection of a rough sea, seen at the cosine c of the angle to its normal: (reflectance, mean slope of the facets
     // that mirror, towards the eye). The slopes are Gaussian with this rms along each axis (Cox and Munk 1954), and
     // count by how much of them the eye sees. Gauss and Legendre's sum over the visible slopes along the view.
     const float FACET_LIMIT = 3.2; // rms slopes beyond which no facet is counted
@@ -453,7 +453,7 @@ export const WATER_GLSL = {
     uniform vec3 slick; // centre x, y, radius [m] (0: no slick)
     uniform vec3 slickOptics; // thickness [m], roughness, factor on the slope of ripples
 
-    // How far inside the slick a point is, 0 to 1 at the end of its rim.
+    // Depth of a point inside the slick, 0 to 1 at the end of its rim.
     float slickCover(vec2 x) {
       if (slick.z <= 0.0) return 0.0;
       vec2 d = x - slick.xy, w = vec2(cos(wind.x), sin(wind.x));
@@ -482,7 +482,7 @@ export const WATER_GLSL = {
     // Share of the light from below that a film of oil lets through, in red, green and blue.
     vec3 lightThrough(float d) { return exp(-oilExtinction * d); }
 
-    // What a film of oil mirrors over what a fluid of this index does, in red, green and blue (sim/ocean/fluids/oil_film.py).
+    // Reflection of a film of oil over that of a fluid of this index, in red, green and blue (sim/ocean/fluids/oil_film.py).
     // facing: cosine of the angle from which it is seen; change: of the thickness d across a pixel, which blurs fringes.
     vec3 filmGain(float d, float change, float facing, float index) {
       float n = oilFilm.x, r1 = (1.0 - n) / (1.0 + n);
@@ -505,11 +505,11 @@ export const WATER_GLSL = {
       return fresnel(max(dot(V, H), 0.0), index) * facets / (4.0 * pow(max(H.z, 0.1), 4.0) * max(facing, 0.12));
     }
 
-    // What stands in the water or above it, three vectors each: x, y, cosine and sine of its heading; half sides, corner
+    // Bodies in the water or above it, three vectors each: x, y, cosine and sine of its heading; half sides, corner
     // [m] (0: none), top [m]; colour, bottom [m].
     uniform vec4 waterlines[3 * MAX_WATERLINES];
 
-    // What a ray R from the water meets of them: (light, share of the ray). Each is taken for an upright elliptic
+    // Bodies that a ray R from the water meets: (light, share of the ray). Each is taken for an upright elliptic
     // cylinder. spread: width of the ray over its length, as the facets that mirror it are tilted; around: the light on
     // them; near: distance [m] of the nearest one that stands in the water, 0 inside. One loop for both, because software
     // renderers take long to read an array.
@@ -765,7 +765,7 @@ export const WATER_VERTEX = `
       vSea = placeOf(position.x, position.y, vRest);
     #endif
     gl_Position = projectionMatrix * viewMatrix * fromSea * vec4(vSea, 1.0);
-    // What is beyond the camera's range is drawn at its end, as the sea reaches the horizon.
+    // Sea beyond the camera's range is drawn at its end, as the sea reaches the horizon.
     float end = (farDepth > 0.5 ? 1.0 - 1e-6 : 1e-9) * gl_Position.w;
     gl_Position.z = farDepth > 0.5 ? min(gl_Position.z, end) : max(gl_Position.z, end);
   }`;

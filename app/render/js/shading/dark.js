@@ -1,4 +1,4 @@
-// What is drawn otherwise where this browser shows the lab dark (display.js): colours of vertices, and labels (labels.js).
+// Changes of the drawing where this browser shows the lab dark (display.js): colours of vertices, and labels (labels.js).
 
 import { DARK_LIFT, LUMA } from "../shared.js";
 

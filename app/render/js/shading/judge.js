@@ -11,7 +11,7 @@ export const STEPS = [
 ];
 const SLOW = 38, FAST = 22; // [ms] of a frame: below 30 pictures a second, and safely above
 const VERY_SLOW = 100; // [ms] of a frame, from which on one window is enough, and two steps are taken at once
-const WINDOW = 2000; // [ms] of frames of which the median counts
+const WINDOW = 2000; // [ms] of frames; their median counts
 const LEAST_FRAMES = 3; // of a window
 const SKIPPED = 3; // frames after a change: they compile programs
 const LONG = 300; // [ms] of a frame, from which on one such frame is enough
@@ -24,7 +24,7 @@ const TRIAL = 10_000; // [ms] after a step up in which slow frames mean that it 
 // everywhere.
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|microsoft basic render|paravirtual/i;
 
-// Whether there is no graphics card, as far as the name of the renderer tells.
+// True without a graphics card, as far as the name of the renderer tells.
 /** @param {string} renderer */
 export const isSoftware = (renderer) => SOFTWARE.test(renderer);
 

@@ -1,4 +1,4 @@
-// How finely this browser draws: its share of the screen's pixels, and how much detail the shaders of water and rain have.
+// Drawing quality of this browser: its share of the screen's pixels, and how much detail the shaders of water and rain have.
 //
 // "Automatic" starts at the last step without a graphics card, else where this browser was when it last had the lab open.
 // It measures how long frames take while the picture moves (frames.js), and goes down step by step if they are slow, at
@@ -142,9 +142,9 @@ export const QUALITY = {
   now: () => ({ ...current, step: STEPS.indexOf(current), steps: STEPS.length }),
   isCapturing, // a picture that the server asked for
   isSoftware: () => isSoftware(rendererName),
-  // Whether this frame has to be as it says, however long that takes: it does not change afterwards.
+  // True if this frame has to be as it says, however long that takes: it does not change afterwards.
   isWhole: () => isFixed || isCapturing() || springtide.isRecording === true,
-  // How much detail the shaders of this frame have: 2 all, 1 less, 0 least.
+  // Details of the shaders of this frame: 2 all, 1 less, 0 least.
   details: () => (isFixed || isCapturing() ? 2 : current.details),
   // Begin with a renderer: at the step that it had when the page was last open, and at the last one if it has no
   // graphics card. The pixels are set here alone: viser's own monitor and its resizing set others.

@@ -36,8 +36,8 @@ export function replaceShader(material, key, edit) {
 const awaited = new Set();
 const LOOK_INTERVAL = 30; // [ms] between two looks at them
 export let programsReady = 0; // counts on with each of them; frames.js draws when it changes
-export let lacksPrograms = false; // whether something in this frame has another shader than it is to have
-let isCompiling = false; // whether this frame has begun to use a program, in a browser that compiles while the page waits
+export let lacksPrograms = false; // true if something in this frame has another shader than it is to have
+let isCompiling = false; // true if this frame has begun to use a program, in a browser that compiles while the page waits
 
 // A new frame: the page may wait for one more program.
 export function beginFrame() {
@@ -90,7 +90,7 @@ export function disposeMaterials(object) {
   for (const material of object.userData.materials?.values() ?? [object.material]) material.dispose();
 }
 
-// Whether the program of a material linked; null where it has none yet. If a driver refuses it, the material gets viser's shader back, so that the
+// True if the program of a material linked; null where it has none yet. If a driver refuses it, the material gets viser's shader back, so that the
 // mesh is still drawn, and the server is not told that the shader is active.
 /** @param {three.Renderer} renderer @param {three.Material} material */
 export function isLinked(renderer, material) {

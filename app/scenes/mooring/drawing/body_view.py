@@ -15,7 +15,7 @@ from sim.floating.motion.rotation import rotation_matrix
 # The body as drawn, from below: antifouling up to the waterline, a stripe and paint.
 PAINTS = ((1.0, (112, 30, 26)), (1.012, (238, 240, 240)), (1.0, (240, 128, 24)))  # width over the hull's, colour
 STRIPE = 0.045  # height, in widths of the hull
-# What stands on deck, without weight: width over the hull's, height in widths of the hull, colour.
+# Parts on deck, without weight: width over the hull's, height in widths of the hull, colour.
 ON_DECK = ((0.46, 0.18, (236, 238, 238)), (0.06, 0.42, (60, 66, 74)), (0.13, 0.08, (250, 206, 60)))
 
 

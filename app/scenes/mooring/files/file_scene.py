@@ -78,7 +78,7 @@ class FileScene(LineScene):
         return self.file.middle
 
     def fault_of(self, stretch: NDArray[np.float64], failure: str) -> Fault | None:
-        """The fault of a state to start with, None if there is none; see `LineScene`."""
+        """The fault of a state to start with, or None; see `LineScene`."""
         return fault_of_file(self.file, stretch)
 
     def arranged(self) -> System:

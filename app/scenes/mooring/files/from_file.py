@@ -90,7 +90,7 @@ def rows_of_lines(system: System, reverse: list[bool], held: tuple[tuple[int, in
 
 
 def slack_of(system: System) -> tuple[float, float] | None:
-    """Level distance [m] to where the first line between vessel and fixed point is straight, and the shortest length.
+    """Horizontal distance [m] at which the first line between vessel and fixed point is straight, and the least length.
 
     None without such a line.
     """
@@ -105,6 +105,6 @@ def slack_of(system: System) -> tuple[float, float] | None:
 
 
 def farthest_offset(system: System, extent: float) -> float:
-    """Level distance [m] to which the vessel may be dragged."""
+    """Horizontal distance [m] to which the vessel may be dragged."""
     slack = slack_of(system)
     return ELSEWHERE * extent if slack is None else max(slack[0], 0.0) + STRETCH * slack[1]

@@ -48,7 +48,7 @@ class StaticInputs(NamedTuple):
 
     @classmethod
     def of(cls, scene: "MooringScene", far: float = 0.0) -> "StaticInputs":
-        """Those of a scene as it is arranged now."""
+        """The inputs of a scene as it is arranged now."""
         system, (x, y) = scene.system, direction_of(scene).tolist()
         return cls(
             scene.attached.places, system.lines, vector_of(scene.excursion.rest), (x, y), scene.params.length,
@@ -122,7 +122,7 @@ def static_curve(inputs: StaticInputs) -> tuple[NDArray[np.float64], NDArray[np.
 
 
 def level_tension(inputs: StaticInputs, lines: tuple[Line, ...], span: float, rise: float) -> float:
-    """Level part [N] of a line's tension at the fairlead, which is `rise` [m] over its anchor and `span` [m] away."""
+    """Horizontal part [N] of a line's tension at the fairlead, `rise` [m] over its anchor and `span` [m] away."""
     raise_if_stopped()
     first, last = lines[0].start, lines[-1].end
     points = [

@@ -34,7 +34,7 @@ class RunningStatistics:
         self.squares = self.squares + duration * away * (values - self.mean)
 
     def each(self) -> list[EndStatistics]:
-        """Those of each number; NaN before the first."""
+        """The values of each number; NaN before the first."""
         deviation = np.sqrt(self.squares / max(self.duration, 1e-9))
         known = np.where(np.isnan(self.least), math.nan, 1.0)
         rows = np.stack((self.least, self.mean * known, self.largest, deviation * known), axis=1)

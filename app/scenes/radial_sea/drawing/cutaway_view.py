@@ -19,7 +19,7 @@ from sim.ocean.fluids.oil_film import light_through
 
 BRIGHT_WATER: RGB = (0.13, 0.50, 0.60)  # of the water under its surface, as if light came through
 DEEP_WATER: RGB = (0.03, 0.16, 0.27)  # of the water at the floor
-OIL_AGAINST_LIGHT: RGB = (0.70, 0.42, 0.12)  # what a few centimetres of oil let through
+OIL_AGAINST_LIGHT: RGB = (0.70, 0.42, 0.12)  # light through a few centimetres of oil
 OIL_LIGHT_SHARES = 1.0, 0.3  # of that colour in the drawn one, at the oil's surface and where the water begins
 WEB_SIZE = 0.7  # [m] at size 1 of the meshes of light that waves focus (`js/sea/underwater.js`)
 SURFACE_LINE, INTERFACE_LINE = (235, 246, 250), (255, 196, 64)

@@ -1,4 +1,4 @@
-"""How the fluids of the radial sea look: colour, index and smoothness of water, of oil, and of both mixed."""
+"""Appearance of the fluids of the radial sea: colour, index and smoothness of water, of oil, and of both mixed."""
 
 import dataclasses
 import functools
@@ -20,7 +20,7 @@ LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"
 RIPPLE_LENGTH = 0.9  # [m] of the wave that stands for all ripples of the material, in how they decay under oil
 CALM_SLOPE, MAX_SLOPE = 0.02, 0.24  # rms slope of the ripples without wind, and the greatest
 MIN_RIPPLE_SHARE = 0.12  # of the ripples' slope that oil leaves at least, so that the sea does not turn into a mirror
-MIXTURE_SCATTER: RGB = (0.80, 0.47, 0.22)  # what an emulsion scatters
+MIXTURE_SCATTER: RGB = (0.80, 0.47, 0.22)  # light that an emulsion scatters
 MIXTURE_ROUGHNESS = 0.12
 MIXTURE_BASE_SHARE = 0.5  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
 MIXTURE_THICKNESS = 1e-3  # [m] of a film that shows as much of its colour as a mixture does: all

@@ -146,7 +146,7 @@ class WellBlowout:
             self.jet.step(duration, height, self.origin, SAMPLE_SPACING)
         if self.volume > 0.0:
             self.slick_age += duration
-            # What has just fallen is where the jet lands, and pulls the middle of the volume back.
+            # Oil that has just fallen is where the jet lands, and pulls the middle of the volume back.
             share = self.drifted / self.volume
             x, y = (d + DRIFT * u * duration for d, u in zip(self.drift, self.wind, strict=True))
             self.drift, self.drifted = (share * x, share * y), self.volume
@@ -157,7 +157,7 @@ class WellBlowout:
         return self.closed_jets_total.fed + (self.jet.fed if self.jet is not None else 0.0)
 
     def slick(self, column: FluidColumn) -> Slick | None:
-        """The slick, spread by Fay's laws and drifting with the wind, or None where there is none."""
+        """The slick, spread by Fay's laws and drifting with the wind, or None."""
         volume, age = self.volume, self.slick_age
         if volume <= 0.0 or age <= 0.0:
             return None
@@ -210,7 +210,7 @@ def wind_of(params: RadialSeaParams) -> tuple[float, float]:
 
 
 def slick_reach(slick: Slick, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """How far inside the slick points (n,) [m] are, (n,) [m], negative outside. It is round; it is drawn ragged."""
+    """Distance (n,) [m] of points inside the slick from its round border (drawn ragged), negative outside."""
     return slick.radius - np.hypot(x - slick.centre[0], y - slick.centre[1])
 
 

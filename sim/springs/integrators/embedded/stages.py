@@ -62,7 +62,7 @@ def tableau(error_order: int, c: tuple[float, ...], slopes: Rows, weights: tuple
     An estimate may have one weight more than there are stages, that of the new state's own acceleration.
     """
     velocity = rows_of((*slopes, weights, *errors), len(weights))
-    # What no path leads to is 0 there but for round-off of products with zeros, that is, exactly.
+    # Entries that no path leads to are 0 there except for round-off of products with zeros, that is, exactly.
     return tableau_of_rows(error_order, c, velocity, velocity @ velocity[: len(weights) + 1])
 
 
@@ -178,7 +178,7 @@ def is_smooth_net(p):
     return not rough_acts(p) and p.pins.shape[0] == 0
 
 
-# Whether all that acts is as smooth as the estimates of the error need it.
+# True if all acting forces are as smooth as the estimates of the error need them.
 is_smooth = by_net(rope=is_smooth_net, grid=is_smooth_net, lines=kernel(lambda p: False, inline=True))
 
 
@@ -193,7 +193,7 @@ def set_differences(f, v, w, k, of, ov, ow, ok, n, load, c):
 def accelerate_span(xs, vs, p, f, first, n, M, inner, count, k, o, N):
     """Accelerations of `count` points of a bare rope into k from o on, a component N further.
 
-    xs, vs (3 M,): n points in a row, of which those from `inner` on are asked for; p.inverse_masses from `first` on.
+    xs, vs (3 M,): n points in a row; those from `inner` on are needed; p.inverse_masses from `first` on.
     """
     zero, one = np.uint64(0), np.uint64(1)
     F = M + one
@@ -261,7 +261,7 @@ def step_any(method, x, v, t, h, p, stages, xn, vn, ledger, with_account):
 
 @kernel(inline=True)
 def weight_of(method, i):
-    """That of stage i in the new velocity."""
+    """Weight of stage i in the new velocity."""
     found = 0.0
     for q in range(method.counts[method.stages]):
         if method.terms[method.stages, q] == np.uint64(i):

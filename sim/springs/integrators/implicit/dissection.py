@@ -340,7 +340,7 @@ def add_matrix(diagonal, beside, inverse_masses, q, grid, w, row):
 def factorise(diagonal, beside, inverse_masses, grid):
     """Set the factors of a matrix on the grid.
 
-    diagonal: (n, 6) flat, the blocks xx, xy, xz, yy, yz, zz of particles. beside: (n, 4, 6) flat, those of which the
+    diagonal: (n, 6) flat, the blocks xx, xy, xz, yy, yz, zz of particles. beside: (n, 4, 6) flat, those whose
     negative couples a particle to its neighbours in DIRECTIONS. Rows of pinned particles are those of the unit matrix.
     """
     nodes, fronts, w = grid.nodes, grid.fronts, grid.front

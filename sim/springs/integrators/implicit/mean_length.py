@@ -21,7 +21,7 @@ from sim.springs.laws import force_density, over_step
 
 @kernel(inline=True)
 def before_and_after(x0, x, p, link):
-    """Of a link with its start x0 and its middle x: its lengths before and after, and its direction after."""
+    """Lengths of a link before and after, and its direction after, from its start x0 and its middle x."""
     rx, ry, rz, _ = stretch(x, p, link)
     sx, sy, sz, before = stretch(x0, p, link)
     ex, ey, ez = 2.0 * rx - sx, 2.0 * ry - sy, 2.0 * rz - sz

@@ -31,7 +31,7 @@ from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.vector_ops import add_scaled, set_sum
 
 MOST = 25  # corrections a stage: a stage that has not settled by then is taken as it is
-SETTLED = 1e-11  # what corrections not taken would add, relative to the fastest velocity
+SETTLED = 1e-11  # size of corrections not taken, relative to the fastest velocity
 SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
 # A net's correction is cut where the forces along it are turned round and more than this part as large after it, and
 # prolonged where more than this part of them is left, to at most so many times its length.
@@ -44,9 +44,9 @@ ROUND_OFF = 4e-15  # and to the farthest position over g, below which correction
 
 
 class Exactness(NamedTuple):
-    """How exactly a method has the stages of a net solved."""
+    """Exactness with which a method has the stages of a net solved."""
 
-    share: float  # of the change of velocity in a stage: what corrections may leave, besides round-off
+    share: float  # of the change of velocity in a stage that corrections may leave, apart from round-off
     usable: float  # the last correction, relative to velocity and its change, of a stage that may be taken unsettled
     most: int  # corrections
 
@@ -67,7 +67,7 @@ class NetSolver(NamedTuple):
     diagonal: NDArray[np.float64]  # (rows cols, 6) flat
     beside: NDArray[np.float64]  # (rows cols, 4, 6) flat
     points: NDArray[np.float64]  # (6 rows cols,)
-    kept: NDArray[np.float64]  # (2,): g [s] of the factors, 0 where there are none, and iterations that they last took
+    kept: NDArray[np.float64]  # (2,): g [s] of the factors, 0 without any, and iterations that they last took
     left: NDArray[np.float64]  # (3 rows cols,) what is left of the residual
     z: NDArray[np.float64]  # (3 rows cols,), and so on
     d: NDArray[np.float64]
@@ -175,7 +175,7 @@ def correct_rope(p, work):
 
 @kernel(inline=True)
 def forcing(found, before):
-    """How far a linear solve is taken, of squared residuals: as far as Newton goes (Eisenstat & Walker 1996)."""
+    """Tolerance of a linear solve, of squared residuals: as far as Newton goes (Eisenstat & Walker 1996)."""
     return LOOSEST if found > before else max(TIGHTEST, min(LOOSEST, 0.9 * found / before))
 
 
@@ -261,7 +261,7 @@ def solve_rope_stage(x0, v0, g, t, exactness, p, x, v, work, most):
         add_scaled(v, 1.0, work.u)
         taken += 1
         last, size = size, largest(work.u)
-        # What is left is what further corrections would add, each smaller than the one before by the same ratio.
+        # The rest is the sum of further corrections, each smaller than the one before by the same ratio.
         rest = size * size / (last - size) if size < last < np.inf else size
         noise = ROUND_OFF * largest(x) / g
         settled = rest <= SETTLED * largest(v) + noise or size <= noise

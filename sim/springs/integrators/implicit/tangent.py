@@ -47,7 +47,7 @@ def divide_by_root_mass(f, p):
 
 
 keep_masses = kernel(lambda x, p: None, inline=True)
-# Prepare the masses at x for the next two, of which those of lines depend on x.
+# Prepare the masses at x for the next two; those of lines depend on x.
 set_masses = by_net(rope=keep_masses, grid=keep_masses, lines=set_inverse_masses)
 # out = M^-1/2 y, 0 where pinned.
 set_motion = by_net(rope=set_over_root_mass, grid=set_over_root_mass, lines=set_root_motion)

@@ -54,7 +54,7 @@ EFFECTS_OF_LINES = (
     (STATE, "it draws random numbers", "result = noisy(result)"),
     (STATE, "two calls with the same arguments", "result = next(ROWS)(result)"),
     (STATE, "it draws random numbers, or sets their seed", "np.random.seed(1)"),
-    (SETTING, "it changes numpy's handling of errors", "np.seterr(all='raise')"),
+    (SETTING, "it changes numpy's error handling", "np.seterr(all='raise')"),
     (FILE, "it writes the file log.txt", "open('log.txt', 'a').close()"),
 )  # fmt: skip
 TOOLS = """

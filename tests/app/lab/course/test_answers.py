@@ -141,7 +141,7 @@ CHOICE = Question("c", "?", "choice", ("a", "b", "x"), right="a", typical_errors
         (NUMBER, 2.19, "right", "so"), (NUMBER, 1.79, "wrong", "measure"), (NUMBER, 4.1, "wrong", "twice"),
         (NUMBER, "two", "wrong", "not a number"), (NUMBER, None, "not begun", ""),
         (CHOICE, "a", "right", ""), (CHOICE, "b", "wrong", "not b"), (CHOICE, "x", "wrong", "measure"),
-        (CHOICE, "z", "wrong", "none of the choices"), (CHOICE, 1.0, "wrong", "none of the choices"),
+        (CHOICE, "z", "wrong", "one of the choices"), (CHOICE, 1.0, "wrong", "one of the choices"),
         (Question("p", "?", "choice", ("a", "b")), "b", "given", ""), (Question("p", "?", "number"), 1.0, "given", ""),
         (Question("t", "?", "text"), "It falls down.", "given", ""),
         (Question("t", "?", "text"), "yes", "wrong", "sentence"),

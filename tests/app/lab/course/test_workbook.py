@@ -107,7 +107,7 @@ def test_answers_are_kept(folder: Path, question: Question, text: str, kept: obj
 @pytest.mark.parametrize(
     ("question", "text", "reason"),
     [
-        (PREDICT, "sideways", "none of the choices"), (MEASURE, "a lot", "number in m"), (MEASURE, "1,000", "comma"),
+        (PREDICT, "sideways", "not one of the choices"), (MEASURE, "a lot", "number in m"), (MEASURE, "1,000", "comma"),
         (MEASURE, "5 kg", "no unit"), (MEASURE, "1e999", "kept"), (MEASURE, "nan", "number"),
         (EXPLAIN, "x" * (MAX_TEXT + 1), "at most 4000"), (EXPLAIN, "a\x07b", "control"), (EXPLAIN, "\ud800", "control"),
     ],
@@ -198,7 +198,7 @@ def test_a_file_written_in_another_way_gets_the_answer_too(folder: Path, text: s
 def test_a_broken_file_is_said_and_never_written_over(folder: Path) -> None:
     book = Workbook(TASKS, folder)
     (folder / FILE).write_text("[extra_draft\nmine", "utf-8")
-    with pytest.raises(ValueError, match="Nothing is written until this is repaired"):
+    with pytest.raises(ValueError, match="Nothing is saved until you repair this"):
         book.answer(DRAFT, MEASURE, "0.031")
     assert (folder / FILE).read_text("utf-8") == "[extra_draft\nmine"
     book.refresh()

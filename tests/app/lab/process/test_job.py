@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.process.job import end_with_this_program, kill_with_children
+from app.lab.process.child_processes import end_with_this_program, kill_with_children
 
 ROOT = Path(__file__).parents[4]
 pytestmark = pytest.mark.skipif(sys.platform != "win32", reason="elsewhere processes have groups, and see their parent")
@@ -21,7 +21,7 @@ while True:
 """
 # A lab that is killed in the middle.
 LAB = """import os, subprocess, sys, time
-from app.lab.process.job import end_with_this_program
+from app.lab.process.child_processes import end_with_this_program
 end_with_this_program(subprocess.Popen(sys.argv[1:]))
 time.sleep(5.0)
 os._exit(9)

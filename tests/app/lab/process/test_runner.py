@@ -39,7 +39,7 @@ ACCIDENTS = {
     "try:\n        while True: print()\n    except Exception: pass": ("printed", "more than 10000 lines"),
     "import os\n    while True: os.write(1, b'x' * 9999)": ("endless", "infinite loop"),
     "import os\n    for n in range(3, 30):\n        try: os.write(n, bytes([2, 0, 0, 0, 0, 0, 0, 0, 0x91, 0xC0]))"
-    "\n        except OSError: pass\n    while True: pass": ("ended", "wrote into the pipe"),
+    "\n        except OSError: pass\n    while True: pass": ("ended", "wrote into the lab's pipe"),
     "return 1 / 0": ("raised", "ZeroDivisionError: division by zero"),
     "return f(1)": ("raised", "RecursionError"),
     "return input()": ("raised", "EOFError"),

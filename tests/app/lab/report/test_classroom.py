@@ -84,9 +84,9 @@ def save(folder: Path, sign: str, more: str = "") -> None:
 @pytest.mark.parametrize(
     ("code", "text", "poses"),
     [
-        (FORCE.format("-"), "As the reference.", 5),
+        (FORCE.format("-"), "Matches the reference.", 5),
         (FORCE.format("- 0.9 *"), " m from the reference.", 5),
-        (FORCE.format("+"), "Apart within ", None),
+        (FORCE.format("+"), "Flies apart within ", None),
         (FORCE.format("- nothing *"), "Does not run.", 0),
         ("import numpy as np\n\n\ndef spring_force(x1):\n    ...\n", "", 0),
     ],
@@ -409,7 +409,7 @@ def test_the_page_takes_no_option_of_a_lab(
     options: list[str], folders: list[Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["lab", *map(str, folders), *options]) == 2
-    assert f"{options[0]}: the page of a class takes --port" in capsys.readouterr().err
+    assert f"{options[0]}: the class page takes --port" in capsys.readouterr().err
 
 
 def test_several_folders_are_a_class(folders: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -430,6 +430,6 @@ def test_the_poses_of_a_picture_are_the_darker_the_later_and_the_last_has_its_po
     own = np.zeros((4, 3, 3))
     own[:, :, 0] = 0.2 * np.arange(3)
     own[:, :, 2] = 2.0 - 0.1 * np.arange(4)[:, None]
-    text = str(svg(RopePicture(own, own[-1:], "As the reference.")))
+    text = str(svg(RopePicture(own, own[-1:], "Matches the reference.")))
     assert [float(number) for number in re.findall(r'opacity="([0-9.]+)"', text)] == [0.9, 0.25, 0.5, 0.75, 1.0]
     assert text.count("<circle") == 3

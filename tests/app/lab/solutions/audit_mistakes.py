@@ -320,7 +320,7 @@ MISTAKES: tuple[tuple[str, str, str], ...] = (
     ),
     (
         "cloth_links",
-        "(i+1, j+1); too many are",
+        "(i+1, j+1); too many:",
         changed(CLOTH_LINKS, "(n[:-1, :-1], n[1:, 1:])", "(n[:-2, :-2], n[2:, 2:])"),
     ),
     ("net_buoyancy", "sign|upwards", "return (body_density - fluid_density) * gravity * volume"),

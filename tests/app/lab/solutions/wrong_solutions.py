@@ -41,7 +41,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
     ),
     "extra_draft": (
         ("the whole thickness", "return oil_thickness"),
-        ("the share that the oil carries", "return oil_thickness * oil_density / water_density"),
+        ("the part that the oil carries", "return oil_thickness * oil_density / water_density"),
         ("densities swapped", "return oil_thickness * (1 - water_density / oil_density)"),
         ("relative to the oil", "return oil_thickness * (water_density - oil_density) / oil_density"),
         ("constant factor", "return 2 * oil_thickness * (1 - oil_density / water_density)"),
@@ -86,7 +86,7 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("colours swapped", """
             T = np.exp(-2 * absorption * thickness)
             return [T * o + (1 - T) * w for o, w in zip(oil_colour, water_colour)]"""),
-        ("shares do not sum to one", "return oil_colour + np.exp(-2 * absorption * thickness) * water_colour"),
+        ("fractions do not sum to one", "return oil_colour + np.exp(-2 * absorption * thickness) * water_colour"),
         ("wrong shape", """
             T = np.exp(-2 * absorption * thickness)
             return T * water_colour[0] + (1 - T) * oil_colour[0]"""),
@@ -244,9 +244,9 @@ WRONG: dict[str, tuple[tuple[str, str], ...]] = {
         ("misses not infinite", """
             a, b = z0 - level0, z1 - level1
             return a / (a - b)"""),
-        ("share from the end", changed(RAIN, "s[i] = a / (a - b)", "s[i] = 1 - a / (a - b)")),
+        ("fraction from the end", changed(RAIN, "s[i] = a / (a - b)", "s[i] = 1 - a / (a - b)")),
         ("end of the step", changed(RAIN, "s[i] = a / (a - b)", "s[i] = 1")),
-        ("distance instead of share", changed(RAIN, "s[i] = a / (a - b)", "s[i] = a")),
+        ("distance instead of fraction", changed(RAIN, "s[i] = a / (a - b)", "s[i] = a")),
     ),
     "spectrum": (
         ("wavelength for wavenumber", changed(PHILLIPS, "L = U", "kk = 2 * np.pi / kk\n            L = U")),

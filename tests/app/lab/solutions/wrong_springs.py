@@ -47,7 +47,7 @@ def changed(body: str, *texts: str) -> str:
 
 SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
     "line_tension": (
-        ("level part only", "return weight * (hanging ** 2 - height ** 2) / (2 * height)"),
+        ("horizontal part only", "return weight * (hanging ** 2 - height ** 2) / (2 * height)"),
         ("weight only", "return weight * hanging"),
         ("hanging not used", "return weight * height"),
         ("parts added", """

@@ -138,7 +138,10 @@ def test_right_solutions_feel_every_parameter_or_the_panel_names_it(
         if not report.difference < 1e-9:
             said = code_lines(session.state, report, tables_of(session), name)
             title = declared.title or in_words(parameter)
-            assert title.lower() in said.lower(), f"{value}: {report.difference} m"
+            missing = (
+                f"{parameter} {value}: {report.difference} m apart; give it to `forces_of`, or name it in `unlike`"
+            )
+            assert title.lower() in said.lower(), missing
 
 
 def test_the_panel_names_the_link_of_a_cloth():

@@ -340,7 +340,7 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.lab.student.versions.store", full_disk)
         (right.folder / "rope.py").write_text(RIGHT + "\n# later\n", "utf-8")
-        wait_for(lambda: right.state.error and "cannot be taken up" in right.state.error.text)
+        wait_for(lambda: right.state.error and "could not be loaded" in right.state.error.text)
         assert right.state.version == before
     wait_for(lambda: right.state.version > before and right.state.error is None)
 
@@ -376,7 +376,7 @@ def test_a_forged_answer_is_named(right: Session) -> None:
     found = Runner(process(right).folder)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(found, "_ask", lambda *_: (1, 2, 3))
-        with pytest.raises(RunError, match="pipe of the lab"):
+        with pytest.raises(RunError, match="lab's pipe"):
             found.march({"spring_force"}, "step_rk4", x, v, [segment])
 
 
@@ -453,7 +453,7 @@ def test_the_panel_says_what_runs_and_what_is_wrong(right: Session) -> None:
     text = code_lines(right.state, right.rope.report, TableReport(), "rope")
     assert "<b>rope.py, line 11</b>: " in text
     assert "</b>: rope.py, line 11: " in headline(right.state, right.rope.report, TableReport(), "rope")
-    assert "The last version that worked goes on." in text
+    assert "The last version that worked stays in use." in text
     save(right, RIGHT.replace("return stiffness", "return 0.9 * stiffness"))
     wait_for(lambda: taken(right) == right.state.version)
     run(scene, 10)

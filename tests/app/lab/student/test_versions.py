@@ -12,12 +12,12 @@ from app.lab.course.task import load_tasks
 from app.lab.process.runner import BUSY, RunError
 from app.lab.student.live_net import ROPE
 from app.lab.student.saved import read_files
-from app.lab.student.versions import Look, Use, Versions, stamps
+from app.lab.student.versions import FileWatch, Use, Versions, stamps
 
 
 def test_a_look_finds_what_was_written_made_and_removed(tmp_path: Path) -> None:
     folder = tmp_path / "mine"
-    look = Look(folder, ".py")
+    look = FileWatch(folder, ".py")
     assert not look.has_changed()  # there is no folder yet
     folder.mkdir()
     assert look.has_changed()
@@ -41,7 +41,7 @@ def test_a_look_finds_what_was_written_made_and_removed(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name != "posix", reason="Windows lets few users make links")
 def test_a_link_to_nothing_is_no_file_and_a_reason_to_look(tmp_path: Path) -> None:
-    look, before = Look(tmp_path, ".py"), stamps(tmp_path, ".py")
+    look, before = FileWatch(tmp_path, ".py"), stamps(tmp_path, ".py")
     assert look.has_changed()
     (tmp_path / "c.py").symlink_to(tmp_path / "b.py")
     assert stamps(tmp_path, ".py") == before
@@ -49,7 +49,7 @@ def test_a_link_to_nothing_is_no_file_and_a_reason_to_look(tmp_path: Path) -> No
 
 
 def test_a_save_of_several_writes_is_one_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    look = Look(tmp_path, ".py")
+    look = FileWatch(tmp_path, ".py")
     assert look.has_changed()
     found = [frozenset({("a.py", 1, size, size)}) for size in (10, 20, 30, 30, 40)]
     seen = iter(found)

@@ -72,6 +72,6 @@ def test_a_picture_of_another_scene_is_not_sent(lab: Viewer, late: threading.Eve
     lab.open("cloth")
     late.set()
     wait_for(lambda: not browser.words[0].loading)
-    assert browser.words[0].body == "Couldn't create the file: another scene was opened before it was there"
+    assert browser.words[0].body == "Couldn't create the file: another scene was opened before it was ready"
     assert browser.sent == []
     assert not files.busy.locked() or files.busy.acquire(timeout=5.0)

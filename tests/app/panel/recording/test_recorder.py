@@ -5,12 +5,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from app.messages import KeptState, RunIdentity, Snapshot, Status
+from app.messages import Checkpoint, RunIdentity, Snapshot, Status
 from app.panel.recording import recorder as module
 from app.panel.recording.recorder import Recorder, arrays_of_frame
 from app.panel.recording.recording_files import arrays_of
 from app.scenes import scene_named
-from app.scenes.moments import arrays_in
+from app.scenes.checkpoints import arrays_in
 
 RUN = RunIdentity()
 INTERVAL = 0.05  # [s] between two frames, of simulated and of wall time
@@ -142,7 +142,7 @@ def test_memory_is_bounded_and_what_is_older_is_sparser(monkeypatch: pytest.Monk
     for number in range(2400):
         own = np.full(7, number)
         arrays = {id(shared): shared.nbytes, id(own): own.nbytes}
-        state = KeptState([shared, own], arrays) if number % 3 == 0 else None
+        state = Checkpoint([shared, own], arrays) if number % 3 == 0 else None
         recorder.note(snapshot(number)._replace(state=state), number * INTERVAL)
         most = max(most, recorder.memory.bytes)
         if number % 50 == 0:
@@ -245,7 +245,7 @@ def test_it_goes_on_from_the_last_state_up_to_the_frame_that_is_shown() -> None:
     for number in range(40):
         own = np.zeros(10)
         arrays = {id(shared): shared.nbytes, id(own): own.nbytes}
-        state = KeptState((number, own), arrays) if number % 10 == 5 else None
+        state = Checkpoint((number, own), arrays) if number % 10 == 5 else None
         recorder.note(snapshot(number)._replace(state=state), wall)
         wall += INTERVAL
     assert recorder.resumable() is None  # the present is shown

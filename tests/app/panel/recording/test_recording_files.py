@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from app.panel.recording import recording_files
-from app.panel.recording.recorder import Kept, Recorder
+from app.panel.recording.recorder import RecordedFrame, Recorder
 from app.panel.recording.recording_files import Plotted, arrays_of, plots_csv, plots_svg, recording_npz
 from app.scenes import NAMES, scene_named
 from app.server.loop.sim_loop import SimLoop
@@ -28,7 +28,7 @@ SMALL: dict[str, dict[str, Any]] = {  # scene -> what makes it cheap; a new scen
 }
 
 
-def recorded(name: str, frames: int = 6) -> tuple[Any, tuple[Kept, ...], list[Any]]:
+def recorded(name: str, frames: int = 6) -> tuple[Any, tuple[RecordedFrame, ...], list[Any]]:
     kind = scene_named(name)
     loop = SimLoop(kind.make(kind.params(**SMALL.get(name, {}))))
     recorder, wall = Recorder(kind.packing), 0.0

@@ -6,12 +6,12 @@ from typing import Any
 
 import pytest
 
-from app.messages import BaseParams, KeptState, Pause, Play
+from app.messages import BaseParams, Checkpoint, Pause, Play
 from app.panel.recording.recorder import RATES, Recorder
 from app.panel.recording.timeline import Timeline
 from tests.app.panel.recording.test_recorder import INTERVAL, snapshot
 
-STATE = KeptState("a state", {})
+STATE = Checkpoint("a state", {})
 
 
 class Gui:
@@ -30,7 +30,7 @@ class Lab:
     def __init__(self) -> None:
         self.recorder = Recorder()
         self.posted: list[object] = []
-        self.resumed: list[KeptState] = []
+        self.resumed: list[Checkpoint] = []
         self.post = self.posted.append
         self.line = Timeline(Gui(), self.recorder, self)  # type: ignore[arg-type]
         for number in range(201):
@@ -38,7 +38,7 @@ class Lab:
             self.recorder.note(snapshot(number)._replace(state=None if time < 2.0 else STATE), time)
         self.line.update(running=True)
 
-    def resume(self, params: BaseParams, state: KeptState) -> None:
+    def resume(self, params: BaseParams, state: Checkpoint) -> None:
         self.resumed.append(state)
 
     def take(self, text: str, run: int = 1) -> None:

@@ -242,7 +242,7 @@ def test_what_is_left_out_is_said_and_a_bad_file_ends_the_program_in_one_line(tm
     assert main(["run", "mooring", "--mooring", str(FILES / "chain.txt"), *out]) == 0
     assert (
         capsys.readouterr().err
-        == "springtide: chain.txt: left out, as they steer MoorDyn only: cfl, ICgenDynamic, dtWave\n"
+        == "springtide: chain.txt: left out, as they control MoorDyn only: cfl, ICgenDynamic, dtWave\n"
     )
     bad = tmp_path / "bad.txt"
     bad.write_text("--- FAILURE ---\na\nb\n1 r Free\n", encoding="utf-8")

@@ -166,7 +166,7 @@ def test_no_preset_begins_near_its_breaking_load(preset):
 
 
 def test_the_tension_of_three_hours_is_expected_from_the_peaks_that_count():
-    """Of a sine there is one height; without enough peaks, or while it is dragged, there is no number."""
+    """Of a sine there is one height; without enough peaks, or while it is dragged, there is not a number."""
     tensions, up = Tensions(1), np.array([[0.0, 0.0, 1.0]])
     for step in range(1, 40 * (LEAST_PEAKS + 3)):
         pull = 50.0 + 20.0 * math.sin(2.0 * math.pi * step / 40.0 - 1e-3)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.messages import Command, KeptState, StepOnce, TogglePlay
+from app.messages import Checkpoint, Command, StepOnce, TogglePlay
 from app.panel.settings import SceneSettings
 from app.scenes import NAMES, scene_named
 from app.scenes.ahead.compiling import Compiling, Job
@@ -50,7 +50,7 @@ class RunSeen:
     arrays: dict[str, np.ndarray] | None = None  # None: changed since it was seen
     running: bool = False
     act: int = 0  # the program's number of it; 0: not seen
-    moments: list[tuple[Any, KeptState, float]] = dataclasses.field(default_factory=list)
+    moments: list[tuple[Any, Checkpoint, float]] = dataclasses.field(default_factory=list)
 
 
 @dataclasses.dataclass

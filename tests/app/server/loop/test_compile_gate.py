@@ -2,7 +2,7 @@
 
 from concurrent.futures import Future
 
-from app.messages import Advance, KeptState, Pause, Play, Reset, Take
+from app.messages import Advance, Checkpoint, Pause, Play, Reset, Take
 from app.scenes.ahead.compiling import Compiling, Job
 from app.scenes.rope import SCENE
 from app.scenes.rope.parameters import RopeParams
@@ -98,7 +98,7 @@ def test_what_can_run_begins_the_run_of_the_preset_that_it_drops() -> None:
 
 def test_nothing_drops_a_moment_to_go_on_from_but_what_begins_again() -> None:
     queue, gate = made()
-    moment = Take(RopeParams(integrator="rk4"), state=KeptState(0.0, {}), act=2)
+    moment = Take(RopeParams(integrator="rk4"), state=Checkpoint(0.0, {}), act=2)
     changed = Take(RopeParams(gravity=3.0), act=2)
     assert gate.admit([moment, changed]) == []
     queue.finish("rk4")
@@ -127,7 +127,7 @@ def test_a_slider_that_is_moved_while_a_preset_is_compiled_is_taken_after_its_st
 
 def test_a_moment_to_go_on_from_keeps_its_own_parameters() -> None:
     queue, gate = made()
-    kept = Take(RopeParams(integrator="rk4"), state=KeptState(0.0, {}))
+    kept = Take(RopeParams(integrator="rk4"), state=Checkpoint(0.0, {}))
     moved = Take(RopeParams(integrator="rk4", gravity=3.0))
     assert gate.admit([kept, moved]) == []
     queue.finish("rk4")

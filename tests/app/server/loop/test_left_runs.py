@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take
+from app.messages import Checkpoint, Pause, Play, Reset, StepOnce, Take
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup
 from app.server.loop import run as runs
@@ -51,7 +51,7 @@ def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, c
     rows = tuple(loop.run.snapshots.kept_rows)
     assert time > 0.0
     other = make_setup(kind, list(kind.presets)[1]).params
-    moment = Take(params, state=KeptState(loop.scene.keep(), {}, 1), act=2)
+    moment = Take(params, state=Checkpoint(loop.scene.keep(), {}, 1), act=2)
     changes = {"preset": Take(other, start=True, act=2), "reset": Reset(2), "moment": moment}
     loop.handle(changes[change])
     loop.handle(Play())

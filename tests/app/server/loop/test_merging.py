@@ -13,11 +13,11 @@ import pytest
 from app.messages import (
     Advance,
     Ask,
+    Checkpoint,
     Command,
     GrabTo,
     Halt,
-    KeptState,
-    Moment,
+    LastFrame,
     Pause,
     Place,
     Play,
@@ -172,12 +172,12 @@ class Lane:
         )  # fmt: skip
 
 
-MOMENTS = tuple(Moment(0.1 * k, k, ORIGIN, ORIGIN) for k in range(3))
+MOMENTS = tuple(LastFrame(0.1 * k, k, ORIGIN, ORIGIN) for k in range(3))
 COMMANDS: tuple[Command, ...] = (
     Play(), Pause(), TogglePlay(), StepOnce(), StepOnce(2), Halt("no picture"), Reset(),
     Take(Params(grid=False)), Take(Params(stiffness=3.0)), Take(Params(points=5)), Take(Params()),
     Take(Params(points=5, stiffness=3.0)), Take(Params(stiffness=4.0), start=True),
-    Take(Params(stiffness=5.0), state=KeptState(0.25, {})),
+    Take(Params(stiffness=5.0), state=Checkpoint(0.25, {})),
     Place("root", (1.0, 0.0, 0.0)), Place("camera", (2.0, 0.0, 0.0)),
     GrabTo(0, (3.0, 0.0, 0.0)), GrabTo(1, (4.0, 0.0, 0.0)), GrabTo(1, (5.0, 0.0, 0.0)), GrabTo(1, (6.0, 0.0, 0.0), 7),
     Release(), PointAlong((8.0, 0.0, 0.0), (0.0, 0.0, -1.0)),
@@ -233,7 +233,7 @@ def test_a_rope_is_left_by_merged_commands_as_by_all_in_order(first: int) -> Non
     stiffer = dataclasses.replace(params, stiffness=900.0)
     commands: tuple[Command, ...] = (
         StepOnce(3), Reset(), Take(stiffer), Take(dataclasses.replace(stiffer, gravity=3.0)), Take(params),
-        Take(stiffer, start=True), Take(params, state=KeptState(earlier.keep(), {})),
+        Take(stiffer, start=True), Take(params, state=Checkpoint(earlier.keep(), {})),
         GrabTo(3, (1.0, 0.0, 0.0)), GrabTo(3, (0.0, 1.0, 0.0)), Place("root", (0.2, 0.0, 0.0)),
     )  # fmt: skip
     count = 0

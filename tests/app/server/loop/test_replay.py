@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.messages import Moment, Pause, Play, Reset, StepOnce, Take
+from app.messages import LastFrame, Pause, Play, Reset, StepOnce, Take
 from app.render.cameras import fit_cameras
 from app.scenes.contract import FRAME_INTERVAL
 from app.scenes.rope.parameters import PRESETS, RopeParams
@@ -13,7 +13,7 @@ from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record
 from tests.app.render.test_cameras import FakeCamera
 
-MOMENTS = tuple(Moment(0.1 * k, k, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)) for k in range(4))
+MOMENTS = tuple(LastFrame(0.1 * k, k, (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)) for k in range(4))
 
 
 def diverged(**changes: object) -> SimLoop:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.messages import KeptState, Pause, Play, Reset, StepOnce, Take, TogglePlay
+from app.messages import Checkpoint, Pause, Play, Reset, StepOnce, Take, TogglePlay
 from app.scenes import race
 from app.scenes.contract import FRAME_INTERVAL, AnyScene
 from app.scenes.race.parameters import RaceParams
@@ -157,7 +157,7 @@ def test_a_run_that_goes_on_from_an_earlier_moment_advances_as_the_others_do():
     group = of_steps(1 / 240, 1 / 240)
     group.run(1.0)
     first = group.loops[0]
-    state = KeptState(first.scene.keep(), {})
+    state = Checkpoint(first.scene.keep(), {})
     kept_at = first.scene.time
     group.run(1.0)
     first.commands.put(Take(first.scene.params, state=state))

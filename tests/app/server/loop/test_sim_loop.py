@@ -14,9 +14,9 @@ import pytest
 from app.messages import (
     Advance,
     Ask,
+    Checkpoint,
     Command,
     Halt,
-    KeptState,
     Pause,
     Play,
     Reset,
@@ -619,7 +619,7 @@ def test_a_program_that_waits_is_told_why_the_time_does_not_come() -> None:
     for command, kind, words in (
         (Reset(), RuntimeError, "begun again"),
         (Take(Params(), start=True), RuntimeError, "begun again"),
-        (Take(Params(), state=KeptState(0.0, {})), RuntimeError, "another moment"),
+        (Take(Params(), state=Checkpoint(0.0, {})), RuntimeError, "another moment"),
         (Advance(1.0, Future()), RuntimeError, "another program"),
         (Halt("no more"), DivergenceError, "no more"),
     ):

@@ -134,7 +134,7 @@ def test_hostile_messages_leave_the_server_running_and_the_state_finite(lab: Vie
     messages = [hostile_message(rng, uuids) for _ in range(count)]
     cuts = coroutines.run(say(lab.port, messages))
     assert cuts < count / 4
-    assert sum(lab.screen.refused.values()) > count / 6  # what was on its way when a connection was cut is lost
+    assert sum(lab.message_filter.refused.values()) > count / 6  # what was on its way when a connection was cut is lost
     lab.loop.run.audience = lambda: 1
     ticks = lab.loop.run.counts["ticks"]
     wait_for(lambda: lab.loop.run.counts["ticks"] >= ticks + 30)

@@ -14,7 +14,7 @@ from viser import _messages as vm
 from websockets.asyncio.client import connect
 
 from app.server.web.guard import open_server
-from app.server.web.pace import MAX_UNASKED, MOST, PATIENCE, PROBE_INTERVAL, QUEUE, SMALL, Pace, small_first
+from app.server.web.rate_limit import MAX_UNASKED, MOST, PATIENCE, PROBE_INTERVAL, QUEUE, SMALL, RateLimit, small_first
 from tests import coroutines
 from tests.app.server.web.test_transport import decoded
 
@@ -80,7 +80,7 @@ def pictures_over(line: LineTo, count: int, interval: float) -> list[float]:
     """How long each of `count` pictures waits [s], made so long [s] after the one before was sent."""
 
     async def send_all() -> list[float]:
-        loop, waits, connection = asyncio.get_running_loop(), [], Pace(line)
+        loop, waits, connection = asyncio.get_running_loop(), [], RateLimit(line)
         for _ in range(count):
             await asyncio.sleep(interval)
             start = loop.time()
@@ -125,7 +125,7 @@ def test_the_round_trip_is_the_shortest_of_the_last() -> None:
     line = LineTo(LINE, 0.3)
 
     async def probe() -> list[float]:
-        connection, found = Pace(line), []
+        connection, found = RateLimit(line), []
         for line.round_trip in (0.3, 0.08, 0.2):
             await connection.probe()
             found.append(connection.round_trip)
@@ -138,7 +138,7 @@ def test_the_rate_follows_the_line() -> None:
     line = LineTo(LINE, ROUND_TRIP)
 
     async def send_all() -> None:
-        connection = Pace(line)
+        connection = RateLimit(line)
         for number in range(60):
             line.rate = LINE if number < 20 else 0.25 * LINE
             await connection.send(PICTURE)
@@ -151,7 +151,7 @@ def test_a_quick_line_is_asked_about_some_pictures_and_about_all_once_it_is_slow
     line = LineTo(1e9, 0.001, pongs=1000)
 
     async def send_all() -> tuple[int, int]:
-        connection, asked = Pace(line), []
+        connection, asked = RateLimit(line), []
         for number in range(200):
             await asyncio.sleep(INTERVAL)
             if number == 100:
@@ -171,7 +171,7 @@ def test_small_messages_do_not_wait() -> None:
     line = LineTo(0.1 * LINE, ROUND_TRIP)
 
     async def send_all() -> float:
-        loop, connection = asyncio.get_running_loop(), Pace(line)
+        loop, connection = asyncio.get_running_loop(), RateLimit(line)
         await connection.send(PICTURE)
         waiting = asyncio.ensure_future(connection.send(PICTURE))
         await asyncio.sleep(0.0)
@@ -209,7 +209,7 @@ def passed(windows: Sequence[Sequence[vm.Message]]) -> list[list[vm.Message]]:
 
     async def pass_all() -> list[list[vm.Message]]:
         line = LineTo(LINE, ROUND_TRIP)
-        connection = Pace(line)
+        connection = RateLimit(line)
         await connection.send(PICTURE)
 
         async def come() -> AsyncGenerator[Sequence[vm.Message]]:

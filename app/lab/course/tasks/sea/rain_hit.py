@@ -6,11 +6,11 @@ from app.lab.checking import Mistake, require
 
 
 def rain_hit(z0, z1, level0, level1):
-    """When rain drops meet the surface within a time step: the share of the step, shape (n,), infinite for no meeting.
+    """Time at which rain drops meet the surface: the fraction of the time step, shape (n,), infinite for no meeting.
 
     In a step a drop falls from z0 to z1, and the surface below it moves from level0 to level1, both at constant speed.
-    They meet at the share s = (z0 - level0)/((z0 - level0) - (z1 - level1)). There is a meeting where the drop starts
-    above the surface (z0 > level0) and ends on it or below (z1 <= level1).
+    They meet at the fraction s = (z0 - level0)/((z0 - level0) - (z1 - level1)). There is a meeting if the drop
+    starts above the surface (z0 > level0) and ends on it or below (z1 <= level1).
 
     z0, z1: heights of the drops [m], shape (n,). level0, level1: heights of the surface at the drops [m], shape (n,).
     """
@@ -60,7 +60,7 @@ MISTAKES = (
     ),
     Mistake(
         "motion of the surface forgotten",
-        "The share is that of the way of the drop, z0 - z1. The surface moves too: divide by what the height above it "
+        "This is a fraction of the drop's path, z0 - z1. The surface moves too: divide by what the height above it "
         "falls, (z0 - level0) - (z1 - level1).",
         still_way,
     ),
@@ -75,8 +75,8 @@ MISTAKES = (
         with_start_and_end(lambda a, b: share(a, b, True)),
     ),
     Mistake(
-        "share from the end",
-        "This is the share that is left after the meeting.",
+        "fraction from the end",
+        "This is the fraction that is left after the meeting.",
         with_start_and_end(lambda a, b: np.where((a > 0) & (b <= 0), -b / (a - b), np.inf)),
     ),
     Mistake(
@@ -95,7 +95,7 @@ MISTAKES = (
         with_start_and_end(lambda a, b: np.where((a > 0) & (b <= 0), a / (a - b), 0.0)),
     ),
     Mistake(
-        "distance instead of share",
+        "distance instead of fraction",
         "This is the height above the surface. Divide it by what it falls within the step.",
         with_start_and_end(lambda a, b: np.where((a > 0) & (b <= 0), a, np.inf)),
     ),

@@ -6,7 +6,7 @@ from app.lab.checking import Curve, Mistake, require
 
 
 def extra_draft(oil_thickness, oil_density, water_density):
-    """How much deeper [m] a box floats when a layer of oil comes onto the water: depth of its bottom below the surface.
+    """Extra draft [m] of a box when a layer of oil comes onto the water: depth of its bottom below the surface.
 
     Before and after, the box displaces its own weight: of water alone, then of a layer of oil of thickness d and of
     the water below it.
@@ -27,8 +27,8 @@ MISTAKES = (
         lambda d, o, w: d,
     ),
     Mistake(
-        "the share that the oil carries",
-        "This is what the oil carries. Asked is the rest, d less that.",
+        "the part that the oil carries",
+        "This is what the oil carries. The extra draft is the rest, d minus that.",
         lambda d, o, w: d * o / w,
     ),
     Mistake(

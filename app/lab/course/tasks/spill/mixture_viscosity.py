@@ -10,7 +10,7 @@ def mixture_viscosity(oil_viscosity, water_viscosity, oil_fraction):
 
     ln mu = phi ln mu_oil + (1 - phi) ln mu_water.
 
-    oil_viscosity, water_viscosity: mu [Pa s]. oil_fraction: phi, the share of the oil in the volume, 0 to 1.
+    oil_viscosity, water_viscosity: mu [Pa s]. oil_fraction: phi, the fraction of the oil in the volume, 0 to 1.
     """
     return np.exp(oil_fraction * np.log(oil_viscosity) + (1 - oil_fraction) * np.log(water_viscosity))
 
@@ -50,7 +50,9 @@ MISTAKES = (
     Mistake("weights do not sum to one", "The water counts in full. Its weight is 1 - phi.", lambda o, w, f: o**f * w),
 )
 
-CURVE = Curve("share of oil", "viscosity [Pa s]", np.linspace(0.0, 1.0, 21), lambda f, x: [f(0.1, 0.001, p) for p in x])
+CURVE = Curve(
+    "fraction of oil", "viscosity [Pa s]", np.linspace(0.0, 1.0, 21), lambda f, x: [f(0.1, 0.001, p) for p in x]
+)
 
 
 def behaviour(student):

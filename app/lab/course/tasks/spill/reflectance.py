@@ -6,7 +6,7 @@ from app.lab.checking import Curve, Mistake, require
 
 
 def reflectance(angle, index):
-    """The share of unpolarised light that a surface reflects, by Fresnel's equations.
+    """Fraction of unpolarised light that a surface reflects, by Fresnel's equations.
 
     With c = cos(angle) and t = sqrt(1 - (sin(angle)/n)^2), the cosine below the surface:
     R_s = ((c - n t)/(c + n t))^2, R_p = ((n c - t)/(n c + t))^2, R = (R_s + R_p)/2.
@@ -45,7 +45,7 @@ MISTAKES = (
     ),
     Mistake(
         "sum instead of mean",
-        "The two shares are added: take their mean.",
+        "The two reflectances are added: take their mean.",
         lambda a, n: sum(r**2 for r in polarised(a, n)),
     ),
     Mistake(
@@ -76,7 +76,7 @@ MISTAKES = (
         "The angle is taken from the surface. It is the angle from the normal: sine and cosine change places.",
         lambda a, n: reflectance(np.pi / 2 - a, n),
     ),
-    Mistake("light that passes", "This is the share that passes into the fluid.", lambda a, n: 1 - reflectance(a, n)),
+    Mistake("light that passes", "This is the part that passes into the fluid.", lambda a, n: 1 - reflectance(a, n)),
 )
 
 CURVE = Curve("angle [rad]", "reflectance of oil", np.linspace(0.02, 1.55, 30), lambda f, x: [f(a, 1.47) for a in x])
@@ -84,5 +84,5 @@ CURVE = Curve("angle [rad]", "reflectance of oil", np.linspace(0.02, 1.55, 30), 
 
 def behaviour(student):
     """Straight down ((n - 1)/(n + 1))^2; along the surface everything."""
-    require(abs(student(0.0, 1.333) - 0.02037) < 1e-4, "water reflects another share straight down")
+    require(abs(student(0.0, 1.333) - 0.02037) < 1e-4, "water reflects another fraction straight down")
     require(student(1.5707, 1.333) > 0.99, "along the surface everything must be reflected")

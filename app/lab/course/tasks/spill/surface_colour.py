@@ -8,7 +8,7 @@ from app.lab.checking import Curve, Mistake, require
 def surface_colour(oil_colour, water_colour, thickness, absorption):
     """The colour of water below a layer of oil: red, green, blue, shape (3,), each from 0 to 1.
 
-    Light passes the oil down and up again, so that the share T = exp(-2 a d) of the water's colour is seen through it:
+    Light passes the oil down and up again, so that the fraction T = exp(-2 a d) of the water's colour is seen:
     colour = T water + (1 - T) oil.
 
     oil_colour, water_colour: red, green, blue, shape (3,). thickness: d [m]. absorption: a [1/m].
@@ -30,7 +30,7 @@ MISTAKES = (
     ),
     Mistake(
         "colours swapped",
-        "Thin oil looks like oil here. T is the share of the water.",
+        "Thin oil looks like oil here. T is the fraction of the water.",
         lambda o, w, d, a: surface_colour(w, o, d, a),
     ),
     Mistake(
@@ -39,13 +39,13 @@ MISTAKES = (
         lambda o, w, d, a: np.exp(2 * a * d) * w + (1 - np.exp(2 * a * d)) * o,
     ),
     Mistake(
-        "shares do not sum to one",
-        "The oil's colour is added in full. Its share is 1 - T.",
+        "fractions do not sum to one",
+        "The oil's colour is added in full. Its fraction is 1 - T.",
         lambda o, w, d, a: np.exp(-2 * a * d) * w + o,
     ),
     Mistake(
         "exponential forgotten",
-        "The share falls as 1 - 2 a d. Each layer takes its share of what is left: exp(-2 a d).",
+        "The fraction falls as 1 - 2 a d. Each layer absorbs a fraction of what is left: exp(-2 a d).",
         lambda o, w, d, a: (1 - 2 * a * d) * w + 2 * a * d * o,
     ),
     Mistake(
@@ -58,7 +58,7 @@ MISTAKES = (
 
 CURVE = Curve(
     "thickness of the oil [m]",
-    "share of red",
+    "fraction of red",
     np.linspace(0.0, 0.2, 40),
     lambda f, x: [f(np.array([0.1, 0.07, 0.04]), np.array([0.0, 0.3, 0.4]), d, 15.0)[0] for d in x],
 )

@@ -55,9 +55,10 @@ CURVE = Curve("time [s]", "amplitude [m]", np.linspace(0.0, 60.0, 25), lambda f,
 
 
 def behaviour(student):
-    """Nothing at once; twice the time squares the share that is left; water of 1 m wavelength."""
+    """Nothing at once; twice the time squares the fraction that is left; water of 1 m wavelength."""
     require(abs(student(0.7, 3.0, 0.01, 0.0) - 0.7) < 1e-5, "at time 0 nothing must be lost")
     share = student(1.0, 3.0, 0.01, 5.0)
     require(
-        abs(student(1.0, 3.0, 0.01, 10.0) - share**2) < 1e-5, "in twice the time the share that is left must be squared"
+        abs(student(1.0, 3.0, 0.01, 10.0) - share**2) < 1e-5,
+        "in twice the time the fraction that is left must be squared",
     )

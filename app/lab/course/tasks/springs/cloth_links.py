@@ -99,8 +99,8 @@ def contrast(found, right, rows, cols):
         return ""
     has, needs = ({tuple(pair) for pair in links.tolist()} for links in (found, right))
     missing, extra = kinds(needs - has, cols), kinds(has - needs, cols)
-    parts = [f"missing are {missing}"] if missing else []
-    parts += [f"too many are {extra}"] if extra else []
+    parts = [f"missing: {missing}"] if missing else []
+    parts += [f"too many: {extra}"] if extra else []
     twice = len(found) - len(has)
     parts += [f"{twice} {'link is' if twice == 1 else 'links are'} there twice"] if twice > 0 else []
     return f"For {rows} x {cols} points: {'; '.join(parts)}." if parts else ""
@@ -139,5 +139,5 @@ def behaviour(student):
         "end of a row joined to the next row",
     )
     number = rows * (cols - 1) + cols * (rows - 1) + 2 * (rows - 1) * (cols - 1) + rows * (cols - 2) + cols * (rows - 2)
-    require(len(links) == number, f"a cloth of 4 x 7 points has {number} links; here are {len(links)}")
+    require(len(links) == number, f"a cloth of 4 x 7 points has {number} links; yours has {len(links)}")
     require((links[:, 0] != links[:, 1]).all(), "a link joins a point to itself")

@@ -23,8 +23,8 @@ def inputs(rng):
 
 MISTAKES = (
     Mistake(
-        "level part only",
-        "This is the level part, H. The line also carries the weight of what hangs, V = w s.",
+        "horizontal part only",
+        "This is the horizontal part, H. The line also carries the weight of what hangs, V = w s.",
         lambda w, s, z: w * (s**2 - z**2) / (2 * z),
     ),
     Mistake("weight only", "This is the weight of what hangs. The line also pulls sideways.", lambda w, s, z: w * s),
@@ -44,4 +44,4 @@ def behaviour(student):
     """Straight down it carries its own weight; the tension is H + w z."""
     require(abs(student(100.0, 30.0, 30.0) - 3000.0) < 0.01, "a line that hangs straight down has another tension")
     level = 100.0 * (50.0**2 - 30.0**2) / 60.0
-    require(abs(student(100.0, 50.0, 30.0) - level - 3000.0) < 0.01, "the tension must be w z more than its level part")
+    require(abs(student(100.0, 50.0, 30.0) - level - 3000.0) < 0.01, "the tension must be its horizontal part and w z")

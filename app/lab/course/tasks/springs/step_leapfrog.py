@@ -87,11 +87,11 @@ def behaviour(student):
     """Time runs back, energy stays, and a step of h omega = 2 is the limit."""
     x, v = oscillate(student, 0.5, 100)
     size = amplitude(x, v)
-    require(size.max() < 1.1, "the amplitude of an oscillator grows as it does not with leapfrog")
-    require(size[-50:].max() > 0.9, "the amplitude of an oscillator shrinks as it does not with leapfrog")
+    require(size.max() < 1.1, "the amplitude of an oscillator grows; with leapfrog it does not")
+    require(size[-50:].max() > 0.9, "the amplitude of an oscillator shrinks; with leapfrog it does not")
     require(
         np.abs(oscillate(student, 1.9, 60)[0]).max() < 4.0,
-        "an oscillator leaves its bounds at a step with which leapfrog holds it",
+        "an oscillator leaves its bounds at a step at which leapfrog is stable",
     )
     errors = [abs(oscillate(student, 4.0 / steps, steps)[0][-1] - np.cos(4.0)) for steps in (40, 80)]
     ratio = errors[0] / max(errors[1], 1e-15)

@@ -19,7 +19,7 @@ export function toHalf(number) {
  * @param {Uint16Array} halves @param {number} at
  * @param {number} a @param {number} b @param {number} c @param {number} d
  */
-export function writeHalves(halves, at, a, b, c, d) {
+export function writeHalfFloats(halves, at, a, b, c, d) {
   halves[at] = toHalf(a);
   halves[at + 1] = toHalf(b);
   halves[at + 2] = toHalf(c);

@@ -29,9 +29,9 @@ QUEUE = 0.02  # [s] of the line's rate that may wait in front of it, beyond what
 MOST = 12  # pictures on the way, however much a line carries: 30 a second where a round trip takes 0.4 s
 QUICK = 0.01  # [s] from a picture to its pong, within which a line is so quick that not each picture is asked about
 MAX_UNASKED = 4  # pictures that go one after the other without a ping over such a line: each costs 0.1 ms
-SAMPLES = 5  # of the rate, of which the median counts: one pong may be late, and the next seem early
+SAMPLES = 5  # of the rate; their median counts: one pong may be late, and the next seem early
 PROBE_INTERVAL = 10.0  # [s] between two round trips that are measured while nothing else is on the way
-PROBES = 3  # of which the shortest counts
+PROBES = 3  # the shortest counts
 PATIENCE = 1.0  # [s] beyond four times what it should take, after which a pong is no longer waited for
 FIRST_PATIENCE = 10.0  # [s] the same while the rate is not known
 
@@ -44,8 +44,8 @@ class Sent(NamedTuple):
     pong: "asyncio.Future[float]"
 
 
-class Pace:
-    """The pace of one browser's messages, on the event loop of its connection."""
+class RateLimit:
+    """The limit of one browser's messages, on the event loop of its connection."""
 
     def __init__(self, connection: ViserConnection) -> None:
         self.connection = connection
@@ -61,7 +61,7 @@ class Pace:
         self.round_trip = 0.0  # [s] of a message with nothing in front of it; 0 while that is not known
         self.probe_at = -math.inf  # [s] when the round trip is measured next
         self.last_pong = -math.inf  # [s] when it came
-        self.is_quick = False  # whether it came within QUICK
+        self.is_quick = False  # True if it came within QUICK
         self.unasked = 0  # pictures since the last ping
 
     async def send(self, data: bytes) -> None:
@@ -101,7 +101,7 @@ class Pace:
 
     @property
     def patience(self) -> float:
-        """How long [s] a pong is waited for."""
+        """Time [s] to wait for a pong."""
         if not self.rate:
             return FIRST_PATIENCE
         return PATIENCE + 4.0 * (self.round_trip + self.bytes_on_the_way / self.rate)
@@ -141,27 +141,27 @@ def has_come(pong: "asyncio.Future[float]") -> bool:
     return pong.done() and not pong.cancelled() and pong.exception() is None
 
 
-PACE: contextvars.ContextVar[Pace] = contextvars.ContextVar("pace")  # of the connection that a task serves
+LIMIT: contextvars.ContextVar[RateLimit] = contextvars.ContextVar("limit")  # of the connection that a task serves
 Window = Sequence[ViserMessage]
 Windows = AsyncGenerator[Window, None]
 
 
 def put_small_first(server: viser.ViserServer) -> None:
     """Delay messages to a server's browsers until their line has capacity; small panel updates go ahead."""
-    pass_windows_through(server, lambda windows: small_first(windows, PACE.get()))
+    pass_windows_through(server, lambda windows: small_first(windows, LIMIT.get()))
 
 
-async def small_first(windows: Windows, pace: Pace) -> Windows:
+async def small_first(windows: Windows, limit: RateLimit) -> Windows:
     """The same messages; where there is no room only small updates of the panel, and later the newest of the others."""
     loop = asyncio.get_running_loop()
-    held: dict[str, ViserMessage] = {}  # what waits, in order, by what supersedes it
+    held: dict[str, ViserMessage] = {}  # waiting messages, in order, by the key of the message that supersedes them
     more: asyncio.Future[Window] | None = None
     room: asyncio.Future[None] | None = None
     try:
         while True:
             if held:
                 more = more or asyncio.ensure_future(anext(windows))
-                room = room or pace.room_from(loop)
+                room = room or limit.room_from(loop)
                 await asyncio.wait([more, room], return_when=asyncio.FIRST_COMPLETED)
                 if room.done():
                     room.result()
@@ -173,7 +173,7 @@ async def small_first(windows: Windows, pace: Pace) -> Windows:
                 window, more = await (more or anext(windows)), None
             except StopAsyncIteration:
                 return
-            if pace.has_room and not held:
+            if limit.has_room and not held:
                 yield window
             elif ahead := hold(held, window):
                 yield ahead

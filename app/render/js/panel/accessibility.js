@@ -1,4 +1,4 @@
-// What viser's panel lacks for those who use the keyboard or listen: folders and sliders that Tab reaches, and names.
+// Additions to viser's panel for those who use the keyboard or listen: folders and sliders that Tab reaches, and names.
 
 import { page } from "../core/life.js";
 import { onControls, onValues } from "../core/watch.js";

@@ -9,10 +9,9 @@ import re
 import tokenize
 from pathlib import Path
 
-from tests.repository.test_layers import below, named
 import pytest
 
-from tests.test_layers import ROOT, below, named
+from tests.repository.test_layers import ROOT, below, named
 
 BEGINNINGS = r"(What|Whether|Where|Which|How|Why|When|Who|All that|That|Those|The one|Of)\b"
 CLAUSE = re.compile(rf"{BEGINNINGS}|.*\b[Ww]hat\b")

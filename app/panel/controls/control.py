@@ -149,7 +149,7 @@ class Control:
             self.set(self.scale.value(position))
 
     def set(self, value: object) -> None:
-        """Have the settings take a value, and show what they made of it."""
+        """Give a value to the settings, and show the one that they took."""
         self.settings.set(self.name, value)
         self.show_value()
 

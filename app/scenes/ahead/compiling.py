@@ -62,7 +62,7 @@ def all_jobs(name: str, *, drawn: bool = True) -> tuple[Job, ...]:
 
 
 def uncompiled(name: str, params: BaseParams | None = None) -> list[Job]:
-    """Those of `all_jobs` still to be compiled. params: only those that run with these parameters; None: all.
+    """Jobs of `all_jobs` still to be compiled. params: only those that run with these parameters; None: all.
 
     A scene that is compiled as a whole is not imported for that.
     """

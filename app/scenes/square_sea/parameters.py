@@ -251,7 +251,7 @@ def is_draupner(params: SquareSeaParams) -> bool:
 
 
 def sea_of(params: SquareSeaParams) -> tuple[object, ...]:
-    """All that decides how high its waves are."""
+    """Settings that decide the height of its waves."""
     return params.start, params.order, params.length, params.amplitude, params.seed, conditions(params)
 
 

@@ -1,1 +1,1 @@
-"""What the mooring shows in numbers: tensions, statistics, restoring curve, and their texts."""
+"""Numbers of the mooring: tensions, statistics, restoring curve, and their texts."""

@@ -4,7 +4,7 @@ import io
 import re
 import tokenize
 
-from tests.test_layers import ROOT, below, named
+from tests.repository.test_layers import ROOT, below, named
 
 # Former name -> the name that says it.
 FORMER = {

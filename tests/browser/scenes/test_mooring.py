@@ -12,9 +12,9 @@ from app.messages import Pause
 from app.scenes.mooring.parameters import MooringParams
 from app.server.viewer import Viewer
 from tests.browser.conftest import LATE_UPDATE, NO_NOTES, Tab
-from tests.browser.test_water import PANEL_HIDDEN
+from tests.browser.water.test_water import PANEL_HIDDEN
 
-FILES = Path(__file__).parents[1] / "sim/mooring/files"
+FILES = Path(__file__).parents[2] / "sim/mooring/files"
 
 
 @pytest.mark.long

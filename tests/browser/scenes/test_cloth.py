@@ -9,7 +9,7 @@ from PIL import Image
 from app.messages import Pause, Play
 from app.server.viewer import Viewer
 from tests.browser.conftest import NO_NOTES, Tab
-from tests.browser.test_water import PANEL_HIDDEN
+from tests.browser.water.test_water import PANEL_HIDDEN
 
 SCENE = "cloth"
 COUNT_FRAMES = """() => { const scene = window.__viserMutable.scene, earlier = scene.onBeforeRender; window.frames = 0;

@@ -1,8 +1,8 @@
 """Shaders that stock viser does not have: scripts of the page replace them in the browser.
 
 viser 1.1 draws an ordinary mesh in one colour with one rough material. The scripts in `js/scene` and `js/sea` use
-`window.__viserMutable` (`nodeRefFromName`, `scene`, `requestRender`, `sendMessage`); `tests/browser/test_water.py`
-fails when these change.
+`window.__viserMutable` (`nodeRefFromName`, `scene`, `requestRender`, `sendMessage`);
+`tests/browser/water/test_water.py` fails when these change.
 
 Everything that changes travels as vertices of hidden meshes (`add_data_mesh`), because viser keeps only the newest
 vertices of a mesh. Displacements of a drawn mesh travel packed (`app/formats/packing.py`), in a fifth of the bytes;

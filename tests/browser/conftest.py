@@ -77,6 +77,7 @@ HARMLESS_ERRORS = ("preventDefault inside passive",)
 # after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a
 # removal.
 LATE_UPDATE = "Tried to update non-existent component"
+HOLD_TIME = 5.0  # [s] after which a drag that holds nothing is tried again
 STUCK = 0.6  # of the time of a test, after which its browser is ended
 
 
@@ -256,6 +257,31 @@ class Tab:
         for step in range(1, 9):
             mouse.move(start[0] + (end[0] - start[0]) * step / 8, start[1] + (end[1] - start[1]) * step / 8)
             self.page.wait_for_timeout(pause)
+
+    def hold(
+        self,
+        start: Callable[[], tuple[float, float]],
+        by: tuple[float, float],
+        held: Callable[[], Any],
+        pause: int = 50,
+    ) -> None:
+        """Drag from a pixel by some pixels until something is held; `release` lets it go.
+
+        Once more, from where it is then, if a slow page had not yet noticed what the mouse was over.
+        """
+
+        def is_held() -> bool:
+            x, y = start()
+            self.drag((x, y), (x + by[0], y + by[1]), pause)
+            end = time.monotonic() + HOLD_TIME
+            while not held():
+                if time.monotonic() > end:
+                    self.release()
+                    return False
+                self.page.wait_for_timeout(50)
+            return True
+
+        self.wait(is_held)
 
     def release(self) -> None:
         self.page.mouse.up()

@@ -18,7 +18,6 @@ FULL_FOLDERS = {
     "sim",
     "sim/ocean/nonlinear",
     "sim/springs",
-    "tests/browser",
     "tests/sim",
     "tests/sim/floating",
     "tests/sim/mooring",

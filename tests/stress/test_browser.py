@@ -42,16 +42,9 @@ def test_a_chromium_killed_while_it_drags(lab: Viewer, process: tuple[subprocess
     tab.wait(lambda: lab.audience() == 1 and lab.loop.scene.time > 6)
     lab.commands.put(Pause())  # a slow page must hit what it sees
     tab.page.wait_for_timeout(1500)
-    start = tab.pixel(lab.scene.state.x[:, 0, 6])
     with tally.fault("Chromium killed in mid-drag"):
-
-        def grab() -> bool:
-            tab.release()
-            tab.drag(start, (start[0] + 60, start[1] - 30))
-            tab.page.wait_for_timeout(3000)
-            return lab.scene.handles.grab.grabbed is not None
-
-        tab.wait(grab)
+        place = lambda: tab.pixel(lab.scene.state.x[:, 0, 6])  # noqa: E731
+        tab.hold(place, (60, -30), lambda: lab.scene.handles.grab.grabbed is not None)
         chromium.kill()
         until(lambda: lab.audience() == 0, "it is gone")
         until(lambda: lab.scene.handles.grab.grabbed is None, "what it held is let go")

@@ -2,7 +2,8 @@
 
 viser has no picture that answers a click. The map is SVG in an HTML element. Its click handler moves a hidden slider
 of two handles; from there on a click is a change like any other, which `app/server/web/guard.py` bounds.
-Of viser's inner names the handler uses `window.__viserMutable.sendMessage`; `tests/browser/test_rope.py` clicks it.
+Of viser's inner names the handler uses `window.__viserMutable.sendMessage`;
+`tests/browser/scenes/test_rope.py` clicks it.
 """
 
 import dataclasses

@@ -1,6 +1,6 @@
 """Names of viser that are not public: one file uses them, and without any of them the lab runs.
 
-Those of its page are held by tests/browser/test_water.py and test_rope.py.
+Those of its page are held by tests/browser/water/test_water.py and tests/browser/scenes/test_rope.py.
 """
 
 import ast

@@ -1,6 +1,7 @@
 """Right solutions move rope and cloth as the program does at any value of a parameter; or the panel names it."""
 
 import dataclasses
+import functools
 import inspect
 from collections.abc import Iterator
 from typing import Any
@@ -92,19 +93,31 @@ def run(scene: Any, seconds: float) -> None:
             scene.handle(StudentAnswer())
 
 
-def changed(name: str, base: Any, parameter: str, value: Value, session: Session | None = None) -> Any:
-    """A scene some time after the parameter was changed. session: moves a rope or a cloth beside the program's."""
+def moved(name: str, base: Any, new: Any, starts_anew: bool, seconds: float, session: Session | None = None) -> Any:
+    """The positions some time after other parameters are set. session: moves a rope or a cloth beside the program's."""
     scene = SCENES[name](base, None if session is None else session.live)
     scene.handle(GrabTo(HELD[name], (-1.0, 0.5, 1.5), 0))
     run(scene, BEFORE)
-    new = dataclasses.replace(base, **{parameter: value})
-    if effect_of_change(base, new) == "start":
+    if starts_anew:
         scene.params = new
         scene.reset()
     else:
         scene.change_forces(new)
-    run(scene, FALL if parameter == "floor" else AFTER)
-    return scene
+    run(scene, seconds)
+    return scene.state.x
+
+
+unchanged = functools.cache(moved)
+
+
+def changed(name: str, base: Any, parameter: str, value: Value, session: Session | None = None) -> tuple[Any, Any]:
+    """The positions some time after a parameter was changed, and those without the change.
+
+    The latter only where no student's functions move the scene.
+    """
+    new = dataclasses.replace(base, **{parameter: value})
+    how = effect_of_change(base, new) == "start", FALL if parameter == "floor" else AFTER
+    return moved(name, base, new, *how, session), None if session else unchanged(name, base, base, *how)
 
 
 def tried(base: Any, parameter: str, every: bool) -> list[Value]:
@@ -116,9 +129,8 @@ def tried(base: Any, parameter: str, every: bool) -> list[Value]:
 
 def acts(name: str, base: Any, parameter: str, values: list[Value]) -> bool:
     """True if one of the values makes another motion than that of `base`."""
-    own = changed(name, base, parameter, getattr(base, parameter)).state.x
-    others = (changed(name, base, parameter, value).state.x for value in values)
-    return any(x.shape != own.shape or np.abs(x - own).max() > 1e-4 for x in others)
+    pairs = (changed(name, base, parameter, value) for value in values)
+    return any(x.shape != own.shape or np.abs(x - own).max() > 1e-4 for x, own in pairs)
 
 
 @pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.stress)], ids=["one value", "all"])

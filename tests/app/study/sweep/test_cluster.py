@@ -49,6 +49,7 @@ def wait_for_scheduler(address, condition) -> None:
             time.sleep(0.02)
 
 
+@pytest.mark.long
 @needs_pools
 def test_what_runs_on_a_cluster_outlives_workers_and_ends_with_the_scheduler(start, tmp_path, capsys, monkeypatch):
     from distributed import Client

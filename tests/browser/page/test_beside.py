@@ -96,6 +96,7 @@ def test_a_pane_that_lost_its_line_says_so_and_comes_back_by_itself(pair: Viewer
     tab.wait(lambda: "t = " in clock.inner_text(), 10)
 
 
+@pytest.mark.long
 def test_the_camera_over_a_sea_is_as_far_from_its_middle_in_both_panes(open_tab: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     try:

@@ -17,7 +17,7 @@ from app.scenes.rope.view import RopeView
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests.browser.conftest import NO_NOTES, Tab
-from tests.browser.test_water import PANEL_HIDDEN
+from tests.browser.water.test_water import PANEL_HIDDEN
 
 WIDTH, HEIGHT = 240, 160  # [pixels]
 SMALL: dict[str, dict[str, Any]] = {

@@ -15,7 +15,7 @@ from app.scenes.race.parameters import PRESETS, RaceParams
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests.browser.conftest import NO_NOTES, new_page
-from tests.browser.test_water import PANEL_HIDDEN
+from tests.browser.water.test_water import PANEL_HIDDEN
 
 DARK_SKY = "canvas[data-engine] { background: black !important } #springtide-cover { display: none }"
 WIDTH = "() => document.querySelector('canvas[data-engine]')?.width"

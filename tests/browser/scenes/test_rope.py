@@ -94,14 +94,13 @@ def test_dragging_a_bead_pulls_it_and_lets_go(shown: tuple[Viewer, Tab]) -> None
     tab.wait(lambda: lab.scene.time > 6)
     lab.settings.set("speed", 1.0)
     lab.loop.commands.put(Pause())
-    tab.page.wait_for_timeout(500)
+    tab.wait(lambda: not lab.loop.run.running)
     particle = 6
     bead = lab.scene.state.x[:, 0, particle].copy()
-    start = tab.pixel(bead)
-    tab.page.mouse.move(*start)
+    tab.page.mouse.move(*tab.pixel(bead))
     lab.loop.commands.put(Play())
-    tab.drag(start, (start[0] + 70, start[1] - 40))
-    tab.wait(lambda: lab.scene.handles.grab.grabbed is not None)
+    place = lambda: tab.pixel(lab.scene.state.x[:, 0, particle])  # noqa: E731
+    tab.hold(place, (70, -40), lambda: lab.scene.handles.grab.grabbed is not None)
     held = lab.scene.handles.grab.grabbed.particle
     assert abs(held - particle) <= 1
     tab.wait(lambda: np.linalg.norm(lab.scene.state.x[:, 0, held] - bead) > 0.15)

@@ -162,10 +162,8 @@ def test_an_image_for_the_server_waits_for_the_whole_sea(chromium: Any) -> None:
         assert "springtide-water/sea lit" in page.evaluate(DRAWN)
 
 
-@pytest.mark.parametrize(
-    "script",
-    [BESIDE.replace("window.held = true;", "window.held = false;"), pytest.param(FIRST_USES, marks=pytest.mark.long)],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("script", [BESIDE.replace("window.held = true;", "window.held = false;"), FIRST_USES])
 def test_the_server_learns_that_the_sea_is_drawn_by_its_shader(chromium: Any, script: str) -> None:
     with open_sea(chromium, script) as (lab, page):
         injector = injector_of(lab.server)

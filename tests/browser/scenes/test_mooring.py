@@ -12,9 +12,9 @@ from app.messages import Pause
 from app.scenes.mooring.parameters import MooringParams
 from app.server.viewer import Viewer
 from tests.browser.conftest import LATE_UPDATE, NO_NOTES, Tab
-from tests.browser.test_water import PANEL_HIDDEN
+from tests.browser.water.test_water import PANEL_HIDDEN
 
-FILES = Path(__file__).parents[1] / "sim/mooring/files"
+FILES = Path(__file__).parents[2] / "sim/mooring/files"
 
 
 @pytest.mark.long
@@ -54,8 +54,7 @@ def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Call
         assert len(lab.view.drawn.ends.fairleads.batched_positions) == 4
         assert not any(gizmo.handle.visible for gizmo in lab.view.gizmos.values())
         tab.wait(lambda: lab.loop.scene.readings().most_offset == 0.0)
-        x, y = tab.pixel(lab.loop.scene.middle)
-        tab.drag((x, y), (x - 60, y))
+        tab.hold(lambda: tab.pixel(lab.loop.scene.middle), (-60, 0), lambda: lab.loop.scene.readings().offset > 0.02)
         tab.wait(lambda: lab.loop.scene.readings().offset > 0.2)
         errors = tab.errors
     finally:

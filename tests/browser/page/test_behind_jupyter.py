@@ -9,8 +9,8 @@ import pytest
 
 from app.server.viewer import Viewer
 from app.server.web.access import Access, make_key
-from tests.browser import test_rope
 from tests.browser.conftest import Tab
+from tests.browser.scenes import test_rope
 from tests.jupyter import Jupyter, jupyter
 
 if importlib.util.find_spec("jupyter_server_proxy") is None:  # importing it takes seconds

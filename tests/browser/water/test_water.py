@@ -235,6 +235,7 @@ def test_without_an_answer_the_plain_foam_is_drawn(chromium, server, no_answer):
     page.close()
 
 
+@pytest.mark.long
 def test_plain_water_is_drawn_by_viser_alone(chromium):
     viewer = Viewer("127.0.0.1", 0, plain=True)
     viewer.open("square_sea")

@@ -11,7 +11,7 @@ from PIL import Image
 from app.messages import Pause
 from app.server.viewer import Viewer
 from tests.browser.conftest import NO_NOTES, Tab
-from tests.browser.test_water import PANEL_HIDDEN
+from tests.browser.water.test_water import PANEL_HIDDEN
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 

@@ -9,7 +9,7 @@ from PIL import Image
 from app.messages import Pause, Play
 from app.server.viewer import Viewer
 from tests.browser.conftest import NO_NOTES, Tab
-from tests.browser.test_water import PANEL_HIDDEN
+from tests.browser.water.test_water import PANEL_HIDDEN
 
 SCENE = "cloth"
 COUNT_FRAMES = """() => { const scene = window.__viserMutable.scene, earlier = scene.onBeforeRender; window.frames = 0;
@@ -59,13 +59,11 @@ def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.wait(lambda: lab.loop.scene.time > 1)
     lab.loop.commands.put(Pause())
-    tab.page.wait_for_timeout(500)
+    tab.wait(lambda: not lab.loop.run.running)
     here = lab.scene.state.x[:, 16, 10].copy()
-    start = tab.pixel(here)
-    tab.page.mouse.move(*start)
+    tab.page.mouse.move(*tab.pixel(here))
     lab.loop.commands.put(Play())
-    tab.drag(start, (start[0] - 80, start[1] - 30))
-    tab.wait(lambda: lab.scene.grab.grabbed is not None, 20)
+    tab.hold(lambda: tab.pixel(lab.scene.state.x[:, 16, 10]), (-80, -30), lambda: lab.scene.grab.grabbed is not None)
     row, col = divmod(lab.scene.grab.grabbed.particle, 32)
     assert np.linalg.norm(lab.scene.state.x[:, row, col] - here) < 1.0
     tab.wait(lambda: lab.loop.latest.frame.grab is not None, 20)

@@ -13,7 +13,7 @@ import pytest
 from docs.make_replays import CLIPS, MAX_BYTES, page_of
 from tests.browser.conftest import VERTICES
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PAGE = """<!doctype html><link rel="stylesheet" href="static/front.css"><script src="static/replays.js"></script>
 <div class="replay"><div class="replay-place" data-replay="rope.html" data-title="rope"></div></div>
 <div style="height: 1500px"></div>"""

@@ -3,7 +3,7 @@
 In a browser that draws in software the cost is the processor time of Chromium's GPU process for one picture of a paused
 moment, 640 x 400. Both pages are drawn in turns in one browser, and only their ratio is of use. Where there is a
 graphics processor, it is the time until a picture of 1920 x 1080 is drawn. `python -m pytest -m stress
-tests/browser/test_drawing_cost.py -s` prints both.
+tests/browser/water/test_drawing_cost.py -s` prints both.
 """
 
 import contextlib

@@ -19,7 +19,7 @@ from app.render.skies import set_sky
 from app.render.water import DrawnWater, Tile
 from app.server.web.guard import open_server
 from tests.browser.conftest import NO_NOTES, new_page
-from tests.browser.test_water import PANEL_HIDDEN, wait
+from tests.browser.water.test_water import PANEL_HIDDEN, wait
 
 N, LENGTH = 64, 256.0  # points and metres along a side of the tile
 WIDTH = 160  # [pixels] of the square picture

@@ -67,16 +67,12 @@ def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer
     lab.settings.set("speed", 1.0)
     tab.wait(lambda: len(tab.vertices("/race/rope_4")) > 0)
 
-    def dragged() -> bool:
-        start = tab.pixel(lab.scene.frame().ropes[0, 7])
-        tab.drag(start, (start[0] - 60, start[1] - 40))
-        tab.page.wait_for_timeout(500)
-        held = lab.scene.handles.grab.grabbed is not None
-        tab.release()
-        return held
+    def grabbed() -> bool:
+        return lab.scene.handles.grab.grabbed is not None
 
-    tab.wait(dragged)  # again where a slow page had not yet noticed what the mouse was over
-    tab.wait(lambda: lab.scene.handles.grab.grabbed is None, 30)
+    tab.hold(lambda: tab.pixel(lab.scene.frame().ropes[0, 7]), (-60, -40), grabbed)
+    tab.release()
+    tab.wait(lambda: not grabbed(), 30)
     tab.page.keyboard.press("1")
     tab.wait(lambda: len(tab.vertices("/race/rope_3")) > 0 and len(tab.vertices("/race/rope_4")) == 0)
     assert len(lab.scene.race.entrants) == 3

@@ -15,9 +15,9 @@ from sim.mooring.buoyancy import Volumes
 from sim.mooring.chains import Chains
 from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import declared_stiffness, forces_on_free, links_at, moved, moves_on_free, six_of
-from sim.springs.acceleration import set_rest_forces
 from sim.springs.forces.bending import BEND_STIFFNESS
-from sim.springs.line_arrays import STIFFNESS, LineArrays
+from sim.springs.points.acceleration import set_rest_forces
+from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 
 Array = NDArray[np.float64]
 

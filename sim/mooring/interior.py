@@ -33,8 +33,8 @@ from sim.mooring.cones import (
 )
 from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import forces_on_free, is_declared, moved, moves_on_free, others
-from sim.springs.acceleration import set_rest_forces
-from sim.springs.line_arrays import STIFFNESS, LineArrays
+from sim.springs.points.acceleration import set_rest_forces
+from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 
 Array = NDArray[np.float64]
 

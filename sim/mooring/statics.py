@@ -15,7 +15,7 @@ from sim.mooring.chains import Chains
 from sim.mooring.interior import along_central_path
 from sim.mooring.tangent import six_of
 from sim.springs.forces.bending import set_line_tensions
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.line_arrays import LineArrays
 from sim.validation import ConvergenceError
 
 if TYPE_CHECKING:

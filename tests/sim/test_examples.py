@@ -26,7 +26,7 @@ FIRST = {
     "sim.ocean.dispersion": ("omega", "phase_speed", "group_speed"),
     "sim.ocean.radial.gerstner": ("draw_waves",),
     "sim.ocean.nonlinear.sea": ("",),
-    "sim.ocean.nonlinear.stokes": ("",),
+    "sim.ocean.nonlinear.starts.stokes": ("",),
     "sim.ocean.planets": ("gravity_of",),
     "sim.ocean.radial.radial": ("",),
     "sim.ocean.tile.ripples": ("",),

@@ -28,7 +28,7 @@ from sim.floating.hulls.hull import Hull
 from sim.floating.motion.rotation import heading_angle, product, quaternion_by_vector, rotation_matrix
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.statics.hydrostatics import displaced
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 from sim.validation import ConvergenceError, argument_error, as_array, is_whole_number
 
 if TYPE_CHECKING:

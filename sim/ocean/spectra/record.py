@@ -9,9 +9,9 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.angles import angle_from
 from sim.dispersion import wavenumber
 from sim.interruption import pieces
+from sim.numerics.angles import within_half_turn
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
@@ -267,7 +267,7 @@ def from_frequency(
     """
     k = np.hypot(kx, ky)
     w = c.omega(k)
-    theta = angle_from(np.arctan2(ky, kx), c.wind_direction)
+    theta = within_half_turn(np.arctan2(ky, kx) - c.wind_direction)
     u10 = c.wind_speed / WIND_HEIGHTS[wind_height]
     D = spread(c.spreading, w / peak(c), theta, c.spread_exponent, c.swell, u10 * peak(c) / c.gravity)
     return frequency(w, c) * D * c.group_speed(k) / k
@@ -308,6 +308,6 @@ def second_system(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
     """S(kx, ky) [m4] of the second system: the shape of JONSWAP with gamma 3.3, spread as cos2s."""
     k = np.hypot(kx, ky)
     w = c.omega(k)
-    theta = angle_from(np.arctan2(ky, kx), c.second_direction)
+    theta = within_half_turn(np.arctan2(ky, kx) - c.second_direction)
     S = peaked(w, c.second_height, 2.0 * math.pi / c.second_period, SECOND_PEAK)
     return S * cos2s(SECOND_EXPONENT, theta) * c.group_speed(k) / k

@@ -10,7 +10,7 @@ from sim.mooring.balance import pull, what_is_left
 from sim.mooring.chains import Chains
 from sim.mooring.statics import MAX_CORRECTIONS, at_rest
 from sim.mooring.tangent import carried_coordinates, free_coordinates
-from sim.springs.line_arrays import STIFFNESS, LineArrays
+from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 from sim.validation import ConvergenceError
 from tests.sim.mooring.systems import floating_body
 

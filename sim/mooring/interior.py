@@ -94,8 +94,8 @@ class Pairs:
         self.node, self.on_bed, self.bed = node, node[self.has_bed], bed[self.has_bed]
         self.whole, self.height = self.volumes.whole, self.volumes.height
         self.count = len(self.rest) + len(self.bed) + 2 * len(self.whole)
-        lift = p.parts["displaced"] * -p.gz
-        self.load = float(np.abs(lift - self.weight).sum() + np.abs(p.loads).sum())  # [N]
+        # Not the difference of weight and lift: a part at the surface loses its lift.
+        self.load = float(np.maximum(self.weight, p.parts["displaced"] * -p.gz).sum() + np.abs(p.loads).sum())  # [N]
         self.elastic, self.others = Elastic(p), others(p)
 
     def span(self, x: Array) -> Array:

@@ -21,7 +21,7 @@ FIRST = {
     "sim.floating.motion.motion": ("step",),
     "sim.floating.linear.periods": ("heave_period", "roll_period"),
     "sim.floating.linear.response": ("",),
-    "sim.floating.statics.stability": ("",),
+    "sim.floating.statics.righting": ("",),
     "sim.mooring.motion": ("paths_to",),
     "sim.ocean.dispersion": ("omega", "phase_speed", "group_speed"),
     "sim.ocean.radial.gerstner": ("draw_waves",),

@@ -23,7 +23,8 @@ from sim.floating.linear.hydrodynamics import (
 )
 from sim.floating.motion.body import Body, check_body, check_pose
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
-from sim.floating.statics.stability import about_rest, is_stable
+from sim.floating.statics.righting import about_rest
+from sim.floating.statics.stability import is_stable
 from sim.numerics.angles import within_half_turn
 from sim.validation import argument_error, as_array, check_angle, check_positive
 from sim.water import EARTH_GRAVITY

@@ -150,8 +150,6 @@ class Spectrum(NamedTuple, Generic[C]):
 
     def check_used(self, values: Mapping[str, Any]) -> None:
         """Raises ValueError for the first of the values, by name, that is no condition of this spectrum."""
-        from sim.ocean.spectra import SPECTRA  # which reads this module
-
         for name in values:
             if not self.uses(name):
                 known = ", ".join(field.name for field in dataclasses.fields(self.conditions))
@@ -251,6 +249,9 @@ class Spectrum(NamedTuple, Generic[C]):
 
 
 SpreadC = TypeVar("SpreadC", bound=SpreadConditions)
+
+
+SPECTRA: dict[str, Spectrum[Any]] = {}  # by name; the package fills it
 
 
 def from_frequency(

@@ -38,6 +38,7 @@ from numba.core.environment import lookup_environment
 from numba.core.options import TargetOptions
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.runtime.nrt import rtsys
+from numba.core.targetconfig import ConfigStack
 
 from sim.files import locked
 
@@ -137,8 +138,8 @@ def without_processor(key: Any) -> tuple[Any, Any]:
     return types_of, code
 
 
-def file_name(function: Callable[..., Any]) -> str:
-    """Name of a kernel's files: by its name, its code and the names in it, wherever it stands in its source.
+def file_name(function: Callable[..., Any], options: dict[str, Any]) -> str:
+    """Name of a kernel's files: by its name, code, options and the names in it, wherever it stands in its source.
 
     The folder is named by the sources, which are not always what runs: Python takes byte code for new if the time of
     the source in whole seconds, and its size, are the same.
@@ -146,7 +147,8 @@ def file_name(function: Callable[..., Any]) -> str:
     used = inspect.getclosurevars(function)
     names = {**used.globals, **used.nonlocals}
     code = contents(function.__code__), [(name, described(names[name])) for name in sorted(names)]
-    digest = hashlib.sha256(repr(code).encode()).hexdigest()[:8]
+    chosen = [(name, sorted(value) if isinstance(value, set) else value) for name, value in sorted(options.items())]
+    digest = hashlib.sha256(repr((code, chosen)).encode()).hexdigest()[:8]
     name = function.__qualname__.replace("<", "").replace(">", "")
     return f"{name}-{digest}.{sys.implementation.cache_tag}"
 
@@ -412,8 +414,17 @@ class Entry(Kernel):
         return with_room(lambda: self.while_locked(sig, compile))
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
-        """numba asks for this as it types a call: constants count as any other value of their type."""
-        return self.part.get_call_template([types.unliteral(a) for a in args], kws)
+        """numba asks for this as it types a call: constants count as any other value of their type.
+
+        Raises TypeError if the caller would release an array that this kernel returns without having counted it.
+        """
+        template = self.part.get_call_template([types.unliteral(a) for a in args], kws)
+        caller = ConfigStack.top_or_none()
+        if caller is not None and caller.nrt and not self.targetoptions["_nrt"]:
+            result = self.part.overloads[tuple(template[2])].signature.return_type
+            if self.targetctx.data_model_manager[result].contains_nrt_meminfo():
+                raise TypeError(f"{self.__name__} returns an array: a kernel that calls it needs allocates=False")
+        return template
 
     def get_overload(self, sig: Any) -> Any:
         """numba asks for this as it lowers a call."""
@@ -457,7 +468,7 @@ def make_kernel(
     noalias, counts: whether arrays that are written overlap no other, and whether array arguments are counted.
     """
     options = {**options, "_nrt": counts, "no_cfunc_wrapper": True, **({"noalias": True} if noalias else {})}
-    name = file_name(function)
+    name = file_name(function, options)
     entry = compiled(function, folders, name, EntryCompiler, EntryResult, options)
     options["no_cpython_wrapper"] = True
     part = compiled(function, folders, f"{name}-part", PartCompiler, PartResult, options)

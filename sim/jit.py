@@ -257,8 +257,8 @@ def kernel(
     inline: always expand into the calling kernel (for the short loops that a step is made of); implies no allocation.
     allocates: False promises that no array or view is made, so that array arguments are not reference-counted: at ten
     points that counting costs several times the arithmetic. A kernel that calls one without counting that returns an
-    array, alone or in a record (`link_at` of lines does), needs it too: else it releases an array that nobody took,
-    which corrupts the heap.
+    array, alone or in a record (`link_at` of lines does), needs it too: it would release an array that nobody counted.
+    Compiling it raises TypeError.
     parallel: allow numba.prange.
     """
     if function is None:

@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
-from sim.root import narrowed
-from sim.turns import cos_sin_turns
+from sim.numerics.root import narrowed
+from sim.numerics.turns import cos_sin_turns
 from sim.validation import (
     argument_error,
     as_array,

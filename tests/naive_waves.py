@@ -5,7 +5,7 @@ import math
 import numpy as np
 import scipy.linalg
 
-from sim.ocean.nonlinear.stokes import StokesWave
+from sim.ocean.nonlinear.starts.stokes import StokesWave
 
 
 def second_order_pair(k1: np.ndarray, k2: np.ndarray, depth: float, gravity: float, sign: int) -> float:

@@ -14,7 +14,7 @@ from sim.floating.shapes import SHAPES, Shape
 from sim.floating.statics.equilibrium import equilibrium_draft
 from sim.floating.statics.hydrostatics import Submerged, pressure_force, submerged
 from sim.floating.statics.prediction import HydrostaticPrediction, predict
-from sim.floating.statics.stability import metacentric_height, righting_arm
+from sim.floating.statics.righting import metacentric_height, righting_arm
 
 __all__ = [
     "SHAPES", "Body", "Fleet", "FloatRun", "FloatState", "FluidState", "HeaveMeter", "Hull", "HydrostaticPrediction",

@@ -15,9 +15,9 @@ from sim.mooring.buoyancy import Volumes
 from sim.mooring.chains import Chains
 from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import declared_stiffness, forces_on_free, links_at, moved, moves_on_free, six_of
-from sim.springs.acceleration import set_rest_forces
 from sim.springs.forces.bending import BEND_STIFFNESS
-from sim.springs.line_arrays import STIFFNESS, LineArrays
+from sim.springs.points.acceleration import set_rest_forces
+from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ SETTLED = 1e-9  # largest force left [N] over the largest on any node
 ROUND_OFF = 8.0 * np.finfo(float).eps  # the same over the largest term of a sum of forces
 LARGEST_BEND = 16.0  # eigenvalue of the bends of a line, over the stiffness of one
 RISE = 1e6  # of the largest force left by the first correction, above which the start was not near
-HOLD = 1e-8  # of slack links, over what taut ones have: no place of what lies slack is better than another
+HOLD = 1e-8  # of slack links, over tensions and weights: no place of what lies slack is better than another
 
 
 class BalanceResult(NamedTuple):
@@ -51,6 +51,7 @@ class Laws:
     def __init__(self, p: LineArrays) -> None:
         self.p, self.elastic, self.volumes = p, Elastic(p), Volumes(p)
         self.node, self.bed = p.places[:, 0], p.parts["bed_area"] * p.bed_stiffness
+        self.weight = float((p.parts["mass"] * -p.gz).max())  # [N] of the heaviest part
 
     def pieces_at(self, x: Array) -> Pieces:
         """The pieces at positions x (3, n)."""
@@ -80,7 +81,7 @@ def corrected(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces) 
     rest, (chord, stiffness) = p.links[:, 0], laws.elastic.tension(length)
     unit = ((x[:, b] - x[:, a]) / np.maximum(length, 1e-12)).T
     taut = (tension > 0.0) | (length > rest)
-    hold = HOLD * max(float(tension.max()), 1e-12 * float((stiffness * rest).max())) / rest
+    hold = HOLD * max(float(tension.max()), laws.weight, 1e-12 * float((stiffness * rest).max())) / rest
     along = np.where(taut, stiffness, hold)
     across = np.where(taut, tension / np.maximum(length, 1e-12), 0.0) + hold
     # A taut link that is shorter by round-off pushes, for this correction.
@@ -118,7 +119,7 @@ def balanced(laws: Laws, chains: Chains, x: Array, tension: Array, on: Pieces, c
     for done in range(corrections):
         if is_settled or not left <= most:
             return BalanceResult(x, left, is_settled, done)
-        most = 0.5 * left if done else most
+        most = left if done else most
         x, tension = corrected(laws, chains, x, tension, on)
         on = laws.pieces_at(x)
         left, is_settled = what_is_left(x, p)

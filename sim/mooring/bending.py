@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.forces.bending import BEND_STIFFNESS, LINKS, NODES, OFFSET, WEIGHTS
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.line_arrays import LineArrays
 
 if TYPE_CHECKING:
     from sim.mooring.system import System

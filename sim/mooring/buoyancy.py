@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.forces.water import PIECES
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.line_arrays import LineArrays
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sim.mooring.bending import bending_entries
 from sim.mooring.tangent import carried_coordinates, free_coordinates
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
-from sim.springs.line_arrays import STIFFNESS, LineArrays
+from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 
 if TYPE_CHECKING:
     from sim.mooring.system import System

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.line_arrays import LineArrays
 
 if TYPE_CHECKING:
     from sim.mooring.system import LineType

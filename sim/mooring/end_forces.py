@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.arrays import link_at
-from sim.springs.each_link import stretch
 from sim.springs.forces.bed import bed_force
 from sim.springs.forces.bending import BEND_STIFFNESS, LINKS, WEIGHTS, bend_at
 from sim.springs.forces.links import lengthening
 from sim.springs.forces.water import push_of
 from sim.springs.laws import tension
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.arrays import link_at
+from sim.springs.points.each_link import stretch
+from sim.springs.points.line_arrays import LineArrays
 
 Array = NDArray[np.float64]
 

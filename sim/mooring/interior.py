@@ -33,8 +33,8 @@ from sim.mooring.cones import (
 )
 from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import forces_on_free, is_declared, moved, moves_on_free, others
-from sim.springs.acceleration import set_rest_forces
-from sim.springs.line_arrays import STIFFNESS, LineArrays
+from sim.springs.points.acceleration import set_rest_forces
+from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 
 Array = NDArray[np.float64]
 
@@ -94,8 +94,8 @@ class Pairs:
         self.node, self.on_bed, self.bed = node, node[self.has_bed], bed[self.has_bed]
         self.whole, self.height = self.volumes.whole, self.volumes.height
         self.count = len(self.rest) + len(self.bed) + 2 * len(self.whole)
-        lift = p.parts["displaced"] * -p.gz
-        self.load = float(np.abs(lift - self.weight).sum() + np.abs(p.loads).sum())  # [N]
+        # Not the difference of weight and lift: a part at the surface loses its lift.
+        self.load = float(np.maximum(self.weight, p.parts["displaced"] * -p.gz).sum() + np.abs(p.loads).sum())  # [N]
         self.elastic, self.others = Elastic(p), others(p)
 
     def span(self, x: Array) -> Array:

@@ -15,11 +15,11 @@ from sim.frames import Progress, check_steps, run_frames, steps_for
 from sim.mooring.run import MooringRun
 from sim.mooring.statics import at_rest
 from sim.mooring.system import Point, System
-from sim.springs.acceleration import set_node_forces
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import energy_history
 from sim.springs.forces.bending import set_line_tensions
 from sim.springs.integrators import Integrator, integrator_named
+from sim.springs.points.acceleration import set_node_forces
 from sim.springs.simulate import SIMULATED, Simulated
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, check_state, velocities

@@ -15,15 +15,16 @@ from sim.mooring.chains import Chains
 from sim.mooring.interior import along_central_path
 from sim.mooring.tangent import six_of
 from sim.springs.forces.bending import set_line_tensions
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.line_arrays import LineArrays
 from sim.validation import ConvergenceError
 
 if TYPE_CHECKING:
     from sim.mooring.system import System
 
 MAX_CORRECTIONS = 60  # of both methods together
-FINISHING, LEAST_FINISHING = 6, 2  # of them at the end, at most, and before they run out
+FINISHING, LEAST_FINISHING = 12, 2  # of them at the end, at most, and before they run out
 NEAR, NEARER = 1e-9, 1e-4  # gap at which the end is tried first, and over the last one again
+STALLED, SMALL = 0.9, 1e-6  # gap over the least before it, and gap: round-off lets the path come no nearer
 
 
 class Rest(NamedTuple):
@@ -55,12 +56,13 @@ def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = No
     """
     p = system.kernel_view(1.0)._replace(waves=np.zeros((9, 0)))
     laws, chains, x = Laws(p), Chains(system, p), straight(system, placed)
-    done, left, aim = 0, math.inf, NEAR
+    done, left, aim, least = 0, math.inf, NEAR, math.inf
     for near in along_central_path(p, chains, x):
-        done += 1
-        if not (near.gap <= aim or near.is_last or done >= MAX_CORRECTIONS - LEAST_FINISHING):
+        done, stalls = done + 1, STALLED * least < near.gap < SMALL
+        least = min(least, near.gap)
+        if not (near.gap <= aim or stalls or near.is_last or done >= MAX_CORRECTIONS - LEAST_FINISHING):
             continue
-        aim = NEARER * near.gap
+        aim = min(aim, NEARER * near.gap)
         for tension, on in near.guesses(laws.pieces_at(near.x)):
             found = balanced(laws, chains, near.x, tension, on, min(FINISHING, MAX_CORRECTIONS - done))
             if found.is_settled:

@@ -23,7 +23,7 @@ from sim.mooring.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
 from sim.springs.forces import check_forces, declared
 from sim.springs.integrators import Integrator, discover
-from sim.springs.line_arrays import (
+from sim.springs.points.line_arrays import (
     BODY_MASS,
     DAMPING,
     DECAY_PARTS,
@@ -36,7 +36,7 @@ from sim.springs.line_arrays import (
     LineArrays,
     record_of,
 )
-from sim.springs.point_system import PointSystem
+from sim.springs.points.point_system import PointSystem
 from sim.validation import (
     argument_error,
     check_choice,

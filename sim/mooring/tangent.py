@@ -11,8 +11,8 @@ from sim.springs.forces.links import set_tensions
 from sim.springs.forces.matrices import STIFFNESS
 from sim.springs.integrators.implicit.tangent import add_tangents
 from sim.springs.laws import TAUT
-from sim.springs.line_arrays import STIFFNESS as OF_BODY
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.line_arrays import STIFFNESS as OF_BODY
+from sim.springs.points.line_arrays import LineArrays
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring.statics import Rest
-from sim.springs.acceleration import set_rest_forces
+from sim.springs.points.acceleration import set_rest_forces
 
 if TYPE_CHECKING:
     from sim.mooring.system import System

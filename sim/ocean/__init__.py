@@ -23,9 +23,9 @@ if TYPE_CHECKING:
         wavenumber,
     )
     from sim.ocean.nonlinear.energy import SeaEnergy
-    from sim.ocean.nonlinear.packets import breather, modulated_waves
     from sim.ocean.nonlinear.sea import NonlinearSea
-    from sim.ocean.nonlinear.stokes import StokesWave, stokes_wave
+    from sim.ocean.nonlinear.starts.packets import breather, modulated_waves
+    from sim.ocean.nonlinear.starts.stokes import StokesWave, stokes_wave
     from sim.ocean.radial.gerstner import draw_waves
     from sim.ocean.radial.radial import RadialSea
     from sim.ocean.records.measured import measured_spectrum
@@ -57,9 +57,9 @@ HOMES = {
     "sim.ocean.dispersion": "group_speed mode_ratios omega phase_speed two_layer viscous_root "
     "viscous_two_layer wavenumber",
     "sim.ocean.nonlinear.energy": "SeaEnergy",
-    "sim.ocean.nonlinear.packets": "breather modulated_waves",
+    "sim.ocean.nonlinear.starts.packets": "breather modulated_waves",
     "sim.ocean.nonlinear.sea": "NonlinearSea",
-    "sim.ocean.nonlinear.stokes": "StokesWave stokes_wave",
+    "sim.ocean.nonlinear.starts.stokes": "StokesWave stokes_wave",
     "sim.ocean.radial.gerstner": "draw_waves",
     "sim.ocean.radial.radial": "RadialSea",
     "sim.ocean.records.measured": "measured_spectrum",

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 from sim.springs.laws import check_law
 from sim.springs.net import (
     CLOTH,

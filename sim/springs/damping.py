@@ -15,12 +15,12 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net
-from sim.springs.each_link import TINY, each_link, stretch
 from sim.springs.forces import each
 from sim.springs.laws import by_damping, damps
-from sim.springs.line_points import set_inverse_masses
-from sim.springs.order import in_turn
+from sim.springs.points.arrays import by_net
+from sim.springs.points.each_link import TINY, each_link, stretch
+from sim.springs.points.line_points import set_inverse_masses
+from sim.springs.points.order import in_turn
 
 
 @kernel(noalias=True, inline=True)

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from sim.interruption import stop_request
 from sim.jit import MAX_THREADS
-from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays, WideArrays
 from sim.springs.forces import OWN, check_forces, declared
 from sim.springs.integrators import Integrator
 from sim.springs.laws import LAWS, check_law
-from sim.springs.line_arrays import record_of
-from sim.springs.point_system import PointSystem
+from sim.springs.points.arrays import ClothArrays, GridArrays, RopeArrays, WideArrays
+from sim.springs.points.line_arrays import record_of
+from sim.springs.points.point_system import PointSystem
 from sim.springs.run import Run
 from sim.validation import (
     argument_error,

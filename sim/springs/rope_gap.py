@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net
 from sim.springs.damping import kept_shares, other_acts
+from sim.springs.points.arrays import by_net
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
 never = kernel(lambda p: False, inline=True)

@@ -17,7 +17,7 @@ from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.automatic import AUTO, choose_for_step, choose_for_tolerance
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import PAIRS, Net
-from sim.springs.point_system import PointSystem, RunT, check_system
+from sim.springs.points.point_system import PointSystem, RunT, check_system
 from sim.springs.run import Run
 from sim.springs.stability import critical_step, gershgorin
 from sim.springs.state import State, advance, energy, velocities

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 from sim.springs.analysis.strain import strain_range
 from sim.springs.forces import OWN
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
@@ -32,9 +32,9 @@ from sim.springs.forces.self_contact import count_touching
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.integrators.implicit.tangent import has_friction, quotients, set_lanczos, set_tangent
 from sim.springs.laws import largest_stiffness
-from sim.springs.line_arrays import LineArrays
 from sim.springs.net import Net
-from sim.springs.point_system import PointSystem, check_system
+from sim.springs.points.line_arrays import LineArrays
+from sim.springs.points.point_system import PointSystem, check_system
 from sim.springs.state import State, check_state
 from sim.validation import check_positive
 

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
 from sim.jit import set_threads
-from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import Energy, energies
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
-from sim.springs.point_system import PointSystem, check_system
+from sim.springs.points.acceleration import set_acceleration
+from sim.springs.points.point_system import PointSystem, check_system
 from sim.validation import argument_error, check_kind, check_positive, is_whole_number
 
 # In one call of a kernel, which a Ctrl-C waits for: hundredths of a second.

@@ -11,7 +11,7 @@ from benchmarks.peers.own_runs import OwnRuns
 from benchmarks.peers.record import is_installed
 from benchmarks.reference import largest_distances
 from benchmarks.tasks.cloth import ladders
-from sim.springs.acceleration import set_acceleration
+from sim.springs.points.acceleration import set_acceleration
 
 
 def test_our_own_run_at_a_peer_s_error_is_within_it():

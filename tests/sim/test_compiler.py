@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 
 from sim import jit
@@ -52,6 +53,16 @@ def signed(x, negative):
 @kernel
 def both_signs(x):
     return signed(x, True) + 2.0 * signed(x, False)
+
+
+@kernel(inline=True)
+def with_length(x):
+    return x, x.shape[0]
+
+
+@kernel(allocates=False)
+def first(x):
+    return with_length(x)[0][0]
 
 
 @kernel
@@ -136,11 +147,22 @@ def test_kernels_run_interpreted():
 
 
 @pytest.mark.stress  # compiles the forces on a cloth; that threads start from a kept kernel is in test_jit
+def test_a_kernel_with_other_options_has_other_files():
+    names = {jit.kernel(signed.py_func, **options).file_name for options in ({}, {"noalias": True}, {"inline": True})}
+    assert len(names | {signed.file_name}) == 3
+
+
+def test_a_kernel_that_counts_calls_none_that_returns_what_it_did_not_count():
+    with pytest.raises(TypeError, match=r"^with_length returns an array: .* needs allocates=False$"):
+        kernel(first.py_func)(np.ones(3))
+    assert first(np.full(3, 2.0)) == 2.0
+
+
 def test_a_parallel_part_of_a_kept_entry_runs(tmp_path):
     code = """
 import numpy as np
 from sim.springs import cloth
-from sim.springs.acceleration import set_acceleration
+from sim.springs.points.acceleration import set_acceleration
 import dataclasses
 net = dataclasses.replace(cloth(16, 16), threads=2)
 a = np.zeros(net.x0.size)

@@ -205,7 +205,7 @@ def test_the_code_of_our_sources_has_all_of_their_tokens_but_docstrings(folder):
 def test_kernels_are_kept_in_the_cache(tmp_path):
     code = """
 from sim.springs import rope
-from sim.springs.acceleration import make_scratch
+from sim.springs.points.acceleration import make_scratch
 make_scratch(rope().kernel_view(1.0))
 """
     python(code, SPRINGTIDE_CACHE=str(tmp_path))

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from sim.springs.acceleration import set_declared
 from sim.springs.forces import OWN
 from sim.springs.net import Family, Net
+from sim.springs.points.acceleration import set_declared
 
 NUMBERS = {force.name: numbers for numbers, force in OWN.items()}
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sim.mooring import System
 from sim.mooring.end_forces import LineEnds
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.line_arrays import LineArrays
 
 Ends: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64]]
 

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sim.angles import angle_from
 from sim.dispersion import wavenumber
 from sim.floating.hulls.closed_mesh import ClosedMesh, check_hull
 from sim.floating.hulls.hull import Hull
@@ -30,6 +29,7 @@ from sim.floating.linear.hydrodynamics import (
     velocity_at,
 )
 from sim.floating.linear.linear_table import LinearTable, not_finite
+from sim.numerics.angles import once_around, within_half_turn
 from sim.validation import Refusals, argument_error, check_angle, check_kind, check_positive, check_vector
 
 if TYPE_CHECKING:
@@ -47,7 +47,6 @@ WIDEST_GAP = math.radians(31.0)  # between directions that are interpolated
 SYMMETRY = 1e-3  # share of the greatest force that a hull's own symmetry may miss
 SAME_DEPTH = 1e-3  # by how much a depth that is asked for may differ from one of the dataset
 SAME_HEADING = 1e-3  # [rad] the same of a heading
-ONE_HEADING = 1e-6  # [rad] between directions that are one
 
 
 def with_dataset(
@@ -366,20 +365,11 @@ def numbers(
     return found
 
 
-def once_around(headings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Headings from 0 to a turn (n,) [rad], rising, and their places among the given; of equal ones the first."""
-    turned = np.mod(headings, 2.0 * math.pi)
-    turned[2.0 * math.pi - turned < ONE_HEADING] = 0.0
-    order = np.argsort(turned, kind="stable")
-    keep = np.append(True, np.diff(turned[order]) > ONE_HEADING)[: len(order)]
-    return turned[order][keep], order[keep]
-
-
 def place_of_heading(headings: np.ndarray, path: str, heading: float | None) -> int:
     """Index of the one of headings (n,) [rad] that is asked for. Raises ValueError without it."""
     if heading is None:
         return 0
-    miss = np.abs(angle_from(headings, check_angle("heading", heading)))
+    miss = np.abs(within_half_turn(headings - check_angle("heading", heading)))
     if not len(miss) or miss.min() > SAME_HEADING:
         known = ", ".join(f"{one:.4g}" for one in headings)
         raise argument_error("heading", heading, f"one that the dataset has: {known} rad")

@@ -13,13 +13,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sim.angles import angle_from
 from sim.floating.linear.hydrodynamics import DIRECTIONS, afloat
 from sim.floating.motion.body import Body, Fleet
 from sim.floating.motion.rotation import axes_of, four, heading_angle, heading_of
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers
 from sim.interruption import raise_if_stopped
 from sim.jit import kernel
+from sim.numerics.angles import within_half_turn
 from sim.ocean.radial.gerstner import widened
 from sim.validation import argument_error
 from sim.waves import AMPLITUDE, RESPONSES, Waves, sums_at
@@ -105,7 +105,7 @@ class WaveExcitation:
         bearing = np.arctan2(ky, kx)[amplitude > 0.0]
         for b, q in enumerate(self.kind):
             heading = self.kinds[q].heading
-            away = np.abs(angle_from(bearing, heading_angle(fleet.rotation[b]) + heading))
+            away = np.abs(within_half_turn(bearing - heading_angle(fleet.rotation[b]) - heading))
             if (away > HEADING_TOLERANCE).any():  # False for nan: all headings
                 given = (
                     f"a hull with a dataset of {heading:.4g} rad only, in waves up to {away.max():.3g} rad from that"

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.angles import angle_from
 from sim.floating.linear.hydrodynamics import (
     DIRECTIONS,
     LEVEL_MOTIONS,
@@ -24,7 +23,9 @@ from sim.floating.linear.hydrodynamics import (
 )
 from sim.floating.motion.body import Body, check_body, check_pose
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
-from sim.floating.statics.stability import about_rest, is_stable
+from sim.floating.statics.righting import about_rest
+from sim.floating.statics.stability import is_stable
+from sim.numerics.angles import within_half_turn
 from sim.validation import argument_error, as_array, check_angle, check_positive
 from sim.water import EARTH_GRAVITY
 
@@ -99,7 +100,7 @@ def linear_forces(
         C[2:5, 2:5] += gravity * change * forces[2:5]
     fluid = density * hull.volume / linear.volume  # [kg/m3] mean density of the displaced fluids
     mass = density * np.block([[hull.volume * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), hull.inertia]])
-    if abs(angle_from(heading, linear.heading)) > MAX_MISS:  # False for nan: all headings
+    if abs(within_half_turn(heading - linear.heading)) > MAX_MISS:  # False for nan: all headings
         raise argument_error("heading", heading, f"{linear.heading:g} rad, the only one that the hull's dataset has")
     index, weights = lagrange(np.append(DIRECTIONS, 2.0 * math.pi), heading % (2.0 * math.pi))
     k = linear.wavenumber(w / math.sqrt(gravity))

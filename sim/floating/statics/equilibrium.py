@@ -17,7 +17,7 @@ import numpy as np
 from sim.floating.hulls.closed_mesh import check_hull
 from sim.floating.hulls.hull import Hull
 from sim.floating.statics.hydrostatics import Submerged, submerged
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 from sim.validation import argument_error, as_float, check_positive
 from sim.water import EARTH_GRAVITY, SEA_DENSITY
 

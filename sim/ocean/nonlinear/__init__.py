@@ -3,8 +3,8 @@
 `stokes_wave` is a reference too.
 """
 
-from sim.ocean.nonlinear.packets import breather, modulated_waves
 from sim.ocean.nonlinear.sea import NonlinearSea
-from sim.ocean.nonlinear.stokes import stokes_wave
+from sim.ocean.nonlinear.starts.packets import breather, modulated_waves
+from sim.ocean.nonlinear.starts.stokes import stokes_wave
 
 __all__ = ["NonlinearSea", "breather", "modulated_waves", "stokes_wave"]

@@ -7,7 +7,7 @@ turned by the phase of the row as a whole. Rows at ky and -ky have equal wavenum
 import numpy as np
 
 from sim.jit import kernel
-from sim.turns import cos_sin_turns
+from sim.numerics.turns import cos_sin_turns
 from sim.waves import DEEPEST, exponential
 
 

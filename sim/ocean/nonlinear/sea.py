@@ -34,7 +34,7 @@ from sim.ocean.nonlinear.instant import NonlinearInstant
 from sim.ocean.nonlinear.lattice_sum import parts_of, set_elevations
 from sim.ocean.nonlinear.march import LinearMarch, March
 from sim.ocean.nonlinear.padded_transforms import PaddedTransforms
-from sim.ocean.nonlinear.start import checked_size, free_waves, mean_wavenumber, resized, started
+from sim.ocean.nonlinear.starts.start import checked_size, free_waves, mean_wavenumber, resized, started
 from sim.ocean.nonlinear.surface import NonlinearSurface
 from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.tile.query import sample

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 
 from sim.interruption import raise_if_stopped, stop_request
 from sim.jit import kernel
+from sim.numerics.angles import within_half_turn
 from sim.ocean.any_sea import AnySea, RadialSurface, SurfaceAt
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.slick import SlickCover
@@ -32,7 +33,6 @@ from sim.ocean.radial.footprints import Footprints
 from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.radial.wave_sum import set_mesh
 from sim.ocean.tile.query import WaveFields, find_labels
-from sim.turns import TURN, within_half_turn
 from sim.validation import argument_error, as_array, check_kind, check_number, check_positions
 from sim.water import SAME_WATER, Water
 from sim.waves import RESPONSES, Kinematics, Waves, sums_at
@@ -193,7 +193,7 @@ class RadialSea(AnySea):
         if plan is None or plan.grid is not grid:
             plan = self._plan = BandPlan(grid, waves.k)
         slick = None if self.slick is None else (self.slick, self.losses(waves.k))
-        sums = plan.sums(waves, phases_at(waves, t) / TURN, self.choppiness, centre, slick)
+        sums = plan.sums(waves, phases_at(waves, t) / (2.0 * math.pi), self.choppiness, centre, slick)
         self.evaluated += plan.evaluated
         self.skipped += plan.skipped
         vertices, slope = np.empty((n, 3), np.float32), np.empty((n, 2), np.float32)

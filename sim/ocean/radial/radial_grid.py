@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 from sim.validation import argument_error, check_number, check_positive, is_whole_number
 
 LAWS = ("geometric", "power")

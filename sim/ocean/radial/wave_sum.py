@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.turns import single_cos_sin_turns
+from sim.numerics.turns import single_cos_sin_turns
 
 Array = NDArray[np.float32]
 # Of a wave: its wavenumber [turns/m], its phase at the centre [turns], and what each sum is multiplied by.

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.angles import ROUNDING, within_turn
+from sim.numerics.angles import once_around
 from sim.ocean.spectra.record import Conditions, Spectrum, SpreadConditions, from_frequency
 from sim.validation import argument_error, as_array
 
@@ -131,10 +131,8 @@ def measured_spectrum(
         theta = as_array("direction", direction, allowed)
         if theta.ndim != 1 or len(theta) < MIN_DIRECTIONS or not np.isfinite(theta).all():
             raise argument_error("direction", theta.tolist() if theta.ndim == 1 else theta.shape, allowed)
-        theta = within_turn(theta)
-        order = np.argsort(theta)
-        theta = theta[order]
-        if not (np.diff(theta) > ROUNDING).all():
+        theta, order = once_around(theta)
+        if len(theta) < len(direction):
             raise argument_error("direction", direction, allowed)
         shape, unit = (*f.shape, *theta.shape), "m2/Hz/rad"
     allowed = f"finite numbers, 0 or above [{unit}], of shape {shape}, some above 0"

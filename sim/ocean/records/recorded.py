@@ -17,11 +17,11 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.numerics.angles import within_half_turn
+from sim.numerics.root import narrowed
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.radial.gerstner import MAX_WAVES
 from sim.ocean.spectra import Conditions
-from sim.root import narrowed
-from sim.turns import within_half_turn
 from sim.validation import argument_error, as_array, check_angle, check_kind, check_number, check_vector
 from sim.water import Water
 from sim.waves import Waves

@@ -10,7 +10,7 @@ import importlib
 import pkgutil
 from typing import Any
 
-from sim.ocean.spectra.record import Conditions, Spectrum
+from sim.ocean.spectra.record import SPECTRA, Conditions, Spectrum
 from sim.parameters import Parameter, parameters_of
 
 __all__ = ["PARAMETERS", "SPECTRA", "Conditions", "Spectrum"]
@@ -35,5 +35,5 @@ def _declared() -> dict[str, Parameter]:
     return found
 
 
-SPECTRA = _discover()
+SPECTRA.update(_discover())
 PARAMETERS = _declared()  # of all spectra, by name

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from sim.angles import angle_from
+from sim.numerics.angles import within_half_turn
 from sim.ocean.spectra.record import Conditions, Spectrum
 from sim.parameters import parameter
 from sim.water import EARTH_GRAVITY
@@ -30,7 +30,7 @@ def density(kx: np.ndarray, ky: np.ndarray, c: AgeConditions) -> np.ndarray:
     """S(kx, ky) [m4] = B (1 + Delta cos 2 theta)/(2 pi k^4), doubled ahead of the wind, 0 behind; eq. 67."""
     k = np.hypot(kx, ky)
     B, Delta = curvature(k, c)
-    theta = angle_from(np.arctan2(ky, kx), c.wind_direction)
+    theta = within_half_turn(np.arctan2(ky, kx) - c.wind_direction)
     # Half the weight straight across the wind, where both halves meet.
     ahead = 2.0 * np.heaviside(np.round(np.cos(theta), 12), 0.5)
     return ahead * B * (1.0 + Delta * np.cos(2.0 * theta)) / (2.0 * math.pi * k**4)

@@ -9,9 +9,9 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.angles import angle_from
 from sim.dispersion import wavenumber
 from sim.interruption import pieces
+from sim.numerics.angles import within_half_turn
 from sim.ocean.dispersion import group_speed, omega
 from sim.ocean.spectra.moments import Moments, moments_of
 from sim.ocean.spectra.spreading import SPREADINGS, cos2s, spread
@@ -150,8 +150,6 @@ class Spectrum(NamedTuple, Generic[C]):
 
     def check_used(self, values: Mapping[str, Any]) -> None:
         """Raises ValueError for the first of the values, by name, that is no condition of this spectrum."""
-        from sim.ocean.spectra import SPECTRA  # which reads this module
-
         for name in values:
             if not self.uses(name):
                 known = ", ".join(field.name for field in dataclasses.fields(self.conditions))
@@ -253,6 +251,9 @@ class Spectrum(NamedTuple, Generic[C]):
 SpreadC = TypeVar("SpreadC", bound=SpreadConditions)
 
 
+SPECTRA: dict[str, Spectrum[Any]] = {}  # by name; the package fills it
+
+
 def from_frequency(
     frequency: Callable[[np.ndarray, SpreadC], np.ndarray],
     peak: Callable[[SpreadC], float],
@@ -267,7 +268,7 @@ def from_frequency(
     """
     k = np.hypot(kx, ky)
     w = c.omega(k)
-    theta = angle_from(np.arctan2(ky, kx), c.wind_direction)
+    theta = within_half_turn(np.arctan2(ky, kx) - c.wind_direction)
     u10 = c.wind_speed / WIND_HEIGHTS[wind_height]
     D = spread(c.spreading, w / peak(c), theta, c.spread_exponent, c.swell, u10 * peak(c) / c.gravity)
     return frequency(w, c) * D * c.group_speed(k) / k
@@ -308,6 +309,6 @@ def second_system(kx: np.ndarray, ky: np.ndarray, c: Conditions) -> np.ndarray:
     """S(kx, ky) [m4] of the second system: the shape of JONSWAP with gamma 3.3, spread as cos2s."""
     k = np.hypot(kx, ky)
     w = c.omega(k)
-    theta = angle_from(np.arctan2(ky, kx), c.second_direction)
+    theta = within_half_turn(np.arctan2(ky, kx) - c.second_direction)
     S = peaked(w, c.second_height, 2.0 * math.pi / c.second_period, SECOND_PEAK)
     return S * cos2s(SECOND_EXPONENT, theta) * c.group_speed(k) / k

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 
 if TYPE_CHECKING:
     from sim.ocean.tile.sea import Sea

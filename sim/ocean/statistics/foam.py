@@ -11,7 +11,7 @@ import functools
 import math
 from typing import TYPE_CHECKING
 
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 from sim.validation import check_number
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from sim.angles import direction_of, within_turn
+from sim.numerics.angles import direction_of, within_turn
 from sim.ocean.radial.gerstner import energy_range
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.validation import argument_error, check_number

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from sim.interruption import pieces
-from sim.turns import within_half_turn
+from sim.numerics.angles import within_half_turn
 from sim.water import Water
 from sim.waves import Waves
 

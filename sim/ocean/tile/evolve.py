@@ -6,7 +6,7 @@ loops vectorise. Frequencies depend on |kx|, |ky| only: `rate` [turns/s], `fade`
 """
 
 from sim.jit import kernel
-from sim.turns import cos_sin_turns, single_cos_sin_turns
+from sim.numerics.turns import cos_sin_turns, single_cos_sin_turns
 
 SINGLE = 4  # [bytes] of a number of single precision
 

@@ -1,15 +1,25 @@
 """One moment of a sea: fields on the grid, each computed when first read and by the transforms it needs."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from sim.interruption import raise_if_stopped
 from sim.ocean.tile.evolve import set_imaginary_multiple, set_real_multiple
+from sim.ocean.tile.tile_waves import TileWaves
+from sim.ocean.tile.transforms import Transforms
 
-if TYPE_CHECKING:
-    from sim.ocean.tile.tile_heights import TileHeights
+
+class Heights(Protocol):
+    """What a surface is made of: `TileHeights`."""
+
+    waves: TileWaves
+    transforms: Transforms
+
+    def spectrum(self, t: float) -> np.ndarray: ...
+    def set_input(self, t: float, choppiness: float) -> None: ...
+    def mean_height(self, t: float, choppiness: float) -> float: ...
 
 
 class Multiple(Protocol):
@@ -38,7 +48,7 @@ class Surface:
     Two-component fields are views of two planes: field[..., 0] is contiguous.
     """
 
-    def __init__(self, heights: "TileHeights", t: float, choppiness: float, fields: dict[str, np.ndarray]) -> None:
+    def __init__(self, heights: Heights, t: float, choppiness: float, fields: dict[str, np.ndarray]) -> None:
         """fields: those already computed; `heights` keeps the same dict, but no Surface: a cycle would hold memory."""
         self.heights, self.t, self.choppiness, self.fields = heights, t, choppiness, fields
         self.numbers, self.transforms = heights.waves.numbers, heights.transforms

@@ -21,7 +21,6 @@ from sim.waves import Kinematics
 
 if TYPE_CHECKING:
     from sim.ocean.nonlinear.surface import NonlinearSurface
-    from sim.ocean.tile.sea import Sea
     from sim.ocean.tile.surface import Surface
 
 INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
@@ -73,7 +72,7 @@ class TileSurface:
         above, moved = [], []
         for instant in (-INSTANT, INSTANT):
             above.append(self.height_at(where, t + instant)[0])
-            moved.append(particles(self, label, t + instant))
+            moved.append(particles(self.surface(t + instant), self.length / self.size, label))
         velocity = (moved[1] - moved[0]) / (2 * INSTANT)
         rise, acceleration = (above[1] - above[0]) / (2 * INSTANT), (above[1] - 2 * now + above[0]) / INSTANT**2
         return SurfaceAt(now, slope, velocity, acceleration, now.copy(), slope.copy(), rise, label, residual)
@@ -115,13 +114,12 @@ def sampled(
     return RadialSurface(vertices, slopes, jacobian)
 
 
-def particles(sea: "Sea", label: np.ndarray, t: float) -> np.ndarray:
-    """Displacement (n, 3) [m] at time t [s] of the water that rests at labels (n, 2) [m]."""
-    surface = sea.surface(t)
+def particles(surface: "Surface", cell: float, label: np.ndarray) -> np.ndarray:
+    """Displacement (n, 3) [m] of the water that rests at labels (n, 2) [m], by a surface of cells of `cell` [m]."""
     fields = (surface.displacement[..., 0], surface.displacement[..., 1], surface.height)
     out = np.empty((3, len(label)))
     for field, row in zip(fields, out, strict=True):
-        sample(label, np.ascontiguousarray(field), sea.length / sea.size, row)
+        sample(label, np.ascontiguousarray(field), cell, row)
     return out.T
 
 

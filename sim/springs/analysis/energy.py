@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.acceleration import accelerate, make_scratch
-from sim.springs.arrays import by_net, mass_at, point_count
 from sim.springs.forces import each
 from sim.springs.forces.water import inertia_power
-from sim.springs.line_arrays import BODY_MASS
-from sim.springs.line_points import half_form, six
+from sim.springs.points.acceleration import accelerate, make_scratch
+from sim.springs.points.arrays import by_net, mass_at, point_count
+from sim.springs.points.line_arrays import BODY_MASS
+from sim.springs.points.line_points import half_form, six
 
 
 class Energy(NamedTuple):

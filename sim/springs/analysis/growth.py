@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 from sim.springs.integrators import Integrator
 from sim.springs.net import Family, Net
 from sim.springs.rope import rope

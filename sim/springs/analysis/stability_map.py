@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 from sim.springs.analysis.growth import STABLE, outcome
 from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.integrators import Integrator

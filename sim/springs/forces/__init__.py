@@ -10,9 +10,9 @@ To add a force, write a module in this folder with
 2. kernels for its facets, as `Force` lists them; none for a facet that it does not have.
 3. `FORCE = Force(...)`.
 
-The forces without numbers of their own read those of the net's record. Of ropes, cloths and other nets links, gravity
-and drag accelerate in the loops over links of `sim/springs/acceleration.py`, which are written by hand. Lines under
-water are nets with more forces: water, bed, bending, steady loads and the bodies that they hold.
+The forces without numbers of their own read those of the net's record. In ropes, cloths and other nets, links, gravity
+and drag accelerate in the hand-written loops over links of `sim/springs/points/acceleration.py`. Lines under water are
+nets with more forces: water, bed, bending, steady loads and the bodies that they hold.
 """
 
 from collections import namedtuple
@@ -20,9 +20,9 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from sim.jit import chosen, generated, kernel, modules_of
-from sim.springs.arrays import GridArrays, RopeArrays, by_net
 from sim.springs.forces.record import Absent, Force
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.arrays import GridArrays, RopeArrays, by_net
+from sim.springs.points.line_arrays import LineArrays
 from sim.validation import argument_error, check_number
 
 FORCES: tuple[Force, ...] = tuple(

@@ -9,10 +9,10 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net
 from sim.springs.forces.matrices import add_block
 from sim.springs.forces.record import WIDE_NETS, Force
-from sim.springs.vector_ops import add_scaled, set_sum
+from sim.springs.points.arrays import by_net
+from sim.springs.points.vector_ops import add_scaled, set_sum
 
 STILL = 1e-300  # under the roots: no air or no area gives no force instead of 0/0
 

@@ -6,12 +6,12 @@ Friction is regularised by the step, as that of `sim.springs.forces.contact`.
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import is_moving, push
-from sim.springs.each_link import TINY
 from sim.springs.forces.matrices import DAMPING, STIFFEST, STIFFNESS
 from sim.springs.forces.record import LINES, Force
-from sim.springs.line_points import kick, mobility
-from sim.springs.order import in_turn
+from sim.springs.points.arrays import is_moving, push
+from sim.springs.points.each_link import TINY
+from sim.springs.points.line_points import kick, mobility
+from sim.springs.points.order import in_turn
 
 
 @kernel(inline=True)

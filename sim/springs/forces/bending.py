@@ -19,10 +19,10 @@ angle a between two segments.
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import is_moving, push, span
 from sim.springs.forces.links import set_tensions
 from sim.springs.forces.matrices import STIFFEST, STIFFNESS, TRANSVERSE
 from sim.springs.forces.record import LINES, Force
+from sim.springs.points.arrays import is_moving, push, span
 
 NODES, WEIGHTS, BEND_STIFFNESS, OFFSET, LINKS = 0, 3, 6, 7, 10  # columns
 

@@ -1,7 +1,7 @@
 """Floating bodies that hold lines, by linear theory: M q'' + B q' + C q = forces, steady ones and those of waves.
 
-Their masses and what they carry are in `sim.springs.line_points`. Damping alone is exact: with M^-1 B = S diag(r) P the
-six velocities become S diag(exp(-r s)) P of them.
+Their masses and what they carry are in `sim.springs.points.line_points`. Damping alone is exact: with
+M^-1 B = S diag(r) P the six velocities become S diag(exp(-r s)) P of them.
 """
 
 import math
@@ -11,9 +11,9 @@ from sim.springs.forces.matrices import DAMPING as OF_DAMPING
 from sim.springs.forces.matrices import STIFFEST
 from sim.springs.forces.matrices import STIFFNESS as OF_STIFFNESS
 from sim.springs.forces.record import LINES, Force
-from sim.springs.line_arrays import DAMPING, DECAY_PARTS, DECAY_RATES, DECAY_SHAPES, PLACE, STIFFNESS
-from sim.springs.line_points import add_six, half_form, matrix_times, set_carried, set_six, six
-from sim.springs.order import in_turn
+from sim.springs.points.line_arrays import DAMPING, DECAY_PARTS, DECAY_RATES, DECAY_SHAPES, PLACE, STIFFNESS
+from sim.springs.points.line_points import add_six, half_form, matrix_times, set_carried, set_six, six
+from sim.springs.points.order import in_turn
 from sim.waves import AMPLITUDE, sums_at
 
 

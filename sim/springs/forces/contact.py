@@ -10,11 +10,11 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import mass_at, push
-from sim.springs.each_link import TINY
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
-from sim.springs.order import in_turn
+from sim.springs.points.arrays import mass_at, push
+from sim.springs.points.each_link import TINY
+from sim.springs.points.order import in_turn
 
 
 @kernel(inline=True)

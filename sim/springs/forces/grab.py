@@ -3,10 +3,10 @@
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import push
-from sim.springs.each_link import TINY
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import SPRING_NETS, Force
+from sim.springs.points.arrays import push
+from sim.springs.points.each_link import TINY
 
 
 @kernel(inline=True)

@@ -1,8 +1,8 @@
 """Gravity. Of ropes, cloths and other nets the loops over links begin with its accelerations."""
 
 from sim.jit import kernel
-from sim.springs.arrays import is_moving, mass_at, point_count, push
 from sim.springs.forces.record import Force, of_nets
+from sim.springs.points.arrays import is_moving, mass_at, point_count, push
 
 
 @kernel(allocates=False)

@@ -5,13 +5,13 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import add_pair, by_net, is_moving, link_at, push, span
-from sim.springs.each_link import TINY, acting_damping, each_link, stretch
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
 from sim.springs.forces.record import Force, of_nets
 from sim.springs.laws import damps, force_density, stiffness, tension
 from sim.springs.laws import energy as link_energy
-from sim.springs.line_points import kick, mobility
+from sim.springs.points.arrays import add_pair, by_net, is_moving, link_at, push, span
+from sim.springs.points.each_link import TINY, acting_damping, each_link, stretch
+from sim.springs.points.line_points import kick, mobility
 
 MOST_OF_PULL = 1.0 - 1e-15  # fraction of a line's pull that damping may take, so that round-off does not make it push
 
@@ -106,7 +106,7 @@ def set_tensions(link, x, v, p, out):
 
 @each_link(noalias=True)
 def accelerate(link, x, v, t, p, with_damping, f, a):
-    """Accelerations of lines; those of nets are in `sim.springs.acceleration`."""
+    """Accelerations of lines; those of nets are in `sim.springs.points.acceleration`."""
     rx, ry, rz, length = stretch(x, p, link)
     s = force_density(link.law, link.stiffness, link.rest, length)
     if with_damping:

@@ -1,8 +1,8 @@
 """Steady forces on nodes of lines; their energy counts with that of gravity."""
 
 from sim.jit import kernel
-from sim.springs.arrays import is_moving, point_count, push
 from sim.springs.forces.record import LINES, Force
+from sim.springs.points.arrays import is_moving, point_count, push
 
 
 @kernel(noalias=True, allocates=False)

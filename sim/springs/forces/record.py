@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from sim.springs.arrays import ClothArrays, GridArrays, RopeArrays
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.arrays import ClothArrays, GridArrays, RopeArrays
+from sim.springs.points.line_arrays import LineArrays
 
 WIDE_NETS = (GridArrays, ClothArrays)  # nets of several rows
 SPRING_NETS = (RopeArrays, *WIDE_NETS)
@@ -30,8 +30,8 @@ class Force(NamedTuple):
     """A force on the points of a net. Facets are kernels; None: the force has none.
 
     x, v: positions [m] and velocities [m/s], flat (3 rows cols,), at the time t [s]; p: the net's record, see
-    `sim.springs.arrays`, which has `point_count`, `is_moving` and `push` for points of every net. The facets of a force
-    with numbers of its own take these before all else; `Net.forces` and `System.forces` have them.
+    `sim.springs.points.arrays`, which has `point_count`, `is_moving` and `push` for points of every net. The facets of
+    a force with numbers of its own take these before all else; `Net.forces` and `System.forces` have them.
     """
 
     name: str
@@ -42,7 +42,7 @@ class Force(NamedTuple):
     # the links.
     accelerate: Any = None
     # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] of what moves it; of lines by the masses
-    # and impulses of `sim.springs.line_points`
+    # and impulses of `sim.springs.points.line_points`
     damp: Any = None
     energy: Any = None  # (x, t, p) -> stored energy [J]
     power: Any = None  # (x, v, t, p, with_damping) -> (dissipated, put in) [W]

@@ -14,10 +14,10 @@ import math
 import numpy as np
 
 from sim.jit import is_stopped, kernel
-from sim.springs.each_link import TINY
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import WIDE_NETS, Force
-from sim.springs.order import in_turn
+from sim.springs.points.each_link import TINY
+from sim.springs.points.order import in_turn
 
 UNASKED = 64  # particles between two looks at whether the search is to end
 SKIN = 0.5  # of the thickness: how far pairs are looked for beyond it, so that the list of them lasts

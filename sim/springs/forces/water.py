@@ -7,12 +7,12 @@ r_{i+1} - r_{i-1}, u and du/dt the water's velocity and acceleration, and w = u 
       + m_w [(1 + C_an) (du/dt - (du/dt . q) q) + (1 + C_at) (du/dt . q) q]
   D_n = rho/2 C_dn d l, D_t = rho/2 C_dt pi d l
 
-The added mass is in the masses of `sim.springs.line_points`. Of a part at the surface the water pushes the submerged
-fraction of its volume. A segment is straight from node to node, in PIECES of equal length. The submerged fraction of a
-piece falls from 1 to 0 over the HEIGHT of the line's volume about the elevation at the node. A node takes the mean over
-the pieces with the weight 1 - s, s the fraction of the way to the other node, and the other node takes the rest. So
-buoyancy is the gradient of a convex energy of the heights of the nodes, and a line that hangs from a fairlead in the
-surface is wet up to there. The added mass stays.
+The added mass is in the masses of `sim.springs.points.line_points`. At the surface the water pushes the submerged
+fraction of a part's volume. A segment is straight from node to node, in PIECES of equal length. The submerged fraction
+of a piece falls from 1 to 0 over the HEIGHT of the line's volume about the elevation at the node. A node takes the mean
+over the pieces with the weight 1 - s, s the fraction of the way to the other node, which takes the rest. So buoyancy
+is the gradient of a convex energy of the heights of the nodes, and a line that hangs from a fairlead in the surface is
+wet up to there. The added mass stays.
 
 Buoyancy stores energy about still water. What waves, current and the elevation give or take is work, and so is the
 inertia of the water that moves with the lines: kinetic energy is that of lines and bodies alone.
@@ -21,11 +21,11 @@ inertia of the water that moves with the lines: kinetic energy is that of lines 
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import is_moving, push
 from sim.springs.forces.matrices import STIFFEST, STIFFNESS
 from sim.springs.forces.record import LINES, Force
-from sim.springs.line_points import kick, mobility, tangent_at
-from sim.springs.order import in_turn
+from sim.springs.points.arrays import is_moving, push
+from sim.springs.points.line_points import kick, mobility, tangent_at
+from sim.springs.points.order import in_turn
 from sim.waves import AMPLITUDE, sums_at
 
 PIECES = 8  # of a segment at the surface

@@ -11,13 +11,13 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
 from sim.springs.damping import damp, is_odd, make_decay
 from sim.springs.forces.air import air_scratch_size, drift
 from sim.springs.integrators import Integrator
+from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.points.vector_ops import add_scaled
 from sim.springs.rope_gap import cross_gap, gaps_merge, make_gap
-from sim.springs.vector_ops import add_scaled
 
 
 def stable_step(omega: float, rate: float) -> float:

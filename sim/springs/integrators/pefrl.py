@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.amplification import limit_of
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
-from sim.springs.vector_ops import add_scaled
+from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.points.vector_ops import add_scaled
 
 XI = 0.1786178958448091
 LAMBDA = -0.2123418310626054

@@ -7,11 +7,11 @@ x_{n+1} = x + h v + h^2/6 (a1 + a2 + a3) and v_{n+1} = v + h/6 (a1 + 2 a2 + 2 a3
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.amplification import stable_step_of_polynomial
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
-from sim.springs.vector_ops import set_sum
+from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.points.vector_ops import set_sum
 
 
 def stable_step(omega: float, rate: float) -> float:

@@ -6,10 +6,10 @@ from functools import partial
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
-from sim.springs.vector_ops import add_scaled
+from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.points.vector_ops import add_scaled
 
 
 def stable_step(omega: float, rate: float) -> float:

@@ -10,7 +10,7 @@ import pytest
 
 from app.__main__ import main
 from sim.floating import Hull, with_dataset
-from tests.sim.floating import test_mesh_files as meshes
+from tests.sim.floating.hulls import test_mesh_files as meshes
 from tests.sim.ocean import test_measured as seas
 
 BROKEN = 40  # files of each kind

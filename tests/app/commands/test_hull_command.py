@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from app.__main__ import main
-from tests.sim.floating.test_mesh_files import DECK, SIDES, VERTICES, gdf, stl
+from tests.sim.floating.hulls.test_mesh_files import DECK, SIDES, VERTICES, gdf, stl
 
 FACES = [*DECK.tolist(), *SIDES.tolist()]
 

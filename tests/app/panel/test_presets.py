@@ -35,7 +35,7 @@ def test_a_value_set_back_is_no_change(lab: Viewer) -> None:
 
 
 def test_a_file_is_named_in_place_of_the_preset() -> None:
-    file = Path(__file__).parents[2] / "sim" / "mooring" / "files" / "chain.txt"
+    file = Path(__file__).parents[2] / "sim" / "mooring" / "moordyn" / "files" / "chain.txt"
     viewer = Viewer("127.0.0.1", 0)
     try:
         viewer.open("mooring", MooringParams(moordyn_file=str(file), time_step=1e-3))

@@ -18,7 +18,7 @@ from app.scenes.square_sea.report import readout
 from app.scenes.square_sea.view import SquareSeaView
 from app.server.loop.sim_loop import SimLoop
 from sim.ocean.statistics.statistics import expected
-from tests.sim.floating.test_mesh_files import DECK, SIDES, VERTICES, stl
+from tests.sim.floating.hulls.test_mesh_files import DECK, SIDES, VERTICES, stl
 
 FREQUENCY = np.arange(0.04, 0.4, 0.005)
 DENSITY = 6.0 * np.exp(-(((FREQUENCY - 0.09) / 0.012) ** 2)) + 0.5 * np.exp(

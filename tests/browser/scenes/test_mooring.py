@@ -14,7 +14,7 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import LATE_UPDATE, NO_NOTES, Tab
 from tests.browser.water.test_water import PANEL_HIDDEN
 
-FILES = Path(__file__).parents[2] / "sim/mooring/files"
+FILES = Path(__file__).parents[2] / "sim/mooring/moordyn/files"
 
 
 @pytest.mark.long

@@ -10,9 +10,9 @@ from sim.mooring import System
 from sim.mooring.tangent import carried_coordinates, free_coordinates, set_tangents
 from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.integrators import Integrator
-from sim.springs.line_arrays import BODY_MASS, LineArrays
-from sim.springs.line_arrays import STIFFNESS as OF_BODY
-from sim.springs.line_points import inverse_mass_matrices
+from sim.springs.points.line_arrays import BODY_MASS, LineArrays
+from sim.springs.points.line_arrays import STIFFNESS as OF_BODY
+from sim.springs.points.line_points import inverse_mass_matrices
 
 Array = NDArray[np.float64]
 

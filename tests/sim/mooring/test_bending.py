@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, System, critical_step, read_moordyn, simulate
-from sim.springs.acceleration import set_rest_forces
 from sim.springs.analysis.energy import energies
 from sim.springs.forces.bending import energy
+from sim.springs.points.acceleration import set_rest_forces
 from sim.springs.state import State
 from tests.refusals import assert_refused
 from tests.sim.mooring.dense import frequencies_squared, stiffness_matrix

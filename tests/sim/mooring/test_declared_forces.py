@@ -8,9 +8,9 @@ import pytest
 from sim.mooring import Line, LineType, Point, State, System, simulate
 from sim.mooring.balance import what_is_left
 from sim.mooring.tangent import declared_stiffness
-from sim.springs.acceleration import set_rest_forces
 from sim.springs.analysis.energy import energies
 from sim.springs.forces import OWN
+from sim.springs.points.acceleration import set_rest_forces
 from tests.sim.mooring.dense import stiffness_matrix
 from tests.sim.mooring.systems import floating_body
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, State, System, point_forces, simulate
-from sim.springs.acceleration import set_acceleration
 from sim.springs.forces.links import set_tensions
+from sim.springs.points.acceleration import set_acceleration
 from tests.sim.mooring.catenary import catenary
 from tests.sim.mooring.systems import Shaking
 

@@ -10,7 +10,7 @@ from sim import floating
 from sim.mooring import Line, LineType, Point, System, moored, simulate
 from sim.mooring.statics import straight
 from sim.springs import State
-from sim.springs.acceleration import set_acceleration
+from sim.springs.points.acceleration import set_acceleration
 from sim.water import Water
 from sim.waves import Waves
 from tests.refusals import assert_refused

@@ -22,10 +22,10 @@ from sim.mooring import (
 )
 from sim.mooring.motion import FARTHEST, PIECE, MooringFrames
 from sim.mooring.statics import Rest
-from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import energies, power
 from sim.springs.damping import damp_lines, make_decay
 from sim.springs.integrators import integrator_named
+from sim.springs.points.acceleration import set_acceleration
 from sim.water import Water
 from sim.waves import Waves
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from sim.springs import INTEGRATORS, Net
-from sim.springs.acceleration import set_acceleration
+from sim.springs.points.acceleration import set_acceleration
 from sim.springs.state import State, advance, velocities
 
 

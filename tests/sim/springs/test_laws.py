@@ -22,9 +22,9 @@ from sim.springs.stability import gershgorin
 from sim.springs.state import acceleration, energy
 from sim.springs.statics import equilibrium, hanging_chain
 from tests import naive
+from tests.sim.springs.analysis.test_energy import PATH, residual
+from tests.sim.springs.forces.test_forces import agrees, own_power, shaken
 from tests.sim.springs.reference import exact, integrated, slope
-from tests.sim.springs.test_energy import PATH, residual
-from tests.sim.springs.test_forces import agrees, own_power, shaken
 from tests.sim.springs.test_stability import products
 
 K, REST = 700.0, 0.4

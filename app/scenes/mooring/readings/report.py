@@ -14,7 +14,7 @@ from app.scenes.mooring.quantities import QUANTITIES, load_use
 from app.scenes.mooring.start_check import BLAMED, Fault, raised_points
 from app.scenes.quantities import read, written
 from app.scenes.springs.drawing.html import colour_scale, step_mark
-from sim.extreme_values import LEAST_PEAKS
+from sim.numerics.extreme_values import LEAST_PEAKS
 
 TENSIONS = "Tensions"  # heading
 EXPECTED = f"3 h: largest tension expected in three hours, by a Weibull distribution of at least {LEAST_PEAKS} peaks."

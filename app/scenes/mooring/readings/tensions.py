@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.scenes.mooring.frame import EndStatistics, LineReading
-from sim.extreme_values import Peaks
+from sim.numerics.extreme_values import Peaks
 
 LONG = 10800.0  # [s] in which a largest tension is expected: the usual length of a sea state
 SETTLING_PERIODS = 3.0  # of the waves after a drag, until its motion has died down

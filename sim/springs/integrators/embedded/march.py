@@ -11,10 +11,10 @@ is as long as the one before, holds no frame, and stands only if the next one ke
 import numpy as np
 
 from sim.jit import is_stopped, kernel
-from sim.springs.acceleration import accelerate, set_pins
 from sim.springs.analysis.extremes import DIVERGENCE_BOUND
 from sim.springs.integrators.embedded.errors import error_of
 from sim.springs.integrators.embedded.stages import is_smooth, make_stages, take_step
+from sim.springs.points.acceleration import accelerate, set_pins
 
 SAFETY = 0.9
 NOW, BEFORE = 0.7, 0.4  # exponents of this step's error and the last one's (Gustafsson's PI), over the order

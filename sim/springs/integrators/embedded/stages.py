@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import add_power
-from sim.springs.arrays import by_net
 from sim.springs.damping import other_acts
 from sim.springs.forces import FORCES, each
 from sim.springs.forces.links import link_forces
+from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.points.arrays import by_net
 
 WHOLE = 160  # points: a rope no longer than this is one block
 BLOCK = 96  # points in a block of a longer one: the rows of their stages are 30 kB

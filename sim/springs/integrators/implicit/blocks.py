@@ -9,10 +9,10 @@ Gershgorin's discs, so that Newton's method is exact for short steps, and cut of
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import mass_at
-from sim.springs.each_link import acting_damping, each_link, stretch
 from sim.springs.forces import each
 from sim.springs.forces.links import linearised
+from sim.springs.points.arrays import mass_at
+from sim.springs.points.each_link import acting_damping, each_link, stretch
 
 KEPT = 0.4  # part of the mass that pressed links may take from a particle
 

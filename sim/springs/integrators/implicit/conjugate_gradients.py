@@ -3,11 +3,11 @@
 import numpy as np
 
 from sim.jit import is_stopped, kernel
-from sim.springs.acceleration import add_row
 from sim.springs.integrators.implicit.blocks import SYMMETRIC, multiply_coupled
 from sim.springs.integrators.implicit.dissection import solve
 from sim.springs.integrators.implicit.tangent import dot
-from sim.springs.vector_ops import add_scaled
+from sim.springs.points.acceleration import add_row
+from sim.springs.points.vector_ops import add_scaled
 
 UNASKED = 4  # iterations between two looks at whether the solve is to end
 

@@ -13,10 +13,10 @@ spring the first factor is the tension at l, and where it does not turn F is the
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net, push
-from sim.springs.each_link import TINY, acting_damping, each_link, stretch
 from sim.springs.integrators.implicit.blocks import least_across, set_link_blocks
 from sim.springs.laws import force_density, over_step
+from sim.springs.points.arrays import by_net, push
+from sim.springs.points.each_link import TINY, acting_damping, each_link, stretch
 
 
 @kernel(inline=True)

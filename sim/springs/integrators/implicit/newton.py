@@ -12,8 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import is_stopped, kernel
-from sim.springs.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.arrays import by_net, mass_at
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
 from sim.springs.integrators.implicit.blocks import (
     GENERAL,
@@ -28,7 +26,9 @@ from sim.springs.integrators.implicit.conjugate_gradients import solve_conjugate
 from sim.springs.integrators.implicit.dissection import Dissection, dissect, factorise
 from sim.springs.integrators.implicit.mean_length import add_mean_lengths, set_mean_blocks
 from sim.springs.integrators.implicit.tangent import dot
-from sim.springs.vector_ops import add_scaled, set_sum
+from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.points.arrays import by_net, mass_at
+from sim.springs.points.vector_ops import add_scaled, set_sum
 
 MOST = 25  # corrections a stage: a stage that has not settled by then is taken as it is
 SETTLED = 1e-11  # size of corrections not taken, relative to the fastest velocity

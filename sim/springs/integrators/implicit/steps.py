@@ -13,10 +13,10 @@ import math
 import numpy as np
 
 from sim.jit import is_stopped, kernel
-from sim.springs.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.analysis.energy import add_power
-from sim.springs.arrays import by_net
 from sim.springs.integrators.implicit.newton import MOST, Exactness, forget_factors, make_work, solve_stage
+from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.points.arrays import by_net
 
 EULER, MIDPOINT, TR_BDF2 = 0, 1, 2
 

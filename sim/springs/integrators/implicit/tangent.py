@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net
-from sim.springs.each_link import each_link, stretch
 from sim.springs.forces import each
 from sim.springs.forces.links import tangent as add_link_tangent
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST
 from sim.springs.laws import TAUT
-from sim.springs.line_points import set_inverse_masses, set_root_motion, turn_to_root_forces
+from sim.springs.points.arrays import by_net
+from sim.springs.points.each_link import each_link, stretch
+from sim.springs.points.line_points import set_inverse_masses, set_root_motion, turn_to_root_forces
 
 
 @each_link("largest")

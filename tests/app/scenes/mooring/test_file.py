@@ -25,7 +25,7 @@ from app.server.loop.sim_loop import SimLoop
 from app.server.replay_file import replay_html
 from sim.mooring import read_moordyn
 
-FILES = Path(__file__).parents[3] / "sim/mooring/files"
+FILES = Path(__file__).parents[3] / "sim/mooring/moordyn/files"
 SHARED = str(FILES / "shared_line.txt")
 
 

@@ -23,7 +23,7 @@ from app.scenes.mooring.readings.restoring import StaticInputs, level_tension, s
 from app.scenes.mooring.scene import needs
 from sim.mooring.statics import at_rest
 
-FILES = Path(__file__).parents[3] / "sim" / "mooring" / "files"
+FILES = Path(__file__).parents[3] / "sim" / "mooring" / "moordyn" / "files"
 SMALL: dict[str, Any] = {"segments": 12, "lines": 2, "steady_force": 10.0, "time_step": 1 / 120, "wave_height": 0.0}
 
 

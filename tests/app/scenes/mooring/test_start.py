@@ -24,7 +24,7 @@ from sim.parameters import check_record
 from sim.validation import ConvergenceError
 from tests.app.scenes.mooring.test_mooring import random_params
 
-FILES = Path(__file__).parents[3] / "sim/mooring/files"
+FILES = Path(__file__).parents[3] / "sim/mooring/moordyn/files"
 FEW: dict[str, Any] = {"segments": 12, "wave_height": 0.0}
 
 

@@ -17,7 +17,7 @@ from app.scenes.mooring.parameters import PRESETS, MooringParams, hidden
 from app.scenes.mooring.readings.report import figures_of, kilonewtons, notes_of, tension_tables
 from app.scenes.mooring.readings.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
 from app.scenes.quantities import measured
-from sim.extreme_values import LEAST_PEAKS
+from sim.numerics.extreme_values import LEAST_PEAKS
 from sim.parameters import check_record
 from tests.app.scenes.mooring.test_start import FILES
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.angles import angle_from, direction_of, within_turn
+from sim.numerics.angles import direction_of, once_around, within_half_turn, within_turn
 
 TURN = 2.0 * math.pi
 
@@ -25,6 +25,17 @@ def test_whole_turns_are_0_also_if_they_were_rounded():
 
 
 def test_differences_know_no_branch_cut():
-    assert angle_from([math.pi, 3.0, -3.0], -math.pi) == pytest.approx([0.0, 3.0 - math.pi, math.pi - 3.0])
-    assert abs(angle_from(1.0, 1.0 + math.pi)) == pytest.approx(math.pi)
-    assert angle_from(0.25, 0.25 + 4.0 * TURN) == pytest.approx(0.0, abs=1e-14)
+    assert within_half_turn([2.0 * math.pi, 4.0, -2.0]) == pytest.approx([0.0, 4.0 - TURN, -2.0])
+    assert abs(within_half_turn(-math.pi)) == pytest.approx(math.pi)
+    assert within_half_turn(-4.0 * TURN) == 0.0
+
+
+def test_directions_all_around_are_there_once_and_rise():
+    for angles in (np.linspace(0.0, TURN, 13), np.linspace(-math.pi, math.pi, 13), np.float32([0.0, 3.0, TURN])):
+        found, places = once_around(angles)
+        assert len(found) == len(angles) - 1
+        assert (np.diff(found) > 0.4).all()
+        assert within_half_turn(found - angles[places]) == pytest.approx(0.0, abs=1e-6)
+    found, places = once_around(np.array([4.0, 1.0, 4.0 - TURN]))
+    assert found == pytest.approx([1.0, 4.0])
+    assert places.tolist() == [1, 0]

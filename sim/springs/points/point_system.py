@@ -17,7 +17,7 @@ class PointSystem(abc.ABC, Generic[RunT]):
 
     @abc.abstractmethod
     def kernel_view(self, h: float) -> Any:
-        """The kernels' record for steps of h [s], see `sim.springs.arrays` and `sim.springs.line_arrays`."""
+        """The kernels' record for steps of h [s], see `arrays` and `line_arrays` in this folder."""
 
     @property
     @abc.abstractmethod

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from typing import Any
 
 from sim.jit import generated, kernel
-from sim.springs.arrays import link_at, link_count, span
 from sim.springs.laws import damps
-from sim.springs.order import in_turn
+from sim.springs.points.arrays import link_at, link_count, span
+from sim.springs.points.order import in_turn
 
 TINY = 1e-300  # [m^2] under the root: coincident points get no spring force instead of 0/0
 

@@ -9,13 +9,13 @@ force does not.
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.arrays import by_net
 from sim.springs.forces import OWN, each
 from sim.springs.forces.air import wind_scratch_size
 from sim.springs.forces.cloth_forces import accelerate_cloth, cloth_scratch_size
 from sim.springs.forces.links import link_forces, scale_ends
-from sim.springs.line_points import accelerate_masses, set_inverse_masses, set_line_pins
 from sim.springs.pins import set_paths
+from sim.springs.points.arrays import by_net
+from sim.springs.points.line_points import accelerate_masses, set_inverse_masses, set_line_pins
 
 
 @kernel(noalias=True, inline=True)

@@ -11,10 +11,10 @@ with m_w the mass of the water that a part displaces. A node that a body carries
 import math
 
 from sim.jit import kernel
-from sim.springs.arrays import span
-from sim.springs.each_link import TINY
-from sim.springs.line_arrays import DECAY_PARTS, DECAY_SHAPES, INVERSE_MASS, PLACE
 from sim.springs.pins import set_paths
+from sim.springs.points.arrays import span
+from sim.springs.points.each_link import TINY
+from sim.springs.points.line_arrays import DECAY_PARTS, DECAY_SHAPES, INVERSE_MASS, PLACE
 
 
 @kernel(inline=True)

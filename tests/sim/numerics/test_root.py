@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.root import narrowed
+from sim.numerics.root import narrowed
 
 
 def counted(value_at):

@@ -4,7 +4,7 @@ import functools
 import numpy as np
 import pytest
 
-from sim.springs import INTEGRATORS, Grab, PinPath, rope
+from sim.springs import INTEGRATORS, LAWS, Grab, PinPath, rope
 from sim.springs.net import Net
 from sim.springs.state import State, advance
 from tests.sim.springs.nets import patch
@@ -75,6 +75,32 @@ def test_a_net_of_many_families_converges_at_the_declared_order(name):
     counts = counts_of(name, 100)
     errors = errors_of(net, name, counts, exact(net, 0.2), 0.2)
     assert slope(counts, errors) == pytest.approx(expected(name, damped=True), abs=0.1)
+
+
+@functools.cache
+def stretched(law: str, damped: bool) -> tuple[Net, np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """A taut rope between two pins, its velocities, and the state to which they lead it in 0.1 s."""
+    net = rope(6, 1.0, 1.0, 200.0, 2.0 * damped, 0.1 * damped, law=law, end=(1.3, 0.0, 0.2))
+    v0 = np.zeros_like(net.x0)
+    v0[:, 0, 1:-1] = np.random.default_rng(3).uniform(-0.4, 0.4, (3, 4))
+    return net, v0, exact(net, 0.1, v0)
+
+
+@pytest.mark.parametrize("damped", [False, True])
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_every_method_follows_every_law_at_its_order(name, law, damped):
+    record = INTEGRATORS[name]
+    if damped and record.undamped_only:
+        pytest.skip("a method for undamped nets")
+    net, v0, truth = stretched(law, damped)
+    order, errors = expected(name, damped=damped), []
+    steps = {1: 4000, 2: 400, 4: 50}.get(order, 16)
+    for count in (steps, 2 * steps):
+        state = integrated(net, name, 0.1, count, v0)
+        errors.append(max(np.abs(state.x - truth[0]).max(), np.abs(state.v - truth[1]).max()))
+    assert errors[1] < 5e-3
+    assert errors[1] < 1e-11 or np.log2(errors[0] / errors[1]) > order - 0.5, errors
 
 
 def test_dop853_is_of_order_eight():

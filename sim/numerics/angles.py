@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-ROUNDING = 1e-9  # [rad] within which two angles are the same direction
+ROUNDING = 1e-6  # [rad] within which two angles are one direction: a turn in single precision is off by 2e-7
 
 
 def direction_of(east: float, north: float) -> float:
@@ -22,6 +22,15 @@ def within_turn(angle: ArrayLike) -> np.ndarray:
     return np.where(found > 2.0 * math.pi - ROUNDING, 0.0, found)
 
 
-def angle_from(theta: ArrayLike, direction: ArrayLike) -> np.ndarray:
-    """theta - direction brought to [-pi, pi] [rad]."""
-    return np.mod(np.subtract(theta, direction) + np.pi, 2.0 * np.pi) - np.pi
+def within_half_turn(angle: ArrayLike) -> np.ndarray:
+    """Angles [rad] brought to [-pi, pi], such as the differences of two directions."""
+    angle = np.asarray(angle)
+    return angle - 2.0 * math.pi * np.rint(angle / (2.0 * math.pi))
+
+
+def once_around(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Angles (n,) [rad] in [0, 2 pi), rising, and their indices in `angle`; of equal directions the first."""
+    turned = within_turn(angle)
+    order = np.argsort(turned, kind="stable")
+    keep = np.diff(turned[order], prepend=-math.inf) > ROUNDING
+    return turned[order][keep], order[keep]

@@ -10,7 +10,7 @@ from sim.mooring.balance import pull, what_is_left
 from sim.mooring.chains import Chains
 from sim.mooring.statics import MAX_CORRECTIONS, at_rest
 from sim.mooring.tangent import carried_coordinates, free_coordinates
-from sim.springs.line_arrays import STIFFNESS, LineArrays
+from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 from sim.validation import ConvergenceError
 from tests.sim.mooring.systems import floating_body
 
@@ -93,6 +93,32 @@ def test_a_light_line_that_floats_over_short_ends_rests(segments):
     steep = np.diff(rest.x[1][:2, 2])[0] / np.linalg.norm(np.diff(rest.x[1][:2], axis=0))
     below = 0.5 * 47.34 * (1.0 - 1.0 / segments)  # of length from the first link's middle to the top
     assert rest.tension[1][0] * steep == pytest.approx(lift * below, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("diameter", "fraction", "stiffness", "start", "end", "length", "segments"),
+    [
+        (0.02, 0.999, 1.26e7, (0.0, -0.01), (18.6, 2.0), 19.09, 80),
+        (0.1, 0.999, 2.33e8, (0.0, -25.0), (74.97, -1.0), 86.59, 20),
+        (0.039, 0.9999, 5.5e7, (0.0, -0.01), (26.44, 2.0), 27.04, 40),
+        (0.02, 0.9999, 1.63e5, (0.0, -20.0), (17.29, 0.0), 26.46, 40),
+        (0.1, 1.0001, 3.14e7, (0.0, -50.0), (94.25, 2.0), 118.4, 80),
+        (0.2, 0.5, 2.36e8, (0.0, 0.0), (14.92, 0.0), 14.92, 80),
+        (0.039, 0.97, 2.05e7, (0.0, 0.0), (505.5, 0.0195), 495.3, 80),
+    ],
+)
+def test_a_line_as_dense_as_water_rests_in_its_surface(diameter, fraction, stiffness, start, end, length, segments):
+    kind = LineType("light", diameter, fraction * 1025.0 * math.pi / 4.0 * diameter**2, stiffness)
+    points = (Point(1, "fixed", (start[0], 0.0, start[1])), Point(2, "fixed", (end[0], 0.0, end[1])))
+    rest = System((Line(1, kind, 1, 2, length, segments),), points, 100.0).at_rest()
+    links, weight = np.diff(rest.x[1], axis=0), 9.81 * kind.mass * length / segments
+    assert (np.linalg.norm(links, axis=1) <= length / segments * (1.0 + rest.tension[1] / stiffness) + 1e-6).all()
+    # Nodes under water all carry the difference of weight and lift; those above it carry the weight.
+    pull = np.diff(rest.tension[1] * links[:, 2] / np.linalg.norm(links, axis=1))
+    deep, dry = rest.x[1][1:-1, 2] < -length / segments - diameter, rest.x[1][1:-1, 2] > length / segments + diameter
+    assert pull[deep] == pytest.approx(weight * (1.0 - 1.0 / fraction), rel=1e-6, abs=1e-6 * weight)
+    assert pull[dry] == pytest.approx(weight, rel=1e-6)
+    assert np.abs(links[:, 1]).max() < 1e-9
 
 
 def test_a_stiff_line_far_from_the_origin_rests_to_round_off():

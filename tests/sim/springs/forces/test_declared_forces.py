@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from sim.springs import Net, cloth, rope, simulate
-from sim.springs.acceleration import set_acceleration
 from sim.springs.forces import OWN
 from sim.springs.forces.matrices import STIFFNESS
 from sim.springs.integrators.implicit.blocks import set_point_blocks
 from sim.springs.integrators.implicit.tangent import set_tangent
+from sim.springs.points.acceleration import set_acceleration
 from sim.springs.stability import gershgorin
 from sim.springs.state import State, energy
 

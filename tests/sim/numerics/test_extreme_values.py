@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from sim.extreme_values import LEAST_PEAKS, Peaks, expected_largest, weibull_of
+from sim.numerics.extreme_values import LEAST_PEAKS, Peaks, expected_largest, weibull_of
 
 
 @pytest.mark.parametrize("shape", [0.8, 1.0, 2.0, 3.5])

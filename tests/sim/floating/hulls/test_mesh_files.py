@@ -184,7 +184,7 @@ def test_a_mesh_of_20_km_is_told_of_millimetres(tmp_path):
     path = stl(tmp_path / "wedge.stl", 1000.0 * VERTICES, np.concatenate([DECK, SIDES]))
     assert_refused(str(path), lambda: Hull.load(path), "--hull-unit mm")
     assert_refused("unit", lambda: Hull.load(path, unit="inch"), "m, cm, mm, ft")
-    assert_refused("weld", lambda: Hull.load(path, weld=-1.0), "0 or above")
+    assert_refused("weld", lambda: Hull.load(path, weld=-1.0), "from 0 m")
     assert_refused("mirror", lambda: Hull.load(path, mirror="z"), "x, y")
     assert_refused("cap", lambda: Hull.load(path, cap="keel"), "deck")
 
@@ -249,5 +249,5 @@ def test_a_hole_with_nodes_near_its_edges_stays_open():
 
 
 def test_a_file_with_two_bottom_panels_between_its_sides_is_a_box():
-    path = Path(__file__).parent / "field" / "panels_hanging_nodes.gdf"
+    path = Path(__file__).parent.parent / "field" / "panels_hanging_nodes.gdf"
     assert Hull.load(path, cap="deck").volume == pytest.approx(80.0)

@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sim.numerics.angles import within_half_turn
 from sim.ocean.fluids.medium import Medium
 from sim.ocean.nonlinear.modes import Modes, make_modes, spectrum_of
 from sim.ocean.spectra import Conditions
 from sim.ocean.tile.sea import LENGTHS, SIZES, Sea
-from sim.turns import within_half_turn
 from sim.validation import argument_error, as_array, check_number, is_whole_number
 from sim.water import Water
 from sim.waves import Waves

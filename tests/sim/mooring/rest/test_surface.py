@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, State, System, advance, point_forces, simulate
-from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.energy import energies as energies_of
 from sim.springs.analysis.energy import power
 from sim.springs.forces.water import PIECES, wet_potential, wet_share, wet_slopes
+from sim.springs.points.acceleration import set_acceleration
 from sim.water import Water
 from sim.waves import Waves
 from tests.sim.mooring.catenary import catenary

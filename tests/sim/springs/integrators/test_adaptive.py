@@ -11,13 +11,13 @@ from scipy.integrate._ivp import dop853_coefficients
 from scipy.integrate._ivp.rk import RK45
 
 from sim.springs import INTEGRATORS, Air, cloth, rope, simulate
-from sim.springs.acceleration import set_acceleration
 from sim.springs.analysis.amplification import polynomial_of
 from sim.springs.integrators import dop853, dopri5, rkn8
 from sim.springs.integrators.embedded import stages
 from sim.springs.integrators.embedded.errors import error_of
 from sim.springs.integrators.embedded.march import first_step
 from sim.springs.integrators.embedded.stages import is_smooth_net
+from sim.springs.points.acceleration import set_acceleration
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, energy
 from tests.sim.springs.reference import integrated

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sim.jit import chosen, kernel
 from sim.springs.laws.curve import TensionCurve
-from sim.springs.line_arrays import LineArrays
+from sim.springs.points.line_arrays import LineArrays
 
 
 class RopeArrays(NamedTuple):
@@ -167,7 +167,7 @@ link_at = by_net(rope=next_link, grid=listed_link, lines=link_of_line)
 @kernel(inline=True)
 def span(x, n, a, b):
     """(x, y, z) from point a to point b, of positions or velocities x (3 n,)."""
-    n, a, b = np.uint64(n), np.uint64(a), np.uint64(b)  # unsigned, as in `sim.springs.acceleration`
+    n, a, b = np.uint64(n), np.uint64(a), np.uint64(b)  # unsigned, as in `sim.springs.points.acceleration`
     return x[b] - x[a], x[n + b] - x[n + a], x[n + n + b] - x[n + n + a]
 
 

@@ -6,8 +6,8 @@ import pytest
 
 from sim.jit import kernel
 from sim.springs import INTEGRATORS, Air, Contact, Grab, PinPath, State, advance, cloth, rope
-from sim.springs.acceleration import accelerate, make_scratch, set_acceleration
 from sim.springs.damping import damp, make_decay
+from sim.springs.points.acceleration import accelerate, make_scratch, set_acceleration
 from sim.springs.state import energy
 from tests import naive
 from tests.sim.springs.nets import KNIGHT, hairpin, patch, touching_patch

@@ -1,4 +1,4 @@
-"""Angles within a turn; cosine and sine of an angle in turns, in double and in single precision, for kernels."""
+"""Cosine and sine of an angle in turns, in double and in single precision, for kernels."""
 
 import math
 
@@ -12,12 +12,6 @@ S1, S3, S5, S7, S9 = (
     for c in (6.283185160088972, -41.34165503128634, 81.60100406453265, -76.5497820808528, 39.53670436428712)
 )
 QUARTER = np.float32(0.25)
-TURN = 2.0 * math.pi  # [rad]
-
-
-def within_half_turn(angle: np.ndarray) -> np.ndarray:
-    """Angles [rad] of the same directions from -pi to pi."""
-    return angle - TURN * np.rint(angle / TURN)
 
 
 @kernel

@@ -23,10 +23,11 @@ POINTS = np.array([[3.0, 4.0], [-20.0, 31.0], [60.0, -5.5]])
 def test_what_rides_the_surface_goes_where_its_velocity_says() -> None:
     sea, dt = tile(), 0.02
     at = sea.at(POINTS, 5.0)
-    before, after = (at.label + particles(sea, at.label, 5.0 + s)[:, :2] for s in (-dt, dt))
+    cell = sea.length / sea.size
+    before, after = (at.label + particles(sea.surface(5.0 + s), cell, at.label)[:, :2] for s in (-dt, dt))
     np.testing.assert_allclose((after - before) / (2 * dt), at.velocity[:, :2], rtol=0, atol=2e-3)
     assert np.abs(at.velocity[:, :2]).max() > 0.2
-    here = at.label + particles(sea, at.label, 5.0)[:, :2]
+    here = at.label + particles(sea.surface(5.0), cell, at.label)[:, :2]
     np.testing.assert_allclose(here, POINTS, atol=1e-3)
     # and stays on the surface: w = d eta/dt + u . grad eta
     rise = at.interface_rise + (at.velocity[:, :2] * at.slope).sum(axis=1)

@@ -1,0 +1,1 @@
+"""Numbers that everything else uses: angles modulo a turn, roots, cosine and sine of turns."""

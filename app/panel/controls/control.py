@@ -149,7 +149,7 @@ class Control:
             self.set(self.scale.value(position))
 
     def set(self, value: object) -> None:
-        """Have the settings take a value, and show what they made of it."""
+        """Have the settings take a value, and show the value that they have then."""
         self.settings.set(self.name, value)
         self.show_value()
 

@@ -7,14 +7,12 @@ texts and conditions of tasks. An instant is a snapshot, or for a sweep a scene 
 import functools
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from app.formats.formatting import with_unit
 from app.messages import PlotRow
+from app.scenes.charts import PlotAxes
 from sim.parameters import parameters_of
-
-if TYPE_CHECKING:
-    from app.scenes.contract import SceneKind
 
 
 class Quantity(NamedTuple):
@@ -29,6 +27,35 @@ class Quantity(NamedTuple):
 
 
 Quantities = Mapping[str, Quantity]
+
+
+class HasQuantities(Protocol):
+    """The parts of a `SceneKind` from which its quantities come."""
+
+    @property
+    def params(self) -> type[Any]:
+        """The record of parameters."""
+        ...
+
+    @property
+    def series(self) -> tuple[str, ...]:
+        """Names of the columns of a plot row after its time."""
+        ...
+
+    @property
+    def plots(self) -> Mapping[str, PlotAxes]:
+        """The axes of each plot, by the parameter that opens it."""
+        ...
+
+    @property
+    def quantities(self) -> Quantities:
+        """The table, empty if there is none."""
+        ...
+
+    @property
+    def instant(self) -> Callable[..., object]:
+        """The function that makes an instant of a scene, for the recorded quantities."""
+        ...
 
 
 class Measure(NamedTuple):
@@ -75,7 +102,7 @@ def written(table: Quantities, name: str, instant: Any, digits: int = 3) -> str:
     return with_unit(read(table, name, instant), table[name].unit, digits)
 
 
-def measured(kind: "SceneKind[Any, Any, Any]", scene: Any, row: PlotRow = ()) -> dict[str, Measure]:
+def measured(kind: HasQuantities, scene: Any, row: PlotRow = ()) -> dict[str, Measure]:
     """The recorded quantities of a scene, NaN for those that it does not have now.
 
     row: the newest plot row, for a scene without a table.
@@ -85,13 +112,13 @@ def measured(kind: "SceneKind[Any, Any, Any]", scene: Any, row: PlotRow = ()) ->
     return {name: Measure(read(table, name, instant), one.unit, one.meaning) for name, one in table.items()}
 
 
-def recorded_quantities(kind: "SceneKind[Any, Any, Any]") -> Quantities:
+def recorded_quantities(kind: HasQuantities) -> Quantities:
     """The quantities that a sweep of the scene records; those of its plots if it has no table."""
     table = kind.quantities or plotted_quantities(kind)
     return {name: quantity for name, quantity in table.items() if quantity.recorded}
 
 
-def plotted_quantities(kind: "SceneKind[Any, Any, Any]") -> Quantities:
+def plotted_quantities(kind: HasQuantities) -> Quantities:
     """The columns of the plots as quantities. Their instant is a plot row: column -> value."""
     taken = parameters_of(kind.params)
     found = {}

@@ -4,20 +4,76 @@ import threading
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
-from typing import TYPE_CHECKING
+from typing import Protocol
+
+import viser
 
 from app.messages import Ask, BaseParams, Checkpoint
+from app.panel.settings import SceneSettings
 from app.panel.sharing.compare import PaneWords
 from app.scenes.comparisons import check_count, headings, middle_of, shared_parameters, with_shared
 from app.scenes.setups import Setup
 from app.server.loop.shared_clock import Seat, SharedClock
 from app.server.loop.sim_loop import SimLoop
 from app.server.loop.snapshots import kept_state
-
-if TYPE_CHECKING:
-    from app.server.viewer import Viewer
+from app.server.requests import SceneRequests
 
 KEEP_TIMEOUT = 5.0  # [s] for the first lab to hand over its state, to go on from when it is alone again
+
+
+class PaneLab(Protocol):
+    """The parts of a `Viewer` that a comparison needs."""
+
+    server: viser.ViserServer
+    requests: SceneRequests
+    ended: bool
+    comparison: "ComparedLabs | None"
+
+    @property
+    def is_open(self) -> bool:
+        """True if a scene is open."""
+        ...
+
+    @property
+    def settings(self) -> SceneSettings:
+        """The settings of the scene."""
+        ...
+
+    @property
+    def loop(self) -> SimLoop:
+        """The loop of the scene."""
+        ...
+
+    def open(
+        self,
+        name: str,
+        params: BaseParams | None = None,
+        *,
+        paused: bool = False,
+        given_up: Callable[[], bool] = lambda: False,
+    ) -> bool:
+        """Show a scene. Returns False where it was given up before it was there."""
+        ...
+
+    def is_given_up(self, asked: int) -> bool:
+        """True if the lab ended, or another scene was asked for after the request `asked`."""
+        ...
+
+    def visitors(self) -> int:
+        """How many browsers are connected."""
+        ...
+
+    def call(self, action: Callable[[], None]) -> None:
+        """Call a function on viser's event loop, soon."""
+        ...
+
+    def stop_opening(self) -> None:
+        """Give up a scene that is waiting to be compiled."""
+        ...
+
+    def shut(self) -> None:
+        """End the lab."""
+        ...
 
 
 class SharedRecord:
@@ -26,19 +82,19 @@ class SharedRecord:
     What is done to a lab is done on its own event loop, so that a lab never sees half of a change.
     """
 
-    def __init__(self, labs: "Callable[[], tuple[Viewer, ...]]") -> None:
+    def __init__(self, labs: Callable[[], Sequence[PaneLab]]) -> None:
         """labs: those that are side by side now."""
         self.labs = labs
         self.writing = threading.Lock()
         self.values: dict[str, tuple[object, BaseParams]] = {}  # as set last, with the record in which it was set
-        self.seen: dict[Viewer, BaseParams] = {}  # the parameters of each lab when they were looked at last
-        self.told: set[Viewer] = set()  # labs that are showing the record just now
+        self.seen: dict[PaneLab, BaseParams] = {}  # the parameters of each lab when they were looked at last
+        self.told: set[PaneLab] = set()  # labs that are showing the record just now
 
-    def join(self, viewer: "Viewer") -> None:
+    def join(self, viewer: PaneLab) -> None:
         """A lab shows another scene: the first one brings its parameters, another one shows the record."""
         viewer.call(lambda: self.enter(viewer))
 
-    def enter(self, viewer: "Viewer") -> None:
+    def enter(self, viewer: PaneLab) -> None:
         """See `join`."""
         if not viewer.is_open:
             return
@@ -48,13 +104,13 @@ class SharedRecord:
         else:
             self.show(viewer)
 
-    def take(self, source: "Viewer", params: BaseParams) -> None:
+    def take(self, source: PaneLab, params: BaseParams) -> None:
         """Parameters of a lab have changed: write the changes of a person there, and none that it was told."""
         before, self.seen[source] = vars(self.seen.get(source, params)), params
         if source not in self.told:
             self.write(source, {name: value for name, value in vars(params).items() if before.get(name) != value})
 
-    def write(self, source: "Viewer", values: Mapping[str, object]) -> None:
+    def write(self, source: PaneLab, values: Mapping[str, object]) -> None:
         """Take values of a lab that others have in common with it, and have these show them."""
         params = source.settings.params
         for viewer in self.labs():
@@ -66,7 +122,7 @@ class SharedRecord:
             if common:
                 viewer.call(lambda viewer=viewer: self.show(viewer))
 
-    def show(self, viewer: "Viewer") -> None:
+    def show(self, viewer: PaneLab) -> None:
         """Show the record in a lab, bounded to the ranges there."""
         if not viewer.is_open:
             return
@@ -84,12 +140,12 @@ class SharedRecord:
 class ComparedLabs:
     """The labs of a comparison: the first one stays unchanged, the others end with the comparison."""
 
-    def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
+    def __init__(self, first: PaneLab, make_pane: Callable[[int], PaneLab]) -> None:
         """make_pane: makes the lab of a number from 2, with nothing open."""
         self.first, self.make_pane = first, make_pane
-        self.viewers: tuple[Viewer, ...] = (first,)
+        self.viewers: tuple[PaneLab, ...] = (first,)
         self.clock = SharedClock()
-        self.seats: dict[Viewer, Seat] = {}  # of the loops that run
+        self.seats: dict[PaneLab, Seat] = {}  # of the loops that run
         self.changing, self.ended = threading.Lock(), False  # of `seats`
         self.left: tuple[SimLoop, BaseParams, Checkpoint] | None = None  # the run of the first lab, as it was before
         self.shared = SharedRecord(lambda: self.viewers)
@@ -128,7 +184,7 @@ class ComparedLabs:
             return None
         return (loop, self.first.settings.params, state) if isinstance(state, Checkpoint) else None
 
-    def seat(self, viewer: "Viewer") -> None:
+    def seat(self, viewer: PaneLab) -> None:
         """Give the lab's loop a place at the clock, in place of that of an earlier loop of it; all begin again.
 
         What is the same in all labs is set in this one too.
@@ -143,7 +199,7 @@ class ComparedLabs:
         if self.first.is_open:
             self.shared.join(viewer)
 
-    def leave(self, viewer: "Viewer") -> None:
+    def leave(self, viewer: PaneLab) -> None:
         """The lab's loop is gone, or stands still for good: the others do not wait for it."""
         with self.changing:
             self.seats.pop(viewer, None)
@@ -188,7 +244,7 @@ class ComparedLabs:
 class Comparisons:
     """Begins and ends comparisons, one after the other, on separate threads."""
 
-    def __init__(self, first: "Viewer", make_pane: Callable[[int], "Viewer"]) -> None:
+    def __init__(self, first: PaneLab, make_pane: Callable[[int], PaneLab]) -> None:
         self.first, self.make_pane = first, make_pane
         self.lock = threading.Lock()
         self.latest: ComparedLabs | None = None  # the one that was made last, also while it is being opened

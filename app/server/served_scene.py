@@ -5,30 +5,66 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
+import viser
+
+from app.lab.course.workbook import Workbook
 from app.messages import BaseParams, Command, Halt
 from app.panel.panel import Panel
 from app.panel.recording.recorder import RecordedFrame
 from app.panel.settings import SceneSettings
+from app.panel.sharing.changes import SceneSwitches
 from app.panel.sharing.compare import ComparisonCalls
+from app.render.cameras import ClientCamera
 from app.render.markup.html import note
 from app.scenes import NAMES, view_named
-from app.scenes.ahead.compiling import describe
+from app.scenes.ahead.compiling import Compiling, describe
 from app.scenes.contract import AnyKind, AnyScene
 from app.server.loop.clock import PATIENCE
 from app.server.loop.commands import CompileGate
 from app.server.loop.sim_loop import ALONE_INTERVAL, SimLoop
 from app.server.placing import CameraPlacing
+from app.server.preparation import Preparation
 from app.server.replay_file import replay_html
+from app.server.web.transport import Transport
 
 if TYPE_CHECKING:
-    from app.server.viewer import Viewer
+    from app.lab.student.session import Session
 
 PLAYED_INTERVAL = 1 / 30  # [s] between two frames of a recording that is played
 HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
 ALONE_HEARTBEAT = 1.0  # [s] the same while nobody looks
 MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for its last solve, and the end of the lab for a picture
+
+
+class SceneHost(Protocol):
+    """The parts of a `Viewer` that are common to all its scenes."""
+
+    server: viser.ViserServer
+    transport: Transport
+    compiling: Compiling
+    preparation: Preparation
+    changes: SceneSwitches
+    workbook: Workbook | None
+    session: "Session | None"
+
+    @property
+    def beside(self) -> ComparisonCalls | None:
+        """Shows other set-ups beside this lab; None where this one is beside another."""
+        ...
+
+    def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
+        """Ask for a scene."""
+        ...
+
+    def audience(self) -> int:
+        """How many browsers look."""
+        ...
+
+    def share_parameters(self, params: BaseParams) -> None:
+        """Share the common parameters with the labs beside this one."""
+        ...
 
 
 class ServedScene:
@@ -40,7 +76,7 @@ class ServedScene:
 
     def __init__(
         self,
-        viewer: "Viewer",
+        viewer: SceneHost,
         kind: AnyKind,
         wanted: BaseParams,
         scene: AnyScene,
@@ -63,11 +99,10 @@ class ServedScene:
         self.view = view_named(kind.name)(self.server, self.commands.put)
         self.cameras = CameraPlacing(self.server, self.view, params)
         self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want)
-        labs = viewer.comparing
         self.panel = Panel(
             self.server, self.view, self.settings, scenes=NAMES, workbook=viewer.workbook, session=viewer.session,
             wake=lambda: self.loop.run.snapshots.fresh.set(), make_replay=replay_html, changes=viewer.changes,
-            beside=None if viewer.pane_of else ComparisonCalls(labs.want, labs.end, viewer.pane_words),
+            beside=viewer.beside,
         )  # fmt: skip
         self.settings.watchers.append(lambda: viewer.share_parameters(self.settings.params))
         self.loop = SimLoop(self.scene, self.commands, viewer.audience, paused=paused)

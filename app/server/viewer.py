@@ -19,7 +19,7 @@ from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
 from app.panel.settings import SceneSettings
 from app.panel.sharing.changes import SceneSwitches
-from app.panel.sharing.compare import PaneWords
+from app.panel.sharing.compare import ComparisonCalls, PaneWords
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.handles.viser_inside import send_at_once
 from app.render.injection import disable_shaders, reset_page
@@ -274,6 +274,11 @@ class Viewer:
     def make_pane(self, number: int) -> "Viewer":
         """A lab beside this one, with nothing open. number: of its pane, from 2."""
         return Viewer("", 0, plain=self.plain, say=self.preparation.say, beside=(self, number))
+
+    @property
+    def beside(self) -> ComparisonCalls | None:
+        """Shows other set-ups beside this lab; None where this one is beside another."""
+        return None if self.pane_of else ComparisonCalls(self.comparing.want, self.comparing.end, self.pane_words)
 
     def pane_words(self) -> tuple[PaneWords, ...]:
         """Titles of the labs that are side by side."""

@@ -47,23 +47,26 @@ def for_types_only(node: ast.AST) -> bool:
     return isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
 
 
-def import_nodes(node: ast.AST) -> list[ast.Import | ast.ImportFrom]:
-    """Every import below a node, anywhere in it but where it is for types only."""
+def import_nodes(node: ast.AST, *, types: bool) -> list[ast.Import | ast.ImportFrom]:
+    """Every import below a node, anywhere in it; with `types` also where it is for types only."""
     found = []
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.Import | ast.ImportFrom):
             found.append(child)
-        elif not for_types_only(child):
-            found.extend(import_nodes(child))
+        elif types or not for_types_only(child):
+            found.extend(import_nodes(child, types=types))
     return found
 
 
 @functools.cache
-def imports(path: Path) -> frozenset[str]:
-    """Dotted names of every module that a source imports when it runs; relative ones made absolute."""
+def imports(path: Path, *, types: bool = False) -> frozenset[str]:
+    """Dotted names of every module that a source imports when it runs, and with `types` of those for types only.
+
+    Relative ones are made absolute.
+    """
     package = path.relative_to(ROOT).with_suffix("").parts[:-1]
     found = set()
-    for node in import_nodes(ast.parse(path.read_text("utf-8"))):
+    for node in import_nodes(ast.parse(path.read_text("utf-8")), types=types):
         if isinstance(node, ast.Import):
             found.update(alias.name for alias in node.names)
         else:
@@ -155,12 +158,17 @@ def test_springs_ocean_and_particles_do_not_know_each_other():
     assert not offences(below("sim/floating"), "sim.springs", "sim.particles")
 
 
-@pytest.mark.parametrize("top", ["sim", "app", "benchmarks"])
-def test_there_is_no_circle_of_imports(top: str):
+@pytest.mark.parametrize(("top", "types"), [("sim", False), ("app", True), ("benchmarks", True)])
+def test_there_is_no_circle_of_imports(top: str, types: bool):
+    """types: those for types only are counted, too."""
     modules = {module_of(path): path for path in below(top)}
     graph = {
         # A package is run before its modules are, so that what they import of it by name is not counted.
-        name: {other for other in imports(path) & set(modules) if not name.startswith(other + ".") and other != name}
+        name: {
+            other
+            for other in imports(path, types=types) & set(modules)
+            if not name.startswith(other + ".") and other != name
+        }
         for name, path in modules.items()
     }
     try:

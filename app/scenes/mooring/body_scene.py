@@ -146,4 +146,8 @@ class MooringScene(LineScene):
 
     def static_inputs(self, far: float = 0.0) -> StaticInputs:
         """Everything that the restoring curve depends on. far: [m] offset to which it goes at least."""
-        return StaticInputs.of(self, far)
+        system, (x, y) = self.system, self.wave_direction.tolist()
+        return StaticInputs(
+            self.attached.places, system.lines, vector_of(self.excursion.rest), (x, y), self.params.length,
+            self.params.reach, far, system.depth, system.gravity, system.density,
+        )  # fmt: skip

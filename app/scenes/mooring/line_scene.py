@@ -289,7 +289,16 @@ class LineScene(abc.ABC):
         """The static restoring curve, with the force of the lines now."""
         if not self.params.plot_restoring:
             return None
-        return {"plot_restoring": self.restoring.chart(self)}
+        wave, excursion = self.wave_direction, self.excursion
+        now = float((self.body_place() - excursion.rest)[:2] @ wave)
+        pull = -float(self.force_of_lines() @ wave)
+        return {"plot_restoring": self.restoring.chart(self.static_inputs, excursion.farthest, now, pull)}
+
+    @property
+    def wave_direction(self) -> NDArray[np.float64]:
+        """Unit vector (2,) along the waves."""
+        bearing = math.radians(self.params.direction)
+        return np.array([math.cos(bearing), math.sin(bearing)])
 
     def keep(self) -> dict[str, object]:
         """Checkpoint: everything that changes."""

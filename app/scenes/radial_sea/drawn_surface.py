@@ -3,26 +3,27 @@
 import dataclasses
 import math
 import time
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.scenes.packed_surface import SentSurface
+from app.scenes.radial_sea.bodies import FloatingBodies
 from app.scenes.radial_sea.cutaway import Cutaway, cutaway_at, outline
 from app.scenes.radial_sea.frame import SurfaceReading
-from app.scenes.radial_sea.parameters import conditions_of, spectrum_of
+from app.scenes.radial_sea.parameters import RadialSeaParams, conditions_of, spectrum_of
 from app.scenes.radial_sea.radiated_waves import LENGTH as RADIATED_WAVES_LENGTH
+from app.scenes.radial_sea.radiated_waves import RadiatedWaves
 from app.scenes.radial_sea.wave_choice import WaveChoice
 from sim.ocean import Sea
 from sim.ocean.any_sea import AnySea, RadialSurface
+from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.radial.radial import CLEAN, RadialSea, lost
+from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.statistics.foam import whitecaps
 from sim.ocean.statistics.statistics import energy_by_wavenumber, expected
 from sim.waves import Waves
-
-if TYPE_CHECKING:
-    from app.scenes.radial_sea.scene import RadialSeaScene
 
 NEGLIGIBLE_ENERGY = 1e-4  # of the largest of all parts of the spectrum: a part with less is left out
 COMPARE_INTERVAL = 2.0  # [s] of wall time between two timings of the other surface
@@ -52,6 +53,35 @@ class Foam:
         return np.clip((self.threshold - jacobian) / np.float32(FOAM_WIDTH) + 0.5, 0.0, 1.0).astype(np.float32)
 
 
+class SeaNow(Protocol):
+    """The parts of the scene of which the surface is drawn."""
+
+    params: RadialSeaParams
+    time: float  # [s]
+    camera: tuple[float, float]  # x, y [m]
+    grid: RadialGrid
+    column: FluidColumn
+    wave_choice: WaveChoice
+    sum: RadialSea
+    tile: Sea | None
+    bodies: FloatingBodies
+    radiated_waves: RadiatedWaves
+    foam: Foam
+
+    @property
+    def sea(self) -> AnySea:
+        """The surface in force."""
+        ...
+
+    def tile_now(self) -> Sea:
+        """The square sea, made where it is not there."""
+        ...
+
+    def slick_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Thickness (n,) [m] of the slick at points (n, 2) [m]."""
+        ...
+
+
 class DrawnSurface:
     """Surface, foam and cutaway of the latest frame."""
 
@@ -73,7 +103,7 @@ class DrawnSurface:
         self.costs: dict[str, float] = {}  # surface -> [s] a frame, a running mean
         self.compared_at = -math.inf  # [s] of wall time
 
-    def update(self, scene: "RadialSeaScene") -> None:
+    def update(self, scene: SeaNow) -> None:
         """Compute surface, foam and cutaway of the scene as it is now, unless they are of it."""
         p, grid = scene.params, scene.grid
         key = (scene.time, p, scene.camera)
@@ -95,7 +125,7 @@ class DrawnSurface:
         self.cutaway = make_cutaway(scene) if p.cutaway else None
         self.drawn = key
 
-    def foam_share(self, scene: "RadialSeaScene") -> float:
+    def foam_share(self, scene: SeaNow) -> float:
         """Share of the sea that is foam. Oil reduces it in proportion to the mean square slope that it leaves."""
         clean = self.clean_waves(scene.sum)[1]
         remaining = scene.sum.mean_square_slope / clean if clean > 0.0 else 0.0
@@ -109,9 +139,7 @@ class DrawnSurface:
             self.known_clean = waves, numbers
         return self.known_clean[1]
 
-    def timed_surface(
-        self, name: str, sea: AnySea, scene: "RadialSeaScene", centre: tuple[float, float]
-    ) -> RadialSurface:
+    def timed_surface(self, name: str, sea: AnySea, scene: SeaNow, centre: tuple[float, float]) -> RadialSurface:
         """Surface of a sea on the scene's grid about a centre [m]; its cost is recorded under `name`."""
         start = time.perf_counter()
         surface = sea.on(scene.grid, scene.time, centre)
@@ -119,7 +147,7 @@ class DrawnSurface:
         self.costs[name] = COST_MEMORY * self.costs.get(name, taken) + (1.0 - COST_MEMORY) * taken
         return surface
 
-    def compare(self, scene: "RadialSeaScene", centre: tuple[float, float]) -> None:
+    def compare(self, scene: SeaNow, centre: tuple[float, float]) -> None:
         """Time the surface that is not drawn, every few seconds."""
         wall = time.monotonic()
         if wall - self.compared_at < COMPARE_INTERVAL:
@@ -130,7 +158,7 @@ class DrawnSurface:
         else:
             self.timed_surface("sum", scene.sum, scene, centre)
 
-    def compared(self, scene: "RadialSeaScene") -> dict[str, SurfaceReading]:
+    def compared(self, scene: SeaNow) -> dict[str, SurfaceReading]:
         """The radial sum and the square sea side by side, as far as they were timed, each as expected of its waves."""
         found, s, grid, tile = {}, scene.sum, scene.grid, scene.tile
         whole = self.spectrum_height(scene.wave_choice, s) if self.costs else 0.0
@@ -174,7 +202,7 @@ class DrawnSurface:
         return self.decayed_height[1]
 
 
-def tile_of(scene: "RadialSeaScene") -> Sea:
+def tile_of(scene: SeaNow) -> Sea:
     """The square sea under the same wind, on the same fluids."""
     p, column = scene.params, scene.column
     conditions = conditions_of(p)
@@ -191,7 +219,7 @@ def tile_of(scene: "RadialSeaScene") -> Sea:
     return sea
 
 
-def make_cutaway(scene: "RadialSeaScene") -> Cutaway:
+def make_cutaway(scene: SeaNow) -> Cutaway:
     """The sea at the walls of a cutaway beside the first body, as drawn there."""
     bodies, size = scene.bodies, scene.params.size
     x, y = bodies.fleet.position[0, :2].tolist() if bodies.count else (0.0, 0.0)

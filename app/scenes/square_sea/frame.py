@@ -1,20 +1,17 @@
 """Frames and readings of the square sea for its view and the panel, immutable."""
 
 import functools
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector
 from app.scenes.packed_surface import SentSurface, pack_surface, unpack_surface
-from app.scenes.square_sea.parameters import SquareSeaParams, acting
+from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.rainfall import RainFrame, RainReadings
 from app.scenes.square_sea.statistics import Report
 from app.scenes.square_sea.tile_mesh import Highest
-
-if TYPE_CHECKING:
-    from app.scenes.square_sea.scene import SquareSeaScene
 
 
 class SeaFrame(NamedTuple):
@@ -75,18 +72,3 @@ class SeaReadings(NamedTuple):
     viscous_area: float  # [m2] sum of viscosity times time, since the start
     rain: RainReadings | None
     report: Report | None
-
-
-def readings_of(scene: "SquareSeaScene") -> SeaReadings:
-    """The numbers for the panel at the time of the last frame."""
-    p = scene.params
-    return SeaReadings(
-        foam_cover=scene.foam.cover,
-        expected_foam_cover=scene.expected_foam_cover(scene.time),
-        slope_left=scene.waves.slope_left,
-        foam_limit=scene.foam.limit.value,
-        is_choppy=scene.marching is not None or scene.sea.choppiness > 0.0,
-        viscous_area=scene.change.viscous_area_at(scene.time, acting(p).viscosity),
-        rain=None if scene.rainfall is None else scene.rainfall.readings(),
-        report=scene.statistics.report if p.statistics else None,
-    )

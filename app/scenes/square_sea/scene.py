@@ -16,7 +16,7 @@ from app.scenes.contract import Pieces
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
 from app.scenes.square_sea.foam import MeshFoam, WavePace
-from app.scenes.square_sea.frame import SeaFrame, SeaReadings, readings_of
+from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import (
     DRAUPNER,
     SquareSeaParams,
@@ -363,8 +363,17 @@ class SquareSeaScene:
         return self.plot_rows.take()
 
     def readings(self) -> SeaReadings:
-        """Numbers for the panel."""
-        return readings_of(self)
+        """Numbers for the panel at the time of the last frame."""
+        return SeaReadings(
+            foam_cover=self.foam.cover,
+            expected_foam_cover=self.expected_foam_cover(self.time),
+            slope_left=self.waves.slope_left,
+            foam_limit=self.foam.limit.value,
+            is_choppy=self.marching is not None or self.sea.choppiness > 0.0,
+            viscous_area=self.change.viscous_area_at(self.time, acting(self.params).viscosity),
+            rain=None if self.rainfall is None else self.rainfall.readings(),
+            report=self.statistics.report if self.params.statistics else None,
+        )
 
     def curves(self) -> dict[str, tuple[NDArray[np.floating], ...]] | None:
         """The columns of `CURVES`, where it is open."""

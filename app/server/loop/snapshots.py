@@ -3,18 +3,27 @@
 import collections
 import threading
 import traceback
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
-from app.messages import BaseParams, Checkpoint, PlotRow, RunLine, RunRow, Snapshot, Status, where_not_finite
+from app.messages import (
+    BaseParams,
+    Checkpoint,
+    PlotRow,
+    RunIdentity,
+    RunLine,
+    RunRow,
+    Snapshot,
+    Status,
+    where_not_finite,
+)
 from app.scenes.checkpoints import arrays_in
-from app.scenes.contract import AnySnapshot
+from app.scenes.contract import AnyScene, AnySnapshot
+from app.server.loop.clock import FixedStep, TickClock
 from app.server.loop.commands import NOTHING, STEPS, Activity
+from app.server.loop.replay import Replay
 from sim.interruption import InterruptionError
 from sim.validation import DivergenceError
-
-if TYPE_CHECKING:
-    from app.server.loop.run import SceneRun
 
 MAX_TIME_WITHOUT_FRAME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
 KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
@@ -24,10 +33,31 @@ RESTARTED_SHOWN = 8.0  # [s] of wall time for which the panel says that a run wa
 MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
 
 
+class ShownRun(Protocol):
+    """The parts of a `SceneRun` that its snapshots show."""
+
+    scene: AnyScene
+    identity: RunIdentity
+    audience: Callable[[], int]
+    clock: TickClock
+    pacer: FixedStep
+    counts: collections.Counter[str]
+    activity: Activity
+    running: bool
+    halted: str
+    unmade: bool
+    unfinished: Callable[[], None] | None
+    replay: Replay | None
+
+    def halt(self, reason: str) -> None:
+        """Pause, and keep the reason for the panel."""
+        ...
+
+
 class Snapshots:
     """Makes and publishes the snapshots of a run, on its thread."""
 
-    def __init__(self, run: "SceneRun") -> None:
+    def __init__(self, run: ShownRun) -> None:
         self.run = run
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
         self.restarted_until = 0.0  # [s] of the ticks, while the panel says that an undo could only begin a run again
@@ -176,7 +206,7 @@ class Snapshots:
         self.restarted_until = self.run.clock.wall + RESTARTED_SHOWN
 
 
-def kept_state(run: "SceneRun") -> Checkpoint:
+def kept_state(run: ShownRun) -> Checkpoint:
     """The state of a run, to go on from."""
     value = run.scene.keep()
     return Checkpoint(value, arrays_in(value), run.identity.number)

@@ -84,9 +84,8 @@ class FileScene(LineScene):
     def arranged(self) -> System:
         """The file's system in the waves and the current of the parameters."""
         p = self.params
-        bearing = math.radians(p.direction)
-        current = (p.current * math.cos(bearing), p.current * math.sin(bearing), 0.0)
-        return dataclasses.replace(self.file.system, waves=self.sea, current=current)
+        x, y = (p.current * self.wave_direction).tolist()
+        return dataclasses.replace(self.file.system, waves=self.sea, current=(x, y, 0.0))
 
     def change_forces(self, params: MooringParams) -> None:
         """Take parameters; the motion goes on."""
@@ -160,8 +159,8 @@ class FileScene(LineScene):
 
     def static_inputs(self, far: float = 0.0) -> FileInputs:
         """Everything that the restoring curve depends on."""
-        bearing = math.radians(self.params.direction)
-        return FileInputs(self.params.moordyn_file, (math.cos(bearing), math.sin(bearing)), far)
+        x, y = self.wave_direction.tolist()
+        return FileInputs(self.params.moordyn_file, (x, y), far)
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""

@@ -1,20 +1,17 @@
 """The static restoring curve: the force of all lines over the offset along the waves, and the force now."""
 
 import math
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.messages import ChartLine, Vector, vector_of
+from app.messages import ChartLine, Vector
 from app.scenes.charts import PALETTE, Chart
 from app.scenes.mooring.arrangement import Places
 from sim.interruption import raise_if_stopped
 from sim.mooring import Line, Point, System, at_rest
-
-if TYPE_CHECKING:
-    from app.scenes.mooring.body_scene import MooringScene
-    from app.scenes.mooring.line_scene import LineScene
 
 SPANS = 32  # places at which a line's statics are solved
 POINTS = 41  # of the drawn curve
@@ -46,15 +43,6 @@ class StaticInputs(NamedTuple):
     gravity: float  # [m/s2]
     density: float  # [kg/m3]
 
-    @classmethod
-    def of(cls, scene: "MooringScene", far: float = 0.0) -> "StaticInputs":
-        """The inputs of a scene as it is arranged now."""
-        system, (x, y) = scene.system, direction_of(scene).tolist()
-        return cls(
-            scene.attached.places, system.lines, vector_of(scene.excursion.rest), (x, y), scene.params.length,
-            scene.params.reach, far, system.depth, system.gravity, system.density,
-        )  # fmt: skip
-
     def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Offsets [m] along the waves, and the force [N] against each."""
         return static_curve(self)
@@ -67,30 +55,24 @@ class RestoringCurve:
         self.made_of: object = None
         self.curve: tuple[NDArray[np.float64], NDArray[np.float64]] = (np.zeros(0), np.zeros(0))  # [m], [N]
 
-    def chart(self, scene: "LineScene") -> Chart:
-        """The chart; the curve is found again where anything that it depends on is another."""
+    def chart(self, inputs: Callable[[float], CurveInputs], farthest: float, now: float, pull: float) -> Chart:
+        """The chart; the curve is found again where anything that it depends on is another.
+
+        inputs: for a curve that goes to an offset [m] at least. farthest: offset [m] so far. now, pull: offset along
+        the waves [m], and the force of the lines against it [N].
+        """
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
-        far = 2.0 ** math.ceil(math.log2(max(scene.excursion.farthest, 1e-3)))
-        key = scene.static_inputs(far)
+        key = inputs(2.0 ** math.ceil(math.log2(max(farthest, 1e-3))))
         if key != self.made_of:
             self.curve = key.curve()
             self.made_of = key
         offset, force = self.curve
-        wave = direction_of(scene)
-        now = float((scene.body_place() - scene.excursion.rest)[:2] @ wave)
-        pull = -float(scene.force_of_lines() @ wave)
         x = np.append(offset, now)
         static = np.append(force, np.interp(now, offset, force, math.nan, math.nan))
         mark = np.append(np.full(len(offset), math.nan), pull)
         order = np.argsort(x, kind="stable")
         columns = x[order], 1e-3 * static[order], 1e-3 * mark[order]
         return Chart("Offset along the waves [m]", (STATIC_LINE, NOW_LINE), columns)
-
-
-def direction_of(scene: "LineScene") -> NDArray[np.float64]:
-    """Unit vector (2,) along the waves."""
-    bearing = math.radians(scene.params.direction)
-    return np.array([math.cos(bearing), math.sin(bearing)])
 
 
 def static_curve(inputs: StaticInputs) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

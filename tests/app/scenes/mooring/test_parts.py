@@ -19,7 +19,7 @@ from app.scenes.mooring.frame import EndStatistics
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.readings.excursion import Excursion
 from app.scenes.mooring.readings.report import tension_table
-from app.scenes.mooring.readings.restoring import StaticInputs, level_tension, static_curve
+from app.scenes.mooring.readings.restoring import level_tension, static_curve
 from app.scenes.mooring.scene import needs
 from sim.mooring.statics import at_rest
 
@@ -52,7 +52,7 @@ def test_the_ends_of_the_floats_begin_on_the_straight_line_from_anchor_to_fairle
 
 
 def test_only_lines_of_one_type_and_rise_share_their_statics(scene):
-    inputs = StaticInputs.of(scene)
+    inputs = scene.static_inputs()
     deep = tuple((x, y, z - 2.0 * i) for i, (x, y, z) in enumerate(inputs.places.anchors))
     inputs = inputs._replace(places=inputs.places._replace(anchors=deep), depth=inputs.depth + 2.0)
     offset, force = static_curve(inputs)

@@ -15,7 +15,7 @@ from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
 from tests.browser.conftest import NO_NOTES, new_page
-from tests.browser.test_water import wait
+from tests.browser.water.test_water import wait
 
 QUALITIES = ("low", "medium", "high")
 LATER = 30.0  # [s]

@@ -182,12 +182,13 @@ def test_a_cloth_that_falls_freely_is_solved_in_two_corrections():
 
 
 def test_the_midpoint_method_s_account_closes_on_a_damped_cloth_that_buckles():
-    """Midpoints that are not solved feed the motion: the account then misses more than the motion's energy."""
+    """Though its steps do not settle: what they leave would feed the motion, but is mended."""
     net = dataclasses.replace(pleats(12, 1e4, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
     run = simulate(net, 0.5, 31, 1 / 60, "implicit_midpoint", with_account=True)
     total = run.energy.total + run.energy.dissipated
-    assert run.unsettled == 0
-    assert np.abs(total - total[0]).max() < 0.02 * run.energy.kinetic.max()
+    assert run.unsettled > 0
+    assert run.energy.dissipated[-1] > 10.0
+    assert np.abs(total - total[0]).max() < 1e-9 * run.energy.kinetic.max()
 
 
 def test_steps_that_were_taken_unsettled_are_counted_however_they_are_shared_out():

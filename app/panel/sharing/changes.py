@@ -1,7 +1,7 @@
 """A line on the last link or file of one browser that changed a shared lab, for all browsers, with an undo.
 
-The last change wins. `SceneSwitches` outlives the panels, as a link may open another scene; what it holds is replaced as a
-whole, on viser's event loop and on the viewer's thread.
+The last change wins. `SceneSwitches` outlives the panels, as a link may open another scene; its entry is
+replaced as a whole, on viser's event loop and on the viewer's thread.
 """
 
 import time

@@ -54,8 +54,6 @@ SUMMATIONS = {
     "stores": Summation(
         "elastic = gravity = contact = 0.0", "{stores} += {call}", "return elastic, gravity, contact", "0.0"
     ),
-    "count": Summation("total = 0", "total += {call}", "return total", "0"),
-    "placed": Summation("o = 0", "{call}; o += {size}", "return None", "None"),
     "two sums": Summation(
         "first = second = 0.0", "one, other = {call}; first += one; second += other", "return first, second", "0.0, 0.0"
     ),
@@ -77,22 +75,19 @@ def each(
     result: a key of SUMMATIONS. turns: in the reverse order if the parameter `reverse` is True. options: of `kernel`.
     """
     sums = SUMMATIONS[result]
-    given = f"{parameters}, o" if result == "placed" else parameters
 
     def call(force: Force) -> str:
         own = f"p.forces.{force.name}, " if force.numbers else ""
         acts = f"{force.name}_is_there(p.forces.{force.name})" if force.numbers else force.acts
-        size = f"{force.name}_coupled_size({own}p)"
-        done = sums.call.format(call=f"{force.name}_{facet}({own}{given})", size=size, stores=force.stores)
+        done = sums.call.format(call=f"{force.name}_{facet}({own}{parameters})", stores=force.stores)
         return done if acts == "True" else f"if {acts}: {done}"
 
     def kernels(force: Force, net: type) -> dict[str, Any]:
         """Kernels by their names in `call`; of a force with numbers, the choice between it and nothing."""
-        found = {name: force.facet(name, net) for name in {facet, "coupled_size"} - {"acts"}}
+        found = {} if facet == "acts" else {facet: force.facet(facet, net)}
         if force.numbers:
             for name, one in found.items():
-                all_given, nothing = (given, sums.nothing) if name == facet else ("p", "0")
-                source = f"def no_{name}(own, {all_given}):\n    return {nothing}"
+                source = f"def no_{name}(own, {parameters}):\n    return {sums.nothing}"
                 absent = generated(source, {}, __name__, inline=True)
                 found[name] = chosen({force.numbers: one or absent, Absent: absent})
             found["is_there"] = chosen({force.numbers: there, Absent: missing})

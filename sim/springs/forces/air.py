@@ -164,21 +164,14 @@ wide_size = kernel(lambda x, p: x.shape[0] if p.has_air else 0, inline=True)
 air_scratch_size = by_net(rope=no_size, grid=wide_size, lines=no_size)
 
 
-@kernel(inline=True)
-def coupled_size(p):
-    return 6 * p.rows * p.cols
-
-
 @kernel(allocates=False)
-def set_coupled(x, v, g, p, coupled, o):
-    """Air: g times the symmetric part of the derivative of a cell's force by its velocity, with n fixed.
+def blocks(x, v, t, g, p, points):
+    """g times the symmetric part of the derivative of each cell's force by its velocity, with n fixed, at its corners.
 
-    rho/2 A [C_D |s| (I + n n^T) + C_L |u| (1 - s^2/u^2)^2 n n^T], s = u . n, at the cell's first particle. What turns
-    the force is left out: it is not symmetric.
+    rho/2 A [C_D |s| (I + n n^T) + C_L |u| (1 - s^2/u^2)^2 n n^T], s = u . n, a quarter at each corner: where all four
+    move alike they resist as much as the cell does, else more. What turns the force is left out: it is not symmetric.
     """
     n = p.rows * p.cols
-    for j in range(6 * n):
-        coupled[o + j] = 0.0
     for i in range(p.rows - 1):
         for j in range(p.cols - 1):
             a = i * p.cols + j
@@ -190,48 +183,13 @@ def set_coupled(x, v, g, p, coupled, o):
             area = math.sqrt(ax * ax + ay * ay + az * az + STILL)
             speed = math.sqrt(ux * ux + uy * uy + uz * uz + STILL)
             head_on = abs(ux * ax + uy * ay + uz * az) / (area * speed)
-            across = g * p.air_drag * area * speed * head_on
-            along = 2.0 * across + g * p.air_lift * area * speed * (1.0 - head_on * head_on) ** 2
-            add_block(coupled, o + a, n, along, across, ax / area, ay / area, az / area)
-
-
-@kernel(allocates=False)
-def add_coupled(p, coupled, points, o):
-    """A sixteenth of each cell's block onto those of its corners.
-
-    A corner moves the cell by a quarter of its own motion, and takes a quarter of the cell's force.
-    """
-    n = p.rows * p.cols
-    for i in range(p.rows - 1):
-        for j in range(p.cols - 1):
-            a = i * p.cols + j
-            for m in (a, a + 1, a + p.cols, a + p.cols + 1):
-                for e in range(6):
-                    points[e * n + m] += coupled[o + e * n + a] / 16.0
-
-
-@kernel(allocates=False)
-def multiply_coupled(p, coupled, u, q, o):
-    """q += the air's part of the matrix times u."""
-    n = p.rows * p.cols
-    for i in range(p.rows - 1):
-        for j in range(p.cols - 1):
-            a = i * p.cols + j
-            c = a + p.cols
-            k = o + a
-            x = u[a] + u[a + 1] + u[c] + u[c + 1]
-            y = u[n + a] + u[n + a + 1] + u[n + c] + u[n + c + 1]
-            z = u[2 * n + a] + u[2 * n + a + 1] + u[2 * n + c] + u[2 * n + c + 1]
-            fx = (coupled[k] * x + coupled[k + n] * y + coupled[k + 2 * n] * z) / 16.0
-            fy = (coupled[k + n] * x + coupled[k + 3 * n] * y + coupled[k + 4 * n] * z) / 16.0
-            fz = (coupled[k + 2 * n] * x + coupled[k + 4 * n] * y + coupled[k + 5 * n] * z) / 16.0
+            across = g * p.air_drag * area * speed * head_on / 4.0
+            along = 2.0 * across + g * p.air_lift * area * speed * (1.0 - head_on * head_on) ** 2 / 4.0
             for m in (a, a + 1, c, c + 1):
-                q[m] += fx
-                q[n + m] += fy
-                q[2 * n + m] += fz
+                add_block(points, m, n, along, across, ax / area, ay / area, az / area)
 
 
 FORCE = Force(
     "air", rank=20, nets=WIDE_NETS, acts="p.has_air", accelerate=accelerate, power=power, is_smooth=True,
-    coupled_size=coupled_size, set_coupled=set_coupled, add_coupled=add_coupled, multiply_coupled=multiply_coupled,
+    blocks=blocks,
 )  # fmt: skip

@@ -49,12 +49,6 @@ class Force(NamedTuple):
     pins_power: Any = None  # (x, v, p) -> what moving pins put in through its damping [W]
     tangent: Any = None  # (x, u, t, p, part, longest, out): adds a matrix times u, see `sim.springs.forces.matrices`
     blocks: Any = None  # (x, v, t, g, p, points): adds g D + g^2 K of each point, see `sim.springs.forces.matrices`
-    # A force between unlinked points stores its blocks in `coupled`, this many numbers from index o on.
-    # They are set, added to the points' blocks, and added times u to q.
-    coupled_size: Any = None  # (p)
-    set_coupled: Any = None  # (x, v, g, p, coupled, o)
-    add_coupled: Any = None  # (p, coupled, points, o)
-    multiply_coupled: Any = None  # (p, coupled, u, q, o)
     # Of a force with numbers, a function of these: most stiffness [N/m] and damping [N s/m] at any point.
     bound: Callable[[Any], tuple[float, float]] = no_bound
     stores: str = "gravity"  # field of `Energy` that its energy counts in

@@ -261,56 +261,24 @@ def tangent(x, u, t, p, part, longest, out):
         out[2 * n + j] += fz
 
 
-@kernel(inline=True)
-def coupled_size(p):
-    return 3 * (p.pairs.shape[0] - 1)
-
-
 @kernel(allocates=False)
-def set_coupled(x, v, g, p, coupled, o):
-    """Contact with itself: q of each pair's block q q^T = (g b + g^2 k) n n^T, 0 of those that do not push."""
+def blocks(x, v, t, g, p, points):
+    """(g b + g^2 k) n n^T of each pair that pushes, twice at each of two free particles: they may move apart."""
     n = p.rows * p.cols
-    stiff = math.sqrt(g * p.contact_b + g * g * p.contact_k)
+    stiffness = g * p.contact_b + g * g * p.contact_k
     for s in range(refresh_pairs(x, p)):
         i, j = p.pairs[s, 0], p.pairs[s, 1]
         dx, dy, dz = x[j] - x[i], x[n + j] - x[n + i], x[2 * n + j] - x[2 * n + i]
         r = math.sqrt(dx * dx + dy * dy + dz * dz + TINY)
         opening = ((v[j] - v[i]) * dx + (v[n + j] - v[n + i]) * dy + (v[2 * n + j] - v[2 * n + i]) * dz) / r
-        pushes = r < p.thickness and p.contact_k * (p.thickness - r) > p.contact_b * opening
-        q = stiff / r if pushes else 0.0
-        k = o + 3 * s
-        coupled[k], coupled[k + 1], coupled[k + 2] = q * dx, q * dy, q * dz
-
-
-@kernel(allocates=False)
-def add_coupled(p, coupled, points, o):
-    """Each pair's block onto the blocks of both its particles."""
-    n = p.rows * p.cols
-    for s in range(p.pairs[p.pairs.shape[0] - 1, 0]):
-        k = o + 3 * s
-        for e in range(2):
-            add_block(points, p.pairs[s, e], n, 1.0, 0.0, coupled[k], coupled[k + 1], coupled[k + 2])
-
-
-@kernel(allocates=False)
-def multiply_coupled(p, coupled, u, q, o):
-    """q += the pairs' part of the matrix times u."""
-    n = p.rows * p.cols
-    for s in range(p.pairs[p.pairs.shape[0] - 1, 0]):
-        i, j = p.pairs[s, 0], p.pairs[s, 1]
-        k = o + 3 * s
-        qx, qy, qz = coupled[k], coupled[k + 1], coupled[k + 2]
-        closing = qx * (u[i] - u[j]) + qy * (u[n + i] - u[n + j]) + qz * (u[2 * n + i] - u[2 * n + j])
-        q[i] += closing * qx
-        q[n + i] += closing * qy
-        q[2 * n + i] += closing * qz
-        q[j] -= closing * qx
-        q[n + j] -= closing * qy
-        q[2 * n + j] -= closing * qz
+        if r < p.thickness and p.contact_k * (p.thickness - r) > p.contact_b * opening:
+            along = stiffness if p.inverse_masses[i] == 0.0 or p.inverse_masses[j] == 0.0 else 2.0 * stiffness
+            add_block(points, i, n, along, 0.0, dx / r, dy / r, dz / r)
+            add_block(points, j, n, along, 0.0, dx / r, dy / r, dz / r)
 
 
 FORCE = Force(
     "self_contact", rank=30, nets=WIDE_NETS, acts="p.thickness > 0.0", accelerate=accelerate, damp=damp,
     energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="contact",
-    coupled_size=coupled_size, set_coupled=set_coupled, add_coupled=add_coupled, multiply_coupled=multiply_coupled,
+    blocks=blocks,
 )  # fmt: skip

@@ -2,8 +2,9 @@
 
 A particle's block is its six numbers xx, xy, xz, yy, yz, zz. A link's block H, which stands for [H -H; -H H], is
 c I + p q^T in the numbers c, q and, of a rope where it is not symmetric, p. Number e of point j is at index j + e n.
-Where links are pressed the geometric part of K is negative; it is kept while the whole stays positive definite by
-Gershgorin's discs, so that Newton's method is exact for short steps, and cut off there for long ones.
+Where links are pressed the geometric part of K is negative. Of a rope it is kept while the whole stays positive
+definite by Gershgorin's discs, so that Newton's method is exact for short steps, and cut off there for long ones. Of
+other nets it is left out: the matrix resists no less than the forces do, and a quasi-Newton method learns the rest.
 """
 
 import math
@@ -11,7 +12,7 @@ import math
 from sim.jit import kernel
 from sim.springs.forces import each
 from sim.springs.forces.links import linearised
-from sim.springs.points.arrays import mass_at
+from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.each_link import acting_damping, each_link, stretch
 
 KEPT = 0.4  # part of the mass that pressed links may take from a particle
@@ -21,9 +22,12 @@ SYMMETRIC, GENERAL = 4, 7  # numbers of a link's block
 
 
 @kernel(inline=True)
-def least_across(p, a, b):
-    """Lower bound of the c of a compressed link from a to b [kg], without its damping."""
+def least_of_rope(p, a, b):
     return -KEPT * min(mass_at(p, a), mass_at(p, b)) / (2.0 * p.offsets.shape[0])
+
+
+# Lower bound of the c of a compressed link from a to b [kg], without its damping.
+least_across = by_net(rope=least_of_rope, grid=kernel(lambda p, a, b: 0.0, inline=True))
 
 
 @each_link()
@@ -41,10 +45,6 @@ def set_link_blocks(link, x, g, p, links):
     links[at], links[at + n], links[at + 2 * n], links[at + 3 * n] = across, s * rx, s * ry, s * rz
 
 
-coupled_size = each("coupled_size", "p", "count", inline=True)
-set_coupled = each("set_coupled", "x, v, g, p, coupled", "placed", allocates=False)
-add_coupled = each("add_coupled", "p, coupled, points", "placed", allocates=False)
-multiply_coupled = each("multiply_coupled", "p, coupled, u, q", "placed", allocates=False)
 add_blocks = each("blocks", "x, v, t, g, p, points", "none", allocates=False)
 
 
@@ -71,17 +71,16 @@ def add_six(out, o, xx, xy, xz, yy, yz, zz):
 
 
 @kernel(allocates=False)
-def set_near_blocks(p, links, coupled, points, diagonal, beside):
+def set_near_blocks(p, links, points, diagonal, beside):
     """The matrix with links between neighbours on the grid alone, for `sim.springs.integrators.implicit.dissection`.
 
-    A link that passes over particles along a line of the grid stands on each step of that line: it resists no less than
-    it does, as one step cannot give way without it. Other links and what couples particles otherwise stand at their
-    ends alone. diagonal: (n, 6) flat. beside: (n, 4, 6) flat.
+    A link that passes over particles along a line of the grid stands on each step of that line, as much stiffer as it
+    has steps: together they resist no less than it does. Other links stand at their ends alone, doubled. diagonal:
+    (n, 6) flat. beside: (n, 4, 6) flat.
     """
     n, cols = p.rows * p.cols, p.cols
     for j in range(beside.shape[0]):
         beside[j] = 0.0
-    add_coupled(p, coupled, points)
     for j in range(n):
         for e in range(6):
             diagonal[6 * j + e] = points[e * n + j]
@@ -90,13 +89,15 @@ def set_near_blocks(p, links, coupled, points, diagonal, beside):
         steps = max(abs(di), abs(dj))
         near = di % steps == 0 and dj % steps == 0
         si, sj = (di // steps, dj // steps) if near else (di, dj)
+        times = steps if near else 2
         way = 0 if si == 0 else 1 if sj == 0 else 2 if sj > 0 else 3
         for i in range(p.rows - di):
             for j in range(max(0, -dj), cols - max(0, dj)):
                 a = i * cols + j
                 at = SYMMETRIC * n * r + a
-                c, qx, qy, qz = links[at], links[at + n], links[at + 2 * n], links[at + 3 * n]
-                xx, xy, xz, yy, yz, zz = c + qx * qx, qx * qy, qx * qz, c + qy * qy, qy * qz, c + qz * qz
+                c, qx, qy, qz = times * links[at], links[at + n], links[at + 2 * n], links[at + 3 * n]
+                ux, uy, uz = times * qx, times * qy, times * qz
+                xx, xy, xz, yy, yz, zz = c + ux * qx, ux * qy, ux * qz, c + uy * qy, uy * qz, c + uz * qz
                 for _ in range(steps if near else 1):
                     b = a + si * cols + sj
                     add_six(diagonal, 6 * a, xx, xy, xz, yy, yz, zz)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sim.jit import kernel
 
 TILE = 256  # rows and columns
-LEAF = 9  # most particles of a rectangle that no line separates
+LEAF = 16  # most particles of a rectangle that no line separates
 LANES = 16  # numbers that rows of a front are a multiple of, so that no loop over a row has a rest
 PANEL = 12  # rows of the factor that are subtracted at once
 LEAST_PIVOT = 0.5  # of the least mass: no pivot is smaller but by round-off

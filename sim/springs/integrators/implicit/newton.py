@@ -1,8 +1,9 @@
 """Newton's method for a stage of an implicit step: v = v0 + g a(x0 + g v, v, t).
 
 Every diagonally implicit method here asks for such stages: implicit Euler with g = h, the midpoint with g = h/2,
-TR-BDF2 with g = (1 - 1/sqrt 2) h. A correction solves (M + g D + g^2 K) d = M (v0 + g a - v): directly for a rope,
-by conjugate gradients for a net.
+TR-BDF2 with g = (1 - 1/sqrt 2) h. A correction d of a rope solves (M + g D + g^2 K) d = M (v0 + g a - v) directly. One
+of a net is that of a quasi-Newton method: it takes the factors of an earlier, simpler matrix, corrected
+by the changes of force along the last corrections.
 """
 
 import math
@@ -16,39 +17,35 @@ from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridi
 from sim.springs.integrators.implicit.blocks import (
     GENERAL,
     SYMMETRIC,
-    coupled_size,
-    set_coupled,
     set_link_blocks,
     set_near_blocks,
     set_point_blocks,
 )
-from sim.springs.integrators.implicit.conjugate_gradients import solve_conjugate_gradients
-from sim.springs.integrators.implicit.dissection import Dissection, dissect, factorise
+from sim.springs.integrators.implicit.dissection import Dissection, dissect, factorise, solve
 from sim.springs.integrators.implicit.mean_length import add_mean_lengths, set_mean_blocks
+from sim.springs.integrators.implicit.quasi_newton import Memory, make_memory, remember, set_step
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.vector_ops import add_scaled, set_sum
 
-MOST = 25  # corrections a stage: a stage that has not settled by then is taken as it is
 SETTLED = 1e-11  # size of corrections not taken, relative to the fastest velocity
 SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
-# A net's correction is cut where the forces along it are turned round and more than this part as large after it, and
-# prolonged where more than this part of them is left, to at most so many times its length.
-OVERSHOT, FELL_SHORT, FARTHEST = 0.5, 0.3, 3.0
+# A net's correction is cut or prolonged until less than this part of the forces along it is left, in so many tries at
+# most, to at most so many times its length.
+NEARLY, TRIES, FARTHEST = 0.7, 6, 3.0
+FEW = 12  # corrections of a net, after which new factors are quicker than more of them
 USABLE = 1e-3  # the last correction, relative to the fastest velocity, of a stage that may be taken unsettled
-MOST_ITERATIONS = 500  # of conjugate gradients with new factors
-FEW = 7  # iterations of conjugate gradients that are quicker than new factors
-LOOSEST, TIGHTEST = 0.1, 1e-4  # reductions of the residual by conjugate gradients
 ROUND_OFF = 4e-15  # and to the farthest position over g, below which corrections are noise
 
 
 class Exactness(NamedTuple):
-    """Exactness with which a method has the stages of a net solved."""
+    """How exactly a method has its stages solved. Those of a rope go to round-off, which costs next to nothing."""
 
-    share: float  # of the change of velocity in a stage that corrections may leave, apart from round-off
+    share: float  # of the change of velocity in a stage: that corrections may leave, apart from round-off
     usable: float  # the last correction, relative to velocity and its change, of a stage that may be taken unsettled
-    most: int  # corrections
+    most: int  # corrections of a net
+    most_of_rope: int = 0
 
 
 class RopeSolver(NamedTuple):
@@ -60,18 +57,15 @@ class RopeSolver(NamedTuple):
 
 
 class NetSolver(NamedTuple):
-    """Arrays of conjugate gradients and their preconditioner."""
+    """Arrays of a net's quasi-Newton method."""
 
     numbers: int  # of a link's block
     grid: Dissection
     diagonal: NDArray[np.float64]  # (rows cols, 6) flat
     beside: NDArray[np.float64]  # (rows cols, 4, 6) flat
-    points: NDArray[np.float64]  # (6 rows cols,)
-    kept: NDArray[np.float64]  # (2,): g [s] of the factors, 0 without any, and iterations that they last took
-    left: NDArray[np.float64]  # (3 rows cols,) what is left of the residual
-    z: NDArray[np.float64]  # (3 rows cols,), and so on
-    d: NDArray[np.float64]
-    q: NDArray[np.float64]
+    kept: NDArray[np.float64]  # (1,): g [s] of the factors, 0 where there are none
+    memory: Memory
+    before: NDArray[np.float64]  # (3 rows cols,) residual before a correction
 
 
 class NewtonArrays(NamedTuple):
@@ -82,7 +76,6 @@ class NewtonArrays(NamedTuple):
     f: NDArray[np.float64]  # scratch of `accelerate`
     points: NDArray[np.float64]  # (6 rows cols,) blocks of the particles
     links: NDArray[np.float64]  # (families numbers rows cols,) blocks of the links
-    coupled: NDArray[np.float64]  # blocks of the forces that couple points otherwise than links do
     r: NDArray[np.float64]  # (3 rows cols,)
     u: NDArray[np.float64]  # (3 rows cols,)
     solver: Any
@@ -97,8 +90,8 @@ def make_rope_solver(p, mean):
 def make_net_solver(p, mean):
     n = p.rows * p.cols
     return NetSolver(
-        SYMMETRIC, dissect(p.rows, p.cols), np.zeros(6 * n), np.zeros(24 * n), np.zeros(6 * n), np.zeros(2),
-        np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n),
+        SYMMETRIC, dissect(p.rows, p.cols), np.zeros(6 * n), np.zeros(24 * n), np.zeros(1), make_memory(3 * n),
+        np.zeros(3 * n),
     )  # fmt: skip
 
 
@@ -124,7 +117,6 @@ def make_work(p, mean):
         make_scratch(p),
         np.zeros(6 * size),
         np.zeros(solver.numbers * size * p.offsets.shape[0]),
-        np.zeros(coupled_size(p)),
         np.zeros(3 * size),
         np.zeros(3 * size),
         solver,
@@ -173,44 +165,13 @@ def correct_rope(p, work):
         work.u[j] = work.r[j]
 
 
-@kernel(inline=True)
-def forcing(found, before):
-    """Tolerance of a linear solve, of squared residuals: as far as Newton goes (Eisenstat & Walker 1996)."""
-    return LOOSEST if found > before else max(TIGHTEST, min(LOOSEST, 0.9 * found / before))
-
-
 @kernel
-def correct_net(reduction, g, p, work):
-    """The correction of any net's velocities into work.u, from the blocks and the residual in work.r.
-
-    reduction: of the residual. The factors are those of an earlier correction while few iterations are enough with
-    them. Returns the iterations taken.
-    """
+def factorise_net(g, p, work):
+    """Factors of the blocks, without links that pass over particles but do not lie on the grid's lines."""
     solver = work.solver
-    taken, is_new = 0, solver.kept[0] != g or solver.kept[1] > FEW
-    while True:
-        if is_new:
-            # The blocks of the particles alone are needed once more, in products.
-            for j in range(solver.points.shape[0]):
-                solver.points[j] = work.points[j]
-            set_near_blocks(p, work.links, work.coupled, solver.points, solver.diagonal, solver.beside)
-            factorise(solver.diagonal, solver.beside, p.inverse_masses, solver.grid)
-            solver.kept[0] = g
-        for j in range(work.r.shape[0]):
-            solver.left[j] = work.r[j]
-        most = MOST_ITERATIONS if is_new else 2 * FEW
-        taken = solve_conjugate_gradients(
-            work.points, work.links, work.coupled, solver.grid, solver.left, reduction, most, p, work.f, solver.z,
-            solver.d, solver.q, work.u,
-        )  # fmt: skip
-        if is_new or taken < most:
-            break
-        is_new = True
-    solver.kept[1] = taken
-    # The scratch of forces is zero at its ends for whoever relies on it.
-    for j in range(work.f.shape[0]):
-        work.f[j] = 0.0
-    return taken
+    set_near_blocks(p, work.links, work.points, solver.diagonal, solver.beside)
+    factorise(solver.diagonal, solver.beside, p.inverse_masses, solver.grid)
+    solver.kept[0] = g
 
 
 @kernel(inline=True)
@@ -243,18 +204,24 @@ def set_residual(x0, v0, g, t, p, x, v, work):
 def set_blocks(x0, g, t, p, x, v, work):
     """The blocks of the matrix about x, v."""
     set_point_blocks(x, v, t, g, p, work.points)
-    set_coupled(x, v, g, p, work.coupled)
     if work.mean:
         set_mean_blocks(x0, x, g, p, work.links)
     else:
         set_link_blocks(x, g, p, work.links)
 
 
+# Corrections a stage: one that has not settled by then is taken as it is.
+most_of = by_net(
+    rope=kernel(lambda p, exactness: exactness.most_of_rope, inline=True),
+    grid=kernel(lambda p, exactness: exactness.most, inline=True),
+)
+
+
 @kernel
-def solve_rope_stage(x0, v0, g, t, exactness, p, x, v, work, most):
-    """`solve_stage` of a rope, to round-off: a correction costs next to nothing."""
+def solve_rope_stage(x0, v0, g, t, exactness, p, x, v, work):
+    """`solve_stage` of a rope, to round-off."""
     taken, settled, size = 0, False, np.inf
-    while taken < most and not is_stopped(p.stop):
+    while taken < most_of(p, exactness) and not is_stopped(p.stop):
         set_residual(x0, v0, g, t, p, x, v, work)
         set_blocks(x0, g, t, p, x, v, work)
         correct_rope(p, work)
@@ -270,7 +237,7 @@ def solve_rope_stage(x0, v0, g, t, exactness, p, x, v, work, most):
             break
     set_sum(x, x0, g, v)
     set_pins(x, v, t, p)
-    return taken, taken, settled, settled or size <= USABLE * largest(v)
+    return taken, taken, settled, settled or size <= min(USABLE, exactness.usable) * largest(v)
 
 
 @kernel(inline=True)
@@ -296,6 +263,22 @@ def change_norm(v, v0, p):
 
 
 @kernel(inline=True)
+def mended_speed_of_net(vm, v0, p, work):
+    n, twice = p.rows * p.cols, 0.0
+    for j in range(n):
+        if p.inverse_masses[j] > 0.0:
+            for e in range(3):
+                s = 2.0 * vm[e * n + j] - v0[e * n + j]
+                twice += p.mass[j] * s * s
+    return math.sqrt(max(0.0, 1.0 + 4.0 * dot(work.r, vm) / twice)) if twice > 0.0 else 1.0
+
+
+# Factor of the velocities after a midpoint step from v0, of velocity vm in its middle, that gives them the energy which
+# the work of the forces gave: the rest r of the residual took 2 r.vm of it. 0 where that is more than there is.
+mended_speed = by_net(rope=kernel(lambda vm, v0, p, work: 1.0, inline=True), grid=mended_speed_of_net)
+
+
+@kernel(inline=True)
 def total_mass(p):
     total = 0.0
     for j in range(p.rows * p.cols):
@@ -303,41 +286,70 @@ def total_mass(p):
     return total
 
 
-@kernel
-def solve_net_stage(x0, v0, g, t, exactness, p, x, v, work, most):
-    """`solve_stage` of a net: corrections are as exact as `exactness` asks, in the norm of their energy.
+@kernel(inline=True)
+def remaining(size, last, before):
+    """What further corrections would add, as the last ones shrank: `size` after `last` and `before`."""
+    rate = size / last if before == np.inf else math.sqrt(size / before)
+    return size * rate / (1.0 - rate) if rate < 1.0 else size
 
-    A correction after which there are forces along it still, or back, is prolonged or cut to where they are 0 by linear
-    interpolation: buckling is not linear.
+
+@kernel
+def solve_net_stage(x0, v0, g, t, exactness, p, x, v, work):
+    """`solve_stage` of a net, by a quasi-Newton method: as exact as `exactness` asks, in the norm of their energy.
+
+    The factors are those of an earlier stage or of the first guess, until FEW corrections were not enough. Along each
+    correction velocities go to where the forces along it are nearly 0: buckling is not linear.
     """
-    taken, evals, settled, usable, size, before = 0, 0, False, False, np.inf, 0.0
+    solver = work.solver
+    taken, evals, count, settled, usable = 0, 0, 0, False, False
+    size, last, before = np.inf, np.inf, np.inf
     set_residual(x0, v0, g, t, p, x, v, work)
     evals += 1
-    while taken < min(most, exactness.most) and not is_stopped(p.stop):
-        set_blocks(x0, g, t, p, x, v, work)
-        found = dot(work.r, work.r)
-        correct_net(forcing(found, before), g, p, work)
-        before = found
+    while taken < most_of(p, exactness) and not is_stopped(p.stop):
+        if solver.kept[0] != g or (taken > 0 and taken % FEW == 0):
+            set_blocks(x0, g, t, p, x, v, work)
+            factorise_net(g, p, work)
+            count = 0
+        set_step(solver.memory, count, solver.grid, work.r, work.u)
         slope = dot(work.r, work.u)
+        if count > 0 and not slope > 0.0:
+            count = 0
+            solve(solver.grid, work.r, work.u)
+            slope = dot(work.r, work.u)
+        for j in range(work.r.shape[0]):
+            solver.before[j] = work.r[j]
+        low, low_slope, high, high_slope, length = 0.0, slope, 0.0, 0.0, 1.0
         add_scaled(v, 1.0, work.u)
+        for tried in range(1, TRIES + 1):
+            set_residual(x0, v0, g, t, p, x, v, work)
+            evals += 1
+            after = dot(work.r, work.u)
+            if abs(after) <= NEARLY * slope or tried == TRIES:
+                break
+            if after > 0.0:
+                low, low_slope = length, after
+                part = min(slope / (slope - after), FARTHEST) if after < slope else FARTHEST
+            else:
+                high, high_slope = length, after
+            if high > 0.0:
+                part = low + (high - low) * min(0.9, max(0.1, low_slope / (low_slope - high_slope)))
+            elif length >= FARTHEST:
+                break
+            add_scaled(v, part - length, work.u)
+            length = part
         taken += 1
-        last, size = size, norm(work.u, p)
-        rest = size * size / (last - size) if size < last < np.inf else size
+        count = remember(solver.memory, count, work.u, length, solver.before, work.r)
+        # A correction that was cut tells nothing of how near the end is.
+        size, last, before = max(1.0, length) * norm(work.u, p), size, last
         noise = ROUND_OFF * largest(x) / g * math.sqrt(total_mass(p))
         change = change_norm(v, v0, p)
-        settled = rest <= exactness.share * change + SETTLED_NET * norm(v, p) + noise or size <= noise
+        settled = size <= noise
+        if last < np.inf:
+            rest = remaining(size, last, before)
+            settled = settled or rest <= exactness.share * change + SETTLED_NET * norm(v, p) + noise
         usable = size <= exactness.usable * (change + norm(v, p))
         if settled or not size <= np.inf:
             break
-        set_residual(x0, v0, g, t, p, x, v, work)
-        evals += 1
-        after = dot(work.r, work.u)
-        if not -OVERSHOT * slope <= after <= FELL_SHORT * slope:
-            part = min(slope / (slope - after), FARTHEST) if after < slope else FARTHEST
-            add_scaled(v, part - 1.0, work.u)
-            size *= part
-            set_residual(x0, v0, g, t, p, x, v, work)
-            evals += 1
     set_sum(x, x0, g, v)
     set_pins(x, v, t, p)
     return taken, evals, settled, settled or usable
@@ -345,6 +357,6 @@ def solve_net_stage(x0, v0, g, t, exactness, p, x, v, work, most):
 
 # Solve for v, from the guess in v, with x = x0 + g v.
 #
-# Returns the corrections taken, at most `most`, the force evaluations, whether they settled, and whether what they came
+# Returns the corrections taken, the force evaluations, whether they settled, and whether what they came
 # to may be used although they did not.
 solve_stage = by_net(rope=solve_rope_stage, grid=solve_net_stage)

@@ -14,7 +14,14 @@ import numpy as np
 
 from sim.jit import is_stopped, kernel
 from sim.springs.analysis.energy import add_power
-from sim.springs.integrators.implicit.newton import MOST, Exactness, forget_factors, make_work, solve_stage
+from sim.springs.integrators.implicit.newton import (
+    Exactness,
+    forget_factors,
+    make_work,
+    mended_speed,
+    most_of,
+    solve_stage,
+)
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.arrays import by_net
 
@@ -22,14 +29,14 @@ EULER, MIDPOINT, TR_BDF2 = 0, 1, 2
 
 FINEST = 16  # parts of a step, which are taken as they are
 FINEST_MIDPOINT = 64
-PATIENCE = 12  # corrections of a midpoint, after which halves are quicker than going on
-# Of the solver for nets. Implicit Euler damps what is left of an error most, TR-BDF2 less.
-OF_EULER = Exactness(share=5e-3, usable=0.1, most=5)
-OF_TR_BDF2 = Exactness(share=5e-4, usable=1e-3, most=MOST)
-# The midpoint keeps errors: midpoints taken unsettled feed the motion without bound. Where the energy or the angular
-# momentum is kept exactly, it shows every error.
-OF_MIDPOINT = Exactness(share=1e-4, usable=0.0, most=PATIENCE)
-OF_CONSERVING_MIDPOINT = Exactness(share=0.0, usable=0.0, most=PATIENCE)
+# Of the solver. Implicit Euler damps the rest of an error most, TR-BDF2 less; halves of a midpoint are quicker than
+# more corrections.
+OF_EULER = Exactness(share=2e-3, usable=1.0, most=24, most_of_rope=25)
+OF_TR_BDF2 = Exactness(share=5e-4, usable=1e-3, most=60, most_of_rope=25)
+# Midpoints keep errors; those of energy, which would feed the motion without bound, are mended. Where the energy or the
+# angular momentum is kept exactly, it shows every error.
+OF_MIDPOINT = Exactness(share=2e-3, usable=1.0, most=36, most_of_rope=12)
+OF_CONSERVING_MIDPOINT = Exactness(share=0.0, usable=0.0, most=60, most_of_rope=12)
 is_conserving = by_net(rope=kernel(lambda p: True, inline=True), grid=kernel(lambda p: p.is_conserving, inline=True))
 GAMMA = 2.0 - math.sqrt(2.0)  # part of a step of TR-BDF2 that its first stage takes
 W = math.sqrt(2.0) / 4.0  # weights of the quadrature of TR-BDF2: W, W, GAMMA/2
@@ -41,10 +48,11 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
 
     ledger[2] counts the steps with a part that was taken before its corrections had settled.
     """
-    finest, most = (FINEST_MIDPOINT, PATIENCE) if method == MIDPOINT else (FINEST, MOST)
+    finest = FINEST_MIDPOINT if method == MIDPOINT else FINEST
     exactness = OF_EULER if method == EULER else OF_TR_BDF2
     if method == MIDPOINT:
         exactness = OF_CONSERVING_MIDPOINT if is_conserving(p) else OF_MIDPOINT
+    most = most_of(p, exactness)
     work = make_work(p, method == MIDPOINT)
     f = make_scratch(p)
     a = np.empty_like(x)
@@ -81,11 +89,11 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
                     v0[j] += g * a[j]
             hardest, stage, last, part_settled = 0, 0, 1 if method == TR_BDF2 else 0, True
             while True:
-                taken, asked, settled, usable = solve_stage(x0, v0, g, then, exactness, p, xs, vs, work, most)
+                taken, asked, settled, usable = solve_stage(x0, v0, g, then, exactness, p, xs, vs, work)
                 evals += asked
                 hardest = max(hardest, taken)
                 part_settled = part_settled and settled
-                is_taken = size == 1 or (settled if method == MIDPOINT else usable)
+                is_taken = size == 1 or usable
                 if stage == last or not is_taken:
                     break
                 stage, then = 1, after
@@ -101,8 +109,13 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
                     add_power(x, v, now, p, True, W * part, ledger)
                     add_power(x1, v1, now + GAMMA * part, p, True, W * part, ledger)
                 add_power(xs, vs, then, p, True, g if method == TR_BDF2 else part, ledger)
+            speed = mended_speed(vs, v, p, work) if method == MIDPOINT else 1.0
             for j in range(x.shape[0]):
-                x[j], v[j] = (x[j] + part * vs[j], 2.0 * vs[j] - v[j]) if method == MIDPOINT else (xs[j], vs[j])
+                if method == MIDPOINT:
+                    x[j] += part * vs[j]
+                    v[j] = speed * (2.0 * vs[j] - v[j])
+                else:
+                    x[j], v[j] = xs[j], vs[j]
             done += size
             all_settled = all_settled and part_settled
             if hardest <= most // 2 and done % (2 * size) == 0:

@@ -7,7 +7,7 @@ import pytest
 
 from sim.springs import Net, cloth, simulate
 from sim.springs.cloth import pleated_cloth, vertical_cloth
-from sim.springs.integrators.implicit import dissection, newton
+from sim.springs.integrators.implicit import dissection, newton, quasi_newton
 from sim.springs.state import State, advance
 
 SIX = ([0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2])  # of a symmetric block
@@ -85,29 +85,56 @@ def pleats(n: int, stiffness: float, shear: float, bend: float) -> Net:
     return pleated_cloth(vertical_cloth(flat), 0.62)
 
 
-def iterations(n: int, stiffness: float) -> int:
-    """Of a solve to 1e-4 with rough forces on a curtain that is bent, stretched and pressed."""
-    g, net = 1 / 60, pleats(n, stiffness, 0.5 * stiffness, 0.1 * stiffness)
-    p, rng = net.kernel_view(g), np.random.default_rng(0)
-    x = 1.002 * (net.x0.ravel() + rng.normal(0.0, 0.016 / n, net.x0.size))
-    work, v = newton.make_work(p, False), np.zeros(x.size)
-    newton.set_blocks(x, g, 0.0, p, x, v, work)
-    work.r[:] = rng.standard_normal(x.size) * np.tile(net.masses.ravel() * (net.inverse_masses().ravel() > 0.0), 3)
-    return newton.correct_net(1e-4, g, p, work)
+def test_steps_remembered_correct_the_factors_as_bfgs_does():
+    """Against the formula of Broyden, Fletcher, Goldfarb and Shanno for the whole inverse, more steps than are kept."""
+    dense, diagonal, beside, free = grid_matrix(4, 5, [3])
+    grid, n = dissection.dissect(4, 5), 60
+    dissection.factorise(diagonal, beside, free, grid)
+    order = np.arange(n).reshape(20, 3).T.ravel()  # from x, y, z of each particle to all x, all y, all z
+    inverse, rng = np.linalg.inv(dense)[np.ix_(order, order)], np.random.default_rng(0)
+    forces, u = rng.standard_normal((60, 60)), np.zeros(n)
+    real = dense[np.ix_(order, order)] + 0.1 * forces @ forces.T
+    memory, count, expected = quasi_newton.make_memory(n), 0, inverse
+    steps = rng.standard_normal((quasi_newton.KEPT + 2, n))
+    for step in steps:
+        count = quasi_newton.remember(memory, count, step / 2.0, 2.0, real @ step, 0.0 * step)
+    for step in steps[-quasi_newton.KEPT :]:
+        change = real @ step
+        turn = np.eye(n) - np.outer(step, change) / (step @ change)
+        expected = turn @ expected @ turn.T + np.outer(step, step) / (step @ change)
+    assert count == len(steps)
+    r = rng.standard_normal(n) * np.tile(free, 3)
+    quasi_newton.set_step(memory, count, grid, r, u)
+    assert u == pytest.approx(expected @ r, rel=1e-4, abs=1e-4)
+    quasi_newton.set_step(memory, count, grid, real @ steps[-1], u)
+    assert u == pytest.approx(steps[-1], abs=1e-9)
 
 
-def test_iterations_grow_neither_with_the_grid_nor_with_stiffness():
-    """Block Jacobi takes hundreds to thousands. With stiffness they grow until bend springs outweigh the masses."""
-    counts = {(n, k): iterations(n, k) for n in (32, 64, 128) for k in (1e3, 1e4, 1e6)}
-    for k in (1e3, 1e4, 1e6):
-        assert counts[128, k] <= counts[64, k] <= counts[32, k]
-    for n in (32, 64, 128):
-        assert counts[n, 1e6] <= 1.5 * counts[n, 1e4]
-        assert counts[n, 1e6] <= 2.2 * counts[n, 1e3]
-    assert max(counts.values()) < 30
+def test_a_step_that_meets_no_resistance_is_not_remembered():
+    memory, step = quasi_newton.make_memory(6), np.arange(1.0, 7.0)
+    assert quasi_newton.remember(memory, 3, step, 1.0, step, step) == 3
+    assert quasi_newton.remember(memory, 3, step, 1.0, step, 2.0 * step) == 3
+    assert quasi_newton.remember(memory, 3, step, 1.0, step, 0.5 * step) == 4
 
 
-TIGHT = newton.Exactness(share=0.0, usable=0.0, most=200)
+def corrections(n: int, stiffness: float) -> int:
+    """Of a stage to 1e-3 of its change: a flat cloth is struck everywhere, so lightly that forces are linear."""
+    g, net = 1 / 60, cloth(n, n, 1.6, 1.6, 0.3, stiffness, 0.5 * stiffness, 0.1 * stiffness, 0.02, gravity=0.0)
+    p, x0 = net.kernel_view(g), net.x0.ravel()
+    v0 = 1e-9 * np.random.default_rng(0).standard_normal(x0.size) * np.tile(net.inverse_masses().ravel() > 0.0, 3)
+    exactness = newton.Exactness(share=1e-3, usable=0.0, most=100)
+    taken, *_ = newton.solve_stage(x0, v0, g, g, exactness, p, x0.copy(), v0.copy(), newton.make_work(p, False))
+    return taken
+
+
+def test_corrections_grow_neither_with_the_grid_nor_with_stiffness():
+    """Each is one solve with the factors. Conjugate gradients with blocks of 3 x 3 took hundreds to thousands."""
+    counts = {(n, k): corrections(n, k) for n in (32, 64, 128) for k in (1e3, 1e4, 1e6)}
+    assert max(counts.values()) <= 1.5 * min(counts.values())
+    assert max(counts.values()) < 20
+
+
+TIGHT = newton.Exactness(share=0.0, usable=0.0, most=400)
 
 
 def tight_run(net: Net, steps: int) -> np.ndarray:
@@ -117,14 +144,14 @@ def tight_run(net: Net, steps: int) -> np.ndarray:
     work = newton.make_work(p, False)
     for s in range(steps):
         x0, v0 = x.copy(), v.copy()
-        *_, settled, _ = newton.solve_stage(x0, v0, h, (s + 1) * h, TIGHT, p, x, v, work, 200)
+        *_, settled, _ = newton.solve_stage(x0, v0, h, (s + 1) * h, TIGHT, p, x, v, work)
         assert settled
     return state.x
 
 
-@pytest.mark.parametrize(("stiffness", "share"), [(800.0, 0.01), (1e4, 0.05)])
-def test_the_solver_s_error_is_a_small_part_of_the_method_s_own(stiffness, share):
-    """A hundredth; more where links buckle all the time, as steps end after eight corrections."""
+@pytest.mark.parametrize("stiffness", [800.0, 1e4, 1e5])
+def test_the_solver_s_error_is_below_a_hundredth_of_the_method_s_own(stiffness):
+    """Though steps end after so many corrections, settled or not."""
     net = dataclasses.replace(pleats(16, stiffness, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
     steps = 24
     state, fine = State.at_rest(net), State.at_rest(net)
@@ -133,7 +160,7 @@ def test_the_solver_s_error_is_a_small_part_of_the_method_s_own(stiffness, share
     tight = tight_run(net, steps)
     own = np.sqrt(((tight - fine.x) ** 2).mean())
     assert own > 1e-3
-    assert np.sqrt(((state.x - tight) ** 2).mean()) < share * own
+    assert np.sqrt(((state.x - tight) ** 2).mean()) < 0.01 * own
 
 
 def test_a_step_depends_on_no_step_before_it_in_the_same_call():
@@ -146,7 +173,7 @@ def test_a_step_depends_on_no_step_before_it_in_the_same_call():
     assert one.force_evals == many.force_evals
 
 
-def test_a_cloth_that_falls_freely_is_solved_in_one_correction_or_two():
+def test_a_cloth_that_falls_freely_is_solved_in_two_corrections():
     net = cloth(24, 24, stiffness=1e6, shear=5e5, bend=1e5, pinned="free")
     state = State.at_rest(net)
     advance(net, state, "implicit_euler", 1 / 60, 10)
@@ -155,12 +182,13 @@ def test_a_cloth_that_falls_freely_is_solved_in_one_correction_or_two():
 
 
 def test_the_midpoint_method_s_account_closes_on_a_damped_cloth_that_buckles():
-    """Midpoints that are not solved feed the motion: the account then misses more than the motion's energy."""
+    """Though its steps do not settle: what they leave would feed the motion, but is mended."""
     net = dataclasses.replace(pleats(12, 1e4, 200.0, 6.0), gravity=(3.0, 5.0, -9.81))
     run = simulate(net, 0.5, 31, 1 / 60, "implicit_midpoint", with_account=True)
     total = run.energy.total + run.energy.dissipated
-    assert run.unsettled == 0
-    assert np.abs(total - total[0]).max() < 0.02 * run.energy.kinetic.max()
+    assert run.unsettled > 0
+    assert run.energy.dissipated[-1] > 10.0
+    assert np.abs(total - total[0]).max() < 1e-9 * run.energy.kinetic.max()
 
 
 def test_steps_that_were_taken_unsettled_are_counted_however_they_are_shared_out():

@@ -7,7 +7,7 @@ import viser
 from app.messages import Command, Pause, Play, StepOnce
 from app.panel.controls.remedy import Remedy
 from app.panel.settings import SceneSettings
-from app.render.handles.viser_types import ViserEvent
+from app.render.handles.viser_types import GuiHandle, ViserEvent
 from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.scenes.contract import AnySnapshot, AnyView
 from sim.parameters import in_words
@@ -28,13 +28,14 @@ class Head:
         reset_view: Callable[[viser.ClientHandle], None],
     ) -> None:
         """scenes: to choose from. reset_view: puts the camera of a browser where a new one would be."""
-        self.view, self.settings, self.reset_view = view, settings, reset_view
+        self.view, self.settings, self.scenes, self.reset_view = view, settings, scenes, reset_view
         self.running = True  # as the buttons show it
         self.told: tuple[object, ...] = ()  # what is shown at once when it changes
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
+            self.chooser: GuiHandle | None = None
             if len(scenes) > 1:
-                add_scene_chooser(gui, scenes, settings.kind.name, settings.open_first_view_of)
+                self.chooser = add_scene_chooser(gui, scenes, settings.kind.name, settings.open_first_view_of)
             self.preset = gui.add_dropdown(
                 "Preset", settings.presets, hint="Loads all settings and starts again from rest"
             )
@@ -107,7 +108,7 @@ def button_names(*, running: bool) -> tuple[str, ...]:
 
 def add_scene_chooser(
     gui: viser.GuiApi, scenes: tuple[str, ...], shown: str | None, open_scene: Callable[[str], None]
-) -> None:
+) -> GuiHandle:
     """The list of scenes, each with its name in words."""
     names = {in_words(name): name for name in scenes}
     chooser = gui.add_dropdown("Scene", tuple(names), initial_value=None if shown is None else in_words(shown))
@@ -116,6 +117,8 @@ def add_scene_chooser(
     async def _(event: ViserEvent) -> None:
         if event.client_id is not None:
             open_scene(names[event.target.value])
+
+    return chooser
 
 
 def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:

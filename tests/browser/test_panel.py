@@ -2,6 +2,7 @@
 
 from app.messages import Pause
 from app.panel.controls.control import title
+from app.panel.controls.scene_pictures import TITLE
 from app.server.viewer import Viewer
 from sim.parameters import parameters_of
 from sim.quantities import write_number
@@ -175,3 +176,15 @@ def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab])
         says("Paused", "Play")
         tab.page.keyboard.press("Space")
         says("Running", "Pause")
+
+
+def test_a_press_on_a_picture_opens_its_scene(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    picture = tab.page.locator('[data-springtide-scene="Cloth"]')
+    tab.wait(tab.page.get_by_text(TITLE).is_visible)
+    tab.page.get_by_text(TITLE).click()
+    tab.wait(picture.is_visible, 20)
+    tab.wait(lambda: tab.page.evaluate("one => one.naturalWidth", picture.locator("img").element_handle()) == 160, 10)
+    picture.click()
+    tab.wait(lambda: lab.settings.kind.name == "cloth")
+    assert tab.errors == []

@@ -10,6 +10,7 @@ const PARTS = {
   hall: () => import("../panel/hall.js"),
   timeline: () => import("../panel/timeline.js"),
   share: () => import("../panel/share.js"),
+  scenes: () => import("../panel/scenes.js"),
   display: () => import("../panel/display.js"),
   access: () => import("../panel/access.js"),
   reach: () => import("./reach.js"),

@@ -10,6 +10,7 @@ from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import GuiHandle, ViserEvent
 from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.scenes.contract import AnySnapshot, AnyView
+from app.scenes.setups import write_query
 from sim.parameters import in_words
 
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
@@ -31,6 +32,7 @@ class Head:
         self.view, self.settings, self.scenes, self.reset_view = view, settings, scenes, reset_view
         self.running = True  # as the buttons show it
         self.told: tuple[object, ...] = ()  # what is shown at once when it changes
+        self.visited = ""  # preset of which the page has been told, for Back and Forward of the browser
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
             self.chooser: GuiHandle | None = None
@@ -46,6 +48,7 @@ class Head:
             self.remedy = Remedy(gui, "Use {} and start again", settings.follow)
             self.figures = gui.add_html("")
             self.code_line = gui.add_html("", visible=False)
+            self.here = gui.add_html("")
 
     async def on_preset(self, event: ViserEvent) -> None:
         """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""
@@ -77,6 +80,11 @@ class Head:
         if self.preset.options != options:
             self.preset.options = options
         self.preset.value = other or settings.loaded
+        if self.visited != settings.loaded:
+            kind, self.visited = settings.kind, settings.loaded
+            preset = self.visited if self.visited in kind.presets else ""
+            query = write_query(kind, settings.params_of(self.visited), preset)
+            self.here.content = str(fill('<span data-springtide-here="{}"></span>', query))  # js/panel/visited.js
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are not as shown."""

@@ -11,6 +11,7 @@ const PARTS = {
   timeline: () => import("../panel/timeline.js"),
   share: () => import("../panel/share.js"),
   scenes: () => import("../panel/scenes.js"),
+  visited: () => import("../panel/visited.js"),
   display: () => import("../panel/display.js"),
   access: () => import("../panel/access.js"),
   reach: () => import("./reach.js"),

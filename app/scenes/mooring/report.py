@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from pathlib import PureWindowsPath
 
-from app.formats.formatting import metres, number, percent, seconds
+from app.formats.formatting import counted, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.markup.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
 from app.scenes.mooring.files.from_file import mooring_of
@@ -129,8 +129,9 @@ def file_text(path: str, fault: Fault | None) -> Html:
     found = mooring_of(path)
     system = found.system
     count = fill(
-        "<div>{}: {} lines, {} points, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(path).name),
-        len(system.lines), len(system.points), len(found.vessel), metres(system.depth),
+        "<div>{}: {}, {}, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(path).name),
+        counted(len(system.lines), "line"), counted(len(system.points), "point"), len(found.vessel),
+        metres(system.depth),
     )  # fmt: skip
     said = [] if fault is None else [coloured(fault.said, WARNING_COLOUR)]
     notes = (*said, *found.notes, *raised_points(found))
@@ -151,6 +152,8 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     found: MooringReadings = snapshot.readings
     lines = {"time_step": step_mark(read(QUANTITIES, "critical_step", snapshot)), **dict.fromkeys(BLAMED, "")}
+    is_known = snapshot.params.breaking_load > 0.0
+    lines["breaking_load"] = "" if is_known else "unknown: no tension is given as a percentage of it"
     if found.fault is not None and found.fault.parameter:
         lines[found.fault.parameter] = coloured(found.fault.said, WARNING_COLOUR)
     return lines

@@ -1,4 +1,4 @@
-"""White water in a gale, in pixels: its share is that of Monahan's law within a factor of 2, at the lowest quality too."""
+"""White water in a gale, in pixels: as much as Monahan measured within a factor of 2, at the lowest quality too."""
 
 import io
 from concurrent.futures import Future

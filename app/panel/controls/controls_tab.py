@@ -7,6 +7,7 @@ import viser
 
 from app.messages import RunOn
 from app.panel.controls.controls import Controls
+from app.panel.controls.file_numbers import FileNumbers
 from app.panel.controls.readings import Readings
 from app.panel.controls.remedy import ControlRemedies
 from app.panel.keys import KEYS
@@ -42,6 +43,8 @@ class ControlsTab:
                 self.readings = Readings(
                     gui, view, tab, lambda command: settings.post(command), lambda end: file_name(settings, end)
                 )
+        editing = settings.kind.file_editing
+        self.file_numbers = None if editing is None else FileNumbers(gui, editing, settings)
         self.map = self.add_map()
         with gui.add_folder("Help", expand_by_default=False):
             self.help = gui.add_html("")
@@ -72,6 +75,8 @@ class ControlsTab:
         settings, kind = self.settings, self.settings.kind
         if self.run_on is not None and kind.awaited is not None:
             self.run_on.visible = kind.awaited.offered(settings.params)
+        if self.file_numbers is not None:
+            self.file_numbers.show()
         self.help.content = note(fill("{}<br>{}", kind.about.get(settings.loaded, ""), KEYS))
 
     def show_readings(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:

@@ -7,7 +7,7 @@ from pathlib import PureWindowsPath
 from app.formats.formatting import counted, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.markup.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
-from app.scenes.mooring.files.from_file import mooring_of
+from app.scenes.mooring.files.from_file import opened
 from app.scenes.mooring.frame import EndStatistics, LineReading, MooringReadings
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.quantities import QUANTITIES, load_use
@@ -121,15 +121,15 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
         "Bed and slack": join((bed_table(snapshot), said)),
     }
     path = snapshot.params.moordyn_file
-    return {"Files": file_text(path, snapshot.readings.fault), **notes} if path else notes
+    return {"Files": file_text(snapshot.params, snapshot.readings.fault), **notes} if path else notes
 
 
-def file_text(path: str, fault: Fault | None) -> Html:
-    """The file of the mooring, and the parts of it without effect here."""
-    found = mooring_of(path)
+def file_text(params: MooringParams, fault: Fault | None) -> Html:
+    """The file of the mooring, its changes, and the parts of it without effect here."""
+    found = opened(params)
     system = found.system
     count = fill(
-        "<div>{}: {}, {}, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(path).name),
+        "<div>{}: {}, {}, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(params.moordyn_file).name),
         counted(len(system.lines), "line"), counted(len(system.points), "point"), len(found.vessel),
         metres(system.depth),
     )  # fmt: skip

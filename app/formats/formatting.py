@@ -120,6 +120,11 @@ def longest_step(step: float) -> str:
     return time_step(1.0 / rate) if MIN_STEP_RATE <= rate <= MAX_STEP_RATE else seconds(step)
 
 
+def counted(value: int, thing: str) -> str:
+    """A count with its noun: "1 line", "3 lines"."""
+    return f"{number(value)} {thing}{'' if value == 1 else 's'}"
+
+
 def count(value: float) -> str:
     """A count, in words from a million on: 30 million."""
     for word, size in COUNT_UNITS:

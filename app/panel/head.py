@@ -7,9 +7,10 @@ import viser
 from app.messages import Command, Pause, Play, StepOnce
 from app.panel.controls.remedy import Remedy
 from app.panel.settings import SceneSettings
-from app.render.handles.viser_types import ViserEvent
+from app.render.handles.viser_types import GuiHandle, ViserEvent
 from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, fill
 from app.scenes.contract import AnySnapshot, AnyView
+from app.scenes.setups import write_query
 from sim.parameters import in_words
 
 BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
@@ -28,13 +29,15 @@ class Head:
         reset_view: Callable[[viser.ClientHandle], None],
     ) -> None:
         """scenes: to choose from. reset_view: puts the camera of a browser where a new one would be."""
-        self.view, self.settings, self.reset_view = view, settings, reset_view
+        self.view, self.settings, self.scenes, self.reset_view = view, settings, scenes, reset_view
         self.running = True  # as the buttons show it
         self.told: tuple[object, ...] = ()  # shown at once when it changes
+        self.visited = ""  # preset of which the page has been told, for Back and Forward of the browser
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
+            self.chooser: GuiHandle | None = None
             if len(scenes) > 1:
-                add_scene_chooser(gui, scenes, settings.kind.name, settings.open_first_view_of)
+                self.chooser = add_scene_chooser(gui, scenes, settings.kind.name, settings.open_first_view_of)
             self.preset = gui.add_dropdown(
                 "Preset", settings.presets, hint="Loads all settings and starts again from rest"
             )
@@ -45,6 +48,7 @@ class Head:
             self.remedy = Remedy(gui, "Use {} and start again", settings.follow)
             self.figures = gui.add_html("")
             self.code_line = gui.add_html("", visible=False)
+            self.here = gui.add_html("")
 
     async def on_preset(self, event: ViserEvent) -> None:
         """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""
@@ -76,6 +80,11 @@ class Head:
         if self.preset.options != options:
             self.preset.options = options
         self.preset.value = other or settings.loaded
+        if self.visited != settings.loaded:
+            kind, self.visited = settings.kind, settings.loaded
+            preset = self.visited if self.visited in kind.presets else ""
+            query = write_query(kind, settings.params_of(self.visited), preset)
+            self.here.content = str(fill('<span data-springtide-here="{}"></span>', query))  # js/panel/visited.js
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are not as shown."""
@@ -107,7 +116,7 @@ def button_names(*, running: bool) -> tuple[str, ...]:
 
 def add_scene_chooser(
     gui: viser.GuiApi, scenes: tuple[str, ...], shown: str | None, open_scene: Callable[[str], None]
-) -> None:
+) -> GuiHandle:
     """The list of scenes, each with its name in words."""
     names = {in_words(name): name for name in scenes}
     chooser = gui.add_dropdown("Scene", tuple(names), initial_value=None if shown is None else in_words(shown))
@@ -116,6 +125,8 @@ def add_scene_chooser(
     async def _(event: ViserEvent) -> None:
         if event.client_id is not None:
             open_scene(names[event.target.value])
+
+    return chooser
 
 
 def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:

@@ -15,6 +15,7 @@ from app.messages import RunRow
 from app.panel.controls.controls import Controls
 from app.panel.controls.controls_tab import VIEW_GROUPS, ControlsTab
 from app.panel.controls.holding import add_holding
+from app.panel.controls.scene_pictures import add_scene_pictures
 from app.panel.display import add_switches, add_theme_buttons
 from app.panel.head import Head
 from app.panel.keys import add_keys
@@ -92,6 +93,8 @@ class Panel:
         group = gui.add_tab_group()
         tabs = {name: group.add_tab(name) for name in names if name != LAB or workbook is not None}
         with tabs[CONTROLS]:
+            if self.head.chooser is not None:
+                add_scene_pictures(gui, self.head.chooser, self.head.scenes)
             self.controls_tab = ControlsTab(gui, self.view, self.settings, self.controls, tabs[CONTROLS])
         if workbook is not None:
             self.guide = GuideTab(gui, self.kind, workbook, self.settings.set_up, tabs[LAB], self.controls)

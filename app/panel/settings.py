@@ -145,6 +145,11 @@ class SceneSettings:
         act = self.history.note(self.now(), begins=True, runs=True)
         self.take(Take(params, state=state, act=act), self.loaded)
 
+    def begin_with(self, params: BaseParams) -> None:
+        """Begin the scene again with other parameters, with every camera in its place."""
+        act = self.history.note(self.now(), begins=True, runs=True)
+        self.take(Take(params, start=True, act=act), self.loaded)
+
     def reset(self) -> None:
         """Begin the scene again."""
         self.post(Reset(self.history.note(self.now(), begins=True)))

@@ -241,6 +241,17 @@ class FileFacts(NamedTuple):
     unused: frozenset[str]  # names of the parameters that mean nothing with it
 
 
+class FileEditing(NamedTuple):
+    """Numbers of a file that a scene runs, which the panel changes."""
+
+    title: str  # of their folder
+    thing: str  # what has numbers, as it is chosen
+    # params -> thing -> number with its unit -> its value; empty without a file.
+    numbers: Callable[..., Mapping[str, Mapping[str, float]]]
+    changed: Callable[..., BaseParams]  # (params, thing, numbers) -> params; raises ValueError
+    content: Callable[..., tuple[str, bytes]]  # params -> name and content of the file with its changes
+
+
 @dataclass(frozen=True)
 class SceneKind(Generic[P, F, R]):
     """All there is to know of a scene without making one."""
@@ -286,6 +297,7 @@ class SceneKind(Generic[P, F, R]):
     notes: Callable[[P], Sequence[str]] = lambda params: ()
     # Content of a file that takes the place of parameters, or None.
     file_facts: Callable[[P], FileFacts | None] = lambda params: None
+    file_editing: FileEditing | None = None  # of such a file; None: the panel changes none
     warnings: Callable[..., Sequence[str]] | None = None  # of a scene that begins: sentences on its start
     awaited: Awaited | None = None  # event that the panel offers to run on to
     opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults

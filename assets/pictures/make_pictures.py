@@ -15,6 +15,7 @@ from concurrent.futures import Future
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from PIL import Image
 from playwright.sync_api import sync_playwright
 
 from app.lab.course.folder import make_folder
@@ -30,12 +31,15 @@ FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader
 PATIENCE = 30.0  # [s] for the shaders of the page, and for its last frame
 NO_NOTES = "[class*=Notif], #springtide-slow { display: none !important }"
 FOLDER, SMALL = Path(__file__).with_name("presets"), (480, 300)  # of the gallery; [pixels]
+# Picture of the gallery by which each scene is chosen in the panel, the part of it, and its size [pixels].
+CHOSEN = {**{name: f"{name}_1" for name in NAMES}, "rope": "rope_7"}
+PART, SMALLEST = (40, 25, 440, 275), (160, 100)
 SETTLED = 14.0  # [s] for the page of a preset, and for its last frame
 NO_PANEL = ".mantine-Paper-root, #springtide-time { display: none !important }"
 # Scene or preset -> time [s] of its picture in the gallery.
 MOMENTS = {
     "rope": 1.2, "race": 6.0, "cloth": 2.0, "square_sea": 20.0, "radial_sea": 20.0, "mooring": 10.0,
-    "Storm arriving": 60.0, "Burning rig": 40.0, "Peregrine breather": 301.7, "Draupner": 58.6, "Steep storm": 60.0,
+    "Storm arriving": 60.0, "Burning rig": 40.0, "Peregrine breather": 327.0, "Draupner": 59.4, "Steep storm": 21.7,
     "Steep waves split into groups": 200.0,
 }  # fmt: skip
 
@@ -72,7 +76,7 @@ PICTURES = {
     "race": Picture("race", "Undamped until chaos", 17.0, (1300, 700)),
     "cloth": Picture("cloth", "Drape over the sphere", 1.9, (1000, 560)),
     "spill": Picture("radial_sea", "Light crude spill 0.2 m", 17.0, (1000, 560)),
-    "breather": Picture("square_sea", "Peregrine breather", 301.7, (1100, 620)),
+    "breather": Picture("square_sea", "Peregrine breather", 327.0, (1100, 620)),
     "draupner": Picture("square_sea", "Draupner", 58.6, (1100, 620)),
     "share": Picture("rope", "Over the sphere", 5.0, (1200, 760), {"plot_energy": True}, tab="Share"),
     "lab": Picture("rope", "Lab code: 10 points", 2.0, (1100, 760), RK4, NO_DAMPING),
@@ -144,6 +148,9 @@ def take_gallery(browser: Any) -> None:
             page.screenshot(path=FOLDER / f"{scene}_{number}.jpg", type="jpeg", quality=80, timeout=120_000)
     page.close()
     lab.shut()
+    for scene, name in CHOSEN.items():
+        part = Image.open(FOLDER / f"{name}.jpg").crop(PART).resize(SMALLEST)
+        part.save(FOLDER.parents[1] / "scenes" / f"{scene}.jpg", quality=70, optimize=True)
 
 
 def main() -> None:

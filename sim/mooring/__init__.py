@@ -7,7 +7,7 @@ run = simulate(system, motion={2: lambda t: (0.5 * math.sin(t), 0.0, 0.0)}, dura
 `State`, `advance`, `critical_step` and `simulate` are those of sim.springs.
 """
 
-from sim.mooring.moordyn import read_moordyn, write_moordyn
+from sim.mooring.moordyn import changed_moordyn, read_moordyn, write_moordyn
 from sim.mooring.moored import moored
 from sim.mooring.motion import paths_to, point_forces
 from sim.mooring.run import MooringRun
@@ -28,6 +28,7 @@ __all__ = [
     "System",
     "advance",
     "at_rest",
+    "changed_moordyn",
     "critical_step",
     "moored",
     "paths_to",

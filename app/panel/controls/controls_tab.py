@@ -7,13 +7,14 @@ import viser
 
 from app.messages import RunOn
 from app.panel.controls.controls import Controls
+from app.panel.controls.file_numbers import FileNumbers
 from app.panel.controls.readings import Readings
 from app.panel.controls.remedy import ControlRemedies
 from app.panel.keys import KEYS
 from app.panel.recording.files import file_name
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import ViserEvent
-from app.render.markup.html import Html, fill, note
+from app.render.markup.html import Html, faint, fill, note
 from app.scenes.contract import AnySnapshot, AnyView, Awaited, SpringParams
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ class ControlsTab:
         """controls: all but those of the view are added here."""
         self.gui, self.view, self.settings, self.controls = gui, view, settings, controls
         self.remedies = ControlRemedies(gui, controls, settings.follow)
+        gui.add_html(note(faint(Html(settings.kind.help))))
         for name in dict.fromkeys(parameter.group for parameter in controls.parameters.values()):
             if name not in VIEW_GROUPS:
                 controls.add_group(name, is_open=name == OPEN_GROUP)
@@ -41,6 +43,8 @@ class ControlsTab:
                 self.readings = Readings(
                     gui, view, tab, lambda command: settings.post(command), lambda end: file_name(settings, end)
                 )
+        editing = settings.kind.file_editing
+        self.file_numbers = None if editing is None else FileNumbers(gui, editing, settings)
         self.map = self.add_map()
         with gui.add_folder("Help", expand_by_default=False):
             self.help = gui.add_html("")
@@ -71,7 +75,9 @@ class ControlsTab:
         settings, kind = self.settings, self.settings.kind
         if self.run_on is not None and kind.awaited is not None:
             self.run_on.visible = kind.awaited.offered(settings.params)
-        self.help.content = note(fill("{} {}<br>{}", Html(kind.help), kind.about.get(settings.loaded, ""), KEYS))
+        if self.file_numbers is not None:
+            self.file_numbers.show()
+        self.help.content = note(fill("{}<br>{}", kind.about.get(settings.loaded, ""), KEYS))
 
     def show_readings(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:
         """Bring the scene's texts up to date. hidden: headings that would answer a question of the workbook."""

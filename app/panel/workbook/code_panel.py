@@ -31,8 +31,8 @@ from app.scenes.charts import PALETTE
 
 SAME = 1e-6  # [m] below which two ropes are the same
 ROUNDING = 1e-9  # [m] by which a right solution may differ where nothing else explains a difference
-CHART_WIDTH, CHART_HEIGHT = 280, 110  # [pixels] of the chart of the difference
-CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 18, 8  # [pixels] of its margins
+CHART_WIDTH, CHART_HEIGHT = 280, 124  # [pixels] of the chart of the difference
+CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 18, 22  # [pixels] of its margins
 MAX_POINTS = 150  # of its line
 ORDER = ("failed", "wrong", "not checked", "checking", "right")  # of the functions
 COLOURS = {
@@ -212,7 +212,7 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
         said.append(coloured(f"Your {scene} left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
     elif report.difference == report.difference:
         said.append(fill("{} from the program's {}.", bold(length_text(report.difference)), TRANSLUCENT[scene]))
-        said.append(difference_chart(report))
+        said.append(difference_chart(report, scene))
     if report.grid != (0, 0):
         rows, cols = report.grid
         what = "Rows and columns: {} × {} points, without pleats, self-collision and mouse, as plain Python is slow."
@@ -230,8 +230,8 @@ def length_text(length: float) -> str:
     return "Less than 1 µm" if length < SAME else f"{number(length)} m"
 
 
-def difference_chart(report: StudentReport) -> Html:
-    """The course of the difference as a line; nothing without a difference.
+def difference_chart(report: StudentReport, thing: str) -> Html:
+    """The course of the difference as a line; nothing without a difference. thing: "rope" or "cloth".
 
     A chart of viser's (uPlot) in a folder widens the panel with each change of its axes.
     """
@@ -251,11 +251,12 @@ def difference_chart(report: StudentReport) -> Html:
     )
     return fill(
         '<svg class="springtide-difference" viewBox="0 0 {w} {h}" width="100%" role="img" font-size="11" '
-        'fill="currentColor"><title>Distance of your rope from the program\'s [m] over time [s]</title>{ticks}'
+        'fill="currentColor"><title>Distance of your {thing} from the program\'s [m] over time [s]</title>{ticks}'
+        '<text x="0" y="11">Distance from the program\'s {thing} [m]</text>'
         '<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>'
         '<text x="{left}" y="{foot}">{first:.1f} s</text>'
         '<text x="{w}" y="{foot}" text-anchor="end">{last:.1f} s</text></svg>',
-        w=CHART_WIDTH, h=CHART_HEIGHT, ticks=ticks, line=line, colour=PALETTE[0], left=CHART_LEFT,
+        thing=thing, w=CHART_WIDTH, h=CHART_HEIGHT, ticks=ticks, line=line, colour=PALETTE[0], left=CHART_LEFT,
         foot=CHART_HEIGHT - 3, first=first, last=last,
     )  # fmt: skip
 
@@ -270,9 +271,9 @@ def tick_mark(y: float, word: str) -> Html:
 
 
 def function_lines(session: Session, scene: str) -> Html:
-    """State and errors of every function that is begun; the right ones come last."""
+    """State and errors of every function that is begun: mistakes first, and of these those in the file of the scene."""
     verdicts, waiting = session.versions.verdicts, session.check.waiting
-    rows: list[tuple[int, Html]] = []
+    rows: list[tuple[int, bool, Html]] = []
     is_left = False
     for task in session.tasks:
         if not task.file:
@@ -282,9 +283,11 @@ def function_lines(session: Session, scene: str) -> Html:
             is_left = True
         else:
             compared = compared_text(scene, task.name, session.values)
-            rows.append((ORDER.index(verdict.state), function_line(task, verdict, compared)))
+            rows.append(
+                (ORDER.index(verdict.state), task.file != f"{scene}.py", function_line(task, verdict, compared))
+            )
     rest = faint("The other functions are not begun.") if is_left else Html()
-    return join([*(row for _, row in sorted(rows, key=lambda row: row[0])), rest])
+    return join([*(line for *_, line in sorted(rows, key=lambda row: row[:2])), rest])
 
 
 def compared_text(scene: str, task: str, values: LiveTables) -> Html:

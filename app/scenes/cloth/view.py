@@ -6,7 +6,7 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 import viser
 
-from app.formats.formatting import number
+from app.formats.formatting import counted, number
 from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.colormap import scale_colours
@@ -153,9 +153,11 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         if readings.corrections:
             parts.append(fill("<div>{:.1f} Newton iterations a step</div>", readings.corrections))
         if readings.unsettled:
-            parts.append(fill("<div>Newton's method had not settled in {} steps</div>", readings.unsettled))
+            parts.append(fill("<div>Newton's method had not settled in {}</div>", counted(readings.unsettled, "step")))
         if readings.left_out:
-            parts.append(fill("<div>too crowded: self-collision left out {} particles</div>", readings.left_out))
+            parts.append(
+                fill("<div>too crowded: self-collision left out {}</div>", counted(readings.left_out, "particle"))
+            )
         if readings.threads > 1:
             parts.append(fill("<div>forces computed on {} threads</div>", readings.threads))
         if p.colour == "strain" and self.mesh is not None and self.mesh.has_shader is False:

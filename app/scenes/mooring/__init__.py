@@ -1,6 +1,7 @@
 """The mooring: a floating body on lines between the bed and the water's surface."""
 
 from app.scenes.contract import SceneKind
+from app.scenes.mooring.files.editing import EDITING
 from app.scenes.mooring.line_scene import SERIES
 from app.scenes.mooring.parameters import ABOUT, PRESETS, MooringParams, hidden
 from app.scenes.mooring.quantities import QUANTITIES
@@ -41,5 +42,6 @@ SCENE = SceneKind(
     notes=notes,
     warnings=warnings,
     file_facts=file_facts,
+    file_editing=EDITING,
     quantities=QUANTITIES,
 )  # fmt: skip

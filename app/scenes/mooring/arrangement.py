@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Vector, vector_of
-from app.scenes.mooring.files.from_file import mooring_of
+from app.scenes.mooring.files.from_file import opened
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.rows import LineRows, ends_of
 from sim import floating
@@ -43,7 +43,7 @@ def water_of(params: MooringParams) -> Water:
     """The water of the parameters, or that of their file."""
     if not params.moordyn_file:
         return Water(params.depth, GRAVITY, DENSITY)
-    return mooring_of(params.moordyn_file).system.water
+    return opened(params).system.water
 
 
 def depth_of(params: MooringParams) -> float:
@@ -54,27 +54,27 @@ def depth_of(params: MooringParams) -> float:
 def extent(params: MooringParams) -> float:
     """A length [m] that the picture is made for."""
     if params.moordyn_file:
-        return mooring_of(params.moordyn_file).extent
+        return opened(params).extent
     return max(params.reach, 1.2 * params.depth)
 
 
 def diameter_of(params: MooringParams) -> float:
     """Diameter [m] of the lines; of a file the largest."""
     if params.moordyn_file:
-        return max(line.type.diameter for line in mooring_of(params.moordyn_file).system.lines)
+        return max(line.type.diameter for line in opened(params).system.lines)
     return params.diameter
 
 
 def has_body(params: MooringParams) -> bool:
     """False of a file without coupled points, which has no vessel."""
-    return not params.moordyn_file or bool(mooring_of(params.moordyn_file).vessel)
+    return not params.moordyn_file or bool(opened(params).vessel)
 
 
 def width_of(params: MooringParams) -> float:
     """Width [m] of the body; a vessel from a file is drawn within its fairleads, as no file has its shape."""
     if not params.moordyn_file:
         return params.size
-    found = mooring_of(params.moordyn_file)
+    found = opened(params)
     return min(max(VESSEL_WIDTH * found.radius, LEAST_VESSEL * found.extent), LARGEST_VESSEL * found.extent)
 
 
@@ -158,7 +158,7 @@ def line_types(params: MooringParams) -> tuple[LineType, LineType]:
 def first_line(params: MooringParams) -> tuple[LineType, float]:
     """Type and length [m] of line 1."""
     if params.moordyn_file:
-        line = mooring_of(params.moordyn_file).system.lines[0]
+        line = opened(params).system.lines[0]
         return line.type, line.length
     return line_types(params)[0], params.length
 

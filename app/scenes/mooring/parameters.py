@@ -99,6 +99,7 @@ class MooringParams:
         False, doc="Static force of all lines over the offset, and the force now", title="Restoring force"
     )
     moordyn_file: str = ""  # a MoorDyn file; it is named on the command line only, never by a browser
+    file_changes: tuple[tuple[str, str, float], ...] = ()  # of that file: "length" or "diameter", of what, and [m]
 
 
 # Breaking loads: studless chain of grade R3, 0.0223 d² (44 - 0.08 d) kN with d in mm (DNV-OS-E302) and 19.9 d² t/m;

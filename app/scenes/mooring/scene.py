@@ -6,7 +6,7 @@ from app.scenes.charts import CurveAxes, PlotAxes
 from app.scenes.contract import Advice, FileFacts, Pieces
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.files.file_scene import FileScene
-from app.scenes.mooring.files.from_file import mooring_of
+from app.scenes.mooring.files.from_file import opened
 from app.scenes.mooring.frame import MooringReadings
 from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, LineScene
 from app.scenes.mooring.parameters import EXPLICIT, OF_NO_FILE, MooringParams
@@ -65,21 +65,20 @@ def advice(snapshot: Any) -> Advice | None:
 
 def warnings(scene: LineScene) -> list[str]:
     """Sentences on the state at the start."""
-    path = scene.params.moordyn_file
     said = [] if scene.start.fault is None else [scene.start.fault.said]
-    return [*said, *(raised_points(mooring_of(path)) if path else ())]
+    return [*said, *(raised_points(opened(scene.params)) if scene.params.moordyn_file else ())]
 
 
 def notes(params: MooringParams) -> tuple[str, ...]:
     """Lines on the file of the mooring, none without one."""
-    return mooring_of(params.moordyn_file).notes if params.moordyn_file else ()
+    return opened(params).notes if params.moordyn_file else ()
 
 
 def file_facts(params: MooringParams) -> FileFacts | None:
     """Facts of the MoorDyn file, and the parameters that it replaces."""
     if not params.moordyn_file:
         return None
-    system = mooring_of(params.moordyn_file).system
+    system = opened(params).system
     facts = {
         "depth": system.depth, "density": system.density, "gravity": system.gravity,
         "bed_stiffness": system.bed_stiffness, "bed_damping": system.bed_damping, "friction": system.friction,

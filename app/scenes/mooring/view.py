@@ -81,7 +81,8 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
     def shape_of(frame: MooringFrame) -> Shape:
         """The inputs of a drawing: all that `build` reads, except for those that `show` assigns."""
         p = frame.params
-        return frame.points.shape, p.moordyn_file, p.reach, p.depth, p.body, p.size, frame.surface.shape, frame.rest[2]
+        file = p.moordyn_file, p.file_changes
+        return frame.points.shape, file, p.reach, p.depth, p.body, p.size, frame.surface.shape, frame.rest[2]
 
     async def on_body(self, event: Any) -> None:
         """Grab the body, and pull it."""

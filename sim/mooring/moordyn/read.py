@@ -20,6 +20,7 @@ from sim.mooring.moordyn.sections import (
     RODS,
     TYPES,
     Section,
+    decoded,
     read_text,
     split_sections,
 )
@@ -40,7 +41,7 @@ LARGE_TURN, MOST_TURN = 0.2, 0.6  # [rad] of a free body from its place in the f
 T = TypeVar("T")
 
 
-def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> System:
+def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, content: bytes | None = None) -> System:
     """The System of a MoorDyn file of version 1 or 2.
 
     Coupled bodies become coupled points at their places. A free one becomes a Body, which turns by small angles with
@@ -48,10 +49,11 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None) -> 
     it is slack, too, as MoorDyn has it. Steady forces on points are in N.
 
     say: takes a line on each thing of the file that is left out. None: a UserWarning on what may change forces.
+    content: what the file is to hold in place of what it holds, as of `changed_moordyn`.
     Raises ValueError with everything that cannot be read, and its sections and lines.
     """
     path, wrong = Path(path), Refusals()
-    found = split_sections(read_text(path), wrong)
+    found = split_sections(read_text(path) if content is None else decoded(content), wrong)
     needed = (TYPES, LINES) if RODS in found and found[RODS].rows else (TYPES, POINTS, LINES)
     for name in needed:
         if name not in found or not found[name].rows:

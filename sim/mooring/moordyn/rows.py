@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Container, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -214,7 +214,7 @@ def read_end(where: str, text: str, points: Mapping[int, Point], rod_ends: Mappi
     return RodEnd(found, None)
 
 
-def ends_first(section: Section, points: Mapping[int, Point]) -> bool:
+def ends_first(section: Section, points: Container[int]) -> bool:
     """True if the ends of a line stand before its length and segments, as in version 2, and not behind them.
 
     The values decide. The column names do where both orders fit: some files have those of the other version.

@@ -41,9 +41,14 @@ def read_text(path: Path) -> str:
             raise argument_error("file", str(path), "a file")
         if path.is_file() and path.stat().st_size > MAX_BYTES:
             raise argument_error("file", str(path), f"a file of at most {MAX_BYTES // 1_000_000} MB")
-        return path.read_text(encoding="utf-8-sig", errors="replace")
+        return decoded(path.read_bytes())
     except OSError as error:
         raise unreadable("file", path, error) from None
+
+
+def decoded(content: bytes) -> str:
+    """The content of a file as text; what is not UTF-8 in it, such as a comment, becomes a mark."""
+    return content.decode("utf-8-sig", "replace")
 
 
 def name_of(header: str) -> str:

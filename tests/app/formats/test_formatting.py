@@ -4,7 +4,18 @@ import math
 
 import pytest
 
-from app.formats.formatting import count, fixed, longest_step, metres, number, percent, seconds, short_step, time_step
+from app.formats.formatting import (
+    count,
+    counted,
+    fixed,
+    longest_step,
+    metres,
+    number,
+    percent,
+    seconds,
+    short_step,
+    time_step,
+)
 
 
 @pytest.mark.parametrize(
@@ -79,3 +90,7 @@ def test_large_counts_are_in_words() -> None:
 
 def test_shares_are_in_percent() -> None:
     assert (percent(0.94914, 3), percent(0.0), percent(math.nan)) == ("94.9\u00a0%", "0\u00a0%", "–")
+
+
+def test_a_noun_has_the_number_of_its_count() -> None:
+    assert [counted(n, "line") for n in (0, 1, 2, 12345)] == ["0 lines", "1 line", "2 lines", "12\u202f345 lines"]

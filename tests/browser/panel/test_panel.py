@@ -2,6 +2,7 @@
 
 from app.messages import Pause
 from app.panel.controls.control import title
+from app.panel.controls.scene_pictures import TITLE
 from app.server.viewer import Viewer
 from sim.parameters import parameters_of
 from sim.quantities import write_number
@@ -175,3 +176,52 @@ def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab])
         says("Paused", "Play")
         tab.page.keyboard.press("Space")
         says("Running", "Pause")
+
+
+def test_a_press_on_a_picture_opens_its_scene(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+    picture = tab.page.locator('[data-springtide-scene="Cloth"]')
+    tab.wait(tab.page.get_by_text(TITLE).is_visible)
+    tab.page.get_by_text(TITLE).click()
+    tab.wait(picture.is_visible, 20)
+    tab.wait(lambda: tab.page.evaluate("one => one.naturalWidth", picture.locator("img").element_handle()) == 160, 10)
+    picture.click()
+    tab.wait(lambda: lab.settings.kind.name == "cloth")
+    assert tab.errors == []
+
+
+def test_back_and_forward_go_through_scenes_and_presets(lab: Viewer, open_tab) -> None:
+    tab = open_tab(lab.port)
+
+    def shows(scene: str, preset: str) -> bool:
+        here = tab.page.locator("[data-springtide-here]")
+        return (lab.settings.kind.name, lab.settings.loaded) == (scene, preset) and here.count() == 1
+
+    def at(scene: str, preset: str) -> None:
+        tab.wait(lambda: shows(scene, preset), 30)
+        tab.wait_for_panel(lab)
+        tab.page.wait_for_timeout(300)  # the page has taken it in
+
+    first = lab.settings.loaded
+    at("rope", first)
+    address = tab.page.url
+    lab.settings.load("Pendulum")
+    at("rope", "Pendulum")
+    lab.open("cloth")
+    at("cloth", "Curtain")
+    assert tab.page.evaluate("history.length") >= 3
+    for move, place in (
+        ("back", ("rope", "Pendulum")), ("back", ("rope", first)), ("forward", ("rope", "Pendulum")),
+        ("forward", ("cloth", "Curtain")), ("back", ("rope", "Pendulum")),
+    ):  # fmt: skip
+        tab.page.evaluate(f"history.{move}()")
+        at(*place)
+    lab.settings.load(first)  # what is visited after a step back takes the place of what lay ahead
+    at("rope", first)
+    tab.page.evaluate("history.forward()")
+    tab.page.wait_for_timeout(1000)
+    assert shows("rope", first)
+    tab.page.evaluate("history.back()")
+    at("rope", "Pendulum")
+    assert tab.page.url == address
+    assert tab.errors == []

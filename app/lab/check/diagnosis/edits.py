@@ -18,7 +18,7 @@ from app.lab.check.diagnosis.explanation import Equation, Explanation, Piece
 
 OPERATORS: dict[type[ast.operator], tuple[type[ast.operator], ...]] = {
     ast.Add: (ast.Sub, ast.Mult), ast.Sub: (ast.Add, ast.Div), ast.Mult: (ast.Div, ast.Add, ast.MatMult, ast.Pow),
-    ast.Div: (ast.Mult, ast.Sub), ast.Pow: (ast.Mult,), ast.FloorDiv: (ast.Div,), ast.Mod: (ast.Div,),
+    ast.Div: (ast.Mult, ast.Sub), ast.Pow: (ast.Mult,), ast.FloorDiv: (ast.Div, ast.Mult), ast.Mod: (ast.Div,),
     ast.MatMult: (ast.Mult,),
 }  # fmt: skip
 COMPARISONS: dict[type[ast.cmpop], tuple[type[ast.cmpop], ...]] = {
@@ -110,8 +110,8 @@ def edits_of_tree(
             put(places[node], node)
             if found is None:
                 continue
-            if isinstance(node, ast.If | ast.IfExp):
-                is_true = getattr(new, "test").value  # noqa: B009 - an `if` has it
+            if isinstance(node, ast.If | ast.IfExp) and isinstance(new, ast.If | ast.IfExp):  # none is put around it
+                is_true = getattr(new.test, "value", False)
                 yield Edit(found, source_of(node.test), "", line, "always" if is_true else "never")
             elif after != before:
                 yield Edit(found, before, after, line)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from app.messages import SceneCommand, Vector, vector_of
 from app.scenes.mooring.arrangement import extent, sea_of
-from app.scenes.mooring.files.from_file import mooring_of, slack_of
+from app.scenes.mooring.files.from_file import Changes, mooring_of, opened, slack_of
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.line_scene import LineScene, fade_at
 from app.scenes.mooring.parameters import MooringParams
@@ -34,12 +34,13 @@ class FileInputs(NamedTuple):
     """Everything that the restoring curve depends on."""
 
     path: str
+    changes: Changes
     wave: tuple[float, float]  # unit vector along the waves
     far: float  # [m] offset to which the curve goes at least
 
     def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Offsets [m] of the vessel along the waves, and the force [N] of all lines against each; NaN without rest."""
-        file = mooring_of(self.path)
+        file = mooring_of(self.path, self.changes)
         slack = slack_of(file.system)
         end = max(REACH * slack[0] if slack else 0.0, LEAST_REACH * file.extent, self.far)
         offset = np.linspace(-end, end, CURVE_POINTS)
@@ -65,7 +66,7 @@ class FileScene(LineScene):
     def arrange(self) -> None:
         """Make the file's system, with the vessel where the file has it."""
         p = self.params
-        self.file = mooring_of(p.moordyn_file)
+        self.file = opened(p)
         self.vessel = CriticallyDampedTracker((0.0, 0.0, 0.0), VESSEL_SPEED * extent(p))
         self.moved_by = np.zeros(3)
         self.sea = sea_of(p)
@@ -160,7 +161,7 @@ class FileScene(LineScene):
     def static_inputs(self, far: float = 0.0) -> FileInputs:
         """Everything that the restoring curve depends on."""
         x, y = self.wave_direction.tolist()
-        return FileInputs(self.params.moordyn_file, (x, y), far)
+        return FileInputs(self.params.moordyn_file, self.params.file_changes, (x, y), far)
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""

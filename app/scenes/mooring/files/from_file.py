@@ -2,13 +2,15 @@
 
 import functools
 import math
-from typing import NamedTuple
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from app.messages import Vector, vector_of
+from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.rows import LineRows, ends_of
-from sim.mooring import System, read_moordyn
+from sim.mooring import System, changed_moordyn, read_moordyn
 
 LEAST_EXTENT = 1e-3  # [m]
 STRETCH = 0.01  # of the shortest line at the vessel, to which the vessel may be dragged beyond where it is straight
@@ -30,11 +32,26 @@ class FileMooring(NamedTuple):
     farthest: float  # [m] to which the vessel may be dragged
 
 
+Changes: TypeAlias = tuple[tuple[str, str, float], ...]  # as in `MooringParams`
+
+
+def opened(params: MooringParams) -> FileMooring:
+    """The mooring of the file of these parameters, with its changes."""
+    return mooring_of(params.moordyn_file, params.file_changes)
+
+
+def content_of(path: str, changes: Changes) -> bytes:
+    """The content of a file with changes. Raises ValueError as `changed_moordyn` does."""
+    lengths = {int(of): value for what, of, value in changes if what == "length"}
+    diameters = {of: value for what, of, value in changes if what == "diameter"}
+    return changed_moordyn(Path(path).read_bytes(), lengths, diameters)
+
+
 @functools.lru_cache(maxsize=4)
-def mooring_of(path: str) -> FileMooring:
+def mooring_of(path: str, changes: Changes = ()) -> FileMooring:
     """The mooring of a file, which is read once. Raises ValueError as `read_moordyn` does."""
-    notes: list[str] = []
-    system = read_moordyn(path, notes.append)
+    notes = [f"changed here: {what} of {of} is {value:g} m" for what, of, value in changes]
+    system = read_moordyn(path, notes.append, content_of(path, changes) if changes else None)
     kinds = {point.id: point.kind for point in system.points}
     nodes = {kind: tuple(i for i, p in enumerate(system.points) if p.kind == kind) for kind in (*kinds.values(), "")}
     vessel = nodes.get("coupled", ())

@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 from pathlib import PureWindowsPath
 
-from app.formats.formatting import metres, number, percent, seconds
+from app.formats.formatting import counted, metres, number, percent, seconds
 from app.messages import Snapshot
 from app.render.markup.html import ERROR_COLOUR, WARNING_COLOUR, Html, bold, coloured, faint, fill, info, join, table
-from app.scenes.mooring.files.from_file import mooring_of
+from app.scenes.mooring.files.from_file import opened
 from app.scenes.mooring.frame import EndStatistics, LineReading, MooringReadings
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.quantities import QUANTITIES, load_use
@@ -118,16 +118,17 @@ def notes_of(snapshot: Snapshot) -> dict[str, str]:
         "Bed and slack": join((bed_table(snapshot), said)),
     }
     path = snapshot.params.moordyn_file
-    return {"Files": file_text(path, snapshot.readings.fault), **notes} if path else notes
+    return {"Files": file_text(snapshot.params, snapshot.readings.fault), **notes} if path else notes
 
 
-def file_text(path: str, fault: Fault | None) -> Html:
-    """The file of the mooring, and the parts of it without effect here."""
-    found = mooring_of(path)
+def file_text(params: MooringParams, fault: Fault | None) -> Html:
+    """The file of the mooring, its changes, and the parts of it without effect here."""
+    found = opened(params)
     system = found.system
     count = fill(
-        "<div>{}: {} lines, {} points, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(path).name),
-        len(system.lines), len(system.points), len(found.vessel), metres(system.depth),
+        "<div>{}: {}, {}, {} of them on the vessel, {} deep</div>", bold(PureWindowsPath(params.moordyn_file).name),
+        counted(len(system.lines), "line"), counted(len(system.points), "point"), len(found.vessel),
+        metres(system.depth),
     )  # fmt: skip
     said = [] if fault is None else [coloured(fault.said, WARNING_COLOUR)]
     notes = (*said, *found.notes, *raised_points(found))
@@ -148,6 +149,8 @@ def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     found: MooringReadings = snapshot.readings
     lines = {"time_step": step_mark(read(QUANTITIES, "critical_step", snapshot)), **dict.fromkeys(BLAMED, "")}
+    is_known = snapshot.params.breaking_load > 0.0
+    lines["breaking_load"] = "" if is_known else "unknown: no tension is given as a percentage of it"
     if found.fault is not None and found.fault.parameter:
         lines[found.fault.parameter] = coloured(found.fault.said, WARNING_COLOUR)
     return lines

@@ -13,6 +13,7 @@ from msgspec.structs import replace
 
 from app.lab.check.comparing import call, conform, parts, reproduces, same
 from app.lab.check.diagnose import FRESH, FRESH_SEED, SEED
+from app.lab.check.diagnosis.edits import own_edits
 from app.lab.check.diagnosis.effects import EFFECTS
 from app.lab.check.diagnosis.where import number
 from app.lab.check.program_check import SAMPLES, compare
@@ -175,6 +176,23 @@ def test_mistakes_are_named_so_that_one_knows_what_to_change(runner: Runner, nam
 def test_the_mistakes_are_as_many_as_the_audit_made() -> None:
     assert len(MISTAKES) == 95
     assert len(NAMES) == 23
+
+
+def test_a_product_that_is_a_division_which_rounds_down_is_named(runner: Runner) -> None:
+    """Its result is 0 at all inputs that are tried, and not at some others."""
+    right = RIGHT["draft"]
+    assert "oil_density * min(" in right
+    source = source_of(TASKS["draft"], right.replace("oil_density * min(", "oil_density // min("))
+    said = judged(runner, TASKS["draft"], source)
+    assert isinstance(said, Wrong)
+    assert "oil_density // min(" in str(said)
+    assert is_true(TASKS["draft"], source, said)
+
+
+def test_the_less_likely_edits_are_tried_around_a_conditional_expression_too() -> None:
+    source = b"def one(a, b):\n    x = (a if a > b else b)\n    return 2 * x\n"
+    found = {(edit.before, edit.after) for edit in own_edits(source, "one", {}, far=True)}
+    assert any("if a > b else b" in before and before != after for before, after in found)
 
 
 SIGNS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.FloorDiv, ast.Pow)

@@ -14,7 +14,7 @@ from app.scenes.mooring import SCENE
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.files.file_scene import FileScene
 from app.scenes.mooring.parameters import PRESETS, MooringParams, hidden
-from app.scenes.mooring.readings.report import figures_of, kilonewtons, notes_of, tension_tables
+from app.scenes.mooring.readings.report import figures_of, kilonewtons, marks_of, notes_of, tension_tables
 from app.scenes.mooring.readings.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
 from app.scenes.quantities import measured
 from sim.numerics.extreme_values import LEAST_PEAKS
@@ -142,9 +142,11 @@ def test_the_use_is_of_the_breaking_load_and_without_one_there_is_none():
     shown = snapshot_of(scene)
     assert "<th>use<br>%</th>" in str(tension_tables(shown))
     assert f"({100.0 * largest / 1e6:.2g}" in str(figures_of(shown))
+    assert marks_of(shown)["breaking_load"] == ""
     scene.params = dataclasses.replace(scene.params, breaking_load=0.0)
     shown = snapshot_of(scene)
     assert "use" not in str(tension_tables(shown))
+    assert "unknown" in marks_of(shown)["breaking_load"]
     assert "set the breaking load" in notes_of(shown)["Tensions"]
     assert "%" not in str(figures_of(shown))
     assert math.isnan(measured(SCENE, scene)["breaking_load_use"].value)

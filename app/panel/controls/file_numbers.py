@@ -1,0 +1,86 @@
+"""Numbers of a file that the scene runs: changed in the panel, and the file with them sent to the browser."""
+
+import math
+
+import viser
+
+from app.panel.settings import SceneSettings
+from app.render.handles.viser_types import ViserEvent
+from app.render.markup.html import fill, note
+from app.scenes.contract import FileEditing
+from sim.quantities import write_number
+from sim.tables import number_of
+from sim.validation import ConvergenceError
+
+APPLY, SAVE = "Apply", "Save file"
+
+
+class FileNumbers:
+    """The folder, in the container that is open; it is shown while a file is open."""
+
+    def __init__(self, gui: viser.GuiApi, editing: FileEditing, settings: SceneSettings) -> None:
+        self.editing, self.settings = editing, settings
+        things = editing.numbers(settings.params)
+        self.fields: dict[str, viser.GuiTextHandle] = {}
+        self.shown: tuple[str, dict[str, float]] | None = None  # what is chosen, and its numbers
+        if not things:
+            return
+        with gui.add_folder(editing.title, expand_by_default=False):
+            self.chooser = gui.add_dropdown(editing.thing, tuple(things))
+            for name, value in things[self.chooser.value].items():
+                self.fields[name] = gui.add_text(name, write_number(value))
+            buttons = gui.add_button_group("", (APPLY, SAVE))
+            self.line = gui.add_html("")
+
+        @self.chooser.on_update
+        async def _(_: ViserEvent) -> None:
+            self.say("")
+            self.show()
+
+        @buttons.on_click
+        async def _(event: ViserEvent) -> None:
+            if event.client is None:
+                return
+            if event.target.value == APPLY:
+                self.apply()
+            else:
+                name, content = editing.content(settings.params)
+                event.client.send_file_download(name, content, save_immediately=True)
+                self.say(f"{name} was sent to the browser.")
+
+    def show(self) -> None:
+        """Show the numbers of the chosen thing, unless they are shown: some may be half typed."""
+        if not self.fields:
+            return
+        now = self.chooser.value, dict(self.editing.numbers(self.settings.params)[self.chooser.value])
+        if now != self.shown:
+            self.shown = now
+            for name, value in now[1].items():
+                self.fields[name].value = write_number(value)
+
+    def apply(self) -> None:
+        """Begin again with the numbers in the fields; of one that cannot be taken, say why."""
+        before = self.editing.numbers(self.settings.params)[self.chooser.value]
+        try:
+            values = {name: read(name, field.value, before[name]) for name, field in self.fields.items()}
+            params = self.editing.changed(self.settings.params, self.chooser.value, values)
+        except (ValueError, ConvergenceError, OSError) as reason:
+            self.say(str(reason))
+            return
+        self.say("")
+        if params != self.settings.params:
+            self.settings.begin_with(params)
+
+    def say(self, text: str) -> None:
+        """Say something below the buttons."""
+        self.line.content = note(fill('<div role="status">{}</div>', text)) if text else ""
+
+
+def read(name: str, text: str, before: float) -> float:
+    """The number above 0 that a text is; `before` where it is shown so. Raises ValueError."""
+    if text == write_number(before):  # which may have fewer digits
+        return before
+    value = number_of(text.strip())
+    if value is None or not math.isfinite(value) or value <= 0.0:
+        raise ValueError(f"{name}: {text!r} is not allowed; allowed: a number above 0")
+    return value

@@ -1,0 +1,36 @@
+"""The scenes to choose from as pictures, beside the list of their names."""
+
+import base64
+from importlib import resources
+
+import viser
+
+from app.render.handles.viser_inside import uuid_of
+from app.render.handles.viser_types import GuiHandle
+from app.render.markup.html import fill, join
+from sim.parameters import in_words
+
+TITLE = "Scenes in pictures"
+
+
+def add_scene_pictures(gui: viser.GuiApi, chooser: GuiHandle, scenes: tuple[str, ...]) -> None:
+    """A folder of a picture for each scene; the page hands on which is pressed to the list (js/panel/scenes.js)."""
+    uuid = uuid_of(chooser)
+    if not uuid:
+        return
+    with gui.add_folder(TITLE, expand_by_default=False):
+        buttons = join(
+            fill(
+                '<button type="button" data-springtide-scene="{0}">'
+                '<img alt="" src="data:image/jpeg;base64,{1}">{0}</button>',
+                in_words(name),
+                picture(name),
+            )
+            for name in scenes
+        )
+        gui.add_html(str(fill('<div class="springtide-scenes" data-springtide-chooser="{}">{}</div>', uuid, buttons)))
+
+
+def picture(scene: str) -> str:
+    """A small picture of a scene, JPEG in base 64."""
+    return base64.b64encode((resources.files("assets") / "scenes" / f"{scene}.jpg").read_bytes()).decode()

@@ -1,0 +1,10 @@
+// The pictures of the scenes: a press chooses the scene in the list of scenes, which is a control of the panel.
+
+import { page } from "../core/life.js";
+import { send } from "../core/viewer.js";
+
+page.listen(document, "click", ({ target }) => {
+  const button = target instanceof Element ? target.closest("[data-springtide-scene]") : null;
+  const { springtideChooser } = button?.closest("[data-springtide-chooser]")?.dataset ?? {};
+  if (button) send(springtideChooser, button.dataset.springtideScene);
+});

@@ -1,0 +1,55 @@
+"""Numbers of an opened MoorDyn file that the panel changes, and the file with them."""
+
+import dataclasses
+import re
+from collections.abc import Mapping
+from pathlib import PureWindowsPath
+
+from app.scenes.contract import FileEditing
+from app.scenes.mooring.files.from_file import content_of, opened
+from app.scenes.mooring.parameters import MooringParams
+from sim.mooring import Line
+
+LENGTH, DIAMETER = "Length [m]", "Diameter of its type [m]"
+OF_ROD = re.compile(r"rod\d+")  # the line type that `read_moordyn` makes of a rod: no row of lines has it
+
+
+def title(line: Line) -> str:
+    """A line as it is chosen."""
+    return f"{line.id}, {line.type.name}"
+
+
+def lines_of(params: MooringParams) -> dict[str, Line]:
+    """The lines of the file by their titles; none without a file."""
+    found = opened(params).system.lines if params.moordyn_file else ()
+    return {title(line): line for line in found if not OF_ROD.fullmatch(line.type.name)}
+
+
+def numbers(params: MooringParams) -> dict[str, dict[str, float]]:
+    """Of each line what can be changed."""
+    return {name: {LENGTH: one.length, DIAMETER: one.type.diameter} for name, one in lines_of(params).items()}
+
+
+def changed(params: MooringParams, thing: str, values: Mapping[str, float]) -> MooringParams:
+    """The parameters with other numbers of a line. Raises ValueError where the file cannot have them."""
+    line = lines_of(params)[thing]
+    changes = {(what, of): value for what, of, value in params.file_changes}
+    if values[LENGTH] != line.length:
+        changes["length", str(line.id)] = values[LENGTH]
+    if values[DIAMETER] != line.type.diameter:
+        changes["diameter", line.type.name] = values[DIAMETER]
+    found = dataclasses.replace(
+        params, file_changes=tuple((what, of, value) for (what, of), value in sorted(changes.items()))
+    )
+    opened(found)
+    return found
+
+
+def content(params: MooringParams) -> tuple[str, bytes]:
+    """Name and content of the file with the changes."""
+    path = PureWindowsPath(params.moordyn_file)
+    name = f"{path.stem}-changed{path.suffix}" if params.file_changes else path.name
+    return name, content_of(params.moordyn_file, params.file_changes)
+
+
+EDITING = FileEditing("Lines of the file", "Line", numbers, changed, content)

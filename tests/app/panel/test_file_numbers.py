@@ -1,0 +1,95 @@
+"""Lines of an opened MoorDyn file are changed in the panel, and written again."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from app.scenes.mooring.report import notes_of
+
+from app.panel.controls.file_numbers import APPLY, SAVE, FileNumbers
+from app.scenes import NAMES, scene_named
+from app.scenes.mooring.files.editing import DIAMETER, LENGTH, changed, content, lines_of, numbers
+from app.scenes.mooring.parameters import MooringParams
+from app.scenes.setups import described
+from app.server.loop.sim_loop import SimLoop
+from app.server.viewer import Viewer
+from sim.mooring import read_moordyn
+from tests import coroutines
+from tests.waiting import wait_for
+
+PATH = Path(__file__).parents[2] / "sim/mooring/files/shared_line.txt"
+FILE = MooringParams(moordyn_file=str(PATH), time_step=2e-3)
+
+
+def test_a_file_that_was_changed_and_written_is_that_which_runs(tmp_path: Path) -> None:
+    first, second, *_ = numbers(FILE)
+    params = changed(FILE, first, {LENGTH: 123.25, DIAMETER: numbers(FILE)[first][DIAMETER]})
+    params = changed(params, second, {LENGTH: numbers(FILE)[second][LENGTH], DIAMETER: 0.123})
+    name, written = content(params)
+    assert name == "shared_line-changed.txt"
+    (tmp_path / name).write_bytes(written)
+    again, running = read_moordyn(tmp_path / name, lambda line: None), SimLoop(scene_named("mooring").make(params))
+    assert again == running.scene.file.system
+    assert again.lines[0].length == 123.25
+    assert lines_of(params)[second].type.diameter == 0.123
+    rows, others = PATH.read_bytes().splitlines(), written.splitlines()
+    assert sum(a != b for a, b in zip(rows, others, strict=True)) == 2
+    assert content(FILE) == ("shared_line.txt", PATH.read_bytes())
+    assert read_moordyn(PATH, lambda line: None) == SimLoop(scene_named("mooring").make(FILE)).scene.file.system
+    assert "changed here: length of 1 is 123.25 m" in notes_of(running.latest)["Files"]
+    assert described(scene_named("mooring"), params)["mooring"]["lines"][0]["length"] == 123.25
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_without_a_file_there_are_no_numbers_of_it(name: str) -> None:
+    kind = scene_named(name)
+    assert (kind.file_editing is not None) == (name == "mooring")
+    if kind.file_editing is not None:
+        assert kind.file_editing.numbers(kind.params()) == {}
+
+
+@pytest.fixture
+def panel() -> Any:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("mooring", FILE, paused=True)
+    yield viewer
+    viewer.shut()
+
+
+def press(found: FileNumbers, viewer: Viewer, label: str) -> list[tuple[str, bytes]]:
+    sent: list[tuple[str, bytes]] = []
+    client = SimpleNamespace(send_file_download=lambda name, content, **how: sent.append((name, content)))
+    gui: Any = viewer.server.gui
+    buttons = next(
+        one for one in gui._gui_input_handle_from_uuid.values() if getattr(one, "options", ()) == (APPLY, SAVE)
+    )
+    for callback in buttons._impl.update_cb:
+        coroutines.run(callback(SimpleNamespace(target=SimpleNamespace(value=label), client=client, client_id=1)))
+    return sent
+
+
+def test_numbers_are_applied_undone_and_saved(panel: Viewer) -> None:
+    found: Any = panel.panel.controls_tab.file_numbers
+    assert found.chooser.options == tuple(numbers(FILE))
+    before = found.fields[LENGTH].value
+    found.fields[LENGTH].value = "130"
+    press(found, panel, APPLY)
+    assert panel.settings.params.file_changes == (("length", "1", 130.0),)
+    wait_for(lambda: panel.scene.params.file_changes)
+    assert panel.scene.file.system.lines[0].length == 130.0
+    ((name, written),) = press(found, panel, SAVE)
+    assert (name, b"130.0" in written) == ("shared_line-changed.txt", True)
+    for wrong, words in (("-1", "a number above 0"), ("long", "'long'"), ("", "''")):
+        found.fields[LENGTH].value = wrong
+        press(found, panel, APPLY)
+        assert words in found.line.content.replace("&#39;", "'")
+        assert panel.settings.params.file_changes == (("length", "1", 130.0),)
+    panel.settings.set("speed", 2.0)
+    assert found.fields[LENGTH].value == ""  # it may be half typed
+    panel.settings.undo()
+    panel.settings.undo()
+    assert panel.settings.params.file_changes == ()
+    assert found.fields[LENGTH].value == before
+    wait_for(lambda: not panel.scene.params.file_changes)
+    assert panel.scene.file.system == read_moordyn(PATH, lambda line: None)

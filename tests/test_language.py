@@ -19,7 +19,7 @@ COMMENT = re.compile(r"(What|Whether|How|Which) |(what|whether|how) ")
 COMMENT_IN_JS = re.compile(r"(?<!:)//\s*((?:What|Whether|How|Which|what|whether|how) .*)")
 AVOIDED = re.compile(
     r"\b(of which|[Tt]here (is|are|was|were) none|(is|are) none of|by no fault|whereof|[Bb]esides|[Hh]ence|for ever"
-    r"|but for|expected (is|are) (a|an|the|two)|no longer lives|lives whatever)\b"
+    r"|but for|so many|[Ww]hoever|expected (is|are) (a|an|the|two)|no longer lives|lives whatever)\b"
 )
 PAGES = [path for path in sorted((ROOT / "docs").glob("*.md")) if path.name != "physics.md"] + [ROOT / "README.md"]
 SCRIPTS = sorted((ROOT / "app").rglob("*.js"))

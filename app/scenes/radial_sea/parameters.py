@@ -290,7 +290,7 @@ def weathered_oil(params: RadialSeaParams) -> WeatheredOil | None:
 
 @functools.lru_cache(maxsize=8)
 def spill_at(spill: Spill, hours: float) -> WeatheredOil:
-    """A spill so many hours later; cached, as several quantities and the fluids read it."""
+    """A spill after a number of hours; cached, as several quantities and the fluids read it."""
     return weather(spill).at(hours)
 
 

@@ -34,7 +34,7 @@ MOST = 25  # corrections a stage: a stage that has not settled by then is taken 
 SETTLED = 1e-11  # size of corrections not taken, relative to the fastest velocity
 SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
 # A net's correction is cut where the forces along it are turned round and more than this part as large after it, and
-# prolonged where more than this part of them is left, to at most so many times its length.
+# prolonged where more than this part of them is left, to at most this multiple of its length.
 OVERSHOT, FELL_SHORT, FARTHEST = 0.5, 0.3, 3.0
 USABLE = 1e-3  # the last correction, relative to the fastest velocity, of a stage that may be taken unsettled
 MOST_ITERATIONS = 500  # of conjugate gradients with new factors
@@ -207,7 +207,7 @@ def correct_net(reduction, g, p, work):
             break
         is_new = True
     solver.kept[1] = taken
-    # The scratch of forces is zero at its ends for whoever relies on it.
+    # The scratch of forces is zero at its ends, as forces rely on it.
     for j in range(work.f.shape[0]):
         work.f[j] = 0.0
     return taken

@@ -166,7 +166,7 @@ def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab
         waiting = pool.submit(rope.wait, 1e5)
         wait_for(lambda: rope.running)
         rope.reset()
-        with pytest.raises(RuntimeError, match="begun again"):
+        with pytest.raises(RuntimeError, match="was reset"):
             waiting.result(60.0)
 
 

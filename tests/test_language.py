@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from app.scenes import NAMES, scene_named
+from sim.parameters import parameters_of
 from tests.test_layers import ROOT, below, named
 
 BEGINNINGS = r"(What|Whether|Where|Which|How|Why|When|Who|All that|That|Those|The one|Of)\b"
@@ -75,6 +77,13 @@ def test_comments_are_no_clauses():
         first = [line for before, line in zip(["", *text], text, strict=False) if not before.lstrip().startswith("//")]
         wrong += [f"{named(path)}: {found[1]}" for line in first for found in COMMENT_IN_JS.finditer(line)]
     assert wrong == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_hints_of_controls_are_no_clauses(name):
+    hints = [parameter.doc for parameter in parameters_of(scene_named(name).params).values()]
+    assert len(hints) > 10
+    assert [hint for hint in hints if CLAUSE.match(hint)] == []
 
 
 @pytest.mark.parametrize(

@@ -150,7 +150,7 @@ class RadialSeaParams:
         doc="Method that computes the surface; both are drawn on the same radial grid",
     )  # fmt: skip
     centre: str = in_grid(
-        "fixed", choices={"fixed": "At the bodies", "camera": "Below the camera"}, doc="Where the grid is dense",
+        "fixed", choices={"fixed": "At the bodies", "camera": "Below the camera"}, doc="Place where the grid is dense",
         affects="look", title="Grid centre",
     )  # fmt: skip
     rings: int = in_grid(128, 16, 256, "", "Rings of the grid", affects="look")

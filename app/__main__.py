@@ -28,9 +28,9 @@ COMMANDS = {
     "sweep": ("run a scene over ranges of its parameters and write one NetCDF file", "app.study.sweep.command"),
     "hydrodynamics": (
         "compute added mass, damping and wave forces of your own hull (needs the extra `bem`)",
-        "app.commands.hydrodynamics",
+        "app.commands.hulls.hydrodynamics",
     ),
-    "hull": ("print the size, volume, draft, stability and gaps of a mesh", "app.commands.hull"),
+    "hull": ("print the size, volume, draft, stability and gaps of a mesh", "app.commands.hulls.hull"),
     "lab": ("the course lab: make a folder of exercises, check it", "app.commands.lab"),
     "warmup": ("compile all kernels and plan all transforms, once", "app.commands.warmup"),
 }

@@ -244,6 +244,7 @@ class Status(NamedTuple):
     # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
     replayed: tuple[Vector, Vector] | None = None
     unmade: bool = False  # the scene could not begin with its parameters
+    pace: float = 1.0  # factor on `speed` that the scene asks for: below 1 is slow motion
     restarted: bool = False  # an undo has lately found that the run was not kept, so it began again
     faster: str = ""  # advice that makes a capped run faster, or ""
 

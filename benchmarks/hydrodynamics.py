@@ -8,7 +8,7 @@ import numpy as np
 from rich import get_console
 from rich.progress import Progress
 
-from app.commands.hydrodynamics import require_capytaine
+from app.commands.hulls.hydrodynamics import require_capytaine
 from app.formats import text_tables
 from assets.shape_panels import panels_of_shape
 from benchmarks.linear_motion import GRAVITY, SEA_DENSITY, first_swings, linear_decay, linear_response

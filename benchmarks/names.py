@@ -1,6 +1,5 @@
 """Names of the benchmarks, read from the files that hold them."""
 
-import pkgutil
 from pathlib import Path
 
 CASES = Path(__file__).with_name("cases")
@@ -8,5 +7,5 @@ CASES = Path(__file__).with_name("cases")
 
 def places() -> dict[str, str]:
     """Name of each benchmark -> its module, in alphabetical order."""
-    names = sorted(info.name for info in pkgutil.iter_modules([str(CASES)]))
-    return {name.rstrip("_"): f"benchmarks.cases.{name}" for name in names}  # `class_` for the word `class`
+    files = {path.stem: f"benchmarks.cases.{path.parent.name}.{path.stem}" for path in CASES.glob("*/[!_]*.py")}
+    return {name.rstrip("_"): files[name] for name in sorted(files)}  # `class_` for the word `class`

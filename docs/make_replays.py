@@ -48,7 +48,7 @@ def page_of(scene: str, clip: Clip) -> str:
     while loop.scene.time < clip.end:
         loop.tick(1.0 / clip.rate)
         wall += 1.0 / clip.rate + ROUNDING
-        rows += loop.run.snapshots.pop_rows()
+        rows += [row for _, row in loop.run.snapshots.pop_rows()]
         if loop.scene.time >= clip.start:
             recorder.note(loop.latest, wall)
     return replay_html(kind, recorder.kept(), Plotted(rows, {}))

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.validation import argument_error, check_number, is_whole_number
+from sim.validation import argument_error, check_positive, is_whole_number
 
 MAX_FRAMES = 10_000_000  # capacity of memory, for a small system
 
@@ -36,11 +36,11 @@ def frame_times(
     duration: float, frames: int, step: float | None = None, progress: Progress = None
 ) -> NDArray[np.float64]:
     """The times (frames,) [s] from 0 to `duration` [s]. Raises ValueError for arguments that no run can have."""
-    check_number("duration", duration, 0, math.inf, "s", above=True)
+    check_positive("duration", duration, "s")
     if not is_whole_number(frames) or not 2 <= frames <= MAX_FRAMES:
         raise argument_error("frames", frames, f"a whole number from 2 to {MAX_FRAMES}")
     if step is not None:
-        check_number("step", step, 0, math.inf, "s", above=True)
+        check_positive("step", step, "s")
     if progress is not None and not callable(progress):
         raise argument_error("progress", progress, "a function of frames done and frames, or None")
     return np.linspace(0.0, duration, int(frames))

@@ -98,7 +98,9 @@ def is_whole_number(value: object) -> bool:
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
-def check_number(name: str, value: object, low: float, high: float, unit: str, *, above: bool = False) -> float:
+def check_number(
+    name: str, value: object, unit: str, low: float = -math.inf, high: float = math.inf, *, above: bool = False
+) -> float:
     """`value` as a finite float in [low, high], or in (low, high] with `above`.
 
     Raises ValueError with the name, the value and the range.
@@ -106,42 +108,19 @@ def check_number(name: str, value: object, low: float, high: float, unit: str, *
     number = as_float(value)
     if math.isfinite(number) and low <= number <= high and not (above and number == low):
         return number
-    start = (f"above {low:g}" if above else f"from {low:g}") if low > -math.inf else "a finite number"
-    allowed = f"{start}{f' to {high:g}' if high < math.inf else ''} {unit}".rstrip()
-    is_other = math.isnan(number) and low > -math.inf  # no number, or NaN
-    raise argument_error(name, value, f"a number {allowed}" if is_other else allowed)
+    words = [] if math.isfinite(number) and low > -math.inf else ["a finite number"]
+    if low > -math.inf:
+        words.append(f"{'above' if above else 'from'} {low:g}")
+    if high < math.inf:
+        words.append(f"to {high:g}" if low > -math.inf else f"up to {high:g}")
+    raise argument_error(name, value, " ".join([*words, unit]).rstrip())
 
 
 def check_positive(name: str, value: object, unit: str, *, allow_infinite: bool = False) -> float:
     """`value` as a float above 0, finite unless `allow_infinite`. Raises ValueError otherwise."""
-    number = as_float(value)
-    if not number > 0.0 or (math.isinf(number) and not allow_infinite):
-        raise argument_error(name, value, f"a number above 0 {unit}" + (", or inf" if allow_infinite else ""))
-    return number
-
-
-def check_not_negative(name: str, value: object, unit: str) -> float:
-    """`value` as a finite float, 0 or above. Raises ValueError otherwise."""
-    number = as_float(value)
-    if not 0.0 <= number < math.inf:
-        raise argument_error(name, value, f"0 or above, finite {unit}")
-    return number
-
-
-def check_within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
-    """`value` as a float in [low, high]. Raises ValueError otherwise."""
-    number = as_float(value)
-    if not low <= number <= high:
-        raise argument_error(name, value, f"{low:g} to {high:g} {unit}".rstrip())
-    return number
-
-
-def check_finite(name: str, value: object, unit: str = "") -> float:
-    """`value` as a finite float. Raises ValueError otherwise."""
-    number = as_float(value)
-    if not math.isfinite(number):
-        raise argument_error(name, value, f"a finite number {unit}".rstrip())
-    return number
+    if allow_infinite and as_float(value) == math.inf:
+        return math.inf
+    return check_number(name, value, f"{unit}, or inf" if allow_infinite else unit, 0.0, above=True)
 
 
 def check_angle(name: str, value: object) -> float:

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from sim import dispersion
-from sim.validation import check_not_negative, check_positive
+from sim.validation import check_number, check_positive
 
 # The defaults of the library, where nothing else is named.
 EARTH_GRAVITY = 9.81  # [m/s2]
@@ -25,8 +25,8 @@ class Water:
 
     def __post_init__(self) -> None:
         check_positive("depth", self.depth, "m", allow_infinite=True)
-        check_not_negative("gravity", self.gravity, "m/s2")
-        check_not_negative("density", self.density, "kg/m3")
+        check_number("gravity", self.gravity, "m/s2", 0.0)
+        check_number("density", self.density, "kg/m3", 0.0)
 
     def __str__(self) -> str:
         return f"water {self.depth:g} m deep of {self.density:g} kg/m3 under a gravity of {self.gravity:g} m/s2"

@@ -33,11 +33,10 @@ from sim.validation import (
     argument_error,
     as_array,
     check_choice,
-    check_finite,
     check_kind,
+    check_number,
     check_positions,
     check_vector,
-    check_within,
     is_whole_number,
 )
 from sim.water import Water
@@ -122,9 +121,9 @@ class Waves:
         and Hagemeijer 1991, Proc. ISOPE 3:64). Raises ValueError for a height that these amplitudes cannot have.
         """
         x, y = check_vector("place", place, "m", 2)
-        theta = self.phase + self.kx * x + self.ky * y - self.omega * check_finite("t", t, "s")
+        theta = self.phase + self.kx * x + self.ky * y - self.omega * check_number("t", t, "s")
         highest = float(self.amplitude.sum())
-        height = check_within("height", height, -0.99 * highest, 0.99 * highest, "m")
+        height = check_number("height", height, "m", -0.99 * highest, 0.99 * highest)
         largest = max(float(self.amplitude.max(initial=0.0)), 1e-300)
         half = np.tan(0.5 * theta)
 
@@ -155,7 +154,7 @@ class Waves:
         another shape or not finite."""
         where = check_positions("points", points)
         found = np.empty(len(where))
-        set_elevation(where, check_finite("t", t, "s"), self.table, found)
+        set_elevation(where, check_number("t", t, "s"), self.table, found)
         return found
 
     def response(self, points: ArrayLike, t: float, X: ArrayLike) -> np.ndarray:
@@ -168,7 +167,7 @@ class Waves:
             raise argument_error("X", factors.shape, f"finite numbers of shape ({len(self.kx)}, {RESPONSES})")
         found = np.empty((len(where), RESPONSES))
         rows = np.concatenate([np.real(factors).T, np.imag(factors).T])[None]
-        set_response(where, check_finite("t", t, "s"), self.table, np.ascontiguousarray(rows), found)
+        set_response(where, check_number("t", t, "s"), self.table, np.ascontiguousarray(rows), found)
         return found
 
     def kinematics(self, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
@@ -183,7 +182,7 @@ class Waves:
         wheeler = check_choice("stretching", stretching, STRETCHINGS) == "wheeler"
         n = len(where)
         flow = Kinematics(np.empty((n, 3)), np.empty((n, 3)), np.empty(n))
-        t = check_finite("t", t, "s")
+        t = check_number("t", t, "s")
         set_kinematics(where, t, self.table, self.water.depth, self.water.density, wheeler, *flow)
         return flow
 

@@ -21,7 +21,7 @@ def with_hull(params: Any, path: Path, reading: Any) -> Any:
     """
     import numpy as np
 
-    from app.commands.mesh_facts import hull_line, size_warning
+    from app.commands.hulls.mesh_facts import hull_line, size_warning
     from sim.floating import Hull
     from sim.validation import argument_error
 

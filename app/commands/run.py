@@ -60,8 +60,8 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
     Returns the exit status: 0; 1 for a run that diverged, which keeps the frames before that. Raises ValueError for
     arguments that are not allowed, before any work, and OSError where the file cannot be written.
     """
-    check_number("--seconds", seconds, 0.0, MAX_DURATION, "s", above=True)
-    check_number("--rate", rate, 0.0, MAX_RATE, "Hz", above=True)
+    check_number("--seconds", seconds, "s", 0.0, MAX_DURATION, above=True)
+    check_number("--rate", rate, "Hz", 0.0, MAX_RATE, above=True)
     if out.suffix != ".npz":
         raise argument_error("--out", str(out), "a name that ends in .npz")
     check_out_file("--out", out)

@@ -10,7 +10,7 @@ from rich import get_console
 
 from app.files import make_out_folder
 from app.scenes import NAMES
-from app.scenes.ahead.warmup import all_pieces, compile_here
+from app.scenes.ahead.compiling import all_jobs, compile_here
 from sim.cache import INSTALLED, SHARED_VARIABLE, host_levels, level_environment
 from sim.jit import CACHE
 from sim.validation import argument_error
@@ -41,7 +41,7 @@ def warm_up() -> int:
     for name in NAMES:
         if not is_terminal:
             print(f"Compiling {name}", flush=True)
-        compile_here(name, all_pieces(name), lambda text: None)
+        compile_here(name, all_jobs(name))
     print(f"Saved in {CACHE}" if CACHE else "Nothing was saved: no cache directory is writable")
     return 0
 

@@ -93,7 +93,7 @@ class Lab:
         without one as fast as it can. Raises ValueError for what is not a time, DivergenceError where the run stops
         before, and RuntimeError where it is reset or another scene is opened meanwhile.
         """
-        check_number("seconds", seconds, 0.0, MAX_WAIT, "s")
+        check_number("seconds", seconds, "s", 0.0, MAX_WAIT)
         answer: Future[float] = Future()
         served = self._open.served
         served.commands.put(Advance(float(seconds), answer))

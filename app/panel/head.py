@@ -122,7 +122,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
     """Running or not, the clock, the pace, and why the run stopped; how many browsers share the lab."""
     s = snapshot.status
     state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
-    if s.replayed is not None and not s.halted:
+    if (s.replayed is not None and not s.halted) or (s.running and s.pace < 1.0):
         state = coloured("Slow motion", WARNING_COLOUR)
     if s.halted:
         state = coloured("Stopped", ERROR_COLOUR)
@@ -130,7 +130,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
     if s.capped:
         pace = fill(
             "{}: ×{:.2f} instead of ×{:g}",
-            coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed,
+            coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed * s.pace,
         )  # fmt: skip
     return fill(
         '<div class="springtide-panel" data-state="{}" data-snapshot="{}" title="{}">'

@@ -69,7 +69,7 @@ class Panel:
         add_theme_buttons(gui, view)
         add_holding(gui, settings.history)
         self.head = Head(gui, view, settings, scenes, self.place_first_view)
-        self.controls = Controls(gui, lambda: settings.params, settings.set)
+        self.controls = Controls(gui, settings)
         self.recorder = Recorder(kind.packing, wake)
         self.timeline = Timeline(gui, self.recorder, settings)
         self.share = Share(

@@ -70,6 +70,11 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     @property
+    def pace(self) -> float:
+        """Factor on the speed of the parameters that the scene asks for just now, up to 1: below it is slow motion."""
+        ...
+
+    @property
     def note(self) -> str:
         """Reason why something else runs than the parameters ask for, or ""."""
         ...

@@ -71,7 +71,7 @@ class ServedScene:
         )  # fmt: skip
         self.settings.watchers.append(lambda: viewer.share_parameters(self.settings.params))
         self.loop = SimLoop(self.scene, self.commands, viewer.audience, paused=paused)
-        self.gate = CompileGate(viewer.compiling, kind, self.loop.record)
+        self.gate = CompileGate(viewer.compiling, kind, self.loop.record, self.loop.runs.keep_dropped)
         self.loop.admit = self.gate.admit
         if params != wanted:  # the loop finds out once more, and says why; the panel has the controls to put it right
             self.settings.load_params(wanted, self.settings.nearest_preset(wanted))

@@ -1,1 +1,1 @@
-"""The benchmarks: every module in this folder is one. `benchmarks/command.py` has their contract."""
+"""The benchmarks: every module in the folders here is one. `benchmarks/command.py` has their contract."""

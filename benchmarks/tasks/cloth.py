@@ -1,10 +1,18 @@
-"""The cloth C(n) of `benchmarks/cases/cloth.py` as a task of peers. Ours run on one thread."""
+"""The cloth C(n) of `benchmarks/cases/springs/cloth.py` as a task of peers. Ours run on one thread."""
 
 import functools
 from collections.abc import Sequence
 
 from app.formats.text_tables import Rows
-from benchmarks.cases.cloth import DURATION, benchmark_cloth, expected_time, positions, reference, run, step_counts
+from benchmarks.cases.springs.cloth import (
+    DURATION,
+    benchmark_cloth,
+    expected_time,
+    positions,
+    reference,
+    run,
+    step_counts,
+)
 from benchmarks.peers.cloth import SCRIPTS
 from benchmarks.peers.cloth_engines import ENGINES, OTHER_TASKS
 from benchmarks.peers.ladder import Task, tables

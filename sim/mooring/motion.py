@@ -23,7 +23,7 @@ from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.simulate import SIMULATED, Simulated
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance, check_state, velocities
-from sim.validation import argument_error, check_number, check_vector
+from sim.validation import argument_error, check_positive, check_vector
 
 SAFETY = 0.5  # of the critical step at the start
 PIECE = 0.05  # [s] of a moved point's path that is one cubic
@@ -98,7 +98,7 @@ def paths_to(system: System, state: State, ends: Mapping[int, tuple[ArrayLike, A
     Raises ValueError for a point that is not coupled, for a place or velocity that none has, and for a duration.
     """
     check_state(system, state)
-    check_number("duration", duration, 0, math.inf, "s", above=True)
+    check_positive("duration", duration, "s")
     coupled = system.coupled_nodes
     for one in ends:
         if one not in coupled:

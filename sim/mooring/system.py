@@ -37,7 +37,15 @@ from sim.springs.line_arrays import (
     record_of,
 )
 from sim.springs.point_system import PointSystem
-from sim.validation import argument_error, check_choice, check_kind, check_number, check_vector, is_whole_number
+from sim.validation import (
+    argument_error,
+    check_choice,
+    check_kind,
+    check_number,
+    check_positive,
+    check_vector,
+    is_whole_number,
+)
 from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 from sim.waves import Waves
 
@@ -143,15 +151,15 @@ class System(PointSystem[MooringRun]):
         for name in ("lines", "points", "bodies"):
             if len(getattr(self, name)) > MOST_PARTS:
                 raise argument_error(name, len(getattr(self, name)), f"at most {MOST_PARTS}")
-        check_number("depth", self.depth, 0, FARTHEST, "m", above=True)
-        check_number("gravity", self.gravity, 0, 1e4, "m/s^2")
+        check_number("depth", self.depth, "m", 0, FARTHEST, above=True)
+        check_number("gravity", self.gravity, "m/s^2", 0, 1e4)
         for name, unit in (
             ("density", "kg/m^3"),
             ("bed_stiffness", "Pa/m"),
             ("bed_damping", "Pa s/m"),
             ("friction", ""),
         ):
-            check_number(name, getattr(self, name), 0, math.inf, unit)
+            check_number(name, getattr(self, name), unit, 0)
         check_kind("slack_damping", self.slack_damping, bool, "True or False")
         check_vector("current", self.current, "m/s")
         check_forces(self.forces)
@@ -202,7 +210,7 @@ class System(PointSystem[MooringRun]):
         if point.kind == "fixed" and self.bed_stiffness > 0.0 and z < -self.depth - 1e-6 * self.depth:
             raise argument_error(f"{name}: position", point.position, f"on or above the bed at z = {-self.depth:g} m")
         for field, unit in (("mass", "kg"), ("volume", "m^3"), ("drag_area", "m^2"), ("added_mass", "")):
-            check_number(f"{name}: {field}", getattr(point, field), 0, math.inf, unit)
+            check_number(f"{name}: {field}", getattr(point, field), unit, 0)
         check_vector(f"{name}: force", point.force, "N")
         if (point.kind == "body") != (point.body is not None):
             raise argument_error(f"{name}: body", point.body, "the id of a body, for points of kind 'body' only")
@@ -218,7 +226,7 @@ class System(PointSystem[MooringRun]):
                 raise argument_error(f"{name}: {field}", getattr(line, field), f"the id of a point: {ids}")
         if line.start == line.end:
             raise argument_error(f"{name}: end", line.end, "another point than its start")
-        check_number(f"{name}: length", line.length, 0, FARTHEST, "m", above=True)
+        check_number(f"{name}: length", line.length, "m", 0, FARTHEST, above=True)
         if not is_whole_number(line.segments) or not 1 <= line.segments <= MOST_SEGMENTS:
             raise argument_error(f"{name}: segments", line.segments, f"a whole number from 1 to {MOST_SEGMENTS}")
         for field, end in (("clamp_at_start", line.start), ("clamp_at_end", line.end)):
@@ -471,12 +479,12 @@ def check_type(kind: LineType) -> None:
     """Raises ValueError with the name of the coefficient that no line has."""
     name = f"line type {kind.name}"
     for field, unit in (("diameter", "m"), ("mass", "kg/m"), ("stiffness", "N")):
-        check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, unit, above=True)
-    check_number(f"{name}: bending", kind.bending, 0, math.inf, "N m^2")
+        check_positive(f"{name}: {field}", getattr(kind, field), unit)
+    check_number(f"{name}: bending", kind.bending, "N m^2", 0)
     check_curve(f"{name}: curve", kind.curve)
-    check_number(f"{name}: damping", kind.damping, -MOST_DAMPING, math.inf, "N s, or a ratio where negative")
+    check_number(f"{name}: damping", kind.damping, "N s, or a ratio where negative", -MOST_DAMPING)
     for field in ("added_across", "drag_across", "added_along", "drag_along"):
-        check_number(f"{name}: {field}", getattr(kind, field), 0, math.inf, "")
+        check_number(f"{name}: {field}", getattr(kind, field), "", 0)
 
 
 def check_curve(name: str, curve: Sequence[tuple[float, float]]) -> None:

@@ -18,7 +18,7 @@ from sim.validation import (
     argument_error,
     check_frequencies,
     check_kind,
-    check_not_negative,
+    check_number,
     check_positive,
     check_wavenumbers,
 )
@@ -152,7 +152,7 @@ def viscous_root(k: Any, viscosity: float, gravity: float = EARTH_GRAVITY, film:
     gravity not above 0. Lamb, Art. 349 and 351.
     """
     k = check_wavenumbers("k", k)
-    check_not_negative("viscosity", viscosity, "m2/s")
+    check_number("viscosity", viscosity, "m2/s", 0.0)
     check_kind("film", film, bool, "True or False")
     w, rate = damped_root(omega(k, gravity), viscosity * k**2, film)
     return w[()], rate[()]
@@ -233,7 +233,7 @@ def _checked(k: Any, gravity: float, depth: float, tension: float, density: floa
     """k as an array and s = sigma/rho, every argument checked."""
     check_positive("gravity", gravity, "m/s2")
     check_positive("depth", depth, "m", allow_infinite=True)
-    return check_wavenumbers("k", k), check_not_negative("tension", tension, "N/m") / check_positive(
+    return check_wavenumbers("k", k), check_number("tension", tension, "N/m", 0.0) / check_positive(
         "density", density, "kg/m3"
     )
 
@@ -247,8 +247,8 @@ def _two_layer_roots(
     check_positive("thickness", d, "m", allow_infinite=True)
     check_positive("gravity", g, "m/s2")
     check_positive("depth", h2, "m", allow_infinite=True)
-    check_not_negative("surface_tension", s1, "N/m")
-    check_not_negative("interface_tension", s12, "N/m")
+    check_number("surface_tension", s1, "N/m", 0.0)
+    check_number("interface_tension", s12, "N/m", 0.0)
     check_positive("lower_density", rho2, "kg/m3")
     if rho2 < rho1:
         raise argument_error("lower_density", rho2, f"at least the upper density, {rho1:g} kg/m3")

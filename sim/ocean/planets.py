@@ -50,6 +50,6 @@ def gravity_of(mass: float, rule: str = "same_radius") -> float:
     >>> round(gravity_of(0.1), 2)  # [m/s2], a tenth of the Earth on its radius
     0.98
     """
-    check_number("mass", mass, 0.0, MAX_MASS, "Earth masses", above=True)
+    check_number("mass", mass, "Earth masses", 0.0, MAX_MASS, above=True)
     check_choice("rule", rule, RADIUS_RULES)
     return EARTH_GRAVITY * mass ** (1.0 - 2.0 * RADIUS_RULES[rule])

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sim.jit import kernel
 from sim.particles.plume import DRAG_TIME, flame_height, track
 from sim.particles.random import uniform
-from sim.validation import argument_error, check_not_negative, check_positive, check_vector, is_whole_number
+from sim.validation import argument_error, check_number, check_positive, check_vector, is_whole_number
 
 LEAST_LIFE, LIFE_RANGE = 0.12, 2.64  # of the mean life: most parcels are flame, few are old smoke
 LONGEST_LIFE = LEAST_LIFE + LIFE_RANGE  # of the mean life
@@ -71,7 +71,7 @@ class Fire:
         if not is_whole_number(count) or count < 1:
             raise argument_error("count", count, "a whole number from 1")
         self.place, self.wind = check_vector("position", position, "m"), check_vector("wind", wind, "m/s", 2)
-        self.diameter, self.eddies = diameter, check_not_negative("eddies", eddies, "")
+        self.diameter, self.eddies = diameter, check_number("eddies", eddies, "", 0.0)
         self.height = flame_height(power, diameter)
         self.longest_life = LONGEST_LIFE * life  # [s]
         self.track = track(power, diameter, math.hypot(*self.wind), self.longest_life)
@@ -89,7 +89,7 @@ class Fire:
 
     def step(self, dt: float) -> None:
         """Let dt [s] pass. Raises ValueError for a negative or infinite one."""
-        dt = check_not_negative("dt", dt, "s")
+        dt = check_number("dt", dt, "s", 0.0)
         self.time += dt
         numbers = (*self.place, 0.5 * self.diameter, *self.wind, self.mean_life, self.eddies)
         flame = Flame(*map(np.float32, numbers), puffs=self.puffs)

@@ -12,7 +12,7 @@ import numpy as np
 from sim.jit import kernel
 from sim.particles.rain import bilinear
 from sim.particles.random import uniform
-from sim.validation import argument_error, check_not_negative, check_positive, check_vector, is_whole_number
+from sim.validation import argument_error, check_number, check_positive, check_vector, is_whole_number
 from sim.water import EARTH_GRAVITY
 
 
@@ -46,7 +46,7 @@ class Jet:
         if not is_whole_number(count) or count < 1:
             raise argument_error("count", count, "a whole number from 1")
         self.nozzle, self.axis = check_vector("nozzle", nozzle, "m"), check_vector("velocity", velocity, "m/s")
-        self.flow, self.spread = check_positive("flow", flow, "m3/s"), check_not_negative("spread", spread, "")
+        self.flow, self.spread = check_positive("flow", flow, "m3/s"), check_number("spread", spread, "", 0.0)
         self.gravity, self.wind = check_positive("gravity", gravity, "m/s2"), check_vector("wind", wind, "m/s", 2)
         self.drag_time = check_positive("drag_time", drag_time, "s", allow_infinite=True)
         flight = check_positive("flight", flight, "s")
@@ -71,7 +71,7 @@ class Jet:
 
         Beyond that patch the surface counts as it is at its edge. Raises ValueError for a bad dt.
         """
-        dt = check_not_negative("dt", dt, "s")
+        dt = check_number("dt", dt, "s", 0.0)
         fly(self.position, self.velocity, self.flying, dt, self.gravity, self.drag_time, *self.wind)
         self._emit(dt)
         m = height.shape[0]

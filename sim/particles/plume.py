@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.validation import check_not_negative, check_positive
+from sim.validation import check_number, check_positive
 from sim.water import EARTH_GRAVITY
 
 AIR_TEMPERATURE, AIR_DENSITY, AIR_HEAT = 293.0, 1.2, 1005.0  # [K], [kg/m3], [J/(kg K)]
@@ -99,7 +99,7 @@ def track(power: float, diameter: float, wind_speed: float, duration: float) -> 
     Raises ValueError for a value that is not allowed.
     """
     length = flame_height(power, diameter)
-    check_not_negative("wind_speed", wind_speed, "m/s")
+    check_number("wind_speed", wind_speed, "m/s", 0.0)
     check_positive("duration", duration, "s")
     # Time over height: 1/w is integrated from where the flame's law, z = (kappa/2)^2 t^2, gives the time itself.
     z = np.geomspace(1e-3, 30.0 * length + 60.0 * duration, 4000)

@@ -12,14 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.jit import kernel
-from sim.validation import (
-    argument_error,
-    as_array,
-    check_not_negative,
-    check_positive,
-    check_vector,
-    is_whole_number,
-)
+from sim.validation import argument_error, as_array, check_number, check_positive, check_vector, is_whole_number
 from sim.water import EARTH_GRAVITY, FRESH_DENSITY
 
 SMALLEST, LARGEST = 0.5e-3, 6.0e-3  # [m] drops outside are not counted: mist below, broken up above
@@ -136,7 +129,7 @@ class Rain:
         height (m, m) [m]; displacement (m, m, 2) [m] or None: of the mesh as drawn. Drops that hit start again on top.
         Raises ValueError for a dt that is negative or not finite.
         """
-        dt = check_not_negative("dt", dt, "s")
+        dt = check_number("dt", dt, "s", 0.0)
         if displacement is None:
             displacement = np.zeros((1, 1, 2), height.dtype)
         moved = fall(

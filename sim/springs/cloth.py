@@ -23,7 +23,7 @@ from sim.springs.net import (
     check_place,
     check_surroundings,
 )
-from sim.validation import argument_error, check_choice, check_number, is_whole_number
+from sim.validation import argument_error, check_choice, check_number, check_positive, is_whole_number
 from sim.water import EARTH_GRAVITY
 
 PIN_CHOICES = ("corners", "edge", "all corners", "rim", "free")
@@ -81,16 +81,16 @@ def cloth(
     for name, count in (("rows", rows), ("cols", cols)):
         if not is_whole_number(count) or not 2 <= count <= MAX_ROWS:
             raise argument_error(name, count, f"a whole number from 2 to {MAX_ROWS}")
-    check_number("width", width, 0, FARTHEST, "m", above=True)
-    check_number("length", length, 0, FARTHEST, "m", above=True)
-    check_number("density", density, 0, math.inf, "kg/m^2", above=True)
+    check_number("width", width, "m", 0, FARTHEST, above=True)
+    check_number("length", length, "m", 0, FARTHEST, above=True)
+    check_positive("density", density, "kg/m^2")
     for name, value in (("stiffness", stiffness), ("shear", shear), ("bend", bend)):
-        check_number(name, value, 0, math.inf, "N/m")
-    check_number("damping", damping, 0, math.inf, "N s/m")
-    check_number("drag", drag, 0, math.inf, "N s/m")
-    check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
-    check_number("radius", radius, 0, math.inf, "m")
-    check_number("thickness", thickness, 0, math.inf, "m")
+        check_number(name, value, "N/m", 0)
+    check_number("damping", damping, "N s/m", 0)
+    check_number("drag", drag, "N s/m", 0)
+    check_number("gravity", gravity, "m/s^2")
+    check_number("radius", radius, "m", 0)
+    check_number("thickness", thickness, "m", 0)
     check_place("origin", origin)
     check_choice("damping_model", damping_model, DAMPING_MODELS)
     contact = check_surroundings(contact, floor, sphere)

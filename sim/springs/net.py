@@ -22,7 +22,15 @@ from sim.springs.laws import LAWS, check_law
 from sim.springs.line_arrays import record_of
 from sim.springs.point_system import PointSystem
 from sim.springs.run import Run
-from sim.validation import argument_error, as_array, check_choice, check_number, check_vector, is_whole_number
+from sim.validation import (
+    argument_error,
+    as_array,
+    check_choice,
+    check_number,
+    check_positive,
+    check_vector,
+    is_whole_number,
+)
 
 Vector = tuple[float, float, float]
 
@@ -133,21 +141,21 @@ class Net(PointSystem[Run]):
         for family in self.families:
             check_family(family)
             if self.law != LAWS["spring"].numbers:
-                check_number("families rest", family.rest, 0, math.inf, "m", above=True)
-        check_number("mass", self.mass, 0, math.inf, "kg", above=True)
+                check_positive("families rest", family.rest, "m")
+        check_positive("mass", self.mass, "kg")
         if self.mass_ratios is not None:
             check_mass_ratios(self.mass_ratios, (rows, cols))
-        check_number("side_ratio", self.side_ratio, 0, math.inf, "", above=True)
+        check_positive("side_ratio", self.side_ratio, "")
         if self.side_ratio != 1.0 and min(rows, cols) < 2:
             raise argument_error("side_ratio", self.side_ratio, "1, as a net one particle wide has no sides")
-        check_number("drag", self.drag, 0, math.inf, "N s/m")
+        check_number("drag", self.drag, "N s/m", 0)
         check_vector("gravity", self.gravity, "m/s^2")
         check_choice("damping_model", self.damping_model, DAMPING_MODELS)
         check_surroundings(self.contact, self.floor, self.sphere)
         check_vector("sphere_velocity", self.sphere_velocity, "m/s")
-        check_number("epoch", self.epoch, -math.inf, math.inf, "s")
-        check_number("radius", self.radius, 0, math.inf, "m")
-        check_number("thickness", self.thickness, 0, math.inf, "m")
+        check_number("epoch", self.epoch, "s")
+        check_number("radius", self.radius, "m", 0)
+        check_number("thickness", self.thickness, "m", 0)
         if not is_whole_number(self.threads) or self.threads < 1:
             raise argument_error("threads", self.threads, "a whole number from 1")
         for pinned in self.pinned:
@@ -156,7 +164,7 @@ class Net(PointSystem[Run]):
             check_particle("pin_paths", pin, rows, cols)
             if pin not in self.pinned:
                 raise argument_error("pin_paths", pin, "paths of pinned particles")
-            check_number("pin_paths start", path.start, -math.inf, math.inf, "s")
+            check_number("pin_paths start", path.start, "s")
             if len(path.coefficients) != 4:
                 raise argument_error("pin_paths coefficients", path.coefficients, "four vectors")
             for unit, coefficient in zip(("m", "m/s", "m/s^2", "m/s^3"), path.coefficients, strict=True):
@@ -165,7 +173,7 @@ class Net(PointSystem[Run]):
             check_particle("grab", self.grab[:2], rows, cols)
             check_vector("grab.target", self.grab.target, "m")
             for name in ("stiffness", "damping", "max_force"):
-                check_number(f"grab.{name}", getattr(self.grab, name), 0, math.inf, "")
+                check_number(f"grab.{name}", getattr(self.grab, name), "", 0)
         if self.air is not None:
             check_air(self.air)
             if min(rows, cols) < 2:
@@ -393,9 +401,9 @@ def check_family(family: Family) -> None:
     di, dj = family[:2]
     if not (is_whole_number(di) and is_whole_number(dj) and (di > 0 or (di == 0 and dj > 0))):
         raise argument_error("families", (di, dj), "links to a later row, or to a later particle of the same row")
-    check_number("families rest", family.rest, 0, math.inf, "m")
-    check_number("families stiffness", family.stiffness, 0, math.inf, "N/m")
-    check_number("families damping", family.damping, 0, math.inf, "N s/m")
+    check_number("families rest", family.rest, "m", 0)
+    check_number("families stiffness", family.stiffness, "N/m", 0)
+    check_number("families damping", family.damping, "N s/m", 0)
 
 
 def check_particle(name: str, value: Any, rows: int, cols: int) -> tuple[int, int]:
@@ -412,7 +420,7 @@ def check_air(air: Air) -> None:
         raise argument_error("air", air, "an Air, or None")
     check_vector("air.wind", air.wind, "m/s")
     for name in ("density", "drag", "lift"):
-        check_number(f"air.{name}", getattr(air, name), 0, math.inf, "")
+        check_number(f"air.{name}", getattr(air, name), "", 0)
 
 
 def check_surroundings(
@@ -422,12 +430,12 @@ def check_surroundings(
     contact = PLAIN_CONTACT if contact is None else contact
     if not isinstance(contact, Contact):
         raise argument_error("contact", contact, "a Contact, or None")
-    check_number("contact.stiffness", contact.stiffness, 0, math.inf, "N/m")
-    check_number("contact.damping", contact.damping, 0, math.inf, "N s/m")
-    check_number("contact.friction", contact.friction, 0, math.inf, "")
+    check_number("contact.stiffness", contact.stiffness, "N/m", 0)
+    check_number("contact.damping", contact.damping, "N s/m", 0)
+    check_number("contact.friction", contact.friction, "", 0)
     check_choice("contact.law", contact.law, CONTACT_LAWS)
     if floor is not None:
-        check_number("floor", floor, -math.inf, math.inf, "m")
+        check_number("floor", floor, "m")
     if sphere is not None:
-        check_number("sphere radius", check_vector("sphere", sphere, "m", 4)[3], 0, math.inf, "m")
+        check_number("sphere radius", check_vector("sphere", sphere, "m", 4)[3], "m", 0)
     return contact

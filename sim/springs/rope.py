@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.laws import check_law
 from sim.springs.net import DAMPING_MODELS, FARTHEST, Contact, Family, Net, Vector, check_place, check_surroundings
-from sim.validation import argument_error, as_array, check_choice, check_number, is_whole_number
+from sim.validation import argument_error, as_array, check_choice, check_number, check_positive, is_whole_number
 from sim.water import EARTH_GRAVITY
 
 MAX_POINTS = 1_000_000
@@ -49,13 +49,13 @@ def rope(
     [-2.0, 0.0, 0.0]
     """
     check_points(points)
-    check_number("length", length, 0, FARTHEST, "m", above=True)
+    check_number("length", length, "m", 0, FARTHEST, above=True)
     each, ratios = masses_of(mass, points)
-    check_number("stiffness", stiffness, 0, math.inf, "N/m")
-    check_number("damping", damping, 0, math.inf, "N s/m")
-    check_number("drag", drag, 0, math.inf, "N s/m")
-    check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
-    check_number("radius", radius, 0, math.inf, "m")
+    check_number("stiffness", stiffness, "N/m", 0)
+    check_number("damping", damping, "N s/m", 0)
+    check_number("drag", drag, "N s/m", 0)
+    check_number("gravity", gravity, "m/s^2")
+    check_number("radius", radius, "m", 0)
     check_place("root", root)
     if end is not None:
         check_place("end", end)
@@ -90,7 +90,7 @@ def rope(
 def masses_of(mass: Any, points: int) -> tuple[float, NDArray[np.float64] | None]:
     """A net's mass [kg] and ratios of one number or (points,). Raises ValueError for others."""
     if not isinstance(mass, list | tuple | np.ndarray):
-        return check_number("mass", mass, 0, math.inf, "kg", above=True), None
+        return check_positive("mass", mass, "kg"), None
     allowed = f"a number above 0 kg, or {points} of them"
     array = as_array("mass", mass, allowed)
     if array.shape != (points,) or not ((array > 0.0) & (array < math.inf)).all():
@@ -125,11 +125,11 @@ def lab_units(
     2500.0
     """
     check_points(points)
-    check_number("length", length, 0, FARTHEST, "m", above=True)
-    check_number("axial_stiffness", axial_stiffness, 0, math.inf, "N")
-    check_number("mass_per_length", mass_per_length, 0, math.inf, "kg/m", above=True)
-    check_number("axial_viscosity", axial_viscosity, 0, math.inf, "N s")
-    check_number("drag_per_length", drag_per_length, 0, math.inf, "N s/m^2")
+    check_number("length", length, "m", 0, FARTHEST, above=True)
+    check_number("axial_stiffness", axial_stiffness, "N", 0)
+    check_positive("mass_per_length", mass_per_length, "kg/m")
+    check_number("axial_viscosity", axial_viscosity, "N s", 0)
+    check_number("drag_per_length", drag_per_length, "N s/m^2", 0)
     spacing = length / max(points - 1, 1)
     return {
         "mass": mass_per_length * spacing,

@@ -134,7 +134,7 @@ def run_net(
     record = None if isinstance(integrator, str) and integrator == AUTO else integrator_named(integrator)
     for name, value, least in (("rtol", rtol, LEAST_RTOL), ("atol", atol, LEAST_ATOL)):
         if value is not None:
-            check_number(name, value, least, 1, "")
+            check_number(name, value, "", least, 1)
             adaptive = record is None or record.adaptive
             if not adaptive or step is not None:
                 raise argument_error(name, value, "None, as the step is given" if adaptive else "adaptive methods only")

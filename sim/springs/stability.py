@@ -36,7 +36,7 @@ from sim.springs.line_arrays import LineArrays
 from sim.springs.net import Net
 from sim.springs.point_system import PointSystem, check_system
 from sim.springs.state import State, check_state
-from sim.validation import check_number
+from sim.validation import check_positive
 
 VECTORS = 32  # of Lanczos: the stiffest frequency to 0.1 % on nets of any size
 TOUCHING = 12  # equal spheres that can touch one of them
@@ -383,7 +383,7 @@ def critical_stiffness(
     Raises ValueError for an unknown integrator or a step that is not above 0.
     """
     record = integrator_named(integrator)
-    check_number("h", h, 0, math.inf, "s", above=True)
+    check_positive("h", h, "s")
     stiffest = max((f.stiffness for f in net.families), default=0.0)
     if stiffest == 0.0:
         net, stiffest, modes = net.with_stiffness(1.0), 1.0, None

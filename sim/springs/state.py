@@ -1,7 +1,6 @@
 """`State` of a net or of mooring lines in motion, and `advance`, which changes it."""
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,7 +15,7 @@ from sim.springs.analysis.extremes import DIVERGENCE_BOUND, extremes
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.net import Net
 from sim.springs.point_system import PointSystem, check_system
-from sim.validation import argument_error, check_kind, check_number, is_whole_number
+from sim.validation import argument_error, check_kind, check_positive, is_whole_number
 
 # In one call of a kernel, which a Ctrl-C waits for: hundredths of a second.
 POINT_EVALS = 2e6  # force evaluations times points, of a rope
@@ -161,7 +160,7 @@ def advance(
     check_state(system, state)
     integrator = integrator_named(integrator)
     system.check_integrator(integrator)
-    check_number("h", h, 0, math.inf, "s", above=True)
+    check_positive("h", h, "s")
     if not is_whole_number(steps) or steps < 0:
         raise argument_error("steps", steps, "a whole number from 0")
     check_kind("with_account", with_account, bool, "True or False")

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sim.springs.laws import TAUT, check_law, law_of, of_arrays
 from sim.springs.net import Family, Net
-from sim.validation import ConvergenceError, argument_error, as_array, check_kind, check_number
+from sim.validation import ConvergenceError, argument_error, as_array, check_kind, check_number, check_positive
 
 ITERATIONS = 200  # of Newton: a dozen is usual
 
@@ -70,14 +70,14 @@ def catenary(
     """
     if not isinstance(points, int | np.integer) or isinstance(points, bool) or points < 2:
         raise argument_error("points", points, "a whole number from 2")
-    check_number("length", length, 0, math.inf, "m", above=True)
-    check_number("span", span, -math.inf, math.inf, "m")
-    check_number("rise", rise, -math.inf, math.inf, "m")
-    check_number("stiffness", stiffness, 0, math.inf, "N/m", above=True)
+    check_positive("length", length, "m")
+    check_number("span", span, "m")
+    check_number("rise", rise, "m")
+    check_positive("stiffness", stiffness, "N/m")
     masses = as_array("mass", mass, f"a number from 0 kg, or {points} of them")
     if masses.shape not in ((), (points,)) or not ((masses >= 0.0) & (masses < math.inf)).all():
         raise argument_error("mass", mass, f"a number from 0 kg, or {points} of them")
-    check_number("gravity", gravity, -math.inf, math.inf, "m/s^2")
+    check_number("gravity", gravity, "m/s^2")
     links = int(points) - 1
     rest = length / links
     numbers = check_law(law)
@@ -178,5 +178,5 @@ def single_family(net: Net) -> Family:
     if not check_kind("net", net, Net, "a rope").is_rope:
         raise argument_error("net", net.shape, "a rope")
     family = net.families[0]
-    check_number("stiffness", family.stiffness, 0, math.inf, "N/m", above=True)
+    check_positive("stiffness", family.stiffness, "N/m")
     return family

@@ -11,7 +11,7 @@ from app.commands.checkout import ELSEWHERE
 from app.formats import text_tables
 from app.study import tables
 from benchmarks import command
-from benchmarks.cases import rope
+from benchmarks.cases.springs import rope
 
 
 def ladder(order: int, method: str) -> text_tables.Rows:

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.cases import cloth
+from benchmarks.cases.springs import cloth
 from tests.sim.springs.reference import exact
 
 

@@ -13,7 +13,7 @@ import pytest
 from benchmarks import command
 from benchmarks.pupil import STIFFNESS, Pupil
 
-CLASS = importlib.import_module("benchmarks.cases.class_")
+CLASS = importlib.import_module("benchmarks.cases.program.class_")
 
 
 def test_spread_is_median_95_percent_and_worst_from_either_end() -> None:

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.cases import cloth
+from benchmarks.cases.springs import cloth
 from benchmarks.peers import cloth as cloth_peers
 from benchmarks.peers import cloth_engines
 from benchmarks.peers.ladder import rungs

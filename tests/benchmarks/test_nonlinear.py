@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmarks.cases import nonlinear
-from benchmarks.cases.nonlinear import ours, plain, start
+from benchmarks.cases.waves import nonlinear
+from benchmarks.cases.waves.nonlinear import ours, plain, start
 from benchmarks.peers.nonlinear import PlainSea
 from benchmarks.peers.separable import separable_flow
 from sim.ocean.nonlinear import NonlinearSea

@@ -8,7 +8,7 @@ import pytest
 
 from app.study import tables
 from benchmarks import command
-from benchmarks.cases import rope as rope_case
+from benchmarks.cases.springs import rope as rope_case
 from benchmarks.peers import ladder as peer_ladder
 from benchmarks.peers.ladder import Task, compared, rungs, summary, undisturbed_time
 from benchmarks.peers.own_runs import OwnRun, OwnRuns, Result

@@ -97,7 +97,7 @@ def test_a_lost_context_comes_back_with_its_picture(open_tab: Callable[..., Tab]
         viewer.shut()
 
 
-@pytest.mark.parametrize("scene", ["square_sea", "rope"])
+@pytest.mark.parametrize("scene", [pytest.param("square_sea", marks=pytest.mark.long), "rope"])
 def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(scene)

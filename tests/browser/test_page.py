@@ -46,7 +46,10 @@ def test_the_cover_goes_with_the_first_scene_and_comes_back_with_the_end(chromiu
 
 @pytest.mark.parametrize(
     ("path", "words"),
-    [("/", "with the command: springtide"), ("/user/ada/springtide/", "Reload this page to start it again.")],
+    [
+        pytest.param("/", "with the command: springtide", marks=pytest.mark.long),
+        ("/user/ada/springtide/", "Reload this page to start it again."),
+    ],
 )
 def test_a_page_behind_a_proxy_names_no_command(chromium: Any, path: str, words: str) -> None:
     """Its user has no terminal where the lab runs: on a JupyterHub a page that is loaded again starts the lab."""
@@ -122,12 +125,11 @@ def test_one_file_with_an_error_is_named_and_the_others_work(chromium: Any, monk
         page.close()
 
 
-@pytest.mark.parametrize("script", [REFUSED, BAD_LANGUAGE])
-def test_without_storage_or_language_the_page_works(chromium: Any, script: str) -> None:
+def test_without_storage_and_language_the_page_works(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("rope")
     page, errors = new_page(chromium, 640, 400, False), []
-    page.add_init_script(script)
+    page.add_init_script(REFUSED + BAD_LANGUAGE)
     page.on("pageerror", lambda error: errors.append(str(error)))
     try:
         page.goto(f"http://127.0.0.1:{viewer.port}/")

@@ -50,7 +50,7 @@ def test_without_a_graphics_card_a_page_starts_at_low(chromium: Any) -> None:
         page.wait_for_function("() => window.__springtide?.quality")
         first = page.evaluate(STATE)
         assert (first["quality"], first["step"], first["width"]) == ("low", 4, 210)
-        assert first["line"].startswith("Graphics are slow on this machine, so the quality was reduced.")
+        assert first["line"].startswith("Graphics are slow here, so quality was reduced.")
         # viser's own monitor and its resizing set the pixels too; the choice of the page holds.
         page.set_viewport_size({"width": 440, "height": 300})
         wait_for(page, "s.width === 220")
@@ -63,7 +63,7 @@ def test_without_a_graphics_card_a_page_starts_at_low(chromium: Any) -> None:
 def test_quality_falls_where_drawing_is_slow_and_the_page_says_so(page: Any) -> None:
     drawn = "s.width === Math.round(420 * s.pixels) && s.detail.endsWith(' lit')"
     lowered = wait_for(page, f"s.step >= 2 && {drawn}")
-    assert lowered["line"].startswith("Graphics are slow on this machine, so the quality was reduced.")
+    assert lowered["line"].startswith("Graphics are slow here, so quality was reduced.")
     assert lowered["now"] == f"now {lowered['quality']}"
     assert "quality" not in page.evaluate("location.search")
     # The page opens with it the next time.

@@ -1,9 +1,11 @@
 """The rope scene in a real browser, driven by mouse and keyboard."""
 
+from concurrent.futures import Future
+
 import numpy as np
 import pytest
 
-from app.messages import Pause, Play
+from app.messages import Advance, Pause, Play
 from app.panel.controls import stability_map as live
 from app.render.surroundings import SUN_INTENSITY
 from app.scenes.rope.view import RopeView
@@ -24,6 +26,29 @@ def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_t
     first = tab.vertices("/rope")
     tab.wait(lambda: np.abs(tab.vertices("/rope") - first).max() > 0.2)
     assert np.isfinite(tab.vertices("/rope")).all()
+    assert tab.errors == []
+
+
+def test_drag_me_stands_at_the_free_end_until_the_first_drag_of_a_browser(lab: Viewer, open_tab) -> None:
+    hanging: Future[float] = Future()
+    lab.loop.commands.put(Pause())
+    lab.loop.commands.put(Advance(1.2, hanging))
+    hanging.result(60.0)
+    tab = open_tab(lab.port)
+    hint = tab.page.locator("#springtide-drag-me")
+    tab.wait(hint.is_visible)
+    points = np.array([tab.pixel(point) for point in lab.loop.latest.frame.points])
+    end, box = points[-1], hint.bounding_box()
+    assert box["x"] + 0.5 * box["width"] == pytest.approx(end[0], abs=12.0)
+    assert 0.0 < box["y"] - end[1] < 40.0
+    tab.drag(tuple(end), tuple(end + 30.0))
+    tab.wait(lambda: hint.count() == 0, 10)
+    tab.release()
+    tab.page.reload()
+    tab.wait(lambda: len(tab.vertices("/rope")) > 0)
+    tab.wait(tab.page.locator("#springtide-cover.springtide-hidden").count)
+    tab.page.wait_for_timeout(500)
+    assert hint.count() == 0
     assert tab.errors == []
 
 

@@ -115,8 +115,9 @@ def test_a_scene_after_another_looks_as_in_a_fresh_start(open_tab: Callable[...,
         page.tab.wait(lambda: np.abs(page.picture() - fresh["rope"]).mean() > 2.0 * MAX_DIFFERENCE)
 
 
+@pytest.mark.parametrize("names", [("square_sea", "rope"), pytest.param((*NAMES, NAMES[0]), marks=pytest.mark.long)])
 def test_the_page_says_what_is_opened_and_not_that_it_connects(
-    open_tab: Callable[..., Tab], monkeypatch: pytest.MonkeyPatch
+    open_tab: Callable[..., Tab], monkeypatch: pytest.MonkeyPatch, names: tuple[str, ...]
 ) -> None:
     lab = Viewer("127.0.0.1", 0)
     try:
@@ -132,7 +133,7 @@ def test_the_page_says_what_is_opened_and_not_that_it_connects(
             return make_scene(*arguments)
 
         monkeypatch.setattr(lab, "make_scene", make_scene_later)
-        for name in (*NAMES, NAMES[0]):
+        for name in names:
             kind = scene_named(name)
             lab.want(name, check_record(kind.params, SMALL.get(name, {})))
             tab.wait(lambda kind=kind: f"Opening {kind.title} …" in tab.page.evaluate("covers"))

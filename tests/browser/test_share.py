@@ -132,31 +132,41 @@ def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
     assert preset.input_value() == "Mine: Seventeen beads"
 
 
-def test_film_clip_and_plots_are_made_as_files(
+def saved(tab: Tab, button: str, folder: Path) -> Path:
+    """The file that a press of a button downloads."""
+    with tab.page.expect_download(timeout=60_000) as download:
+        tab.page.locator(button).click()
+    download.value.save_as(folder / download.value.suggested_filename)
+    return folder / download.value.suggested_filename
+
+
+def test_clip_and_plots_are_made_as_files(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path
 ) -> None:
     lab, _ = one_page
-    tab = open_tab(lab.port, drawn="colorMap")  # draws the background image too: its sky is checked
+    tab = open_tab(lab.port, drawn="colorMap", ratio=0.1)  # a canvas that nothing is drawn on makes no clip
     tab.follow(lab, SCENE)
     tab.show("Share")
     lab.settings.set("plot_tip", True)
     tab.wait(lambda: len(lab.panel.recorder.frames) > 10 and "plot_tip" in lab.panel.plots.charts, 30)
     tab.page.get_by_role("button", name="Record", exact=True).click()
     tab.page.wait_for_timeout(800)
-
-    def saved(button: str) -> Path:
-        with tab.page.expect_download(timeout=60_000) as download:
-            tab.page.locator(button).click()
-        download.value.save_as(tmp_path / download.value.suggested_filename)
-        return tmp_path / download.value.suggested_filename
-
-    clip = saved("[data-springtide-clip]").read_bytes()
+    clip = saved(tab, "[data-springtide-clip]", tmp_path).read_bytes()
     assert clip[4:8] == b"ftyp" or clip[:4] == b"\x1a\x45\xdf\xa3"  # MP4 or WebM
     for form, begin in (("CSV", b"t [s],"), ("SVG", b"<?xml"), ("PNG", b"\x89PNG")):
         tab.page.locator("[data-springtide-plots]").select_option(form)
-        made = saved("[data-springtide-charts]").read_bytes()
+        made = saved(tab, "[data-springtide-charts]", tmp_path).read_bytes()
         assert made.startswith(begin)
     assert iio.imread(made).std() > 1.0
+    lab.settings.set("plot_tip", False)
+
+
+@pytest.mark.long
+def test_a_film_is_made_as_pictures(one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path) -> None:
+    lab, _ = one_page
+    tab = open_tab(lab.port, drawn="colorMap")  # draws the background image too: its sky is checked
+    tab.follow(lab, SCENE)
+    tab.show("Share")
     recorder, number = lab.panel.recorder, lab.loop.run.identity.number
     lab.loop.commands.put(Reset())
     tab.wait(lambda: recorder.line.number > number and len(recorder.frames) > 4, 30)
@@ -165,7 +175,7 @@ def test_film_clip_and_plots_are_made_as_files(
     frames = lab.panel.recorder.kept()
     lab.panel.recorder.show_frame(frames[-4])
     tab.page.locator("[data-springtide-film]").select_option("as pictures")
-    with zipfile.ZipFile(saved("[data-springtide-clip]")) as film:
+    with zipfile.ZipFile(saved(tab, "[data-springtide-clip]", tmp_path)) as film:
         assert len(film.namelist()) == 4 + 1
         pictures = [iio.imread(film.read(name)) for name in film.namelist()[:-1]]
         times = film.read("times.csv").decode().splitlines()
@@ -174,7 +184,6 @@ def test_film_clip_and_plots_are_made_as_files(
     assert pictures[0][0].mean(axis=0) == pytest.approx(sky[0].mean(axis=0), abs=3)
     assert all((before != after).any() for before, after in pairwise(pictures))  # the rope moves
     assert [float(line.split(",")[1]) for line in times[1:]] == [kept.time for kept in frames[-4:]]
-    lab.settings.set("plot_tip", False)
 
 
 def test_no_preset_has_a_name_that_the_address_bar_would_change() -> None:

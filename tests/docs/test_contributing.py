@@ -1,4 +1,4 @@
-"""The page on contributing: each example is complete, and tests/test_extension.py adds and runs it."""
+"""The page on contributing: each example is complete, and tests/repository/test_extension.py adds and runs it."""
 
 import re
 
@@ -19,7 +19,7 @@ def test_there_is_an_example_of_each_thing_to_add():
 
 @pytest.mark.parametrize("heading", HEADINGS)
 def test_each_example_is_run_by_a_test(heading):
-    assert f'("{heading}"' in text_of(ROOT / "tests" / "test_extension.py")
+    assert f'("{heading}"' in text_of(ROOT / "tests/repository/test_extension.py")
 
 
 @pytest.mark.parametrize("heading", HEADINGS)

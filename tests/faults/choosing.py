@@ -13,7 +13,7 @@ from sim.files import replacing
 from tests.faults.calls import reached, read_source
 from tests.faults.drawing import ROOT, Listed, modules
 from tests.faults.trial import OWN, Outcome
-from tests.test_layers import imports, module_of
+from tests.repository.test_layers import imports, module_of
 
 # Their kernels are in one another, so that compiling them again takes longer than most tests.
 PLAIN = ("sim/springs/", "sim/floating/", "sim/mooring/")
@@ -72,10 +72,7 @@ def files_by_place(module: str) -> list[str]:
     """The tests that lie where a module lies: of its folder, or of the nearest folder around it that has tests."""
     folder = Path(module).parent
     named = ROOT / "tests" / folder / f"test_{Path(module).name}"
-    if module.startswith("app/scenes/") and len(folder.parts) > 2:
-        tests, scene = ROOT / "tests/app/scenes", folder.parts[2]
-        paths = [*tests.glob(f"test_{scene}*.py"), *tests.glob(f"{scene}/test_*.py")]
-    elif len(folder.parts) == 1:
+    if len(folder.parts) == 1:
         paths = [named] if named.exists() else []
     else:
         while not (paths := list((ROOT / "tests" / folder).glob("**/test_*.py"))) and len(folder.parts) > 2:

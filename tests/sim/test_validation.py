@@ -34,11 +34,9 @@ def test_an_error_shows_a_path_whole_and_of_another_text_the_beginning():
 def test_what_is_no_number_is_nan_and_refused(value):
     assert math.isnan(v.as_float(value))
     for call, more in (
-        (v.check_number, (0.0, 1.0, "m")),
+        (v.check_number, ("m",)),
+        (v.check_number, ("m", 0.0, 1.0)),
         (v.check_positive, ("m",)),
-        (v.check_not_negative, ("m",)),
-        (v.check_within, (0.0, 1.0)),
-        (v.check_finite, ()),
     ):
         refused(call, value, *more)
 
@@ -46,11 +44,9 @@ def test_what_is_no_number_is_nan_and_refused(value):
 @pytest.mark.parametrize("value", [1, 1.0, np.int8(1), np.float32(1.0)])
 def test_numbers_of_any_kind_are_numbers(value):
     for found in (
-        v.check_number("a", value, 1.0, 1.0, "m"),
+        v.check_number("a", value, "m"),
+        v.check_number("a", value, "m", 1.0, 1.0),
         v.check_positive("a", value, "m"),
-        v.check_not_negative("a", value, "m"),
-        v.check_within("a", value, 1.0, 1.0),
-        v.check_finite("a", value),
     ):
         assert found == 1.0
         assert type(found) is float
@@ -58,32 +54,38 @@ def test_numbers_of_any_kind_are_numbers(value):
 
 
 def test_a_number_lies_in_its_range_with_the_ends_or_without():
-    assert v.check_number("a", 0.0, 0.0, 2.0, "m") == 0.0
-    assert v.check_number("a", 2.0, 0.0, 2.0, "m") == 2.0
-    assert v.check_number("a", 1e-300, 0.0, 2.0, "m", above=True) == 1e-300
-    assert refused(v.check_number, 2.1, 0.0, 2.0, "m") == "from 0 to 2 m"
-    assert refused(v.check_number, -0.1, 0.0, math.inf, "m") == "from 0 m"
-    assert refused(v.check_number, 0.0, 0.0, math.inf, "m", above=True) == "above 0 m"
-    assert refused(v.check_number, math.inf, -math.inf, math.inf, "") == "a finite number"
-    assert refused(v.check_number, "1", 0.0, math.inf, "m") == "a number from 0 m"
-    assert refused(v.check_angle, 90.0) == "an angle from -2 pi to 2 pi rad"
-    assert v.check_angle("a", -2.0 * math.pi) == -2.0 * math.pi
+    assert v.check_number("a", -1e300, "m") == -1e300
+    assert v.check_number("a", 0.0, "m", 0.0, 2.0) == 0.0
+    assert v.check_number("a", 2.0, "m", 0.0, 2.0) == 2.0
+    assert v.check_number("a", 1e-300, "m", 0.0, 2.0, above=True) == 1e-300
+    assert refused(v.check_number, 2.1, "m", 0.0, 2.0) == "from 0 to 2 m"
+    assert refused(v.check_number, 0.0, "", 0.0, 2.0, above=True) == "above 0 to 2"
+    assert refused(v.check_number, -0.1, "m", 0.0) == "from 0 m"
+    assert refused(v.check_number, 3.0, "m", high=2.0) == "a finite number up to 2 m"
+    assert refused(v.check_number, -math.inf, "") == "a finite number"
+    for value in (math.inf, "1"):
+        assert refused(v.check_number, value, "m", 0.0) == "a finite number from 0 m"
 
 
-def test_above_0_not_below_0_within_and_finite():
-    assert refused(v.check_positive, 0.0, "m") == "a number above 0 m"
-    assert refused(v.check_positive, math.inf, "m") == "a number above 0 m"
+def test_a_positive_number_is_above_0_and_infinite_only_where_allowed():
+    assert v.check_positive("a", 1e-300, "m") == 1e-300
     assert v.check_positive("a", math.inf, "m", allow_infinite=True) == math.inf
-    assert refused(v.check_positive, -1.0, "m", allow_infinite=True) == "a number above 0 m, or inf"
-    assert v.check_not_negative("a", 0.0, "m") == 0.0
-    assert refused(v.check_not_negative, -1e-300, "m") == "0 or above, finite m"
-    assert refused(v.check_not_negative, math.inf, "m") == "0 or above, finite m"
-    assert v.check_within("a", 3.0, 2.0, 3.0) == 3.0
-    assert v.check_within("a", math.inf, 2.0, math.inf) == math.inf
-    assert refused(v.check_within, 3.1, 2.0, 3.0, "m") == "2 to 3 m"
-    assert refused(v.check_within, 1.9, 2.0, 3.0) == "2 to 3"
-    assert v.check_finite("a", -1e300) == -1e300
-    assert refused(v.check_finite, -math.inf, "m") == "a finite number m"
+    assert refused(v.check_positive, 0.0, "m") == "above 0 m"
+    assert refused(v.check_positive, math.inf, "m") == "a finite number above 0 m"
+    assert refused(v.check_positive, -1.0, "m", allow_infinite=True) == "above 0 m, or inf"
+    refused(v.check_positive, -math.inf, "m", allow_infinite=True)
+
+
+def test_an_angle_is_at_most_a_turn():
+    assert v.check_angle("a", -2.0 * math.pi) == -2.0 * math.pi
+    assert refused(v.check_angle, 90.0) == "an angle from -2 pi to 2 pi rad"
+
+
+def test_a_number_has_two_checkers_and_an_angle_its_own():
+    checkers = {
+        name for name, one in vars(v).items() if name.startswith("check_") and one.__annotations__["return"] is float
+    }
+    assert checkers == {"check_number", "check_positive", "check_angle"}
 
 
 def test_whole_numbers_are_whole():

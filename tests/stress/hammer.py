@@ -16,7 +16,7 @@ import numpy as np
 from app.lab.course.task import load_tasks
 from app.lab.course.workbook import Workbook
 from app.messages import GrabTo, Pause, Place, Play, PointAlong, Release, Reset, StepOnce
-from app.scenes.ahead.warmup import prepare
+from app.scenes.ahead.compiling import prepare
 from app.scenes.contract import FRAME_INTERVAL
 from app.server.viewer import Viewer
 from sim.parameters import Parameter, parameters_of

@@ -10,7 +10,7 @@ import viser
 
 from app.messages import Play
 from app.scenes import NAMES
-from app.scenes.ahead.warmup import prepare
+from app.scenes.ahead.compiling import prepare
 from app.server.viewer import Viewer
 from tests.stress.clients import Clients, clients_of, until
 from tests.stress.memory import GROWTH, resident

@@ -10,7 +10,7 @@ import pytest
 
 from app.messages import Play, Reset
 from app.scenes import NAMES
-from app.scenes.ahead.warmup import prepare
+from app.scenes.ahead.compiling import prepare
 from app.server.loop.clock import MAX_CATCH_UP
 from app.server.viewer import Viewer
 from sim.parameters import parameters_of

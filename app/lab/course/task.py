@@ -18,7 +18,7 @@ import msgspec
 from app.lab.course.live_values import Condition, names_in, read_conditions
 from sim.validation import argument_error, as_float
 
-TASKS = Path(__file__).parent / "tasks"  # those of the course
+TASKS = tuple(Path(__file__).parent / "tasks" / room for room in ("spill", "sea", "springs"))  # those of the course
 NAME = re.compile(r"[a-z][a-z0-9_]*")
 QUESTION_KINDS = ("choice", "number", "text")
 CONDITIONS = ("when", "needs")  # keys of tables of conditions
@@ -162,7 +162,7 @@ def load_tasks(*folders: Path, with_checks: bool = True) -> tuple[Task, ...]:
     Raises ValueError for a file that is no task, with the file's name and what is wrong.
     """
     found: dict[str, Task] = {}
-    for folder in (TASKS, *folders):
+    for folder in (*TASKS, *folders):
         if not folder.is_dir():
             raise argument_error("--tasks", str(folder), "a folder with tasks in TOML files")
         for path in sorted(folder.glob("*.toml")):

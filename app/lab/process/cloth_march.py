@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.course.tasks.cloth_forces import cloth_forces
-from app.lab.course.tasks.cloth_links import cloth_links
-from app.lab.course.tasks.step_euler import step_euler
-from app.lab.course.tasks.step_rk4 import step_rk4
+from app.lab.course.tasks.springs.cloth_forces import cloth_forces
+from app.lab.course.tasks.springs.cloth_links import cloth_links
+from app.lab.course.tasks.springs.step_euler import step_euler
+from app.lab.course.tasks.springs.step_rk4 import step_rk4
 from app.lab.process.rope_march import ClothData, Functions, Unfit, fitting, not_a_number
 
 FILE = "cloth.py"  # where the tasks have these functions

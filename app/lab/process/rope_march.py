@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.lab.course.tasks.rope_acceleration import rope_acceleration
-from app.lab.course.tasks.sphere_force import sphere_force
-from app.lab.course.tasks.spring_force import spring_force
-from app.lab.course.tasks.step_euler import step_euler
-from app.lab.course.tasks.step_leapfrog import step_leapfrog
-from app.lab.course.tasks.step_rk4 import step_rk4
+from app.lab.course.tasks.springs.rope_acceleration import rope_acceleration
+from app.lab.course.tasks.springs.sphere_force import sphere_force
+from app.lab.course.tasks.springs.spring_force import spring_force
+from app.lab.course.tasks.springs.step_euler import step_euler
+from app.lab.course.tasks.springs.step_leapfrog import step_leapfrog
+from app.lab.course.tasks.springs.step_rk4 import step_rk4
 
 FILE = "rope.py"  # where the tasks have these functions
 REFERENCE: dict[str, Callable[..., Any]] = {

@@ -2,14 +2,14 @@
 
 import math
 import threading
-from collections.abc import Callable
 
 import viser
 
 from app.formats.round_step import round_step
+from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import GuiHandle, ViserEvent
 from app.render.markup.html import fill
-from sim.parameters import Parameter, Value, clamp_value, in_words, parse_value
+from sim.parameters import Parameter, Value, clamp_value, in_words, parameters_of, parse_value
 from sim.quantities import write_number
 
 SLIDER_STEPS = 400  # at most, over a slider's range
@@ -73,23 +73,21 @@ class Control:
         gui: viser.GuiApi,
         folder: viser.GuiFolderHandle | viser.GuiTabHandle,
         name: str,
-        parameter: Parameter,
-        read: Callable[[], Value],
-        changed: Callable[[str, Value], None],
+        settings: SceneSettings,
     ) -> None:
-        """folder: its container in the panel, within which it is made. read: the value as it is set now.
+        """folder: its container in the panel, within which it is made.
 
-        changed: called with what a browser sets. The control holds no value of its own: the panel's record has it.
+        settings: have the value, and take what a browser sets. The control holds no value of its own.
         """
-        self.gui, self.folder = gui, folder
-        self.name, self.parameter, self.read, self.changed = name, parameter, read, changed
+        self.gui, self.folder, self.name, self.settings = gui, folder, name, settings
+        self.parameter = parameter = parameters_of(settings.params)[name]
         self.visible = True
         self.slider: viser.GuiMultiSliderHandle[float] | None = None
         self.line: viser.GuiHtmlHandle | None = None
         self.text = self.refusal = ""
         self.line_lock = threading.Lock()
         label, hint = title(name, parameter), hint_of(name, parameter)
-        value = read()
+        value = self.value
         if parameter.choices:
             shown = parameter.title_of(str(value))
             self.field: GuiHandle = gui.add_dropdown(label, parameter.choice_titles, initial_value=shown, hint=hint)
@@ -110,8 +108,15 @@ class Control:
             self.slider.on_update(self.on_slider)
         self.field.on_update(self.on_field)
 
-    def shown(self, value: Value) -> Value:
-        """Content of the field for a value."""
+    @property
+    def value(self) -> Value:
+        """The value as it is set now."""
+        return getattr(self.settings.params, self.name)
+
+    @property
+    def shown(self) -> Value:
+        """Content of the field."""
+        value = self.value
         if self.parameter.choices:
             return self.parameter.title_of(str(value))
         return value if self.slider is None else write_number(float_or_int(value))
@@ -140,29 +145,28 @@ class Control:
             return
         position = float(event.target.value[0])
         # Where the slider says the value that is set, rounded to its step, the value stays as it is.
-        if abs(self.scale.position(self.read()) - position) > 0.5 * self.scale.step:
+        if abs(self.scale.position(self.value) - position) > 0.5 * self.scale.step:
             self.set(self.scale.value(position))
 
     def set(self, value: object) -> None:
-        """Take a value, bounded to its range, show it, and pass it on."""
-        good = clamp_value(self.parameter, value)
-        self.changed(self.name, good)
-        self.show_value(good)
+        """Give a value to the settings, and show the one that they took."""
+        self.settings.set(self.name, value)
+        self.show_value()
 
     def refuse(self, reason: str) -> None:
         """Say why a text was not taken, and show the value that is set, as before."""
         self.refusal = reason
-        self.field.value = self.shown(self.read())
+        self.field.value = self.shown
         self.show_lines()
 
-    def show_value(self, value: Value) -> None:
-        """Show a value that was set by other means."""
+    def show_value(self) -> None:
+        """Show the value that is set."""
         if self.refusal:
             self.refusal = ""
             self.show_lines()
-        self.field.value = self.shown(value)
+        self.field.value = self.shown
         if self.slider is not None:
-            self.slider.value = (self.scale.position(value),)
+            self.slider.value = (self.scale.position(self.value),)
 
     @property
     def order(self) -> float:

@@ -1,24 +1,22 @@
 """The controls of a scene's parameters, which show and set one record."""
 
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import viser
 
-from app.messages import BaseParams
 from app.panel.controls.control import Control
-from sim.parameters import Value, parameters_of
+from app.panel.settings import SceneSettings
+from sim.parameters import parameters_of
 
 
 class Controls(Mapping[str, Control]):
     """All controls of a panel, one a parameter under its name, in the folders of their groups."""
 
-    def __init__(
-        self, gui: viser.GuiApi, read: Callable[[], BaseParams], changed: Callable[[str, Value], None]
-    ) -> None:
-        """read: returns the present record. changed: takes a value that a browser sets."""
-        self.gui, self.read, self.changed = gui, read, changed
-        self.parameters = parameters_of(read())
+    def __init__(self, gui: viser.GuiApi, settings: SceneSettings) -> None:
+        """settings: shown and set by the controls."""
+        self.gui, self.settings = gui, settings
+        self.parameters = parameters_of(settings.params)
         self.own: dict[str, Control] = {}
         self.again: list[Control] = []  # controls of parameters that are shown a second time, as in a task
         self.hidden: set[str] = set()  # names of parameters that mean nothing just now
@@ -56,25 +54,14 @@ class Controls(Mapping[str, Control]):
 
     def make(self, folder: viser.GuiFolderHandle | viser.GuiTabHandle, name: str) -> Control:
         """A control of a parameter, in the container that is open."""
-        return Control(
-            self.gui, folder, name, self.parameters[name], lambda: getattr(self.read(), name), self.on_change
-        )
-
-    def on_change(self, name: str, value: Value) -> None:
-        """A control was set."""
-        self.changed(name, value)
-        with self.lock:
-            for control in (self.own[name], *self.again):
-                if control.name == name:
-                    control.show_value(value)
+        return Control(self.gui, folder, name, self.settings)
 
     def show(self, hidden: set[str]) -> None:
         """Show the record; hide the controls that mean nothing just now, and the folders in which nothing is left."""
         self.hidden = hidden
-        params = self.read()
         with self.lock:
             for control in (*self.own.values(), *self.again):
-                control.show_value(getattr(params, control.name))
+                control.show_value()
                 control.show(control.name not in hidden)
         shown = {self.parameters[name].group for name in self.own if name not in hidden}
         for group, folder in self.folders.items():

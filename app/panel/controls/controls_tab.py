@@ -10,6 +10,7 @@ from app.panel.controls.controls import Controls
 from app.panel.controls.readings import Readings
 from app.panel.controls.remedy import ControlRemedies
 from app.panel.keys import KEYS
+from app.panel.recording.files import file_name
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import ViserEvent
 from app.render.markup.html import Html, fill, note
@@ -37,7 +38,9 @@ class ControlsTab:
             if name == OPEN_GROUP:
                 event = settings.kind.awaited
                 self.run_on = None if event is None else self.add_run_on(event)
-                self.readings = Readings(gui, view, tab, lambda command: settings.post(command))
+                self.readings = Readings(
+                    gui, view, tab, lambda command: settings.post(command), lambda end: file_name(settings, end)
+                )
         self.map = self.add_map()
         with gui.add_folder("Help", expand_by_default=False):
             self.help = gui.add_html("")

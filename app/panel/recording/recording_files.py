@@ -88,7 +88,7 @@ def within(chart: Chart | Columns, start: float, end: float) -> Chart | Columns:
 
 
 def plots_csv(kind: AnyKind, plotted: Plotted) -> str:
-    """Plots as CSV with units, a column each; "nan": no value there.
+    """Plots as CSV with units, a column each; an empty cell: no value there. A column without any is left out.
 
     Plots over the same first column share it. Others stand beside them, and the shorter ones end with empty cells.
     Raises ValueError where there is nothing.
@@ -97,7 +97,8 @@ def plots_csv(kind: AnyKind, plotted: Plotted) -> str:
     columns: list[tuple[str, Column]] = []
     if plotted.rows:
         names = [TIME, *(f"{name} [{units[name]}]" if units.get(name) else name for name in kind.series)]
-        columns += zip(names, np.array(plotted.rows, np.float64).T, strict=True)
+        table = zip(names, np.array(plotted.rows, np.float64).T, strict=True)
+        columns += [(name, values) for name, values in table if not np.isnan(values).all()]
     first: tuple[str, Column] | None = None
     for name, curve in plotted.curves.items():
         axes = kind.curves[name]

@@ -11,7 +11,7 @@ import sys
 import traceback
 
 from app.lab.process.shared import BACKGROUND_NICENESS, lower_priority
-from app.scenes.ahead.warmup import compile_piece
+from app.scenes.ahead.compiling import Job, compile_job
 
 
 def main() -> None:
@@ -24,7 +24,7 @@ def main() -> None:
     for line in sys.stdin:
         name, piece, drawn = line.rstrip("\n").split("\t")
         try:
-            compile_piece(name, piece, drawn=drawn == "1")
+            compile_job(Job(name, piece, drawn == "1"))
             problem = ""
         except Exception as error:
             traceback.print_exc()

@@ -1,11 +1,14 @@
-"""Compiles in separate processes, while the page stays alive: compiling in this process would stop its threads.
+"""Compiles ahead: the pieces of each scene, a marker file for each compiled piece, and processes that compile them.
 
-What is waited for is shared among some workers. Another one, of low priority, goes on with the rest of the open scene,
-and then with the other scenes. The workers fill the cache on disk, from which this process loads. If one of them is
-killed, what it was at is compiled later by the process that needs it.
+Compiling in the process of the lab would stop its threads. What is waited for is shared among some workers. Another
+one, of low priority, goes on with the rest of the open scene, and then with the other scenes. The workers fill the
+cache on disk, from which this process loads. If one of them is killed, what it was at is compiled later by the process
+that needs it.
 """
 
 import collections
+import functools
+import gc
 import os
 import subprocess
 import sys
@@ -15,12 +18,12 @@ from typing import NamedTuple
 
 from app.lab.process.child_processes import end_with_this_program
 from app.messages import BaseParams
-from app.scenes import NAMES
-from app.scenes.ahead.warmup import missing
-from sim.jit import CACHE, ROOT
+from app.scenes import NAMES, scene_named, view_named
+from sim.jit import CACHE, ROOT, is_kept, keep, reachable_hash
 
 MAX_WORKERS = 4  # processes at once for what is waited for, each of 0.3 GB
 AHEAD = -1  # number of the worker that compiles what nobody waits for
+EVERYTHING = "everything"  # stands for all pieces of a scene, so that a later start need not ask it for them
 
 
 class Job(NamedTuple):
@@ -28,7 +31,90 @@ class Job(NamedTuple):
 
     scene: str
     piece: str
-    drawn: bool  # of the drawing
+    drawn: bool = False  # of the drawing
+
+
+@functools.cache
+def hash_of(name: str, drawn: bool) -> str:
+    """Hash of all sources that a scene's kernels, and its drawing's, can reach."""
+    folder = ROOT / "app" / "scenes" / name
+    return reachable_hash(folder / "scene.py", *([folder / "view.py"] if drawn else []))
+
+
+def mark_of(job: Job) -> str:
+    """Name of the file that stands for a compiled piece."""
+    kind = "drawn" if job.drawn else "headless"
+    return f"{job.scene}-{kind}-{job.piece.replace(' ', '_')}-{hash_of(job.scene, job.drawn)}.warm"
+
+
+def is_marked(job: Job) -> bool:
+    """True if this version of a piece has been compiled before, here or into a folder that is only read."""
+    return is_kept(mark_of(job))
+
+
+def all_jobs(name: str, *, drawn: bool = True) -> tuple[Job, ...]:
+    """The pieces of a scene, and then, with `drawn`, those of its drawing.
+
+    None of these takes long: where two processes share the pieces, both come to their end at about the same time.
+    """
+    drawing = (Job(name, piece, True) for piece in view_named(name).WARM_UP) if drawn else ()
+    return *(Job(name, piece) for piece in scene_named(name).warm_up()), *drawing
+
+
+def uncompiled(name: str, params: BaseParams | None = None) -> list[Job]:
+    """Jobs of `all_jobs` still to be compiled. params: only those that run with these parameters; None: all.
+
+    A scene that is compiled as a whole is not imported for that.
+    """
+    everything = is_marked(Job(name, EVERYTHING, True))
+    if params is None and everything:
+        return []
+    needs = scene_named(name).needs
+    needed = None if params is None or needs is None else needs(params)
+    ahead = () if everything else all_jobs(name)
+    wanted = [job for job in ahead if job.drawn or needed is None or job.piece in needed]
+    if needed is not None:
+        wanted = [Job(name, piece) for piece in scene_named(name).warm_up_on_use() if piece in needed] + wanted
+    return [job for job in wanted if not is_marked(job)]
+
+
+def compile_job(job: Job) -> None:
+    """Compile one piece, and remember it."""
+    name, piece, drawn = job
+    kind = scene_named(name)
+    # A compiler makes many objects that stay: looking through all of them again and again takes a fifth of the time.
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        pieces = view_named(name).WARM_UP if drawn else {**kind.warm_up_on_use(), **kind.warm_up()}
+        pieces[piece]()
+    finally:
+        if was_enabled:
+            gc.enable()
+    keep(mark_of(job))
+    # The drawing, and with it viser, is asked only where all else is compiled.
+    if all(map(is_marked, all_jobs(name, drawn=False))) and all(map(is_marked, all_jobs(name))):
+        keep(mark_of(Job(name, EVERYTHING, True)))
+
+
+def compile_here(name: str, jobs: Iterable[Job]) -> None:
+    """Compile pieces of a scene in this process, with progress on a terminal."""
+    from rich import get_console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = SpinnerColumn(), TextColumn("compiling {task.description} (once)"), TimeElapsedColumn()
+    with Progress(*columns, transient=True, disable=not get_console().is_terminal) as progress:
+        task = progress.add_task(name, total=None)
+        for job in jobs:
+            progress.update(task, description=f"{name}: {job.piece}")
+            compile_job(job)
+
+
+def prepare(name: str, *, drawn: bool = True) -> None:
+    """Compile the kernels of a scene that are not compiled yet. drawn: those of its drawing, too."""
+    todo = [job for job in all_jobs(name, drawn=drawn) if not is_marked(job)]
+    if todo:
+        compile_here(name, todo)
 
 
 class Compiling:
@@ -55,7 +141,7 @@ class Compiling:
         if CACHE is None:
             return []
         try:
-            jobs = [Job(name, piece, drawn) for piece, drawn in missing(name, params)]
+            jobs = uncompiled(name, params)
         except ValueError:
             return []
         return [job for job in jobs if job not in self.settled]

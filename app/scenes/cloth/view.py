@@ -11,7 +11,7 @@ from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.colormap import scale_colours
 from app.render.coloured_mesh import ColouredMesh
-from app.render.gizmo import Gizmo
+from app.render.handles.gizmo import Gizmo
 from app.render.handles.viser_inside import set_arrays
 from app.render.markup.html import Html, fill, info, join
 from app.render.meshes import ball, rod, tube_faces

@@ -11,7 +11,7 @@ from app.scenes.mooring.arrangement import body_of, build, hull_of, line_types, 
 from app.scenes.mooring.attachments import Attachments
 from app.scenes.mooring.line_scene import LineScene
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.restoring import StaticInputs
+from app.scenes.mooring.readings.restoring import StaticInputs
 from app.scenes.mooring.start import rest_or_start
 from app.scenes.mooring.start_check import Fault, fault_of, overload_of
 
@@ -61,6 +61,7 @@ class MooringScene(LineScene):
             self.assess_stability()
         else:
             self.take_step()
+        self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
         """Go on with the mooring as it is arranged now."""

@@ -11,14 +11,14 @@ from app.messages import GrabTo, PlotRow, Release, RestartStatistics, SceneComma
 from app.scenes.charts import Chart
 from app.scenes.checkpoints import copied, restore
 from app.scenes.mooring.arrangement import surface_heights, surface_side
-from app.scenes.mooring.excursion import Excursion
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
-from app.scenes.mooring.restoring import CurveInputs, RestoringCurve
+from app.scenes.mooring.readings.excursion import Excursion
+from app.scenes.mooring.readings.restoring import CurveInputs, RestoringCurve
+from app.scenes.mooring.readings.tensions import Tensions
 from app.scenes.mooring.rows import LineRows
 from app.scenes.mooring.start import MooringStart, rest_or_start
 from app.scenes.mooring.start_check import Fault
-from app.scenes.mooring.tensions import Tensions
 from app.scenes.plot_rows import PlotRows
 from app.scenes.springs.divergence import LastMoments, divergence_text, leapfrog_alternative
 from app.scenes.springs.speed_advice import faster_steps
@@ -44,6 +44,7 @@ class LineScene(abc.ABC):
     """Lines on the simulation thread, whatever holds them; see `app.scenes.contract.Scene`."""
 
     frame_interval = FRAME_INTERVAL
+    pace = 1.0
     note = ""
     changing: tuple[str, ...]  # attributes that a checkpoint holds
     system: System
@@ -221,17 +222,22 @@ class LineScene(abc.ABC):
         if self.plot_rows.is_due(self.time):
             self.add_plot_row()
 
-    def measure(self) -> None:
-        """Take tensions, offset and path of the state."""
+    def find_tensions(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Find the tensions in the state; returns the forces (lines, 3) [N] at anchors and fairleads."""
         p, state = self.system.kernel_view(self.step)._replace(**self.driven()), self.state
         tension = np.empty(len(p.ends))
         v = velocities(self.system, state)
         set_line_tensions(state.x.reshape(-1), v.reshape(-1), p, tension)
         self.tension, self.points = tension[self.rows.links], self.rows.points(state.x)
+        return self.rows.end_forces(state.x, v, state.t, p)
+
+    def measure(self) -> None:
+        """Take tensions, offset and path of the state, into the statistics too."""
         if self.is_dragged:
-            self.tensions.leave_out(state.t, self.params.wave_period)
-        self.tensions.measure(state.t, self.tension, *self.rows.end_forces(state.x, v, state.t, p))
-        self.excursion.measure(state.t, self.body_place(), counts=self.tensions.counts)
+            self.tensions.leave_out(self.time, self.params.wave_period)
+        at_anchor, at_fairlead = self.find_tensions()
+        self.tensions.measure(self.time, self.tension, at_anchor, at_fairlead)
+        self.excursion.measure(self.time, self.body_place(), counts=self.tensions.counts)
 
     def add_plot_row(self) -> None:
         """Add tensions and offset at the scene's time."""
@@ -294,7 +300,7 @@ class LineScene(abc.ABC):
         restore(self, kept)
         self.grabbed = None
         self.take_step()
-        self.measure()
+        self.tensions.take_now(*self.find_tensions())
         self.plot_rows.resume()
         self.last_moments.clear()
 

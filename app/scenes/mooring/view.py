@@ -7,8 +7,8 @@ import viser
 from app.formats.packing import compile_packing
 from app.messages import RestartStatistics, Snapshot, Vector
 from app.render.cameras import set_clipping
-from app.render.dragging import GrabLine, drag
-from app.render.gizmo import Gizmo
+from app.render.handles.dragging import GrabLine, drag
+from app.render.handles.gizmo import Gizmo
 from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand, SceneView
 from app.scenes.mooring.arrangement import depth_of, extent
@@ -20,7 +20,7 @@ from app.scenes.mooring.drawing.watch_view import WatchCircle
 from app.scenes.mooring.drawing.water_view import SeenWater
 from app.scenes.mooring.frame import MooringFrame, MooringReadings
 from app.scenes.mooring.parameters import MAX_LINES, MooringParams
-from app.scenes.mooring.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
+from app.scenes.mooring.readings.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
 from app.scenes.springs.drawing.html import simple_drawing
 
 ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07  # in `extent`s

@@ -68,6 +68,7 @@ class RaceScene:
     """The race on the simulation thread."""
 
     frame_interval = FRAME_INTERVAL
+    pace = 1.0
     faster = "fewer ropes, fewer points or longer steps"
     note = ""  # a rope with a method that cannot run stops and says so; no other method runs instead
 

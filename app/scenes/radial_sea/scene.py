@@ -110,6 +110,7 @@ class RadialSeaScene:
     """The radial sea; used on the simulation thread."""
 
     frame_interval = FRAME_INTERVAL
+    pace = 1.0
     faster = "fewer bodies, fewer waves or a larger step"  # these take the time
     note = ""  # it always runs what the parameters ask for
 

@@ -12,8 +12,8 @@ from app.formats.packing import compile_packing
 from app.formats.surface_fields import compile_surface_fields
 from app.messages import Command, Place, Snapshot, Vector, finite_vector, vector_of
 from app.render.cameras import place_cameras
-from app.render.dragging import GrabLine, drag
 from app.render.follow_camera import FollowCamera
+from app.render.handles.dragging import GrabLine, drag
 from app.render.markup.html import bold, fill
 from app.render.material import Material
 from app.render.skies import set_sky

@@ -27,6 +27,7 @@ P = TypeVar("P", bound=MethodParams)
 class NetScene(abc.ABC, Generic[P]):
     """A spring network on the simulation thread."""
 
+    pace = 1.0
     CHANGING: ClassVar[tuple[str, ...]]  # attributes that change as the net moves
     ASSESSMENT_INTERVAL: ClassVar[float]  # [s] of simulated time between two assessments of the stability
 

@@ -135,6 +135,10 @@ class SquareSeaParams:
     )  # fmt: skip
 
     speed: float = speed_parameter(0.01, 8.0)
+    slow_motion: bool = parameter(
+        True, doc="Time slows while a crest higher than the significant height passes the wave gauge", affects="look",
+        group="Time", title="Slow motion at a high crest",
+    )  # fmt: skip
     frame_rate: float = parameter(30.0, 5.0, 60.0, "Hz", "Frames per second", affects="look", group="Time")
 
     grid: bool = in_look(False, doc="Lines of the drawn grid (key G)")
@@ -193,6 +197,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
     "Steep storm": {
         "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",
+        "start": "rogue", "plot_wave_gauge": True,
         "foam_by_wind": False, "foam_threshold": 0.7, "view": "gauge", "clouds": 0.9, "daylight": 0.8,
         "visibility": 2000.0,
     },
@@ -205,11 +210,22 @@ ABOUT = {  # preset -> what it shows and what to try
     "Light planet": "On a planet of 1/100 of the Earth's mass the same wind makes higher, longer waves.",
     "Heavy planet": "On a planet of 100 times the Earth's mass the same wind makes lower, shorter waves.",
     "Rain shower": "Rain on nearly calm water: watch the rings spread.",
-    "Peregrine breather": "Even waves gather within a minute into one that is three times as high.",
+    "Peregrine breather": "Even waves gather within a minute into one that is three times as high, at the staff.",
     "Steep waves split into groups": "Even, steep waves split into groups within a minute; at order 1 they do not.",
     "Draupner": "A crossing sea of 11.9 m makes a crest of 18.5 m after 60 s, as was measured in 1995.",
-    "Steep storm": "Steep waves of a short fetch break: run on to a high crest.",
+    "Steep storm": "Steep waves of a short fetch break. After 20 s a high crest comes to the staff.",
 }
+
+
+class RogueRecord(NamedTuple):
+    """A rogue wave as it was measured."""
+
+    height: float  # [m] significant
+    crest: float  # [m]
+    period: tuple[float, float]  # [s] of the wave, from and to
+
+
+DRAUPNER = RogueRecord(11.9, 18.5, (12.0, 13.0))  # 1 January 1995, from the laser of the platform (Haver 2004)
 
 
 class RainSettings(NamedTuple):
@@ -227,6 +243,22 @@ class RainSettings(NamedTuple):
 def marches(params: SquareSeaParams) -> bool:
     """True if the sea is solved step by step, in place of the sum of linear waves, which is known at all times."""
     return params.order > 1 or params.start in MARCHING_STARTS
+
+
+def is_draupner(params: SquareSeaParams) -> bool:
+    """True if the sea is that of the Draupner preset, however it is drawn."""
+    return params.start == "rogue" and sea_of(params) == draupner_sea()
+
+
+def sea_of(params: SquareSeaParams) -> tuple[object, ...]:
+    """Settings that decide the height of its waves."""
+    return params.start, params.order, params.length, params.amplitude, params.seed, conditions(params)
+
+
+@functools.cache
+def draupner_sea() -> tuple[object, ...]:
+    """`sea_of` the Draupner preset."""
+    return sea_of(SquareSeaParams(**PRESETS["Draupner"]))
 
 
 def acting(params: SquareSeaParams) -> SquareSeaParams:
@@ -302,4 +334,4 @@ def hidden(params: SquareSeaParams) -> set[str]:
         names.add("foam_threshold")
     if params.rain == 0.0:
         names |= {"drops", "rings"} | (set() if follows_wind(params) else {"wind_direction"})
-    return names | (set(LINEAR_ONLY) if marches(params) else set())
+    return names | (set(LINEAR_ONLY) if marches(params) else {"slow_motion"})

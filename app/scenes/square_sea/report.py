@@ -9,7 +9,7 @@ from app.scenes.measured_sea import measured_text
 from app.scenes.quantities import read, written
 from app.scenes.sea_parameters import chosen_spectrum
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
-from app.scenes.square_sea.parameters import SquareSeaParams, gravity, marches, solved_points
+from app.scenes.square_sea.parameters import DRAUPNER, SquareSeaParams, gravity, is_draupner, marches, solved_points
 from app.scenes.square_sea.quantities import OF_RAIN, OF_REPORT, QUANTITIES, here, spectrum_conditions
 from app.scenes.square_sea.rainfall import RainReadings
 from app.scenes.square_sea.statistics import Report
@@ -45,6 +45,8 @@ def readout(snapshot: Snapshot) -> Html:
         texts.append(statistics_table(r.report, chosen_spectrum(frame.params).title if is_measured else "an open sea"))
         if r.report.heights is not None:
             texts.append(heights_table(r.report, frame))
+        if frame.highest is not None and is_draupner(frame.params):
+            texts.append(draupner_table(r.report, frame.highest))
     if frame.params.foam:
         texts.append(foam_text(r, gravity(frame.params)))
     breaking = breaking_text(frame.params)
@@ -86,6 +88,20 @@ def heights_table(r: Report, frame: SeaFrame) -> Html:
         ),
     )
     return join((measured, faint(f"Breaking has taken {percent(found.lost)} of the energy.")))
+
+
+def draupner_table(r: Report, highest: Highest) -> Html:
+    """The highest crest since the start beside the record of the Draupner platform."""
+    hs, ratio = read(OF_REPORT, "significant_height", r), DRAUPNER.crest / DRAUPNER.height
+    shown = table(
+        (("", ""), ("as drawn", ""), ("measured", "1995")),
+        (
+            ("significant height [m]", bold(fixed(hs, 1)), fixed(DRAUPNER.height, 1)),
+            ("highest crest [m]", bold(fixed(highest.place[2], 1)), fixed(DRAUPNER.crest, 1)),
+            ("crest over significant height", bold(fixed(highest.ratio, 2)), fixed(ratio, 2)),
+        ),
+    )
+    return join((shown, faint("The wave of 1995 took {:g} to {:g} s.".format(*DRAUPNER.period))))
 
 
 def highest_text(h: Highest) -> str:

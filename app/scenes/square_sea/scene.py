@@ -18,10 +18,12 @@ from app.scenes.plot_rows import PlotRows
 from app.scenes.square_sea.foam import MeshFoam, WavePace
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings, readings_of
 from app.scenes.square_sea.parameters import (
+    DRAUPNER,
     SquareSeaParams,
     acting,
     conditions,
     gauge_home,
+    is_draupner,
     marches,
     rain_settings,
     solved_points,
@@ -41,7 +43,7 @@ if TYPE_CHECKING:
     from app.scenes.square_sea.student_sea import StudentSea
     from sim.ocean.nonlinear import NonlinearSea
 
-SERIES = ("wave gauge",)
+SERIES = ("wave gauge", "crest measured in 1995")
 CHANGING = (  # as time passes
     "steps", "sea", "rainfall", "foam", "drawn_at", "waves", "change", "marching",
 )  # fmt: skip
@@ -181,6 +183,14 @@ class SquareSeaScene:
             self.marching = nonlinear.Marching(self.params, self.sea, self.time, self.gauge.at)
 
     @property
+    def pace(self) -> float:
+        """Factor on the speed: below 1 while a high crest passes the wave gauge of a nonlinear sea."""
+        p = self.params
+        if self.marching is None or not (p.slow_motion and self.gauge_shown):
+            return 1.0
+        return self.marching.pace(self.gauge.trace, p)
+
+    @property
     def water(self) -> "tuple[Sea | NonlinearSea, float]":
         """The sea that is drawn, and its time [s]: a nonlinear one may have stopped before the clock."""
         return (self.sea, self.time) if self.marching is None else (self.marching.sea, self.marching.sea.time)
@@ -274,7 +284,7 @@ class SquareSeaScene:
         """Have the wave gauge read the sea as it is now, and add a plot row if one is due."""
         self.gauge.read(*self.water, self.params.amplitude)
         self.counts["gauge readings"] += 1
-        self.plot_rows.add_due(self.time, self.gauge.height)
+        self.plot_rows.add_due(self.time, self.gauge.height, DRAUPNER.crest if is_draupner(self.params) else math.nan)
 
     @property
     def gauge_shown(self) -> bool:

@@ -5,7 +5,7 @@ overtakes what it may depend on.
 """
 
 import itertools
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Literal, NamedTuple
 
 from app.messages import (
@@ -177,9 +177,15 @@ class CompileGate:
     The simulation thread alone calls it and changes it; the viewer thread reads `notice`.
     """
 
-    def __init__(self, compiling: Compiling, kind: AnyKind, record: Record) -> None:
-        """record: the one that runs."""
-        self.compiling, self.kind = compiling, kind
+    def __init__(
+        self,
+        compiling: Compiling,
+        kind: AnyKind,
+        record: Record,
+        drop: Callable[[Take], None] = lambda take: None,
+    ) -> None:
+        """record: the one that runs. drop: told of each that is dropped, to which an undo may go back."""
+        self.compiling, self.kind, self.drop = compiling, kind, drop
         self.record = record  # the one that was handed over last
         self.held: list[Command] = []  # parameters that wait for the compiler, and what waits for them, in order
         self.jobs: dict[BaseParams, list[Job]] = {}  # still to be compiled, asked for once and not in each tick
@@ -250,6 +256,8 @@ class CompileGate:
             newer = newer._replace(start=any(take.start and take.back == back for take in waiting), back=back)
         elif not newer.back and not self.is_ready(newer.params):
             return merged([*self.held, newer], self.record)
+        for take in waiting:
+            self.drop(take)
         return [newer, *(command for command in self.held if isinstance(command, Advance))]
 
     def note(self, commands: Iterable[Command]) -> None:

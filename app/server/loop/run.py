@@ -132,7 +132,7 @@ class SceneRun:
     def keep_time(self, wall: float) -> bool:
         """Take the steps that are due; True where there were any."""
         frame = self.clock.frame_interval(self.scene.frame_interval)
-        n = self.pacer.steps(wall, self.scene.params.speed, self.scene.step, frame)
+        n = self.pacer.steps(wall, self.scene.params.speed * self.scene.pace, self.scene.step, frame)
         if self.goal is not None:
             n = min(n, steps_to(self.scene, self.goal.until))
         return self.take_steps(n)
@@ -146,7 +146,8 @@ class SceneRun:
     def note_place(self) -> None:
         """Say at the clock of several loops where the run is."""
         if self.seat is not None:
-            self.seat.note(self.scene.time, self.scene.step, running=self.running, halted=bool(self.stopped_by))
+            seat, scene = self.seat, self.scene
+            seat.note(scene.time, scene.step, scene.pace, running=self.running, halted=bool(self.stopped_by))
 
     def follow(self, seat: Seat, wall: float) -> bool:
         """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
@@ -330,13 +331,14 @@ class LeftRun(NamedTuple):
     act: int  # with which it began
     params: BaseParams
     state: Checkpoint
-    rows: tuple[PlotRow, ...]  # of its plots
+    rows: tuple[PlotRow, ...] | None  # of its plots; None: it was to go on from a moment, and has not begun
     running: bool
 
     @property
     def arrays(self) -> dict[int, int]:
         """Identity -> bytes of all that it holds."""
-        return {**self.state.arrays, id(self.rows): ROW_BYTES * len(self.rows) * len(self.rows[0]) if self.rows else 0}
+        rows = self.rows or ()
+        return {**self.state.arrays, id(rows): ROW_BYTES * len(rows) * len(rows[0]) if rows else 0}
 
 
 class LeftRuns:
@@ -457,6 +459,11 @@ class RunSequence:
             rows = tuple(run.snapshots.kept_rows)
             self.left.add(LeftRun(run.identity.act, run.scene.params, kept_state(run), rows, run.running))
 
+    def keep_dropped(self, take: Take) -> None:
+        """Keep a run that was to go on from a moment for an undo, where newer parameters have taken its place."""
+        if take.state is not None:
+            self.left.add(LeftRun(take.act, take.params, take.state, None, True))
+
     def go_back(self, command: Take) -> None:
         """Go back to the run of an act, as it was when it was left; from its start if it is not kept."""
         params, start, _, act, _ = command
@@ -465,7 +472,10 @@ class RunSequence:
             (self.begin_with if start else self.change_start)(params, act)
             run.snapshots.show_restarted()
             return
-        self.begin_with(left.params, act, left)
+        if left.rows is None:
+            self.resume(left.params, left.state, act)
+        else:
+            self.begin_with(left.params, act, left)
         run.running = left.running and not run.halted
         if run.seat is not None and not run.running:
             run.seat.tell_others(Pause())
@@ -476,6 +486,6 @@ class RunSequence:
         run = self.run
         run.scene.reset()
         run.scene.resume(left.state.value)
-        run.snapshots.bring_back(left.rows)
+        run.snapshots.bring_back(left.rows or ())
         if run.seat is not None:
             run.seat.go_on_from(run.scene.time)

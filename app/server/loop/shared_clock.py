@@ -26,6 +26,7 @@ class Seat:
         self.offset = clock.origin  # [s] of the clock, at which the scene's time was 0
         self.reached = clock.origin  # [s] of the clock, to which the loop has come
         self.step = 0.0  # [s] of the scene
+        self.pace = 1.0  # factor on the speed that the scene asks for
         self.running = True
         self.halted = False
 
@@ -38,9 +39,9 @@ class Seat:
         """Number of steps [s] of a scene at `time` [s] to the clock's time."""
         return max(0, int((self.clock.time - self.offset - time) / step * (1 + 1e-9) + 1e-6))
 
-    def note(self, time: float, step: float, *, running: bool, halted: bool) -> None:
-        """Say where the loop is: its scene's time and step [s]."""
-        self.running, self.halted = running, halted
+    def note(self, time: float, step: float, pace: float, *, running: bool, halted: bool) -> None:
+        """Say where the loop is: its scene's time and step [s], and its pace."""
+        self.running, self.halted, self.pace = running, halted, pace
         self.reached, self.step = self.offset + time, step
 
     def begin(self) -> None:
@@ -93,7 +94,11 @@ class SharedClock:
         self.seats: tuple[Seat, ...] = ()
 
     def advance(self, wall: float, speed: float) -> None:
-        """Let `wall` seconds pass at `speed`, as far as all loops can follow; called by the first seat's loop."""
+        """Let `wall` seconds pass at `speed`, as far as all loops can follow; called by the first seat's loop.
+
+        Where one scene asks for slow motion, all have it.
+        """
+        speed *= min((seat.pace for seat in self.seats), default=1.0)
         most = MAX_DEBT * speed
         self.debt += wall * speed
         self.late = self.debt > most

@@ -162,6 +162,7 @@ class Snapshots:
             faster=run.scene.faster if capped else "",
             run=run.identity,
             unmade=run.unmade,
+            pace=run.scene.pace,
             restarted=wall < self.restarted_until,
             replayed=None if moment is None else (moment.low, moment.high),
         )

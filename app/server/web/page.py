@@ -7,6 +7,7 @@ is: the lab works by viser's client alone.
 
 import functools
 import gzip
+import re
 import secrets
 import sys
 from http import HTTPStatus
@@ -18,9 +19,8 @@ from websockets.http11 import Request, Response
 from app.render.scripts import PAGE, before_tags, tags
 
 ALIVE_PATH = "/springtide-alive"  # requested by the page, to see whether the server is still there
-SERVER_NAME = secrets.token_hex(
-    8
-)  # the answer to that: another name is another server, which knows nothing of the page
+# The answer to that: another name is another server, which knows nothing of the page.
+SERVER_NAME = secrets.token_hex(8)
 TITLE = "<title>Springtide</title>"
 PANES_PATH = "/beside"  # of the page that shows several labs side by side
 COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
@@ -53,6 +53,12 @@ def with_cover(request: Request, response: Response | None) -> Response | None:
     return Response(response.status_code, response.reason_phrase, headers, page)
 
 
+def style_sheet() -> str:
+    """The style sheet of the page, without its comments, which would come before the cover."""
+    source = (resources.files("app.render") / "js" / "page.css").read_text("utf-8")
+    return re.sub(r"/\*.*?\*/\s*", "", source, flags=re.DOTALL)
+
+
 @functools.cache
 def covered(sent: bytes, zipped: bool) -> bytes:
     """viser's page with ours around it, compressed again where it was; as it was sent where it is not as expected."""
@@ -64,8 +70,7 @@ def covered(sent: bytes, zipped: bool) -> bytes:
         print("springtide: the page of viser has changed: it is shown without cover and scripts", file=sys.stderr)
         return sent
     end = last + len("</script>")
-    style = (resources.files("app.render") / "js" / "page.css").read_text("utf-8")
-    first = f"{before_tags()}<style>{style}</style>"
+    first = f"{before_tags()}<style>{style_sheet()}</style>"
     client = head[start:end]
     head = head[:start].replace("<title>Viser</title>", TITLE, 1) + first + head[end:]
     body = body.replace("</body>", f"{client}{tags(PAGE)}</body>", 1)

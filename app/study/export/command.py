@@ -69,9 +69,9 @@ def export(scene: str, params: Any, seconds: float, rate: float, start: float, f
     form = form or next(name for name in formats if is_installed(name))
     if form not in formats:
         raise argument_error("--format", form, f"{' or '.join(formats)} for {scene}")
-    check_number("--seconds", seconds, 0.0, MAX_DURATION, "s", above=True)
-    check_number("--rate", rate, *RATES, "Hz")
-    check_number("--start", start, 0.0, MAX_DURATION, "s")
+    check_number("--seconds", seconds, "s", 0.0, MAX_DURATION, above=True)
+    check_number("--rate", rate, "Hz", *RATES)
+    check_number("--start", start, "s", 0.0, MAX_DURATION)
     check_folder(out)
     if not is_installed(form):
         raise ValueError("export: OpenEXR is not installed (pip install '.[exr]'), or choose --format png")

@@ -83,7 +83,7 @@ def runner(spec: Spec, scheduler: str | None) -> Iterator[Run]:
         with workers.connected(scheduler) as client:
             yield lambda jobs: workers.on_cluster(client, jobs)
         return
-    from app.scenes.ahead.warmup import prepare
+    from app.scenes.ahead.compiling import prepare
 
     def run(jobs: dict[int, Any]) -> Outcomes:
         prepare(spec.scene, drawn=False)  # compiled here once, and not in every worker

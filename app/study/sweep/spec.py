@@ -90,7 +90,7 @@ def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = Non
     name = content["scene"]
     scene = scene_named(name if isinstance(name, str) else check_choice("scene", name, NAMES))
     known = parameters_of(scene.params)
-    seconds = check_number("seconds", content["seconds"], 0.0, MAX_DURATION, "s", above=True)
+    seconds = check_number("seconds", content["seconds"], "s", 0.0, MAX_DURATION, above=True)
     frames = whole(content, "frames", 1, 1, MAX_FRAMES)
     design = check_choice("design", content.get("design", "grid"), DESIGNS)
     swept = table(content, "parameters")

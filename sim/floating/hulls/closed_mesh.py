@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sim.validation import argument_error, as_array, check_kind, check_within
+from sim.validation import argument_error, as_array, check_kind, check_number
 
 MAX_SAMPLES = 400  # places on a mesh of several parts where it is checked that they do not overlap
 MIN_LENGTH, MAX_LENGTH = 1e-3, 1e4  # [m] of an edge, a radius or an extent
@@ -149,7 +149,7 @@ def enclosed(triangles: np.ndarray, point: np.ndarray) -> int:
 
 def check_length(name: str, value: float) -> float:
     """`value` if it is a length that a hull may have. Raises ValueError otherwise."""
-    return check_within(name, value, MIN_LENGTH, MAX_LENGTH, "m")
+    return check_number(name, value, "m", MIN_LENGTH, MAX_LENGTH)
 
 
 def open_edges(faces: np.ndarray) -> int:

@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 
 from sim.floating.hulls.closed_mesh import enclosed_volume, open_edges, parts_of
-from sim.validation import argument_error, check_choice, check_not_negative
+from sim.validation import argument_error, check_choice, check_number
 
 AXES = ("x", "y")
 WELDS = (1e-6, 1e-5, 1e-4, 1e-3)  # [m] that are tried for advice
@@ -216,7 +216,7 @@ def repaired(
 
     Raises ValueError for a value that is not allowed or does not fit the mesh.
     """
-    check_not_negative("weld", weld, "m")
+    check_number("weld", weld, "m", 0.0)
     vertices, faces = welded(vertices, faces, weld)
     size = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
     faces = divided(vertices, faces, max(weld, ON_EDGE * size))

@@ -5,7 +5,7 @@ import math
 from sim.floating.hulls.hull import Hull
 from sim.floating.linear.hydrodynamics import check_water_density, linear_hull, natural_frequency
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft, upright
-from sim.validation import argument_error, check_not_negative, is_whole_number
+from sim.validation import argument_error, check_number, is_whole_number
 from sim.water import EARTH_GRAVITY
 
 
@@ -22,7 +22,7 @@ def heave_period(
     >>> round(heave_period(Hull.box(4.0, 2.0, 1.0), 512.5), 2)  # [s]
     2.17
     """
-    check_not_negative("added", added, "")
+    check_number("added", added, "", 0.0)
     layers = check_layers(layers)
     return heave_period_at(hull, density, layers, equilibrium_draft(hull, density, layers, gravity), gravity, added)
 
@@ -61,7 +61,7 @@ def roll_period(
     """
     if not is_whole_number(axis) or axis not in (0, 1):
         raise argument_error("axis", axis, "0 (roll) or 1 (pitch)")
-    check_not_negative("added", added, "")
+    check_number("added", added, "", 0.0)
     layers = check_layers(layers)
     draft = equilibrium_draft(hull, density, layers, gravity)
     if math.isinf(draft):

@@ -27,7 +27,7 @@ from sim.validation import (
     argument_error,
     as_array,
     check_kind,
-    check_not_negative,
+    check_number,
     check_positive,
     check_vector,
     is_whole_number,
@@ -390,7 +390,7 @@ def pull(fleet: Fleet, body: int, point: Sequence[float], target: Sequence[float
         array = as_array(name, value, "three finite numbers [m]")
         if array.shape != (3,) or not np.isfinite(array).all():
             raise argument_error(name, value, "three finite numbers [m]")
-    check_not_negative("limit", limit, "N")
+    check_number("limit", limit, "N", 0.0)
     fleet.pull_point[body] = point
     fleet.pull_target[body] = target
     fleet.pull_limit[body] = limit

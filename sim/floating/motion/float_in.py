@@ -77,7 +77,7 @@ class FloatState:
 
     def advance(self, h: float, steps: int) -> None:
         """Go on by `steps` steps of h [s], of 1/60 s at most. Raises FloatingPointError as `step`."""
-        check_number("h", h, 0, LONGEST_STEP * (1.0 + 1e-9), "s", above=True)
+        check_number("h", h, "s", 0, LONGEST_STEP * (1.0 + 1e-9), above=True)
         if not is_whole_number(steps) or steps < 0:
             raise argument_error("steps", steps, "a whole number from 0")
         if h != self.h:  # rates of change are those over equal steps
@@ -157,7 +157,7 @@ def float_in(
     for a hull with a dataset of another depth or heading than the sea's, and as `make_fleet` and `RadialSea.at`.
     """
     t = frame_times(duration, frames, step, progress)
-    check_number("step", step, 0, LONGEST_STEP, "s", above=True)
+    check_number("step", step, "s", 0, LONGEST_STEP, above=True)
     state = FloatState(sea, bodies, coefficients)
     for words in unstable(bodies, state.layers):
         warnings.warn(words, UserWarning, stacklevel=2)

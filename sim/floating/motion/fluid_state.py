@@ -11,7 +11,7 @@ import numpy as np
 
 from sim.floating.motion.body import Fleet, check_fleet
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
-from sim.validation import argument_error, as_array, check_finite
+from sim.validation import argument_error, as_array, check_number
 
 
 class FluidState(NamedTuple):
@@ -97,11 +97,11 @@ def make_water(
         relief=field("relief", relief, bumps, 0.0),
         interface_relief=field("interface_relief", interface_relief, interface_bumps, 0.0),
         excitation=field("excitation", excitation, (0, 6) if excitation is None else (n, 6), 0.0),
-        lead=check_finite("lead", lead, "s"),
+        lead=check_number("lead", lead, "s"),
     )
 
 
 def still_water(fleet: Fleet, layers: Layers = SEA_WATER, level: float = 0.0) -> FluidState:
     """Level water at rest, its surface at `level` [m]. Raises ValueError for bad layers."""
     check_fleet(fleet)
-    return make_water(fleet, layers, np.full(len(fleet.mass), check_finite("level", level, "m")))
+    return make_water(fleet, layers, np.full(len(fleet.mass), check_number("level", level, "m")))

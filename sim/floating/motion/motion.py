@@ -71,7 +71,7 @@ from sim.floating.motion.rotation import (
 )
 from sim.floating.statics.hydrostatics import add_pressure
 from sim.jit import kernel
-from sim.validation import argument_error, check_kind, check_positive, check_within, is_whole_number
+from sim.validation import argument_error, check_kind, check_number, check_positive, is_whole_number
 from sim.water import EARTH_GRAVITY
 
 # The kernels of one substep are inlined: a real call copies about a hundred fields of the records, which took more than
@@ -143,7 +143,7 @@ def step(
     """
     check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
     for name, (low, high, unit) in LIMITS.items():
-        check_within(name, getattr(coefficients, name), low, high, unit)
+        check_number(name, getattr(coefficients, name), unit, low, high)
     duration = check_positive("duration", duration, "s")
     check_fleet(fleet)
     check_kind("water", water, FluidState, "a FluidState, as `make_water` makes it")

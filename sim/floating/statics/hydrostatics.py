@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from sim.floating.hulls.closed_mesh import ClosedMesh, area_vectors, check_hull
 from sim.floating.motion.rotation import rotation_matrix
 from sim.jit import kernel
-from sim.validation import argument_error, as_array, check_not_negative
+from sim.validation import argument_error, as_array, check_number
 from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 AT_SURFACE = 1e-9  # share of the height of a hull within which a vertex lies in the surface
@@ -220,7 +220,7 @@ def pressure_force(
     the interface. Arguments as in `submerged`. Raises ValueError for bad arguments.
     """
     place, turn, heights = check_pose(hull, position, rotation, surface)
-    density, gravity = check_not_negative("density", density, "kg/m3"), check_not_negative("gravity", gravity, "m/s2")
+    density, gravity = check_number("density", density, "kg/m3", 0.0), check_number("gravity", gravity, "m/s2", 0.0)
     x = np.ascontiguousarray(turn @ hull.vertices.T)
     area = np.ascontiguousarray(area_vectors(x.T, hull.faces).T)
     out = np.zeros(9)

@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from sim.validation import argument_error, check_positive, check_within
+from sim.validation import argument_error, check_number, check_positive
 
 MOONEY_CROWDING = 0.65  # of water drops in oil (Mackay and others 1980)
 PAL_RHODES_DROPS = 0.84  # share of drops that makes an emulsion 100 times as viscous (NOAA's PyGNOME, for water in oil)
@@ -94,4 +94,4 @@ MIXTURE_LAWS = {
 def _checked(first: float, second: float, fraction: float) -> float:
     check_positive("first", first, "")
     check_positive("second", second, "")
-    return check_within("fraction", fraction, 0.0, 1.0)
+    return check_number("fraction", fraction, "", 0.0, 1.0)

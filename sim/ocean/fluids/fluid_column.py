@@ -14,7 +14,7 @@ import numpy as np
 from sim.ocean.dispersion import damped_root, mode_ratios, omega, two_layer, viscous_two_layer
 from sim.ocean.fluids.emulsions import MIXTURE_LAWS
 from sim.ocean.fluids.fluids import Fluid, fluids, mixed
-from sim.validation import argument_error, check_choice, check_not_negative, check_positive, check_within
+from sim.validation import argument_error, check_choice, check_number, check_positive
 from sim.water import EARTH_GRAVITY
 
 CONTINUOUS = ("plentiful", "oil", "water")
@@ -36,8 +36,8 @@ class FluidColumn:
     decay: Callable[[np.ndarray], np.ndarray] | None = None  # decay rate (k) [1/s] in place of the exact one
 
     def __post_init__(self) -> None:
-        check_not_negative("thickness", self.thickness, "m")
-        check_within("fraction", self.fraction, 0.0, 1.0)
+        check_number("thickness", self.thickness, "m", 0.0)
+        check_number("fraction", self.fraction, "", 0.0, 1.0)
         check_positive("gravity", self.gravity, "m/s2")
         if self.mixture_viscosity is not None:
             check_positive("mixture_viscosity", self.mixture_viscosity, "Pa s")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sim.ocean.fluids.emulsions import MIXTURE_LAWS
-from sim.validation import argument_error, as_array, check_positive, check_within
+from sim.validation import argument_error, as_array, check_number, check_positive
 
 
 class Fluid(NamedTuple):
@@ -59,13 +59,13 @@ def oil_index(density: float) -> float:
 
     density [kg/m3], above 0 and under 2000. Raises ValueError otherwise.
     """
-    third = check_within("density", density, 1.0, 2000.0, "kg/m3") / 3000.0
+    third = check_number("density", density, "kg/m3", 1.0, 2000.0) / 3000.0
     return math.sqrt((1.0 + 2.0 * third) / (1.0 - third))
 
 
 def mixed_density(first: float, second: float, fraction: float) -> float:
     """rho [kg/m3] = phi rho1 + (1 - phi) rho2, fraction phi by volume of the first."""
-    phi = check_within("fraction", fraction, 0.0, 1.0)
+    phi = check_number("fraction", fraction, "", 0.0, 1.0)
     return phi * check_positive("first", first, "kg/m3") + (1.0 - phi) * check_positive("second", second, "kg/m3")
 
 
@@ -111,7 +111,7 @@ def fresnel(angle: ArrayLike, index: float) -> Reflectance:
     Raises ValueError for an index under 1, or an angle that is not allowed.
     Fresnel's equations: Hecht, Optics, eq. 4.34 and 4.40, squared.
     """
-    check_within("index", index, 1.0, 10.0)
+    check_number("index", index, "", 1.0, 10.0)
     allowed = "0 to pi/2 rad"
     angles = as_array("angle", angle, allowed)
     bad = ~((angles >= 0.0) & (angles <= 0.5 * math.pi))
@@ -126,7 +126,7 @@ def fresnel(angle: ArrayLike, index: float) -> Reflectance:
 
 def normal_reflectance(index: float) -> float:
     """R0 = ((n - 1)/(n + 1))^2."""
-    return ((check_within("index", index, 1.0, 10.0) - 1.0) / (index + 1.0)) ** 2
+    return ((check_number("index", index, "", 1.0, 10.0) - 1.0) / (index + 1.0)) ** 2
 
 
 def diffuse_reflectance(index: float) -> float:

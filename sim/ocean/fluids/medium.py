@@ -26,15 +26,15 @@ class Medium:
     decay: Callable[[np.ndarray], np.ndarray] | None = None  # decay rate (k) [1/s] in place of the viscosity's
 
     def __post_init__(self) -> None:
-        check_number("viscosity", self.viscosity, 0.0, 1e6, "m2/s")
-        check_number("dispersion_scale", self.dispersion_scale, 0.0, 1e6, "")
+        check_number("viscosity", self.viscosity, "m2/s", 0.0, 1e6)
+        check_number("dispersion_scale", self.dispersion_scale, "", 0.0, 1e6)
         check_kind("film", self.film, bool, "True or False")
         for name in ("frequency", "decay"):
             given = getattr(self, name)
             if given is not None and not callable(given):
                 raise argument_error(name, given, "a function of the wavenumber, or None")
         if self.loop_period is not None:
-            check_number("loop_period", self.loop_period, 1e-6, 1e12, "s")
+            check_number("loop_period", self.loop_period, "s", 1e-6, 1e12)
 
     def roots(self, k: np.ndarray, conditions: Conditions) -> tuple[np.ndarray, np.ndarray]:
         """omega [rad/s] and decay rate [1/s] of wavenumbers k [rad/m].

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sim.ocean.dispersion import group_speed
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.ocean.fluids.fluids import Fluid
-from sim.validation import argument_error, check_not_negative, check_positive
+from sim.validation import argument_error, check_number, check_positive
 from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
 INERTIAL, VISCOUS, TENSION = 1.14, 1.45, 2.30
@@ -49,9 +49,9 @@ def slick_radius(
     """
     check_positive("viscosity", viscosity, "m2/s")
     check_positive("gravity", gravity, "m/s2")
-    check_not_negative("volume", volume, "m3")
-    check_not_negative("time", time, "s")
-    check_not_negative("spreading", spreading, "N/m")
+    check_number("volume", volume, "m3", 0.0)
+    check_number("time", time, "s", 0.0)
+    check_number("spreading", spreading, "N/m", 0.0)
     if not 0.0 < oil < water:
         raise argument_error("oil", oil, f"above 0 and below the water's {water:g} kg/m3")
     lift = (1.0 - oil / water) * gravity

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from sim.validation import argument_error, check_finite, check_not_negative, check_positive, is_whole_number
+from sim.validation import argument_error, check_number, check_positive, is_whole_number
 from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 from sim.waves import Waves
 
@@ -36,7 +36,7 @@ def breather(
     ValueError for a value that is not allowed.
     """
     k, frequency = carrier(amplitude, count, length, gravity)
-    place = check_finite("place", place, "m")
+    place = check_number("place", place, "m")
     if amplitude == 0.0:
         return free_waves(np.array([count]), np.zeros(1), length, gravity, density), 0.0
     start = BEFORE / (frequency * (k * amplitude) ** 2)
@@ -65,7 +65,7 @@ def modulated_waves(
 
 def carrier(amplitude: float, count: int, length: float, gravity: float) -> tuple[float, float]:
     """Wavenumber [rad/m] and frequency [rad/s]; the arguments are checked."""
-    check_not_negative("amplitude", amplitude, "m")
+    check_number("amplitude", amplitude, "m", 0.0)
     if not is_whole_number(count) or count < 1:
         raise argument_error("count", count, "a whole number from 1")
     k = 2.0 * math.pi * count / check_positive("length", length, "m")

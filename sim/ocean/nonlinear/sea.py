@@ -43,9 +43,7 @@ from sim.ocean.tile.tile_surface import sampled, shares
 from sim.validation import (
     argument_error,
     check_choice,
-    check_finite,
     check_kind,
-    check_not_negative,
     check_number,
     check_positions,
     check_positive,
@@ -101,7 +99,7 @@ class NonlinearSea(AnySea):
         check_kind("breaking", breaking, bool, "True or False")
         self.order = int(order)
         water = {"depth": depth, "gravity": gravity, "density": density}
-        begin = started(start, size, length, water, check_finite("time", time, "s"))
+        begin = started(start, size, length, water, check_number("time", time, "s"))
         modes, u, self.conditions = begin.modes, begin.u, begin.conditions
         self.length = modes.length
 
@@ -109,8 +107,8 @@ class NonlinearSea(AnySea):
         period = 2.0 * math.pi / float(self.water.omega(np.array(k)))
         if fade is None:
             fade = FADE_PERIODS * period if begin.is_linear else 0.0
-        self.fade = check_not_negative("fade", fade, "s")
-        tolerance = check_number("rtol", rtol, 1e-14, 0.1, "") if step is None else None
+        self.fade = check_number("fade", fade, "s", 0.0)
+        tolerance = check_number("rtol", rtol, "", 1e-14, 0.1) if step is None else None
         chosen = FIRST_STEP * period if step is None else check_positive("step", step, "s")
         self.is_damped = breaking and self.order > 1
         eddy_scale = 2.0 * math.pi / period / k**2 if self.is_damped else None
@@ -152,7 +150,7 @@ class NonlinearSea(AnySea):
     def advance(self, t: float) -> None:
         """Move on to time t [s]. Raises ValueError for a time before the present one, DivergenceError if the waves
         become too steep for the method; the sea then stays at the last time that could be reached."""
-        t = check_finite("t", t, "s")
+        t = check_number("t", t, "s")
         if t < self.time:
             raise argument_error("t", t, f"the time of the sea, {self.time:g} s, or later")
         faded = self._equations.fade_in.end

@@ -84,7 +84,7 @@ def checked_size(size: Any) -> tuple[int, int]:
 def sides_of(length: Any) -> tuple[float, float]:
     """One length or two as two [m]. Raises ValueError otherwise."""
     x, y = length if isinstance(length, tuple | list) and len(length) == 2 else (length, length)
-    return check_number("length", x, *LENGTHS, "m"), check_number("length", y, *LENGTHS, "m")
+    return check_number("length", x, "m", *LENGTHS), check_number("length", y, "m", *LENGTHS)
 
 
 def linear_start(waves: Waves, modes: Modes, t: float) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from sim.ocean.spectra import Conditions, Spectrum
 from sim.ocean.spectra.record import wavenumber_of
-from sim.validation import argument_error, check_kind, check_within, is_whole_number
+from sim.validation import argument_error, check_kind, check_number, is_whole_number
 from sim.waves import Waves
 
 MAX_WAVES = 4096
@@ -104,5 +104,5 @@ def widened(k: np.ndarray, length: float) -> np.ndarray:
     The mean of a wave over a disc of radius r is 2 J1(kr)/(kr) = 1 - (kr)^2/8 + ...; exp(-(kr)^2/8) begins alike and
     does not oscillate.
     """
-    r = 0.5 * check_within("length", length, 0.0, 1e4, "m")
+    r = 0.5 * check_number("length", length, "m", 0.0, 1e4)
     return np.exp(-((k * r) ** 2) / 8.0)

@@ -33,7 +33,7 @@ from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.radial.wave_sum import set_mesh
 from sim.ocean.tile.query import WaveFields, find_labels
 from sim.turns import TURN, within_half_turn
-from sim.validation import argument_error, as_array, check_finite, check_kind, check_not_negative, check_positions
+from sim.validation import argument_error, as_array, check_kind, check_number, check_positions
 from sim.water import SAME_WATER, Water
 from sim.waves import RESPONSES, Kinematics, Waves, sums_at
 
@@ -57,7 +57,7 @@ class RadialSea(AnySea):
         """
         self.evaluated = self.skipped = 0  # (wave, vertex) pairs
         self._time = 0.0
-        self.choppiness = check_not_negative("choppiness", choppiness, "")
+        self.choppiness = check_number("choppiness", choppiness, "", 0.0)
         self._departing: DepartingWaves | None = None
         self.slick: SlickCover | None = None  # it calms the waves under it
         self._loss: tuple[FluidColumn, np.ndarray, np.ndarray] | None = None  # of the fluids in the slick, k [1/m]
@@ -79,11 +79,11 @@ class RadialSea(AnySea):
         Lost energy stays lost, also by other waves of the same length. exposure [s]: forget the losses, and apply those
         of so long a time on the new medium. Raises ValueError as the constructor.
         """
-        t, fade = check_finite("t", t, "s"), check_not_negative("fade", fade, "s")
+        t, fade = check_number("t", t, "s"), check_number("fade", fade, "s", 0.0)
         check_carried(waves or self.waves, column or self.column)
         self._time, past = max(self._time, t), self.past
         if exposure is not None:
-            exposure, past = check_not_negative("exposure", exposure, "s"), {}
+            exposure, past = check_number("exposure", exposure, "s", 0.0), {}
         own, loss = self._own, self._lost
         if waves is None:
             self._drop_departed(t)
@@ -121,7 +121,7 @@ class RadialSea(AnySea):
 
         Raises ValueError for a negative one.
         """
-        if check_not_negative("duration", duration, "s") > 0.0:
+        if check_number("duration", duration, "s", 0.0) > 0.0:
             self.past = self.past | {self.column: self.past.get(self.column, 0.0) + duration}
             self._lost = self._lost + self.decay * duration
             amplitude = self.waves.amplitude * np.exp(-self._lost)
@@ -170,7 +170,7 @@ class RadialSea(AnySea):
 
     def waves_at(self, t: float | None = None) -> Waves:
         """All waves as high as at time t [s], by default the sea's own, without the slick; first those that fade."""
-        self._time = t = self._time if t is None else check_finite("t", t, "s")
+        self._time = t = self._time if t is None else check_number("t", t, "s")
         self._drop_departed(t)
         return self._own if self._departing is None else self._departing.joined_by(self._own, t)
 
@@ -188,7 +188,7 @@ class RadialSea(AnySea):
 
     def on(self, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:
         """The sea on a grid about `centre` (x, y) [m] at time t [s]."""
-        waves, n = self.waves_at(check_finite("t", t, "s")), len(grid)
+        waves, n = self.waves_at(check_number("t", t, "s")), len(grid)
         plan = self._plan
         if plan is None or plan.grid is not grid:
             plan = self._plan = BandPlan(grid, waves.k)
@@ -215,7 +215,7 @@ class RadialSea(AnySea):
         widths = as_array("size", size, f"one number [m], or {n} of them")
         if widths.shape not in ((), (n,)) or not (widths >= 0.0).all():
             raise argument_error("size", size, f"one number [m], or {n} of them")
-        waves = self.waves_at(check_finite("t", t, "s"))
+        waves = self.waves_at(check_number("t", t, "s"))
         if self._footprints is None:
             self._footprints = Footprints(waves.k)
         weight = self._footprints.factors(np.broadcast_to(widths, (n,)))

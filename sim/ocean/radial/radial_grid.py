@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from sim.root import narrowed
-from sim.validation import argument_error, check_positive, check_within, is_whole_number
+from sim.validation import argument_error, check_number, check_positive, is_whole_number
 
 LAWS = ("geometric", "power")
 FADE = (2.0, 4.0)  # a wave is drawn in full from the second number of cells a wavelength, not at all below the first
@@ -38,8 +38,8 @@ class RadialGrid:
         if law not in LAWS:
             raise argument_error("law", law, "one of " + ", ".join(LAWS))
         radius = check_positive("radius", radius, "m")
-        check_within("inner", inner, 1e-3, radius / rings, "m")
-        check_within("power", power, 1.0, 8.0)
+        check_number("inner", inner, "m", 1e-3, radius / rings)
+        check_number("power", power, "", 1.0, 8.0)
         self.rings, self.spokes = int(rings), int(spokes)
         index = np.arange(1, rings + 1)
         if law == "power":

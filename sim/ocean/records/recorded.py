@@ -22,7 +22,7 @@ from sim.ocean.radial.gerstner import MAX_WAVES
 from sim.ocean.spectra import Conditions
 from sim.root import narrowed
 from sim.turns import within_half_turn
-from sim.validation import argument_error, as_array, check_angle, check_kind, check_vector, check_within
+from sim.validation import argument_error, as_array, check_angle, check_kind, check_number, check_vector
 from sim.water import Water
 from sim.waves import Waves
 
@@ -64,7 +64,7 @@ def recorded_waves(
         i = int(bad.argmax())
         given = f"{heights[i]:g} at t = {times[i]:g} s, {int(bad.sum())} such heights in all"
         raise argument_error("height", given, "finite heights")
-    direction, error = check_angle("direction", direction), check_within("error", error, 0.0, 0.5)
+    direction, error = check_angle("direction", direction), check_number("error", error, "", 0.0, 0.5)
     x, y = check_vector("place", place, "m", 2)
     check_kind("water", water, FluidColumn | Conditions, "a FluidColumn or Conditions")
     X = np.fft.rfft(heights - heights.mean())[1:] / n

@@ -56,14 +56,14 @@ class Conditions:
 
     def __post_init__(self) -> None:
         # Wide, but such that no power that a spectrum takes overflows or is lost in rounding.
-        check_number("wind_speed", self.wind_speed, 0.0, 1e3, "m/s")
+        check_number("wind_speed", self.wind_speed, "m/s", 0.0, 1e3)
         check_angle("wind_direction", self.wind_direction)
-        check_number("gravity", self.gravity, 1e-6, 1e6, "m/s2")
+        check_number("gravity", self.gravity, "m/s2", 1e-6, 1e6)
         if as_float(self.depth) != math.inf:
-            check_number("depth", self.depth, 1e-6, 1e9, "m, or inf")
-        check_number("tension", self.tension, 0.0, 1e3, "N/m")
-        check_number("density", self.density, 1e-3, 1e6, "kg/m3")
-        check_number("low_pass", self.low_pass, 0.0, 1e9, "m")
+            check_number("depth", self.depth, "m, or inf", 1e-6, 1e9)
+        check_number("tension", self.tension, "N/m", 0.0, 1e3)
+        check_number("density", self.density, "kg/m3", 1e-3, 1e6)
+        check_number("low_pass", self.low_pass, "m", 0.0, 1e9)
         for name, declared in parameters_of(self).items():
             check_value(name, declared, getattr(self, name))
 

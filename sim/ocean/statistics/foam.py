@@ -12,7 +12,7 @@ import math
 from typing import TYPE_CHECKING
 
 from sim.root import narrowed
-from sim.validation import check_not_negative
+from sim.validation import check_number
 
 if TYPE_CHECKING:
     from sim.ocean.tile.sea import Sea
@@ -22,7 +22,7 @@ MAX_COVER = 0.6  # largest fraction of foam, reached at 33 m/s: the law is measu
 
 def whitecaps(wind_speed: float) -> float:
     """Fraction of the sea that is foam, W = 3.84e-6 U10^3.41 (Monahan and O'Muircheartaigh 1980), at most MAX_COVER."""
-    return min(3.84e-6 * check_not_negative("wind_speed", wind_speed, "m/s") ** 3.41, MAX_COVER)
+    return min(3.84e-6 * check_number("wind_speed", wind_speed, "m/s", 0.0) ** 3.41, MAX_COVER)
 
 
 def pace(sea: "Sea", t: float) -> tuple[float, float]:

@@ -12,7 +12,7 @@ import numpy as np
 from sim.angles import direction_of, within_turn
 from sim.ocean.radial.gerstner import energy_range
 from sim.ocean.spectra import Conditions, Spectrum
-from sim.validation import argument_error, check_not_negative
+from sim.validation import argument_error, check_number
 
 if TYPE_CHECKING:
     from sim.ocean.tile.sea import Sea
@@ -41,7 +41,7 @@ def beaufort(wind_speed: float) -> tuple[int, str]:
     >>> beaufort(15.0)
     (7, 'near gale')
     """
-    force = int(np.searchsorted(BEAUFORT_FROM, check_not_negative("wind_speed", wind_speed, "m/s"), side="right"))
+    force = int(np.searchsorted(BEAUFORT_FROM, check_number("wind_speed", wind_speed, "m/s", 0.0), side="right"))
     return force, BEAUFORT_NAMES[force]
 
 

@@ -24,7 +24,7 @@ from sim.dispersion import tanh_depth
 from sim.jit import kernel
 from sim.ocean.spectra import Conditions
 from sim.ocean.tile.evolve import add_heights, shift_time
-from sim.validation import argument_error, as_array, check_finite, check_not_negative, check_positions, check_positive
+from sim.validation import argument_error, as_array, check_number, check_positions, check_positive
 
 QUIET = 1e-6  # [m] root mean square height below which rings are dropped
 EVALUATIONS_BETWEEN_CHECKS = 64
@@ -157,10 +157,10 @@ class Ripples:
 
     def check_time(self, t: float) -> float:
         """t [s] as a float. Raises ValueError for a time before that of the last change of the rings."""
-        t = check_finite("t", t, "s")
+        t = check_number("t", t, "s")
         if t < self.time and (self.alive or self.mean):
             raise argument_error("t", t, f"{self.time:g} s or later: rings cannot go back before the last impulse")
-        check_not_negative("leak", self.leak, "1/s")
+        check_number("leak", self.leak, "1/s", 0.0)
         return t
 
 

@@ -40,15 +40,7 @@ from sim.ocean.tile.tile_waves import DrawnWaves, TileWaves
 from sim.ocean.tile.transforms import PRECISIONS, Transforms
 from sim.ocean.tile.wavenumbers import Wavenumbers
 from sim.parameters import similar
-from sim.validation import (
-    argument_error,
-    check_choice,
-    check_kind,
-    check_not_negative,
-    check_number,
-    check_positions,
-    is_whole_number,
-)
+from sim.validation import argument_error, check_choice, check_kind, check_number, check_positions, is_whole_number
 from sim.water import EARTH_GRAVITY
 from sim.waves import Waves
 
@@ -95,7 +87,7 @@ class Sea(TileSurface, AnySea):
         if not is_whole_number(seed):
             raise argument_error("seed", seed, "a whole number")
         check_choice("precision", precision, PRECISIONS)
-        self.size, self.length, self.seed = int(size), check_number("length", length, *LENGTHS, "m"), int(seed)
+        self.size, self.length, self.seed = int(size), check_number("length", length, "m", *LENGTHS), int(seed)
         self.precision, self.amplitudes = precision, amplitudes
         self.choppiness = choppiness
         self._wavenumbers = Wavenumbers(self.size, self.length, precision)
@@ -137,7 +129,7 @@ class Sea(TileSurface, AnySea):
 
     @choppiness.setter
     def choppiness(self, value: float) -> None:
-        self._choppiness = check_not_negative("choppiness", value, "")
+        self._choppiness = check_number("choppiness", value, "", 0.0)
 
     def surface(self, t: float) -> Surface:
         """The surface at time t [s]; each field is computed when first read. Raises ValueError for a time not allowed:
@@ -172,7 +164,7 @@ class Sea(TileSurface, AnySea):
         Another spectrum takes what both use. Raises ValueError for a value that is not allowed or a condition that the
         spectrum does not use, TypeError for an unknown name.
         """
-        t, relax = self._waves.checked_time(t), check_not_negative("relax", relax, "s")
+        t, relax = self._waves.checked_time(t), check_number("relax", relax, "s", 0.0)
         waves, ripples, chosen = self._waves, self._heights.ripples, self.spectrum if spectrum is None else spectrum
         if ripples is not None:
             ripples.check_time(t)
@@ -190,7 +182,7 @@ class Sea(TileSurface, AnySea):
         The clock stands still, phases stay as they are, rings are not touched. Raises ValueError for a duration that is
         negative or not finite.
         """
-        duration = check_not_negative("duration", duration, "s")
+        duration = check_number("duration", duration, "s", 0.0)
         if isinstance(medium, FluidColumn):
             medium = medium_of(medium)
         kinds = "a Medium, a FluidColumn, or None"

@@ -14,7 +14,7 @@ from sim.ocean.fluids.medium import Medium
 from sim.ocean.spectra import Conditions
 from sim.ocean.tile.amplitudes import fold, resolved, waves_of_tile
 from sim.ocean.tile.wavenumbers import Wavenumbers
-from sim.validation import argument_error, check_finite
+from sim.validation import argument_error, check_number
 from sim.water import Water
 from sim.waves import Waves
 
@@ -95,7 +95,7 @@ class TileWaves:
 
     def checked_time(self, t: float) -> float:
         """Raises ValueError for a time that is not finite, or before the last change where waves decay or relax."""
-        t = check_finite("t", t, "s")
+        t = check_number("t", t, "s")
         if t < self.base and (self.relax > 0.0 or self.decays):
             raise argument_error(
                 "t", t, f"{self.base:g} s or later: decaying and relaxing waves cannot go back in time"

@@ -82,7 +82,7 @@ def check_oil(oil: object) -> str:
 def density_at(oil: str, temperature: float) -> float:
     """Density [kg/m3] at -2 to 40 C: linear through those at 0 and 15 C. Raises ValueError for another oil or range."""
     warm, cold = fluids()[check_oil(oil)].density, oil_records()[oil].cold_density
-    t = check_number("temperature", temperature, -2.0, 40.0, "C")
+    t = check_number("temperature", temperature, "C", -2.0, 40.0)
     return warm + (cold - warm) * (WARM - t) / (WARM - COLD)
 
 
@@ -92,7 +92,7 @@ def viscosity_at(oil: str, temperature: float) -> float:
     Raises ValueError for another oil or range.
     """
     record, warm = oil_records()[check_oil(oil)], fluids()[oil].kinematic_viscosity
-    t = check_number("temperature", temperature, -2.0, 40.0, "C")
+    t = check_number("temperature", temperature, "C", -2.0, 40.0)
     inverse = [1.0 / (CELSIUS + value) for value in (COLD, WARM, t)]
     slope = math.log(record.cold_viscosity / record.cold_density / warm) / (inverse[0] - inverse[1])
     return warm * math.exp(slope * (inverse[2] - inverse[1]))

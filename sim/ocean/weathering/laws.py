@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sim.ocean.fluids.emulsions import pal_rhodes_factor
 from sim.ocean.weathering.components import CELSIUS, PseudoComponents
-from sim.validation import check_not_negative, check_number, check_positive, check_within
+from sim.validation import check_number, check_positive
 
 GAS_CONSTANT = 8.314  # [J/(mol K)]
 ATMOSPHERE = 101325.0  # [Pa]
@@ -73,7 +73,7 @@ def water_content(elapsed: float, wind_speed: float, most: float) -> float:
     S = S_max (1 - e^(-k t/S_max)), k = 6 K U^2/d_max, is the surface of the drops per volume of oil, S_max that of the
     smallest ones; Y = S d_max/(6 + S d_max) (Eley, Hey and Symonds 1988, Oil Chem. Pollut. 4:253; rate of Mackay).
     """
-    most = check_within("most", most, 0.0, 0.99)
+    most = check_number("most", most, "", 0.0, 0.99)
     if elapsed <= 0.0 or most == 0.0:
         return 0.0
     rate = 6.0 * UPTAKE * wind_speed**2 / LARGEST_DROP
@@ -147,7 +147,7 @@ def dispersion_rate(area: float, viscosity: float, water: float, wind_speed: flo
 
 def drift_speed(wind_speed: float) -> float:
     """Speed [m/s] at which a slick drifts downwind: 3 % of the wind's."""
-    return DRIFT * check_not_negative("wind_speed", wind_speed, "m/s")
+    return DRIFT * check_number("wind_speed", wind_speed, "m/s", 0.0)
 
 
 def fingas(distilled: float, temperature: float, minutes: float, *, is_crude: bool = True) -> float:
@@ -157,8 +157,8 @@ def fingas(distilled: float, temperature: float, minutes: float, *, is_crude: bo
     (0.165 D + 0.045 (C - 15)) ln t and, for diesel and the like, (0.0254 D + 0.01 (C - 15)) sqrt t, t in minutes, up
     to five days.
     """
-    percent = 100.0 * check_within("distilled", distilled, 0.0, 1.0)
-    t = check_number("minutes", minutes, 0.0, math.inf, "min")
+    percent = 100.0 * check_number("distilled", distilled, "", 0.0, 1.0)
+    t = check_number("minutes", minutes, "min", 0.0)
     if t <= 1.0:
         return 0.0
     warm = check_positive("temperature", temperature, "K") - CELSIUS - 15.0
@@ -176,7 +176,7 @@ def stiver_mackay(exposure: float, temperature: float, api: float, *, is_crude: 
     T0 and G [K], start and slope of the distillation, by degrees API (ADIOS).
     """
     A, B = 6.3, 10.3
-    theta = check_not_negative("exposure", exposure, "")
+    theta = check_number("exposure", exposure, "", 0.0)
     t = check_positive("temperature", temperature, "K")
     start, slope = (
         (532.98 - 3.1295 * api, 985.62 - 13.597 * api) if is_crude else (654.45 - 4.6588 * api, 388.19 - 3.8725 * api)

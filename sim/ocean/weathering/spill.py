@@ -48,9 +48,9 @@ class Spill:
         if not can_weather(check_oil(self.oil)):
             raise argument_error("oil", self.oil, "an oil with a distillation in its record, or a crude oil")
         check_choice("water", self.water, WATERS)
-        check_number("volume", self.volume, 0.0, 1e7, "m3", above=True)
-        check_number("wind_speed", self.wind_speed, 0.0, 60.0, "m/s")
-        check_number("temperature", self.temperature, -2.0, 40.0, "C")
+        check_number("volume", self.volume, "m3", 0.0, 1e7, above=True)
+        check_number("wind_speed", self.wind_speed, "m/s", 0.0, 60.0)
+        check_number("temperature", self.temperature, "C", -2.0, 40.0)
 
 
 class WeatheredOil(NamedTuple):
@@ -101,7 +101,7 @@ class Weathering(NamedTuple):
 
     def at(self, hours: float) -> WeatheredOil:
         """The spill after a number of hours. Raises ValueError outside 0 to 120 h."""
-        h = check_number("hours", hours, 0.0, MAX_HOURS, "h")
+        h = check_number("hours", hours, "h", 0.0, MAX_HOURS)
         evaporated, dispersed, water, area, oil_density = (
             float(np.interp(h, self.hours, values))
             for values in (self.evaporated, self.dispersed, self.water_content, self.area, self.oil_density)

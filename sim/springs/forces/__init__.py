@@ -15,7 +15,6 @@ and drag accelerate in the loops over links of `sim/springs/acceleration.py`, wh
 water are nets with more forces: water, bed, bending, steady loads and the bodies that they hold.
 """
 
-import math
 from collections import namedtuple
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -124,7 +123,7 @@ def check_forces(forces: Any) -> tuple[Any, ...]:
         raise argument_error("forces", forces, "one of each force")
     for one in forces:
         for name, value in one._asdict().items():
-            check_number(f"{OWN[type(one)].name}.{name}", value, -math.inf, math.inf, "")
+            check_number(f"{OWN[type(one)].name}.{name}", value, "")
     return forces
 
 

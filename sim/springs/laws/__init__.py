@@ -97,7 +97,7 @@ def check_law(law: Any) -> Any:
     if type(law) not in BY_NUMBERS:
         return LAWS[check_choice("law", law, LAWS)].numbers
     for name, value in law._asdict().items():
-        check_number(f"law.{name}", value, 0, float("inf"), "")
+        check_number(f"law.{name}", value, "", 0)
     return type(law)(*map(float, law))
 
 

@@ -76,7 +76,7 @@ def refused(monkeypatch, capsys) -> Callable[..., str]:
     for place in (
         "app.commands.serve.serve_lab",
         "app.commands.run.run_to_file",
-        "app.commands.hydrodynamics.make_table",
+        "app.commands.hulls.hydrodynamics.make_table",
     ):
         monkeypatch.setattr(place, lambda *_, **__: pytest.fail("started"))
 

@@ -17,7 +17,7 @@ from app.__main__ import main
 from app.lab.course.answers import Answers, read_answers
 from app.lab.course.folder import folder_names
 from app.lab.course.task import load_tasks
-from tests.app.lab.answers_file import write_answers
+from tests.app.lab.solutions.answers_file import write_answers
 
 ROOT = Path(__file__).parents[3]
 TASKS = load_tasks()

@@ -7,9 +7,12 @@ from types import SimpleNamespace
 import pytest
 
 from app.__main__ import main
-from app.scenes.ahead import warmup
+from app.scenes.ahead import compiling
+from app.scenes.ahead.compiling import Job
 from sim import jit
 from sim.cache import host_levels
+
+DRAWING = Job("rope", "drawing", True)
 
 
 @pytest.fixture
@@ -27,33 +30,33 @@ def compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
     monkeypatch.setattr(jit, "CACHE", tmp_path)
     monkeypatch.setattr(jit, "SHARED", ())
-    monkeypatch.setattr(warmup, "scene_named", side("gauge", "rk4"))
-    monkeypatch.setattr(warmup, "view_named", side("drawing"))
-    warmup.hash_of.cache_clear()
+    monkeypatch.setattr(compiling, "scene_named", side("gauge", "rk4"))
+    monkeypatch.setattr(compiling, "view_named", side("drawing"))
+    compiling.hash_of.cache_clear()
     return found
 
 
 def test_a_scene_is_compiled_once_and_again_after_an_edit(compiled: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    warmup.prepare("rope", drawn=False)
-    warmup.prepare("rope", drawn=False)
+    compiling.prepare("rope", drawn=False)
+    compiling.prepare("rope", drawn=False)
     assert compiled == ["gauge", "rk4"]
-    warmup.prepare("rope")
-    warmup.prepare("rope")
+    compiling.prepare("rope")
+    compiling.prepare("rope")
     assert compiled == ["gauge", "rk4", "drawing"]
-    monkeypatch.setattr(warmup, "hash_of", lambda name, drawn: "hash after an edit")
-    warmup.prepare("rope", drawn=False)
+    monkeypatch.setattr(compiling, "hash_of", lambda name, drawn: "hash after an edit")
+    compiling.prepare("rope", drawn=False)
     assert compiled == ["gauge", "rk4", "drawing", "gauge", "rk4"]
 
 
 def test_parameters_need_only_their_own_pieces(compiled: list[str]) -> None:
     """Those of the drawing come last."""
     needed = ("rk4",)  # as parameters of this scene are its needs
-    assert warmup.missing("rope", needed) == (("rk4", False), ("drawing", True))  # type: ignore[arg-type]
-    warmup.compile_piece("rope", "rk4", drawn=False)
-    assert warmup.missing("rope", needed) == (("drawing", True),)  # type: ignore[arg-type]
-    assert warmup.missing("rope") == (("gauge", False), ("drawing", True))
-    warmup.prepare("rope")
-    assert not warmup.missing("rope")
+    assert compiling.uncompiled("rope", needed) == [Job("rope", "rk4"), DRAWING]  # type: ignore[arg-type]
+    compiling.compile_job(Job("rope", "rk4"))
+    assert compiling.uncompiled("rope", needed) == [DRAWING]  # type: ignore[arg-type]
+    assert compiling.uncompiled("rope") == [Job("rope", "gauge"), DRAWING]
+    compiling.prepare("rope")
+    assert not compiling.uncompiled("rope")
 
 
 def test_a_scene_that_is_compiled_as_a_whole_is_not_asked_again(
@@ -62,26 +65,26 @@ def test_a_scene_that_is_compiled_as_a_whole_is_not_asked_again(
     def refuse(name: str) -> SimpleNamespace:
         raise AssertionError(f"{name} is imported")
 
-    warmup.prepare("rope", drawn=False)
+    compiling.prepare("rope", drawn=False)
     with monkeypatch.context() as patched:
-        patched.setattr(warmup, "scene_named", refuse)
+        patched.setattr(compiling, "scene_named", refuse)
         with pytest.raises(AssertionError, match="is imported"):
-            warmup.missing("rope")
-    warmup.prepare("rope")
-    monkeypatch.setattr(warmup, "scene_named", refuse)
-    monkeypatch.setattr(warmup, "view_named", refuse)
-    assert warmup.missing("rope") == ()
+            compiling.uncompiled("rope")
+    compiling.prepare("rope")
+    monkeypatch.setattr(compiling, "scene_named", refuse)
+    monkeypatch.setattr(compiling, "view_named", refuse)
+    assert compiling.uncompiled("rope") == []
 
 
 def test_a_piece_on_use_is_compiled_when_parameters_first_need_it(compiled: list[str]) -> None:
-    warmup.prepare("rope")
+    compiling.prepare("rope")
     assert "on use" not in compiled
-    assert not warmup.missing("rope")
+    assert not compiling.uncompiled("rope")
     needed = ("rk4", "on use")
-    assert warmup.missing("rope", needed) == (("on use", False),)  # type: ignore[arg-type]
-    warmup.compile_piece("rope", "on use", drawn=False)
+    assert compiling.uncompiled("rope", needed) == [Job("rope", "on use")]  # type: ignore[arg-type]
+    compiling.compile_job(Job("rope", "on use"))
     assert compiled[-1] == "on use"
-    assert not warmup.missing("rope", needed)  # type: ignore[arg-type]
+    assert not compiling.uncompiled("rope", needed)  # type: ignore[arg-type]
 
 
 def test_what_fails_is_not_remembered(compiled: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -89,13 +92,13 @@ def test_what_fails_is_not_remembered(compiled: list[str], monkeypatch: pytest.M
         raise RuntimeError
 
     monkeypatch.setattr(
-        warmup,
+        compiling,
         "scene_named",
         lambda name: SimpleNamespace(warm_up=lambda: {"rk4": fails}, needs=None, warm_up_on_use=dict),
     )
     with pytest.raises(RuntimeError):
-        warmup.compile_piece("rope", "rk4", drawn=False)
-    assert ("rk4", False) in warmup.missing("rope")
+        compiling.compile_job(Job("rope", "rk4"))
+    assert Job("rope", "rk4") in compiling.uncompiled("rope")
 
 
 def test_a_level_that_this_processor_does_not_have_is_refused(

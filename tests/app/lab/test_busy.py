@@ -10,8 +10,8 @@ import pytest
 from app.lab.check.program_check import check_program
 from app.lab.course.task import load_tasks
 from app.lab.process.runner import Runner
-from tests.app.lab.right_solutions import RIGHT
-from tests.app.lab.test_true_sentences import TASKS, source_of
+from tests.app.lab.check.test_true_sentences import TASKS, source_of
+from tests.app.lab.solutions.right_solutions import RIGHT
 
 STUDENTS = 30
 LOOPS = 2  # that keep two cores busy

@@ -123,7 +123,7 @@ def test_notes_that_answer_a_question_are_withheld(viewer: Viewer) -> None:
     first, *_ = readings.notes
     for hidden in (frozenset({first}), frozenset[str]()):
         readings.show(viewer.loop.latest, hidden)
-        withheld = {heading for heading, (_, line) in readings.notes.items() if WITHHELD in line.content}
+        withheld = {heading for heading, one in readings.notes.items() if WITHHELD in one.text.content}
         assert withheld == hidden
 
 
@@ -174,7 +174,7 @@ def test_a_mooring_whose_lines_are_too_short_offers_a_length_under_its_control(v
     assert panel.settings.params.length == 84.5
     assert [type(command) for command in posted] == [Take]
     assert posted[0].params == panel.settings.params
-    folders = [folder.order for folder, _ in panel.controls_tab.readings.notes.values()]
+    folders = [one.folder.order for one in panel.controls_tab.readings.notes.values()]
     assert list(panel.controls_tab.readings.notes) == ["Tensions", "Bed and slack"]
     assert panel.controls_tab.readings.readout.order < folders[0] < folders[1] < panel.controls.folders["Line"].order
     viewer.commands.put(Take(panel.settings.params))

@@ -10,10 +10,9 @@ from urllib.parse import unquote
 import pytest
 
 from app.render import scripts
-from app.render.scripts import IMPORTED, PAGE, ROOMS, SCENE, SHARED, import_map, modules
+from app.render.scripts import IMPORTED, PAGE, SCENE, SHARED, import_map, modules
 
 ROOT = Path(__file__).parents[3]
-MAX_FILES = 16  # of code in a room
 # Rooms from left to right: none imports a room to its left, but the page starts the scene.
 ORDER = ("page", "panel", "scene", "sea", "shading", "core")
 
@@ -57,11 +56,6 @@ def test_every_module_is_started_by_an_entry() -> None:
 def test_types_are_declared_of_all_constants_that_python_shares() -> None:
     declared = (Path(scripts.__file__).parent / "js" / "shared.d.ts").read_text("utf-8")
     assert re.findall(r"const (\w+):", declared) == list(SHARED)
-
-
-@pytest.mark.parametrize("room", [*ROOMS, "before"])
-def test_a_room_has_few_files(room: str) -> None:
-    assert 0 < len(list((Path(scripts.__file__).parent / "js" / room).iterdir())) <= MAX_FILES
 
 
 def test_an_import_map_holds_each_module_as_it_is_but_for_names() -> None:

@@ -17,7 +17,7 @@ from app.lab.course.task import Task, load_tasks
 from app.notebook.dataset import to_dataset
 from app.panel.workbook.guide import SnapshotValues
 from app.scenes import NAMES, scene_named
-from app.scenes.mooring import report as mooring_report
+from app.scenes.mooring.readings import report as mooring_report
 from app.scenes.quantities import Quantity, measured, read, recorded_quantities, written
 from app.scenes.radial_sea import report as radial_report
 from app.server.loop.sim_loop import SimLoop

@@ -14,7 +14,7 @@ from app.lab.student.session import Session
 from app.scenes import scene_named
 from app.scenes.race.parameters import RaceParams
 from app.server.viewer import Viewer
-from tests.app.lab.test_session import taken
+from tests.app.lab.student.test_session import taken
 from tests.waiting import wait_for
 
 RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.validation import argument_error, check_number
+from sim.validation import argument_error, check_number, check_positive
 
 MOST = 200  # corrections
 CLOSE = 1e-10  # gap over the length
@@ -67,11 +67,11 @@ def catenary(
 
     Raises ValueError, naming the argument, its value and what is allowed; for a line too long to be pulled at all, too.
     """
-    check_number("length", length, 0, math.inf, "m", above=True)
-    check_number("stiffness", stiffness, 0, math.inf, "N", above=True)
-    check_number("weight", weight, 0, math.inf, "N/m", above=True)
-    check_number("span", span, 0, math.inf, "m", above=True)
-    check_number("rise", rise, 0, math.inf, "m")
+    check_positive("length", length, "m")
+    check_positive("stiffness", stiffness, "N")
+    check_positive("weight", weight, "N/m")
+    check_positive("span", span, "m")
+    check_number("rise", rise, "m", 0)
     if on_bed and length >= span + rise:
         raise argument_error("length", length, f"less than span + rise = {span + rise:g} m: a longer line lies slack")
     # Unknown is log H, as H stays above 0.

@@ -1,6 +1,7 @@
 """The linearised forces of a mooring as dense matrices: the slow reference of `sim.springs.stability`."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,19 +77,32 @@ def frequencies_squared(system: System, x: Array | None = None) -> Array:
     return np.linalg.eigvalsh(K).astype(np.float64)
 
 
-def longest_step(system: System, x: Array, integrator: Integrator) -> float:
-    """The longest stable step [s] of all damped modes, the eigenvalues of s^2 + s D + K; leapfrog's that of K alone."""
-    K, D = unit_mass_matrices(system, x)
-    if integrator.name == "leapfrog":
-        return integrator.stable_step(math.sqrt(np.linalg.eigvalsh(K)[-1]), 0.0)
-    if integrator.name == "symplectic_euler":  # h^2 K + 2 h D reaches 4
-        h = 2.0 / math.sqrt(np.linalg.eigvalsh(K)[-1])
-        for _ in range(200):
-            h = 2.0 / math.sqrt(np.linalg.eigvalsh(K + 2.0 / h * D)[-1])
-        return h
-    steps = []
+def longest_steps(K: Array, D: Array, integrators: Sequence[Integrator]) -> list[float]:
+    """The longest stable step [s] of all damped modes, the eigenvalues of s^2 + s D + K, with each integrator.
+
+    Leapfrog's is that of K alone. K, D: see `unit_mass_matrices`.
+    """
+    stiffest = math.sqrt(np.linalg.eigvalsh(K)[-1])
+    pairs = []
     for s in np.linalg.eigvals(np.block([[np.zeros_like(K), np.eye(len(K))], [-K, -D]])):
         if s.real < -1e-6:  # a real eigenvalue is the fast one of an oscillator without stiffness
-            pair = (abs(s), -2.0 * s.real) if abs(s.imag) > 1e-6 else (0.0, -s.real)
-            steps.append(integrator.stable_step(*pair))
-    return min(steps)
+            pairs.append((abs(s), -2.0 * s.real) if abs(s.imag) > 1e-6 else (0.0, -s.real))
+    steps = []
+    for integrator in integrators:
+        if integrator.name == "leapfrog":
+            steps.append(integrator.stable_step(stiffest, 0.0))
+        elif integrator.name == "symplectic_euler":
+            steps.append(longest_step_of_euler(K, D, 2.0 / stiffest))
+        else:
+            steps.append(min(integrator.stable_step(*pair) for pair in pairs))
+    return steps
+
+
+def longest_step_of_euler(K: Array, D: Array, start: float) -> float:
+    """The step [s] at which h^2 K + 2 h D reaches 4, by iteration from a step."""
+    h = start
+    for _ in range(200):
+        before, h = h, 2.0 / math.sqrt(np.linalg.eigvalsh(K + 2.0 / h * D)[-1])
+        if abs(h - before) < 1e-6 * h:
+            return h
+    raise AssertionError(f"no step found: {before} s, then {h} s")

@@ -13,6 +13,7 @@ const PARTS = {
   display: () => import("../panel/display.js"),
   accessibility: () => import("../panel/accessibility.js"),
   reach: () => import("./reach.js"),
+  drag_hint: () => import("./drag_hint.js"),
   beside: () => import("./beside.js"),
 };
 

@@ -86,7 +86,7 @@ function makeLine() {
     "position:fixed;bottom:calc(8px + var(--springtide-foot, 0px) + var(--springtide-bar, 0px));z-index:8;padding:4px 10px;" +
     "left:calc(8px + var(--springtide-left, 0px));border-radius:6px;background:rgba(16,30,46,0.85);color:#fff;" +
     "font:13px/1.5 system-ui,sans-serif;max-width:calc(100vw - 36px - var(--springtide-left, 0px) - var(--springtide-right, 0px))";
-  made.append("Graphics are slow on this machine, so the quality was reduced.");
+  made.append("Graphics are slow here, so quality was reduced.");
   made.append(button("Keep high quality", () => choose("high")));
   made.append(button("OK", () => {
     dismissed = true;

@@ -13,7 +13,7 @@ from app.scenes.mooring.files.from_file import mooring_of, slack_of
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.line_scene import LineScene, fade_at
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.restoring import LEAST_REACH, REACH
+from app.scenes.mooring.readings.restoring import LEAST_REACH, REACH
 from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from sim.interruption import raise_if_stopped
@@ -94,6 +94,7 @@ class FileScene(LineScene):
         self.sea = sea_of(params)
         self.take_system()
         self.take_step()
+        self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
         """Go on with the water as it is now."""

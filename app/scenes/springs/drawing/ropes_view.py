@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from app.messages import F, P, R
 from app.render.cameras import NEAR
-from app.render.dragging import GRAB_COLOUR
-from app.render.gizmo import Gizmo
+from app.render.handles.dragging import GRAB_COLOUR
+from app.render.handles.gizmo import Gizmo
 from app.render.handles.viser_inside import set_arrays
 from app.render.injection import add_contact_shadow
 from app.render.meshes import SIDES, ball

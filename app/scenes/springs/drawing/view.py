@@ -8,8 +8,8 @@ import viser
 
 from app.messages import F, P, R, Vector
 from app.render.cameras import NEAR
-from app.render.dragging import GrabLine, SurfaceDrag, drag
-from app.render.gizmo import Gizmo
+from app.render.handles.dragging import GrabLine, SurfaceDrag, drag
+from app.render.handles.gizmo import Gizmo
 from app.render.handles.viser_inside import set_arrays
 from app.render.meshes import ball
 from app.render.surroundings import Surroundings, set_dark

@@ -20,10 +20,10 @@ def signatures():
 SHOW = runpy.run_path(str(ROOT / ".ci" / "kernels.py"))["SHOW"]
 # In a process of its own, as other tests compile other signatures.
 PROGRAM = f"""{SIGNATURES}
-from app.scenes import warmup
+from app.scenes.ahead.compiling import all_jobs, compile_job
 
-for piece, drawn in warmup.all_pieces(sys.argv[1]):
-    warmup.compile_piece(sys.argv[1], piece, drawn=drawn)
+for job in all_jobs(sys.argv[1]):
+    compile_job(job)
 before = signatures()
 {SHOW}
 print(sorted(signatures() - before))
@@ -33,14 +33,15 @@ print(sorted(signatures() - before))
 PRESETS = (
     SIGNATURES
     + """
-from app.scenes import scene_named, warmup
+from app.scenes import scene_named
+from app.scenes.ahead.compiling import Job, compile_job
 from sim.parameters import check_record
 
 kind = scene_named(sys.argv[1])
 records = {preset: check_record(kind.params, values) for preset, values in kind.presets.items()}
 for preset in sorted(records, key=lambda preset: len(kind.needs(records[preset]))):
     for piece in kind.needs(records[preset]):
-        warmup.compile_piece(kind.name, piece, drawn=False)
+        compile_job(Job(kind.name, piece))
     before = signatures()
     scene = kind.make(records[preset])
     for _ in range(5):

@@ -73,8 +73,8 @@ def test_a_worker_that_dies_or_fails_is_replaced_and_its_job_given_up(
 
 
 def test_the_rest_is_compiled_by_another_worker(queue: Compiling, monkeypatch: pytest.MonkeyPatch) -> None:
-    pieces = {"rope": (("x", False),), "race": (("y", True),)}
-    monkeypatch.setattr(compiling, "missing", lambda name, params: pieces.get(name, ()))
+    left = {"rope": [Job("rope", "x", False)], "race": [Job("race", "y", True)]}
+    monkeypatch.setattr(compiling, "uncompiled", lambda name, params: left.get(name, []))
     monkeypatch.setattr(compiling, "CACHE", Path())
     queue.go_on_with("race")
     assert queue.wait([Job("rope", "x", False), Job("race", "y", True)], 30.0)

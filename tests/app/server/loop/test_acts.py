@@ -121,7 +121,7 @@ class Lab:
         self.settings = SceneSettings(server, self.kind, self.params, commands.put)
         self.loop = SimLoop(self.kind.make(self.params), commands, effort=lambda: 0.0, clock=lambda: 0.0)
         self.compiler = Compiler()
-        self.gate = CompileGate(self.compiler, self.kind, self.loop.record)
+        self.gate = CompileGate(self.compiler, self.kind, self.loop.record, self.loop.runs.keep_dropped)
         if compiles:
             self.loop.admit = self.gate.admit
         self.model = Model(self.params, self.settings.loaded)
@@ -299,6 +299,34 @@ def play_sequence(name: str, seed: int, *, compiles: bool) -> None:
 def test_the_screen_after_acts_and_undos_is_that_of_the_act_before(name: str, compiles: bool) -> None:
     for seed in range(8):
         play_sequence(name, seed, compiles=compiles)
+
+
+@pytest.mark.parametrize("undoes", ["another moment", "a reset", "a moment that waits, too"])
+def test_an_undo_goes_back_to_a_moment_that_waited_for_the_compiler(undoes: str) -> None:
+    lab = Lab("rope", random.Random(), compiles=True)
+    lab.step()
+    with_grid = lab.params, kept_state(lab.loop.run)
+    lab.look()
+    lab.step()
+    without = lab.settings.params, kept_state(lab.loop.run)
+    time = lab.loop.scene.time
+    lab.look()
+    lab.step()
+    acts = {
+        "another moment": lambda: lab.settings.resume(*with_grid),
+        "a reset": lab.settings.reset,
+        "a moment that waits, too": lambda: lab.settings.resume(*without),
+    }
+    lab.settings.resume(*without)
+    lab.loop.tick(0.0)
+    assert lab.gate.held
+    acts[undoes]()
+    lab.loop.tick(0.0)
+    lab.settings.undo()
+    lab.settle()
+    status = lab.loop.run.snapshots.status()
+    assert (status.time, status.running, status.restarted) == (time, True, False)
+    assert lab.loop.scene.params == without[0]
 
 
 @pytest.mark.stress

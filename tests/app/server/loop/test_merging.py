@@ -55,6 +55,7 @@ class Scene:
     step = 0.01
     faster = ""
     frame_interval = FRAME_INTERVAL
+    pace = 1.0
     time = 0.0
 
     def __init__(self) -> None:

@@ -66,6 +66,14 @@ def test_loops_of_other_steps_and_frame_rates_keep_the_same_time():
     assert all(group.clock.time - time < step + 1e-9 for time, step in zip(group.times, STEPS, strict=True))
 
 
+def test_where_one_asks_for_slow_motion_all_have_it():
+    group = of_steps(1 / 240, 1 / 60)
+    setattr(group.loops[1].scene, "pace", 0.25)  # noqa: B010, as of a scene it is only read
+    group.run(2.0)
+    assert group.times == pytest.approx([0.5, 0.5], abs=0.12)
+    assert group.spread() < LEAD + 1 / 60
+
+
 def test_where_one_cannot_keep_up_all_slow_down_and_no_step_is_lost():
     group = of_steps(1 / 240, 1 / 60)
     slow = group.loops[0]

@@ -26,6 +26,7 @@ from app.messages import (
     TogglePlay,
     where_not_finite,
 )
+from app.panel.head import status_line
 from app.scenes.contract import FRAME_INTERVAL
 from app.server.loop.clock import MAX_FRAME_INTERVAL, MAX_LONG_FRAME, PATIENCE, SOLVE_SHARE, FixedStep
 from app.server.loop.run import HURRY_INTERVAL
@@ -58,6 +59,7 @@ class Scene:
 
     step = 0.01
     faster = "fewer points"
+    pace = 1.0
 
     def __init__(self, clock: Clock, cost: float = 0.0) -> None:
         self.params = Params()
@@ -127,6 +129,26 @@ def test_simulated_time_follows_wall_time_at_the_speed_that_is_set(speed: float)
         loop.tick(FRAME_INTERVAL)
     assert scene.time == pytest.approx(10.0 * speed, abs=scene.step)
     assert loop.latest.status.actual_speed == pytest.approx(speed, abs=0.02)
+
+
+def test_slow_motion_that_a_scene_asks_for_takes_the_same_steps_in_more_time() -> None:
+    loop, scene = make()
+    scene.params = Params(speed=2.0)
+    for pace, since in ((1.0, 0.0), (0.1, 2.0), (1.0, 2.2)):
+        scene.pace = pace
+        assert scene.time == pytest.approx(since, abs=2 * scene.step)
+        for _ in range(60):
+            loop.tick(FRAME_INTERVAL)
+        assert loop.latest.status.pace == pace
+        assert loop.latest.status.speed == 2.0
+        assert ("Slow motion" in str(status_line(loop.latest))) == (pace < 1.0)
+    scene.pace = 0.1
+    loop.commands.put(Pause())
+    before = scene.time
+    for _ in range(10):
+        loop.tick(FRAME_INTERVAL)
+    assert scene.time == before
+    assert "Paused" in str(status_line(loop.latest))
 
 
 def test_steps_are_whole_and_owe_less_than_one() -> None:

@@ -2,13 +2,15 @@
 
 import gzip
 import http.client
+import re
+from importlib import resources
 
 import pytest
 
 from app.server.viewer import Viewer
-from app.server.web.page import ALIVE_PATH, COVER, SERVER_NAME, TITLE, covered
+from app.server.web.page import ALIVE_PATH, COVER, SERVER_NAME, TITLE, covered, style_sheet
 
-MAX_START = 40_000  # characters before the end of the cover; viser's client has 800,000
+MAX_START = 30_000  # characters before the end of the cover; viser's client has 800,000
 
 
 def get(port: int, path: str, **headers: str) -> tuple[int, bytes, dict[str, str]]:
@@ -29,6 +31,15 @@ def test_the_page_has_our_title_and_its_cover_before_anything_long(lab: Viewer, 
     assert COVER in page[:MAX_START]
     assert "<title>Viser" not in page
     assert page.index(COVER) < page.index('<div id="root">') < page.rindex("<script")
+
+
+def test_the_style_sheet_has_all_its_rules_and_no_comment() -> None:
+    source = (resources.files("app.render") / "js" / "page.css").read_text("utf-8")
+    assert "/*" in source
+    assert "/*" not in style_sheet()
+    assert "*/" not in style_sheet()
+    assert style_sheet().count("{") == re.sub(r"(?m)/\*[^*]*\*/", "", source).count("{")
+    assert style_sheet().count("}") == style_sheet().count("{")
 
 
 def test_the_page_can_ask_whether_the_server_is_there(lab: Viewer) -> None:

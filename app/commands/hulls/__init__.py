@@ -1,0 +1,1 @@
+"""Commands on hulls: their facts, and their hydrodynamics by boundary elements."""

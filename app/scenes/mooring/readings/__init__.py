@@ -1,0 +1,1 @@
+"""Numbers of the mooring: tensions, statistics, restoring curve, and their texts."""

@@ -1,0 +1,1 @@
+"""Benchmarks of the lab as it is served: start, frames, controls, the course."""

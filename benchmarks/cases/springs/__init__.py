@@ -1,0 +1,1 @@
+"""Benchmarks of ropes, cloths and their methods."""

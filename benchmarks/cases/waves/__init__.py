@@ -1,0 +1,1 @@
+"""Benchmarks of seas, their waves, fire and jet."""

@@ -1,0 +1,85 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { Life } from "./js/core/life.js";
+
+// A page with a renderer whose frames are drawn when the test says so.
+function makePage() {
+  /** @type {(() => void)[]} */
+  const asked = []; // by requestAnimationFrame
+  const nothing = { observe() {}, disconnect() {}, querySelectorAll: () => [], querySelector: () => null };
+  const scene = { environment: {}, traverse() {} };
+  const camera = { position: 0, quaternion: 0, projectionMatrix: 0 };
+  const element = Object.assign(new EventTarget(), { style: {}, width: 4, height: 3, clientWidth: 4, clientHeight: 3 });
+  const documentElement = { classList: { contains: () => false } };
+  const SIGNALED = 1;
+  let drawn = 0; // fences up to this number are signalled
+  let fences = 0;
+  const gl = {
+    SIGNALED,
+    getContextAttributes: () => ({ preserveDrawingBuffer: true }),
+    getSyncParameter: (/** @type {number} */ fence) => (fence <= drawn ? SIGNALED : 0),
+    fenceSync: () => (fences += 1),
+    isContextLost: () => false,
+    deleteSync() {},
+    flush() {},
+  };
+  const renderer = {
+    domElement: element, shadowMap: {}, info: {}, getContext: () => gl, getRenderTarget: () => null, setSize() {},
+    render: /** @type {(...all: object[]) => void} */ (() => {}),
+  };
+  Object.assign(globalThis, {
+    MutationObserver: function () { return nothing; },
+    requestAnimationFrame: (/** @type {() => void} */ call) => void asked.push(call),
+    location: new URL("http://127.0.0.1/"),
+    document: Object.assign(new EventTarget(), { ...nothing, documentElement, visibilityState: "visible" }),
+    window: globalThis,
+    addEventListener() {},
+    devicePixelRatio: 1,
+    __viserMutable: { scene, camera, requestRender() {}, getRenderRequestState: "ready" },
+  });
+  return {
+    renderer,
+    // Ask for a frame of the scene, which is another one than the last.
+    render() {
+      camera.position += 1;
+      renderer.render(scene, camera);
+    },
+    // All frames that were begun are drawn; whether the page looks before it begins the next one.
+    draw(looks = false) {
+      drawn = fences;
+      if (looks) for (const call of asked.splice(0)) call();
+    },
+    isDrawing: () => drawn < fences,
+    scene,
+  };
+}
+
+test("the whole picture is shown from the end of its first frame on, also where the next one begins at once", async () => {
+  const page = makePage(), life = new Life();
+  const { paceFrames } = await import("./js/scene/frames.js");
+  const { springtide } = await import("./js/core/springtide.js");
+  paceFrames(/** @type {any} */ (page.renderer), life);
+  const showsWhole = () => springtide.showsWhole?.();
+  assert.equal(showsWhole(), false);
+  Object.assign(page.scene, { environment: null }); // the sky is not there
+  page.render();
+  page.draw();
+  assert.equal(showsWhole(), false);
+  Object.assign(page.scene, { environment: {} });
+  page.render();
+  assert.equal(showsWhole(), false); // the first whole frame is being drawn
+  for (let k = 0; k < 3; k++) {
+    page.draw();
+    page.render(); // before anything looks for the end of the last one
+    assert.equal(page.isDrawing(), true);
+    assert.equal(showsWhole(), true);
+  }
+  page.draw(true);
+  assert.equal(showsWhole(), true);
+  Object.assign(page.scene, { environment: null }); // another scene
+  page.render();
+  assert.equal(showsWhole(), false);
+  page.draw(true);
+  assert.equal(showsWhole(), false);
+  life.end();
+});

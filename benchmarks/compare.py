@@ -163,5 +163,5 @@ def compare(
         kept = {"machine": tables.machine(), "names": names, "commits": hashes, "repeats": REPEATS, "rows": rows}
         with replacing(out / "compare.json") as draft:
             draft.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-        print(f"kept in {out}")
+        print(f"saved in {out}")
     return 0

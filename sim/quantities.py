@@ -52,7 +52,7 @@ def fraction_of(digits: str) -> Fraction:
     """Decimal digits as an exact number. Raises ValueError for a number beyond every float."""
     _, _, exponent = digits.lower().partition("e")
     if exponent and abs(int(exponent)) > MAX_EXPONENT:
-        raise ValueError(f"{digits}: not a number that can be kept")
+        raise ValueError(f"{digits}: not a number that can be stored")
     return Fraction(digits.replace(",", "."))
 
 

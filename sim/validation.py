@@ -32,7 +32,7 @@ class ConvergenceError(RuntimeError):
         self.solver, self.residual, self.iterations = solver, residual, iterations
 
     def __reduce__(self) -> tuple[type["ConvergenceError"], tuple[str, str, int]]:
-        """Its arguments, so that it passes between processes."""
+        """Arguments of the error, so that it passes between processes."""
         return ConvergenceError, (self.solver, self.residual, self.iterations)
 
 

@@ -114,7 +114,7 @@ class Waves:
         )
 
     def with_crest(self, height: float, place: tuple[float, float], t: float) -> "Waves":
-        """These waves with a linear crest of this height [m] at a place (x, y) [m] at time t [s].
+        """The waves with a linear crest of this height [m] at a place (x, y) [m] at time t [s].
 
         Amplitudes stay, and so does Hs. Phases follow the gradient of the height there, as far as needed: a wave turns
         in proportion to its amplitude, so that in the mean a group of the form of NewWave is added (Tromans, Anaturk

@@ -4,7 +4,7 @@ import importlib
 from pathlib import Path
 from types import ModuleType
 
-ELSEWHERE = "works only in a checkout of the repository, where benchmarks/ lies"
+ELSEWHERE = "works only in a checkout of the repository, which has benchmarks/"
 CHECKOUT = Path(__file__).resolve().parents[2]
 
 

@@ -91,7 +91,7 @@ class Lab:
 
         After it the clock goes on, or stands still where it did before. With a browser on it the lab runs at its speed,
         without one as fast as it can. Raises ValueError for what is not a time, DivergenceError where the run stops
-        before, and RuntimeError where it is begun again or another scene is opened meanwhile.
+        before, and RuntimeError where it is reset or another scene is opened meanwhile.
         """
         check_number("seconds", seconds, "s", 0.0, MAX_WAIT)
         answer: Future[float] = Future()

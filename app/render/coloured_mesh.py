@@ -22,7 +22,7 @@ COLOUR_STEP = 1 / 255
 class ColouredMesh:
     """A streaming mesh with a colour at each vertex.
 
-    vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. columns: the vertices lie in rows of so many
+    vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. columns: number of vertices in a row of
     neighbours. step [m]: to which browsers with the shader round the vertices. color: the only colour in browsers
     without it. Further arguments go to viser's `add_mesh_simple`.
     Raises ValueError where there is not one colour a vertex.

@@ -6,7 +6,7 @@ The address `/?scene=rope&preset=...&stiffness=2000` and the file
 
 say the same: the values of a preset (by default the scene's defaults), and those that differ from it. A number is
 written so that reading it gives the very same number. A hull, a mooring or a spectrum from a file is no parameter: a
-set-up has the file's name, `"hull": "boat.stl"`, and whoever reads it is told to add the file.
+set-up has the file's name, `"hull": "boat.stl"`, and its reader is told to add the file.
 
 A replay (HTML) holds such a file in a block of its own, and a recording (.npz) all parameters: both open as it does.
 """

@@ -228,27 +228,27 @@ class Viewer:
 
     @property
     def scene(self) -> AnyScene:
-        """Its simulation."""
+        """Simulation of the open scene."""
         return self.served.scene
 
     @property
     def view(self) -> AnyView:
-        """Its drawing."""
+        """Drawing of the open scene."""
         return self.served.view
 
     @property
     def settings(self) -> SceneSettings:
-        """Its settings."""
+        """Settings of the open scene."""
         return self.served.settings
 
     @property
     def panel(self) -> Panel:
-        """Its panel."""
+        """Panel of the open scene."""
         return self.served.panel
 
     @property
     def loop(self) -> SimLoop:
-        """Its loop."""
+        """Loop of the open scene."""
         return self.served.loop
 
     @property

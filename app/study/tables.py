@@ -70,7 +70,7 @@ def keep_machine(out: Path) -> None:
     """Write the machine that the tables of a folder were measured on, and print where they are."""
     with replacing(out / "machine.txt") as draft:
         draft.write_text(machine() + "\n", encoding="utf-8")
-    print(f"kept in {out}")
+    print(f"saved in {out}")
 
 
 def front(rows: Rows) -> list[str]:

@@ -412,7 +412,7 @@ def loads_on(points: Sequence[Point], n: int) -> NDArray[np.float64]:
 
 
 def excitations(bodies: Sequence[MooredBody], waves: int) -> NDArray[np.float64]:
-    """`excitation` of the kernels' view, of so many waves; none where no wave pushes a body."""
+    """`excitation` of the kernels' view, for a number of waves; empty if no wave pushes a body."""
     if all(body.excitation is None for body in bodies):
         return np.zeros((len(bodies), 12, 0))
     found = np.zeros((len(bodies), 12, waves))
@@ -499,7 +499,7 @@ def check_curve(name: str, curve: Sequence[tuple[float, float]]) -> None:
 
 
 def check_body(body: MooredBody, waves: int) -> None:
-    """Raises ValueError for matrices that no body has, and forces that are not those of so many waves."""
+    """Raises ValueError for matrices that no body has, and forces for another number of waves."""
     check_vector(f"body {body.id}: place", body.place, "m")
     for field in ("mass", "stiffness", "damping"):
         matrix = getattr(body, field)

@@ -72,7 +72,7 @@ def damp_twice(v, first, second, keep, start, count):
     In one pass: each stage follows two points behind the one before, and what lies between is kept in registers.
     """
     one, two, three = np.uint64(1), np.uint64(2), np.uint64(3)
-    after_one = after_two = after_three = 0.0  # the last point that has been through so many stages
+    after_one = after_two = after_three = 0.0  # the last point that has been through one, two and three stages
     for k in range(count):
         i = start + two * np.uint64(k)
         u, last = v[i], v[i + one]

@@ -115,7 +115,7 @@ def read_columns(
     count = len(head.words)
     for row in rows:
         if len(row.words) != count:
-            raise line_error(path, row.number, f"{count} columns; here are {len(row.words)}")
+            raise line_error(path, row.number, f"{count} columns, not {len(row.words)}")
     found: dict[str, Column] = {}
     left: list[str] = []
     notes: list[str] = []

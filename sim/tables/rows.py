@@ -63,7 +63,7 @@ def words_of(line: str, path: Path, number: int) -> list[str]:
     is_spaced = mark is None or (mark == "," and is_decimal(line))
     count = len(outside.split()) if is_spaced else outside.count(mark or "") + 1
     if count > MAX_COLUMNS:
-        raise line_error(path, number, f"at most {MAX_COLUMNS} columns; here are {count}")
+        raise line_error(path, number, f"at most {MAX_COLUMNS} columns, not {count}")
     if is_spaced:
         words = SPACED.split(OPENED.sub("", line.strip()))
     elif '"' not in line:

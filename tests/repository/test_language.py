@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from app.scenes import NAMES, scene_named
+from sim.parameters import parameters_of
 from tests.repository.test_layers import ROOT, below, named
 
 BEGINNINGS = r"(What|Whether|Where|Which|How|Why|When|Who|All that|That|Those|The one|Of)\b"
@@ -19,7 +21,7 @@ COMMENT = re.compile(r"(What|Whether|How|Which) |(what|whether|how) ")
 COMMENT_IN_JS = re.compile(r"(?<!:)//\s*((?:What|Whether|How|Which|what|whether|how) .*)")
 AVOIDED = re.compile(
     r"\b(of which|[Tt]here (is|are|was|were) none|(is|are) none of|by no fault|whereof|[Bb]esides|[Hh]ence|for ever"
-    r"|but for|expected (is|are) (a|an|the|two)|no longer lives|lives whatever)\b"
+    r"|but for|so many|[Ww]hoever|expected (is|are) (a|an|the|two)|no longer lives|lives whatever)\b"
 )
 PAGES = [path for path in sorted((ROOT / "docs").glob("*.md")) if path.name != "physics.md"] + [ROOT / "README.md"]
 SCRIPTS = sorted((ROOT / "app").rglob("*.js"))
@@ -75,6 +77,13 @@ def test_comments_are_no_clauses():
         first = [line for before, line in zip(["", *text], text, strict=False) if not before.lstrip().startswith("//")]
         wrong += [f"{named(path)}: {found[1]}" for line in first for found in COMMENT_IN_JS.finditer(line)]
     assert wrong == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_hints_of_controls_are_no_clauses(name):
+    hints = [parameter.doc for parameter in parameters_of(scene_named(name).params).values()]
+    assert len(hints) > 10
+    assert [hint for hint in hints if CLAUSE.match(hint)] == []
 
 
 @pytest.mark.parametrize(

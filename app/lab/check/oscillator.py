@@ -31,7 +31,7 @@ def step_inputs(rng: "np.random.Generator", *, with_velocity: bool = True) -> tu
 
 
 def oscillate(step: Callable[..., Any], z: float, steps: int) -> tuple[np.ndarray, np.ndarray]:
-    """Position and velocity after each of so many steps of an oscillator of 1 rad/s that starts at x = 1, at rest.
+    """Position and velocity after each step of an oscillator of 1 rad/s that starts at x = 1, at rest.
 
     z: time step times angular frequency. Returns two arrays of shape (steps,).
     """

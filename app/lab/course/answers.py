@@ -184,9 +184,7 @@ def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
             elif question.kind == "number":
                 lines += [f"# A number{f' in {question.unit}' if question.unit else ''}"]
             lines += [f"{question.key} = {quoted(left.pop((task.name, question.key), ''))}"]
-        rest = [
-            key for owner, key in left if owner == task.name
-        ]  # entries that the workbook keeps, and former questions
+        rest = [key for owner, key in left if owner == task.name]  # other entries of the workbook, and former questions
         lines += ["", *(f"{quoted(key)} = {quoted(left.pop((task.name, key)))}" for key in rest)] if rest else []
     for name in sorted({name for name, _ in left}):
         lines += ["", "", f"[{quoted(name)}]"]

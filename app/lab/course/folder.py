@@ -117,7 +117,7 @@ def readme_text(name: str, tasks: Sequence[Task]) -> str:
         f"{mandatory} tasks, and {len(tasks) - mandatory} optional ones. For each one:",
         "",
         "1. Read it below. Predict first: write your prediction into `answers.toml`.",
-        "2. Write the function, where there is one. The docstring has the equation, the units and the shapes.",
+        "2. Write the function, if the task has one. The docstring has the equation, the units and the shapes.",
         "3. Look at it in Springtide.",
         "4. Check your work. Check as often as you like.",
         f"5. Answer the questions, in the panel or in `{FILE}`. Write your name there too.",

@@ -45,7 +45,7 @@ class StudentReport(NamedTuple):
     restarts: int = 0  # number of restarts from the program's rope, after it was too late
     left_at: float = math.nan  # [s] when it left its bounds
     difference: float = math.nan  # [m] largest distance between the same points of both; NaN where they have others
-    unlike: tuple[str, ...] = ()  # reason why a right solution differs from the program's, beginning with the parameter
+    unlike: tuple[str, ...] = ()  # reasons why a right solution differs from the program's, with the parameter first
     grid: tuple[int, int] = (0, 0)  # rows and columns of the student's cloth, where it is coarser than the program's
     times: NDArray[np.float64] = np.zeros(0)  # (rows,) [s]
     differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]

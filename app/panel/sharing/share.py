@@ -231,7 +231,7 @@ class Share:
         if end is None:
             self.say("This run", "There are no curves over time to keep." if on else "")
         else:
-            self.say("This run", fill("Kept: the curves up to t = {:.2f} s. They are dashed.", end))
+            self.say("This run", fill("Kept the curves up to t = {:.2f} s; they are dashed.", end))
 
     async def on_own(self, event: ViserEvent) -> None:
         """Keep the present set-up in the list of presets under its name, or remove the one of that name."""

@@ -45,7 +45,7 @@ class ClothInstant(SceneInstant):
 
 
 def straight_links(now: Any, apart: int) -> int:
-    """Number of springs along rows and columns between particles that are so many places apart."""
+    """Number of springs along rows and columns between particles this number of places apart."""
     rows, cols = now.frame.strain.shape
     return rows * (cols - apart) + cols * (rows - apart)
 

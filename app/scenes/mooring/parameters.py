@@ -75,7 +75,7 @@ class MooringParams:
     current: float = in_sea(0.0, 0.0, 4.0, "m/s", "Speed of the water, the same at all depths")
     steady_force: float = in_sea(0.0, 0.0, 5000.0, "kN", "Force of the wind on the body", log_from=0.1)
     follow: float = in_sea(
-        1.0, 0.0, 1.0, "", "Motion of the vessel over the water's there; 0 holds it still",
+        1.0, 0.0, 1.0, "", "Motion of the vessel over that of the water at its place; 0 holds it",
         title="Vessel follows waves",
     )  # fmt: skip
     friction: float = in_sea(0.3, 0.0, 2.0, "", "Coefficient of friction of the bed")

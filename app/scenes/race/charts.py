@@ -20,7 +20,9 @@ CURVES = {
     "plot_errors": CurveAxes("Distance from the reference", "m", "t [s]", ("rope 1",), ERROR_TICKS),
     "plot_energies": CurveAxes("Energy error", "J", "t [s]", ("rope 1",)),
 }
-FLOOR_LINE = ChartLine("below what the reference can tell", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)")
+FLOOR_LINE = ChartLine(
+    "below the accuracy of the reference", "rgba(120,120,120,0.6)", 1.0, fill="rgba(120,120,120,0.3)"
+)
 MAX_ENERGY_RATIO = 0.7  # energy error over the potential energy of the rope's whole fall that a rope can have at most
 MIN_GROWTH = 1.1  # from row to row, of the energy error of a rope that diverges
 FLOOR_WITHOUT_REFERENCE = 1e3  # [m], above the scale

@@ -75,7 +75,7 @@ def errors_line(readings: RaceReadings) -> Html:
     """The ropes that are nearest to the reference run and farthest from it."""
     known = sorted((r for r in readings.results if r.error >= r.error_floor), key=lambda result: result.error)
     if not known:
-        return fill("Error: below what the reference can tell")
+        return fill("Error: below the accuracy of the reference")
     least, most = (fill("{} (rope {})", bold(metres(r.error, 2)), r.number) for r in (known[0], known[-1]))
     return fill("Error: {} to {}", least, most) if len(known) > 1 else fill("Error: {}", most)
 

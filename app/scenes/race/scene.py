@@ -153,7 +153,7 @@ class RaceScene:
         return self.charts.charts()
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
-        """This scene has no plot rows: its charts thin out as the race goes on."""
+        """No plot rows: the charts of this scene thin out as the race goes on."""
         return ()
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:

@@ -106,7 +106,7 @@ class RadialSeaParams:
         100.0, 1.0, 1e5, "m³", "Oil that was spilled, all at once", log_from=1.0, title="Volume spilled"
     )
     temperature: float = in_spill(
-        15.0, 0.0, 30.0, "°C", "Temperature of the oil; the water's density stays that of 15 °C"
+        15.0, 0.0, 30.0, "°C", "Temperature of the oil; the water's density stays as at 15 °C"
     )
     spill_hours: float = in_spill(
         0.0, 0.0, 120.0, "h",
@@ -120,9 +120,7 @@ class RadialSeaParams:
 
     bodies: int = in_main(3, 0, 200, "", "Number of floating bodies: two buoys, a box, then all kinds in turn")
     density: float = in_main(450.0, 50.0, 1020.0, "kg/m³", "Density of the bodies")
-    own_densities: bool = in_bodies(
-        False, doc="Densities of their own for the first three bodies", title="Own densities"
-    )
+    own_densities: bool = in_bodies(False, doc="Separate densities for the first three bodies", title="Own densities")
     density_1: float = in_bodies(
         300.0, 50.0, 1020.0, "kg/m³", "Density of the first body, the red buoy", title="Red buoy"
     )
@@ -131,7 +129,7 @@ class RadialSeaParams:
     )
     density_3: float = in_bodies(900.0, 50.0, 1020.0, "kg/m³", "Density of the third body, the box", title="Box")
     size: float = in_main(1.5, 0.3, 4.0, "", "Size of the bodies; at 1 the box is 1.2 m wide")
-    ripples: bool = in_bodies(True, doc="Bodies that move make waves of their own", title="Radiated waves")
+    ripples: bool = in_bodies(True, doc="Moving bodies radiate waves", title="Radiated waves")
     mooring: bool = in_bodies(
         True, doc="Four elastic lines from the keel of each body to anchors on the bed, 60 m deep"
     )
@@ -152,7 +150,7 @@ class RadialSeaParams:
         doc="Method that computes the surface; both are drawn on the same radial grid",
     )  # fmt: skip
     centre: str = in_grid(
-        "fixed", choices={"fixed": "At the bodies", "camera": "Below the camera"}, doc="Where the grid is dense",
+        "fixed", choices={"fixed": "At the bodies", "camera": "Below the camera"}, doc="Place where the grid is dense",
         affects="look", title="Grid centre",
     )  # fmt: skip
     rings: int = in_grid(128, 16, 256, "", "Rings of the grid", affects="look")
@@ -292,7 +290,7 @@ def weathered_oil(params: RadialSeaParams) -> WeatheredOil | None:
 
 @functools.lru_cache(maxsize=8)
 def spill_at(spill: Spill, hours: float) -> WeatheredOil:
-    """A spill so many hours later; cached, as several quantities and the fluids read it."""
+    """A spill after a number of hours; cached, as several quantities and the fluids read it."""
     return weather(spill).at(hours)
 
 

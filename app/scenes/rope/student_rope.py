@@ -37,7 +37,7 @@ def unlike(params: RopeParams) -> tuple[str, ...]:
     if params.law != SPRING:
         lines.append("Link: the program's rope has the law that you chose, spring_force is a spring.")
     if params.damping_model == "axial":
-        lines.append("Damping model: the program's acts along the link, that of spring_force in all directions.")
+        lines.append("Damping model: the program's acts along the link, spring_force in all directions.")
     if params.sphere and params.contact_law == "lab":
         lines.append("Contact law: the program's sphere may pull, as in the lab's code; sphere_force only pushes.")
     return tuple(lines)

@@ -87,5 +87,5 @@ class ParticleGrab:
         return GrabFrame(particle, (hand.position[0], hand.position[1] + offset, hand.position[2]), load)
 
     def clear(self) -> None:
-        """Release it, whoever has grabbed it."""
+        """Release it from any client."""
         self.grabbed = None

@@ -199,7 +199,7 @@ class NetScene(abc.ABC, Generic[P]):
         return self.plot_rows.take()
 
     def curves(self) -> None:
-        """This scene has charts over time only."""
+        """None: this scene has charts over time only."""
         return
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:

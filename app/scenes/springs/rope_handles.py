@@ -29,7 +29,7 @@ def grab_spring(net: Net, step: float, max_force: float) -> SpringOf:
 
 
 def offset_of(number: int, ropes: int, spacing: float) -> float:
-    """Drawn y [m] of rope `number`, from 0, of so many. All move in the same place; only the drawing differs."""
+    """Drawn y [m] of rope `number`, from 0, of `ropes`. All move in the same place; only the drawing differs."""
     return (number - 0.5 * (ropes - 1)) * spacing
 
 

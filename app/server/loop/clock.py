@@ -47,11 +47,11 @@ class TickClock:
         self.end_work()
 
     def begin_work(self) -> None:
-        """Work begins that may take long; controls have been answered."""
+        """Note that work begins that may take long; controls have been answered."""
         self.busy_since = self.turn_at = self.now()
 
     def end_work(self) -> None:
-        """It has ended."""
+        """Note that the work has ended."""
         self.busy_since = None
 
     @property

@@ -56,9 +56,9 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     if not fresh and out.exists() and not stored.exists():
         before = identity_in(out)
         if before is None:
-            raise argument_error("--out", str(out), "a new name, or --fresh to replace what is there")
+            raise argument_error("--out", str(out), "a new name, or --fresh to replace the file")
         check_same_sweep(out, before, identity(spec))
-        say(f"all {len(spec.cases)} cases are there; --fresh runs them again", out)
+        say(f"all {len(spec.cases)} cases are finished; --fresh runs them again", out)
         return 0
     with contextlib.ExitStack() as stack:
         run = stack.enter_context(runner(spec, scheduler))
@@ -102,7 +102,7 @@ def run_missing(spec: Spec, store: Any, run: Run) -> dict[int, Outcome]:
         if number not in outcomes
     }
     if outcomes:
-        print(f"{len(outcomes)} of {total} cases are kept from before")
+        print(f"{len(outcomes)} of {total} cases were finished before")
     if not jobs:
         return outcomes
     try:

@@ -194,7 +194,7 @@ def check_swept_parameters_matter(spec: Spec, scene: SceneKind[Any, Any, Any]) -
         if not without_effect:
             return
     name = min(without_effect)
-    raise ValueError(f"{name}: has no effect with the other parameters as they are; set those that it belongs to")
+    raise ValueError(f"{name}: has no effect with the other parameters; set those that make it act")
 
 
 def table(content: dict[str, Any], key: str) -> dict[str, Any]:

@@ -235,7 +235,7 @@ def by_number(path: Path, places: dict[int, np.ndarray], rows: list[list[int]]) 
     """Vertices (n, 3) and corners (m, 4) of rows of numbers of places. Raises ValueError for a number without one."""
     unknown = {one for row in rows for one in row} - places.keys()
     if unknown or not rows:
-        raise argument_error("path", f"{path}, point {min(unknown, default=0)}", "panels between points that are there")
+        raise argument_error("path", f"{path}, point {min(unknown, default=0)}", "panels between existing points")
     order = {number: i for i, number in enumerate(places)}
     corners = [[order[one] for one in (row if len(row) == 4 else [*row, row[-1]])] for row in rows]
     return np.array([*places.values()]), np.array(corners, np.int64)

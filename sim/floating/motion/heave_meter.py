@@ -26,7 +26,7 @@ class WindowMean:
         self.sum, self.filled = np.zeros((n, numbers)), 0.0  # of the sample that is being taken, and how long it is [s]
         self.count = 0  # of samples taken
         self.began = np.zeros(n, int)  # count at which the mean of a body begins
-        self.means: dict[int, np.ndarray] = {}  # by body, as they were when so many samples had been taken:
+        self.means: dict[int, np.ndarray] = {}  # by body, after this number of samples:
         self.means_at = 0
 
     def update(self, values: np.ndarray, duration: float) -> None:
@@ -58,7 +58,7 @@ class WindowMean:
 
 @functools.lru_cache(maxsize=2)
 def fading_window(length: int) -> np.ndarray:
-    """Hann's window of so many samples; its sum is 1."""
+    """Hann's window of a number of samples; its sum is 1."""
     window = np.hanning(length + 2)[1:-1]
     return window / window.sum()
 

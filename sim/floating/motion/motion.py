@@ -197,7 +197,7 @@ class Scratch(NamedTuple):
 
 @kernel
 def make_scratch(hulls, poles, vertices):
-    """Arrays for the kernels of one body, of so many linear hulls with so many poles; all but substep uninitialised."""
+    """Arrays for the kernels of one body: numbers of linear hulls and of their poles; all but substep uninitialised."""
     return Scratch(
         np.empty((6, 6)), np.empty((6, 6)), np.empty(6), np.empty(6), np.empty(6), np.empty(6), np.empty(6),
         np.empty(6), np.zeros(hulls), np.empty((hulls, poles), np.complex128), np.empty((hulls, poles), np.complex128),

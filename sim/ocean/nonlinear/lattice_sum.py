@@ -19,7 +19,7 @@ def parts_of(spectra: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 @kernel
 def set_phases(turns, cos, sin):
-    """Set cos and sin (columns,) of the phases 0, 1, 2, ... times so many turns."""
+    """Set cos and sin (columns,) of the phases 0, 1, 2, ... times a number of turns."""
     for j in range(cos.size):
         cos[j], sin[j] = cos_sin_turns(j * turns)
 

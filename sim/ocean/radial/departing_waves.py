@@ -22,7 +22,7 @@ class DepartingWaves:
         return min(max((t - self.began) / self.duration, 0.0), 1.0) if self.duration > 0.0 else 1.0
 
     def joined_by(self, others: Waves, t: float) -> Waves:
-        """These waves, then the others that take over, as high as at time t [s]."""
+        """The waves, then the others that take over, as high as at time t [s]."""
         share, own = self.share_taken(t), self.waves
         heights = own.amplitude * math.sqrt(1.0 - share), others.amplitude * math.sqrt(share)
         names = ("kx", "ky", "phase", "omega")

@@ -76,7 +76,7 @@ def recorded_waves(
     if not energy.sum() > 0.0:
         raise argument_error("height", f"{n} equal heights", "a record with waves")
     order = np.argsort(-energy, kind="stable")
-    left = energy.sum() - np.cumsum(energy[order])  # with so many waves
+    left = energy.sum() - np.cumsum(energy[order])  # with 1, 2, ... waves
     count = int(np.searchsorted(-left, -16.0 * error**2 * energy.sum())) + 1
     kept = np.sort(order[:count])
     if count > MAX_WAVES or f[kept[-1]] > HIGHEST:

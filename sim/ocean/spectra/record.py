@@ -119,7 +119,7 @@ class Spectrum(NamedTuple, Generic[C]):
 
     @property
     def title(self) -> str:
-        """Its title in a list of spectra: the first words of `doc`."""
+        """Title in a list of spectra: the first words of `doc`."""
         return self.doc.partition(": ")[0]
 
     def wind_speed(self, u10: float) -> float:

@@ -111,7 +111,7 @@ def moment_at(path: Path, kind: str, time: datetime.datetime, frequency: np.ndar
     largest = TURN if kind.startswith("alpha") else PERCENT
     if (records.values > largest).any():
         raise argument_error(
-            "path", str(path), f"a file of {kind}, up to {largest:g}; here is {np.nanmax(records.values):g}"
+            "path", str(path), f"a file of {kind}, up to {largest:g}, not {np.nanmax(records.values):g}"
         )
     if time not in records.time:
         return None
@@ -147,9 +147,7 @@ def records_of(text: str, path: Path) -> Records:
                 raise line_error(path, number, "the frequencies of the first row")
         found = floats(values, path, number)
         if frequency is None or len(found) != len(frequency):
-            raise line_error(
-                path, number, f"{0 if frequency is None else len(frequency)} values; here are {len(found)}"
-            )
+            raise line_error(path, number, f"{0 if frequency is None else len(frequency)} values, not {len(found)}")
         rows.append(found)
     if not rows or frequency is None:
         raise argument_error("path", str(path), "a file with at least one record")
@@ -202,7 +200,7 @@ def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spect
         if words[0].startswith("#"):
             continue
         if len(words) != len(head):
-            raise line_error(path, number, f"{len(head)} columns; here are {len(words)}")
+            raise line_error(path, number, f"{len(head)} columns, not {len(words)}")
         row = dict(zip(head, words, strict=True))
         try:
             found = [system_of([row[one] for one in columns], s, path, number) for *columns, s in SUMMARIES[kind]]

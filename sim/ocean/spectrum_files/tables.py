@@ -143,7 +143,7 @@ def from_matrix(rows: list[Row], path: Path) -> Spectrum[Any]:
         raise line_error(path, head.number, "the unit of the directions in its first word, as 'f (Hz), dir (rad)'")
     for row in rows:
         if len(row.words) != len(head.words):
-            raise line_error(path, row.number, f"{len(head.words)} columns; here are {len(row.words)}")
+            raise line_error(path, row.number, f"{len(head.words)} columns, not {len(row.words)}")
     columns = []
     for i in range(len(head.words)):
         values, wrong = values_of([row.words[i] for row in rows])

@@ -100,7 +100,7 @@ class Weathering(NamedTuple):
         return np.maximum(1.0 - self.evaporated - self.dispersed, 0.0)
 
     def at(self, hours: float) -> WeatheredOil:
-        """The spill so many hours later. Raises ValueError outside 0 to 120 h."""
+        """The spill after a number of hours. Raises ValueError outside 0 to 120 h."""
         h = check_number("hours", hours, "h", 0.0, MAX_HOURS)
         evaporated, dispersed, water, area, oil_density = (
             float(np.interp(h, self.hours, values))
@@ -124,7 +124,7 @@ class Weathering(NamedTuple):
         )
 
     def exposure(self, hours: float) -> float:
-        """Stiver and Mackay's exposure K A t/V so many hours later, with the area as it grew."""
+        """Stiver and Mackay's exposure K A t/V after a number of hours, with the area as it grew."""
         times = np.append(self.hours[self.hours < hours], hours) * HOUR
         areas = np.interp(times, self.hours * HOUR, self.area)
         transfer = 0.0025 * max(self.spill.wind_speed, laws.MIN_WIND) ** 0.78

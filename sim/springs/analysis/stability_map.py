@@ -1,6 +1,6 @@
 """Maps of stability over the time step: a spring network at rest, disturbed and run, beside its critical step.
 
-A map has a row for each network, as of a range of stiffnesses. Whoever draws one measures row after row.
+A map has a row for each network, as of a range of stiffnesses. It is measured and drawn row after row.
 """
 
 import math

@@ -16,7 +16,7 @@ from sim.springs.laws.record import Law
 
 
 class TensionCurve(NamedTuple):
-    """Its numbers, of a link of its own."""
+    """Numbers of the law, for a link of its own."""
 
     table: NDArray[np.float64]  # (rows, 3) of all links: strain, tension [N], energy per length [N]
     first: float  # row of the link's own table

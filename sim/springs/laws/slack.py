@@ -11,7 +11,7 @@ from sim.springs.laws.record import Law
 
 
 class Slack(NamedTuple):
-    """It has no numbers of its own."""
+    """Numbers of the law: none of its own."""
 
 
 @kernel(inline=True)

@@ -12,7 +12,7 @@ from sim.springs.laws.record import Law
 
 
 class Stiffening(NamedTuple):
-    """Its number."""
+    """Number of the stiffening law."""
 
     cubic: float = 100.0  # c: at a strain of 0.1 it pulls twice as hard as a linear spring
 

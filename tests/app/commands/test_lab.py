@@ -267,8 +267,8 @@ def test_the_report_shows_laws_what_was_done_and_pictures_beside_their_task(fini
     first, second = section.split("<li>")[1:3]
     assert "not seen:" in first
     assert "✓ seen:" in second
-    assert "looked at in the panel" in section
-    assert text.count("looked at in the panel") == 1
+    assert "viewed in the panel" in section
+    assert text.count("viewed in the panel") == 1
     row = section[section.index("<th") :]
     assert row.index("Predicted") < row.index("Measured") < row.index("It swings for ever.") < row.index("0.1125 m")
     assert "at 12 random inputs. Behaviour: No force at rest" in section

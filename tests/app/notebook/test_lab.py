@@ -166,7 +166,7 @@ def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab
         waiting = pool.submit(rope.wait, 1e5)
         wait_for(lambda: rope.running)
         rope.reset()
-        with pytest.raises(RuntimeError, match="begun again"):
+        with pytest.raises(RuntimeError, match="was reset"):
             waiting.result(60.0)
 
 
@@ -193,10 +193,10 @@ def test_a_chart_that_is_not_over_time_is_in_the_data_over_its_own_columns() -> 
         scene.advance(4)
     data = to_dataset(kind, scene, (), "")
     columns = scene.curves()["plot_errors"].columns
-    assert (data.errors_t.units, data.errors_below_what_the_reference_can_tell.units) == ("s", "m")
+    assert (data.errors_t.units, data.errors_below_the_accuracy_of_the_reference.units) == ("s", "m")
     assert len(columns[0]) > 1
     np.testing.assert_array_equal(data.errors_t, columns[0])
-    np.testing.assert_array_equal(data.errors_below_what_the_reference_can_tell, columns[1])
+    np.testing.assert_array_equal(data.errors_below_the_accuracy_of_the_reference, columns[1])
 
 
 def test_without_a_browser_there_is_no_picture_and_the_error_says_so(rope: Lab, monkeypatch) -> None:

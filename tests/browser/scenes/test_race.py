@@ -51,7 +51,7 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(
 
         errors, energies = tab.wait(charts)
         assert errors["log"]
-        assert errors["labels"][1] == "below what the reference can tell"
+        assert errors["labels"][1] == "below the accuracy of the reference"
         named = energies["labels"][1:]
         assert named == errors["labels"][2:]
         assert [label.split()[0] for label in named] == [str(number + 1) for number in range(ropes)]

@@ -76,7 +76,7 @@ def test_a_file_of_directions_of_a_buoy_names_that_of_the_densities(letter, kind
 def test_files_of_directions_with_exchanged_names_are_refused(tmp_path):
     for letter, other in ("ww", "dj", "jd", "ik", "ki"):
         (tmp_path / f"46999{letter}2021.txt").write_bytes((FIELD / f"46999{other}2021.txt").read_bytes())
-    assert_refused("path", lambda: read_spectrum(tmp_path / "46999w2021.txt"), "a file of r1, up to 100; here is 280")
+    assert_refused("path", lambda: read_spectrum(tmp_path / "46999w2021.txt"), "a file of r1, up to 100, not 280")
 
 
 def test_a_file_of_winds_names_that_of_the_densities(tmp_path):
@@ -169,7 +169,7 @@ HOSTILE: dict[str, tuple[str | bytes, str]] = {
     "a frequency of 0": (rows_with("0", 0), "0 is no frequency"),
     "a frequency of a year": (rows_with("2020", 0), "2020 is no frequency"),
     "a frequency twice": (rows_with("0.040", 0), "rising"),
-    "one column more": (rows_with("0.1,0.2", 1), "2 columns; here are 3"),
+    "one column more": (rows_with("0.1,0.2", 1), "2 columns, not 3"),
     "two headers": ("f,S\nname,value\n" + ROWS, "line 2"),
     "two headers later": (NAMED + NAMED, "line 39"),
     "two densities": ("f,S,energy\n0.1,1,2\n0.2,1,2\n0.3,1,2\n", "columns 'S' and 'energy'"),

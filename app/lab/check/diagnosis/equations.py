@@ -171,7 +171,7 @@ def nearest_expression(tableau: StepTableau, line: TableauRow, right: Expression
 def sums(
     vector: np.ndarray, terms: Mapping[Monomial, np.ndarray], number: int, tolerance: float
 ) -> Iterator[tuple[tuple[Monomial, ...], list[float]]]:
-    """The choices of so many terms that add up to a vector, with their coefficients."""
+    """The choices of `number` terms that add up to a vector, with their coefficients."""
     names = list(terms)
     if len(names) < number:
         return

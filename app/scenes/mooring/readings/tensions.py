@@ -51,7 +51,7 @@ def with_expected(rows: list[EndStatistics], peaks: Peaks) -> list[EndStatistics
 
 
 class Tensions:
-    """Tensions and uplift of so many lines, since the statistics began."""
+    """Tensions and uplift of lines, since the statistics began."""
 
     def __init__(self, lines: int) -> None:
         self.fairlead, self.anchor, self.uplift = np.zeros((3, lines))  # [N] now

@@ -25,7 +25,7 @@ WEB_SIZE = 0.7  # [m] at size 1 of the meshes of light that waves focus (`js/sea
 SURFACE_LINE, INTERFACE_LINE = (235, 246, 250), (255, 196, 64)
 LINE_OFFSET = 0.02  # [m] that lines stand before the wall
 
-TICK_SPACING, TICKS_PER_NUMBER = 0.1, 5  # [m] of the ruler's ticks; every so many there is a longer one with a number
+TICK_SPACING, TICKS_PER_NUMBER = 0.1, 5  # [m] of the ruler's ticks; after this number comes a longer one with a number
 TICK_LENGTH = 0.07  # [m] at size 1; one with a number is twice as long
 RULER_PLACE, OIL_PLACE, DRAFT_PLACE = -0.8, 0.3, 0.42  # along the far wall, in its half width
 LABEL_OFFSET = 0.06  # [m] that ruler and labels stand before the wall

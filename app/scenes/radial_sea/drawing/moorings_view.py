@@ -34,7 +34,7 @@ class Rods:
         )
 
     def are_of(self, anchors: NDArray[np.float64], count: int) -> bool:
-        """True if they are the rods of so many bodies with these anchors."""
+        """True if they are the rods of this number of bodies with these anchors."""
         return count == len(self.vertices) and anchors is self.all_anchors
 
     def show(self, fairleads: NDArray[np.float32]) -> None:

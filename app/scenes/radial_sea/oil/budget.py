@@ -19,7 +19,7 @@ def budget_html(params: RadialSeaParams, weathering: Weathering | None) -> Html:
     if weathering is None:
         if params.spill != "layer":
             return Html()
-        return fill("The record of {} does not tell how it evaporates, so that it stays fresh here.", params.oil)
+        return fill("The record of {} has no data on evaporation, so the oil stays fresh here.", params.oil)
     rows = [row_of(weathering.at(hours), fixed(hours, 0)) for hours in HOURS]
     now = weathering.at(params.spill_hours)
     parts = [
@@ -92,7 +92,7 @@ def origin_text(record: OilRecord) -> str:
     if not record.distillation:
         known = "Its record has no distillation: boiling points are estimated from its density (Jones 1997)."
     else:
-        known = "Boiling points are those of its record."
+        known = "Boiling points are from its record."
     emulsion = "It forms no emulsion."
     if record.emulsion_water > 0.0:
         onset = f"once {percent(record.emulsion_onset)} has evaporated" if record.emulsion_onset else "from the start"
@@ -107,7 +107,7 @@ def budget_marks(params: RadialSeaParams, weathering: Weathering | None) -> dict
     fresh = oil_at(params.oil, params.temperature)
     marks = {"temperature": f"fresh {fixed(fresh.density, 1)} kg/m³, {number(fresh.viscosity * 1e3)} mPa·s"}
     if not can_weather(params.oil):
-        marks["temperature"] += "; its record does not tell how it evaporates"
+        marks["temperature"] += "; its record has no data on evaporation"
     if weathering is None:
         return marks
     now = weathering.at(params.spill_hours)

@@ -67,7 +67,7 @@ def tableau(error_order: int, c: tuple[float, ...], slopes: Rows, weights: tuple
 
 
 def rows_of(rows: Rows, stages: int) -> NDArray[np.float64]:
-    """Rows of a tableau of so many stages, filled up with zeros, the new state's column included."""
+    """Rows of a tableau of `stages` stages, filled up with zeros, the new state's column included."""
     full = np.zeros((len(rows), stages + 1))
     for i, row in enumerate(rows):
         full[i, : len(row)] = row

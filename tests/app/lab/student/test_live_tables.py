@@ -34,7 +34,7 @@ FAULTS = {
     "exit()": ("ended", "calls exit()"),
     "return np.zeros(2)": ("wrong shape", "expected a number"),
     "return np.nan": ("NaN", "returns NaN"),
-    "return -3.0": ("out of range", "returns -3; possible is"),
+    "return -3.0": ("out of range", "returns -3; expected"),
     "return np.inf": ("out of range", "returns inf"),
     "return 'high'": ("wrong type", "type str"),
     "return": ("returns nothing", "last line must be return"),

@@ -110,7 +110,7 @@ def test_the_plots_of_a_race_go_into_the_files_with_what_they_clip() -> None:
     names = [line.label for line in plotted.curves["plot_energies"].lines]  # type: ignore[union-attr]
     errors = [f"Distance from the reference: {name} [m]" for name in names]
     energies = [f"Energy error: {name} [J]" for name in names]
-    floor = "Distance from the reference: below what the reference can tell [m]"
+    floor = "Distance from the reference: below the accuracy of the reference [m]"
     assert list(columns) == ["t [s]", floor, *errors, *energies]
     rows = scene.charts.rows[: scene.charts.count]
     np.testing.assert_array_equal(columns["t [s]"], rows[:, 0])

@@ -162,7 +162,7 @@ def test_a_student_predicts_measures_and_explains(student: Viewer, folder: Path)
     widgets_of(guide, "predict").flush(float("inf"))
     number = widgets_of(guide, "stiffness")
     does(number.on_field, "a lot")
-    wait_for(lambda: "is not kept: not a number. Write a number in N/m" in number.line.content)
+    wait_for(lambda: "was not saved: not a number. Write a number in N/m" in number.line.content)
     does(number.on_field, "720")
     wait_for(lambda: "At that stiffness the rope flies apart" in number.line.content)
     assert "Not right" in number.line.content

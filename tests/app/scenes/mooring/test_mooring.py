@@ -311,7 +311,7 @@ def test_a_mooring_without_rest_keeps_its_panel_and_says_why(monkeypatch):
     monkeypatch.setattr("app.scenes.mooring.start.at_rest", fail)
     scene = MooringScene(MooringParams(**SMALL))
     assert np.isfinite(scene.frame().points).all()
-    with pytest.raises(DivergenceError, match=r"no state of rest .*3 N left.* Change their length"):
+    with pytest.raises(DivergenceError, match=r"No state of rest .*3 N left.* Change their length"):
         scene.advance(1)
     monkeypatch.undo()
     scene.params = dataclasses.replace(scene.params, length=97.0)
@@ -422,7 +422,7 @@ def test_light_lines_rest(ends):
             "5.000 kN stretches a line by 125.000.% or more: EA is low for its load",
         ),
         ({"lines": 4, "size": 0.5}, "5.000 kN is more than the buoyancy of the whole body, 0.543 kN"),
-        ({"lines": 4, "size": 40.0}, "no state of rest"),
+        ({"lines": 4, "size": 40.0}, "No state of rest"),
     ],
 )
 def test_without_rest_the_steady_force_is_blamed_if_lines_or_body_cannot_bear_it(ends, said, monkeypatch):

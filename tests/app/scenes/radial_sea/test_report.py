@@ -66,7 +66,7 @@ def test_the_height_of_the_whole_spectrum_follows_wind_and_decay() -> None:
 def test_the_source_of_boiling_points_is_told() -> None:
     texts = [origin_text(record) for record in oil_records().values()]
     for record, text in zip(oil_records().values(), texts, strict=True):
-        assert ("are those of its record" in text) is bool(record.distillation)
+        assert ("are from its record" in text) is bool(record.distillation)
         assert ("has no distillation" in text) is not bool(record.distillation)
     assert any(record.distillation for record in oil_records().values())
 
@@ -219,7 +219,7 @@ def test_without_a_spill_to_follow_the_budget_says_why() -> None:
     for values, said in (
         ({}, ""),
         ({"spill": "mixed"}, ""),
-        ({"spill": "layer", "oil": "IFO 180", "spill_hours": 24.0}, "does not tell how it evaporates"),
+        ({"spill": "layer", "oil": "IFO 180", "spill_hours": 24.0}, "has no data on evaporation"),
     ):
         params = check_record(RadialSeaParams, values)
         assert spill_of(params) is None

@@ -617,8 +617,8 @@ def test_for_a_program_that_waits_there_is_a_snapshot_now_and_then(monkeypatch: 
 def test_a_program_that_waits_is_told_why_the_time_does_not_come() -> None:
     loop, scene = make()
     for command, kind, words in (
-        (Reset(), RuntimeError, "begun again"),
-        (Take(Params(), start=True), RuntimeError, "begun again"),
+        (Reset(), RuntimeError, "was reset"),
+        (Take(Params(), start=True), RuntimeError, "was reset"),
         (Take(Params(), state=Checkpoint(0.0, {})), RuntimeError, "another moment"),
         (Advance(1.0, Future()), RuntimeError, "another program"),
         (Halt("no more"), DivergenceError, "no more"),

@@ -147,7 +147,7 @@ def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, here, tmp_path, capsy
     assert alive == []
     assert not out.exists()
     assert main(command[3:]) == 0
-    done = int(capsys.readouterr().out.partition(" of 6 cases are kept")[0])
+    done = int(capsys.readouterr().out.partition(" of 6 cases were finished")[0])
     assert 1 <= done < 6
     assert not kept.exists()
     with xr.open_dataset(out) as data:
@@ -164,7 +164,7 @@ def test_a_changed_spec_is_refused_and_fresh_starts_over(here, tmp_path, capsys)
     assert sweep(spec, tmp_path) == 0
     before = (tmp_path / "out.nc").read_bytes()
     assert sweep(spec, tmp_path) == 0
-    assert "are there" in capsys.readouterr().out
+    assert "are finished" in capsys.readouterr().out
     assert sweep(spec.replace("0.1", "0.2"), tmp_path) == 2
     assert "seconds" in capsys.readouterr().err
     assert (tmp_path / "out.nc").read_bytes() == before

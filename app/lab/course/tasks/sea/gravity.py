@@ -36,7 +36,7 @@ MISTAKES = (
     ),
     Mistake(
         "gravity unchanged",
-        "g is that of the Earth for every mass. R grows with M^(1/3), not with the root of M.",
+        "g is the Earth's for every mass. R grows with M^(1/3), not with the root of M.",
         lambda m: 9.81 + 0 * m,
     ),
     Mistake("mass forgotten", "This is g for a planet of one mass but another radius.", lambda m: 9.81 * m ** (-2 / 3)),

@@ -81,7 +81,7 @@ MISTAKES = (
     ),
     Mistake(
         "true or false",
-        "It tells only whether there is a meeting. Return when.",
+        "This is only true or false. Return the time of the meeting.",
         with_start_and_end(lambda a, b: (a > 0) & (b <= 0)),
     ),
     Mistake(

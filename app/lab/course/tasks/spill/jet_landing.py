@@ -66,7 +66,7 @@ MISTAKES = (
         "The drop falls to z = 0. The surface is at z = level.",
         at(root(base=0.0), lambda x, v, level, g: 0.0),
     ),
-    Mistake("level forgotten", "The time is that of a fall to z = 0. The surface is at z = level.", at(root(base=0.0))),
+    Mistake("level forgotten", "This is the time of a fall to z = 0. The surface is at z = level.", at(root(base=0.0))),
     Mistake("height set to 0", "The drop lands at z = level, not at z = 0.", at(root(), lambda x, v, level, g: 0.0)),
     Mistake(
         "gravity forgotten in the height",

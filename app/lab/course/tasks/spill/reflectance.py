@@ -50,12 +50,12 @@ MISTAKES = (
     ),
     Mistake(
         "not squared",
-        "The ratios are those of amplitudes. Reflectance is their square.",
+        "These are ratios of amplitudes. Reflectance is their square.",
         lambda a, n: sum(polarised(a, n)) / 2,
     ),
     Mistake(
         "not squared",
-        "The ratios are those of amplitudes. Reflectance is their square.",
+        "These are ratios of amplitudes. Reflectance is their square.",
         lambda a, n: sum(abs(r) for r in polarised(a, n)) / 2,
     ),
     Mistake(
@@ -68,7 +68,7 @@ MISTAKES = (
     ),
     Mistake(
         "mean before the square",
-        "The square is that of the mean. Take the mean of the squares.",
+        "This squares the mean. Take the mean of the squares.",
         lambda a, n: (sum(polarised(a, n)) / 2) ** 2,
     ),
     Mistake(

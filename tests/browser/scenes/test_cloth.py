@@ -72,6 +72,7 @@ def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     pin = lab.scene.state.x[:, 0, 0].copy()

@@ -1,1 +1,1 @@
-"""What the mooring shows in numbers: tensions, statistics, restoring curve, and their texts."""
+"""Numbers that the mooring shows: tensions and their statistics, excursion, restoring curve, and the texts."""

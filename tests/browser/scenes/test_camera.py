@@ -59,7 +59,7 @@ def view_of(viewer: Viewer) -> np.ndarray:
 
 
 def stands_still(viewer: Viewer, tab: Tab) -> bool:
-    """Whether page and server have one camera, and for half a second no other."""
+    """True if page and server have one camera, and for half a second no other."""
     seen = []
     for _ in range(2):
         seen += [view_of(viewer)[0], np.array(tab.page.evaluate(PAGE_CAMERA))]

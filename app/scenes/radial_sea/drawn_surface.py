@@ -54,7 +54,7 @@ class Foam:
 
 
 class SeaNow(Protocol):
-    """The parts of the scene of which the surface is drawn."""
+    """The parts of the scene that the surface is drawn from."""
 
     params: RadialSeaParams
     time: float  # [s]

@@ -35,7 +35,7 @@ PIXEL_RATIO = 0.2  # drawn pixels per pixel of the page, in each direction
 # A software renderer takes most of the processor. Where a test reads no pixel, shaders are trivial, as those of a sea
 # take seconds to compile, and nothing is drawn. The rest of the page works as ever. Where it reads the pixels of one
 # kind of thing, only fragment shaders with a word of this kind are what they are: all others give one colour; or those
-# with a word that is of no interest give one colour.
+# with a word that is of no interest give one colour. A page that nothing is drawn in draws once it sets `drawsPixels`.
 FLAT_SHADERS = """const put = WebGL2RenderingContext.prototype.shaderSource;
 WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     const fragment = this.getShaderParameter(shader, this.SHADER_TYPE) === this.FRAGMENT_SHADER;
@@ -43,8 +43,10 @@ WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     put.call(this, shader, fragment && IS_FLAT ? flat : source);
 };"""
 NO_PIXELS = """
-for (const call of ["clear", "drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"])
-    WebGL2RenderingContext.prototype[call] = () => {};"""
+for (const call of ["clear", "drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"]) {
+    const draw = WebGL2RenderingContext.prototype[call];
+    WebGL2RenderingContext.prototype[call] = function (...all) { if (window.drawsPixels) draw.apply(this, all); };
+}"""
 # The drawn vertices of a mesh, as the bytes of single-precision numbers in base 64: a list of 50,000 numbers takes
 # seconds to come through.
 VERTICES = """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;

@@ -17,6 +17,7 @@ class Line:
         """rate: [bytes/s] each way. delay: [s] each way. buffer: [bytes] that may wait in a router before the line."""
         self.lab, self.rate, self.delay, self.buffer = port, rate, delay, buffer
         self.port = 0
+        self.cut_until = 0.0  # [s] of the clock of the event loop
         self.writers: list[asyncio.StreamWriter] = []
         self.ready = threading.Event()
         self.thread = threading.Thread(target=lambda: asyncio.run(self.serve()), daemon=True)
@@ -32,6 +33,8 @@ class Line:
 
     async def join(self, here: asyncio.StreamReader, back: asyncio.StreamWriter) -> None:
         """One connection, until all that both ends sent has arrived."""
+        if self.loop.time() < self.cut_until:
+            return back.transport.abort()
         end = socket.socket()
         end.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, WINDOW)
         end.setblocking(False)
@@ -48,10 +51,11 @@ class Line:
             back.close()
             on.close()
 
-    def cut(self) -> None:
-        """Cut all connections, as where a laptop changes its network; new ones are let through."""
+    def cut(self, seconds: float = 0.0) -> None:
+        """Cut all connections, as where a laptop changes its network; new ones are let through after this time."""
 
         def abort() -> None:
+            self.cut_until = self.loop.time() + seconds
             for writer in self.writers:
                 writer.transport.abort()
             self.writers.clear()

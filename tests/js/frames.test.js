@@ -30,6 +30,7 @@ function makePage() {
   Object.assign(globalThis, {
     MutationObserver: function () { return nothing; },
     requestAnimationFrame: (/** @type {() => void} */ call) => void asked.push(call),
+    setInterval: () => 0,
     location: new URL("http://127.0.0.1/"),
     document: Object.assign(new EventTarget(), { ...nothing, documentElement, visibilityState: "visible" }),
     window: globalThis,

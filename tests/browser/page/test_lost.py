@@ -12,14 +12,16 @@ from PIL import Image
 
 from app.messages import Pause
 from app.render import surroundings
+from app.scenes import NAMES
 from app.server.viewer import Viewer
 from app.server.web import page as served_page
-from tests.browser.conftest import Tab, new_page
+from tests.browser.conftest import Tab, new_page, vertices_of
 from tests.browser.slow_line import slow_line
 
 FAST = 1e9  # [bytes/s]
 MAX_DIFFERENCE = 2.0  # of 255, in the mean
-CUTS = 3
+CUTS = 5
+HOUR = 3_600_000  # [ms]
 # Listeners of window and document, observers, and objects of WebGL that a page has made and not given up.
 COUNTED = """const count = window.counted = { listeners: 0, observers: 0, textures: 0, framebuffers: 0 };
 const { addEventListener: add, removeEventListener: remove } = EventTarget.prototype;
@@ -97,25 +99,41 @@ def test_a_lost_context_comes_back_with_its_picture(open_tab: Callable[..., Tab]
         viewer.shut()
 
 
-@pytest.mark.parametrize("scene", [pytest.param("square_sea", marks=pytest.mark.long), "rope"])
-def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str) -> None:
+def counted_page(chromium: Any) -> Any:
+    """A page without pixels, which counts."""
+    page = new_page(chromium, 480, 320, drawn=False)
+    page.add_init_script(COUNTED)
+    return page
+
+
+def settled_counts(page: Any) -> dict[str, int]:
+    """What a page holds, once that no longer changes."""
+    page.wait_for_selector(".springtide-panel[data-state]")
+    page.wait_for_selector("#springtide-cover.springtide-hidden", state="attached")
+    found, again = {}, {"": 0}
+    while found != again:
+        found = page.evaluate("counted")
+        page.wait_for_timeout(1500)
+        again = page.evaluate("counted")
+    return found
+
+
+@pytest.mark.parametrize(
+    ("scene", "seconds", "cuts"),
+    [
+        pytest.param("square_sea", 0.0, CUTS, marks=pytest.mark.long),
+        ("rope", 0.0, CUTS),
+        pytest.param("rope", 10.0, 1, marks=pytest.mark.long),
+        pytest.param("rope", 60.0, 2, marks=pytest.mark.long),
+    ],
+)
+def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str, seconds: float, cuts: int) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(scene)
     viewer.loop.commands.put(Pause())
     with slow_line(viewer.port, FAST, 0.0) as line:
-        page = new_page(chromium, 480, 320, drawn=False)
-        page.add_init_script(COUNTED)
+        page = counted_page(chromium)
         page.emulate_media(color_scheme="dark")
-
-        def settle() -> dict[str, int]:
-            """What the page holds, once that no longer changes."""
-            page.wait_for_selector(".springtide-panel[data-state]")
-            found, again = {}, {"": 0}
-            while found != again:
-                found = page.evaluate("counted")
-                page.wait_for_timeout(1500)
-                again = page.evaluate("counted")
-            return found
 
         def dark() -> list[bool | None]:
             """Whether the server draws dark, for each browser."""
@@ -125,25 +143,78 @@ def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str)
             page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2")
             page.wait_for_function("window.__springtide?.quality")
             page.bring_to_front()  # viser connects again where the page has the focus
-            held = [settle()]
+            page.evaluate("window.isFirst = true")
+            held = [settled_counts(page)]
             clients = set(viewer.server.get_clients())
-            for _ in range(CUTS):
-                line.cut()
+            for _ in range(cuts):
+                line.cut(seconds)
                 while not set(viewer.server.get_clients()) - clients:
                     page.wait_for_timeout(100)
                 clients |= set(viewer.server.get_clients())
-                held.append(settle())
+                held.append(settled_counts(page))
                 if scene == "rope":
                     while dark() != [True]:
                         page.wait_for_timeout(100)
+            assert page.evaluate("window.isFirst") is True
             assert min(held[0].values()) > 0
             for name in ("listeners", "observers"):
                 assert {counts[name] for counts in held} == {held[0][name]}
-            assert held[1:] == [held[1]] * CUTS  # viser may make one texture more with the first
+            assert held[1:] == [held[1]] * cuts  # viser may make one texture more with the first
             assert page.evaluate("document.querySelectorAll('#springtide-slow').length") == 0
         finally:
             page.close()
             viewer.shut()
+
+
+TELL = """state => { Object.defineProperty(document, "visibilityState", { value: state, configurable: true });
+    document.dispatchEvent(new Event("visibilitychange")); }"""
+
+
+def test_a_tab_that_was_hidden_for_an_hour_goes_on(chromium: Any) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    viewer.open("rope")
+    page = counted_page(chromium)
+    try:
+        page.clock.install()
+        page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2")
+        page.wait_for_function("window.__springtide?.quality")
+        page.evaluate("window.isFirst = true")
+        held, step = settled_counts(page), page.evaluate("__springtide.quality.now().step")
+        for _ in range(2):
+            page.evaluate(TELL, "hidden")
+            began = page.evaluate("performance.now()")
+            page.clock.fast_forward(HOUR)
+            assert page.evaluate("performance.now()") - began >= HOUR
+            page.evaluate(TELL, "visible")
+            before = vertices_of(page, "/rope")
+            while np.array_equal(vertices_of(page, "/rope"), before):
+                page.wait_for_timeout(100)
+            assert settled_counts(page) == held
+        assert page.evaluate("window.isFirst") is True
+        assert page.evaluate("__springtide.quality.now().step") == step
+        assert viewer.visitors() == 1
+    finally:
+        page.close()
+        viewer.shut()
+
+
+@pytest.mark.long
+def test_a_page_that_goes_round_all_scenes_holds_as_much_as_before(chromium: Any) -> None:
+    viewer = Viewer("127.0.0.1", 0)
+    page = counted_page(chromium)
+    try:
+        viewer.open(NAMES[0])
+        page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2")
+        held: dict[str, list[dict[str, int]]] = {}
+        for scene in (*NAMES, *NAMES, *NAMES):
+            viewer.open(scene)
+            viewer.loop.commands.put(Pause())
+            held.setdefault(scene, []).append(settled_counts(page))
+        for scene, (_, second, third) in held.items():
+            assert third == second, (scene, held[scene])
+    finally:
+        page.close()
+        viewer.shut()
 
 
 def test_a_page_reloads_for_another_server_only_and_not_while_it_records(

@@ -3,7 +3,7 @@
 
 import { page } from "./life.js";
 import { viewer } from "./viewer.js";
-import { onFrame } from "./watch.js";
+import { onFrame, wake } from "./watch.js";
 
 /** @typedef {(renderer: three.Renderer, scene: three.Scene, camera: three.Camera) => void} Part */
 /** @type {{ data: Part | null, camera: Part | null, materials: Part | null }} */
@@ -25,6 +25,7 @@ onFrame(() => {
   own.onBeforeRender = function (renderer, scene, camera, target) {
     for (const part of page.signal.aborted ? [] : Object.values(parts)) part?.(renderer, scene, camera);
     earlier.call(this, renderer, scene, camera, target);
+    wake();
   };
   now.requestRender();
 });

@@ -8,6 +8,8 @@ import { page } from "./life.js";
 const STATUS = ".springtide-panel, [data-springtide-time]"; // written anew in each frame
 const CONTROL = "button, label, [role]"; // elements with the words that parts read
 const LOOK_INTERVAL = 200; // [ms] between two looks at where things are
+const REST_INTERVAL = 1000; // [ms] the same once nothing has changed for SETTLING
+const SETTLING = 2000; // [ms] after a change, in which what it moves has arrived
 
 /** @typedef {(now: number) => void} Part */
 /** @type {{ any: Part[], controls: Part[], values: Part[], frame: Part[], look: Part[] }} */
@@ -38,6 +40,7 @@ const observer = new MutationObserver((changes) => {
   if (structural.some(isOfControls)) call(["any", "controls"]);
   else if (structural.length) call(["any"]);
   if (changes.length > structural.length) call(["values"]);
+  wake();
 });
 observer.observe(document.documentElement, {
   childList: true, subtree: true, characterData: true, attributes: true,
@@ -45,17 +48,33 @@ observer.observe(document.documentElement, {
 });
 page.own(() => observer.disconnect());
 
-let looked = -Infinity;
-/** @param {number} now */
-function tick(now) {
-  call(["frame"], now);
-  if (now - looked >= LOOK_INTERVAL) {
-    looked = now;
-    call(["look"]);
-  }
-  if (!page.signal.aborted) requestAnimationFrame(tick);
+// Frames are asked for only where something may have changed: a page at rest costs nearly nothing.
+let isAsked = false; // whether the next frame of the browser is asked for
+let changed = performance.now(), looked = -Infinity; // [ms] when something has, and when it was looked last
+
+function askForFrame() {
+  if (isAsked || page.signal.aborted) return;
+  isAsked = true;
+  requestAnimationFrame((now) => {
+    isAsked = false;
+    call(["frame"], now);
+  });
 }
-requestAnimationFrame(tick);
+
+// Something has changed: have the parts called before the next frame of the browser.
+export function wake() {
+  changed = performance.now();
+  askForFrame();
+}
+
+page.listen(window, ["pointermove", "pointerdown", "pointerup", "pointercancel"], wake, { capture: true, passive: true });
+page.every(LOOK_INTERVAL, () => {
+  const now = performance.now(), interval = now - changed > SETTLING ? REST_INTERVAL : LOOK_INTERVAL / 2; // a timer may be early
+  if (document.visibilityState === "hidden" || now - looked < interval) return;
+  looked = now;
+  call(["look"]);
+  askForFrame();
+});
 page.listen(window, "resize", () => call(["look"]));
 
 /** @param {keyof typeof parts} name @param {Part} part */
@@ -81,7 +100,8 @@ export function onControls(part) {
 // The same after changes of values, places of sliders, and the colour scheme.
 export const onValues = (/** @type {() => void} */ part) => subscribe("values", part);
 
-// Call a function before each frame of a page that is seen, with the time [ms].
+// Call a function, with the time [ms], before the frame of the browser that follows a change of the page, a pointer, a drawing
+// of the scene, or a look.
 export const onFrame = (/** @type {Part} */ part) => subscribe("frame", part);
 
 // Call a function a few times a second, and when the window changes its size.

@@ -120,6 +120,7 @@ function placeMoment(chart, moment) {
 // As many charts as fit share the height of a pane; one more is seen by scrolling.
 /** @param {uplot.Chart[]} charts */
 function fillPanes(charts) {
+  if (!charts.length) return;
   for (const pane of document.querySelectorAll(PHONE.matches ? PHONE_PANES : PANES)) {
     const own = charts.filter(({ root }) => pane.contains(root) && root.offsetHeight);
     own.sort((a, b) => a.root.getBoundingClientRect().top - b.root.getBoundingClientRect().top);

@@ -86,7 +86,13 @@ function stateOf(renderer, photograph) {
   let state = known.get(photograph);
   if (!state) {
     state = { context: contextNumber(), kept: null, again: null };
+    const own = state, { renderTarget } = photograph;
     known.set(photograph, state);
+    // viser disposes of the texture only, which leaves the target that it has drawn it into.
+    photograph.addEventListener("dispose", () => {
+      renderTarget?.dispose();
+      own.again?.dispose();
+    });
     if (renderer.extensions.has("EXT_color_buffer_float")) keepNumbers(renderer, photograph, state);
   }
   return state;

@@ -161,7 +161,6 @@ class ServedScene:
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
         recorder.note(snapshot, now)
-        recorder.note_sent(recorded)
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
         """Run a drawing action; an exception halts the run once, and this thread goes on."""

@@ -3,15 +3,12 @@
 Callbacks run on viser's event loop. Each file is made in a separate thread.
 """
 
-import io
 import re
 import threading
-import zipfile
 from collections.abc import Callable, Sequence
 
 import viser
 
-from app.messages import Pause
 from app.panel.plots import Plots
 from app.panel.recording.long_work import LongWork
 from app.panel.recording.picture import take_picture
@@ -31,20 +28,16 @@ PICTURE_SIZES = {  # [pixels]
 }
 REPLAY_DURATION = 20.0  # [s] of a replay as it plays
 REPLAY, ARRAYS, PICTURE = f"Replay (last {REPLAY_DURATION:g} s)", "Data (.npz)", "Picture"
-PLOTS, CHARTS, FILM = "Plots as CSV", "Plots as SVG", "Film pictures"
-MAX_PICTURES = 900  # of a film: half a minute of a recording
-MAX_FILM = 400e6  # [bytes] of all pictures of a film
-BARRIER_SIZE = (16, 16)  # [pixels] of a picture that is asked for only to know that what was sent before it has come
-# Buttons with a choice. The page makes clips and PNG files of plots, and has the others made (js/panel/share.js).
+PLOTS, CHARTS = "Plots as CSV", "Plots as SVG"
+# The page makes clips and PNG files of plots, and has the other plots made (js/panel/share.js).
 PAGE_BUTTONS = (
     '<div class="springtide-switches" data-springtide-makers="{}"><label>Plots <select data-springtide-plots>'
     "<option>CSV</option><option>SVG</option><option>PNG</option></select></label>"
-    '<button type="button" data-springtide-charts>Save plots</button></div><div class="springtide-switches">'
-    '<label>Film <select data-springtide-film><option value="">as a clip</option><option value="{}">as pictures'
-    '</option></select></label><button type="button" data-springtide-clip>Record</button></div>'
+    '<button type="button" data-springtide-charts>Save plots</button>'
+    '<button type="button" data-springtide-clip>Record clip</button></div>'
 )
 
-Make = Callable[[viser.ClientHandle, LongWork], tuple[str, bytes]]  # name and content of a file
+Make = Callable[[viser.ClientHandle], tuple[str, bytes]]  # name and content of a file
 MakeReplay = Callable[[AnyKind, Sequence[RecordedFrame], Plotted], str]
 
 
@@ -71,10 +64,10 @@ class Files:
     def add(self) -> None:
         """The other files."""
         gui = self.server.gui
-        makers: GuiHandle = gui.add_button_group("", (PLOTS, CHARTS, FILM), visible=False)
+        makers: GuiHandle = gui.add_button_group("", (PLOTS, CHARTS), visible=False)
         makers.on_click(self.on_file)
         makers.visible = not uuid_of(makers)  # the page presses them
-        gui.add_html(str(fill(PAGE_BUTTONS, uuid_of(makers), FILM)))
+        gui.add_html(str(fill(PAGE_BUTTONS, uuid_of(makers))))
         self.size = gui.add_dropdown("Picture size", tuple(PICTURE_SIZES))
         self.transparent = gui.add_checkbox("Transparent background", initial_value=False)
         gui.add_button_group("", (PICTURE,)).on_click(self.on_file)
@@ -86,65 +79,30 @@ class Files:
             return
         settings, plots, kind = self.settings, self.plots, self.settings.kind
         makers: dict[str, Make] = {
-            PLOTS: lambda _, __: (file_name(settings, ".csv"), plots_csv(kind, plots.plotted()).encode()),
-            CHARTS: lambda _, __: (file_name(settings, ".svg"), plots_svg(kind, plots.plotted()).encode()),
+            PLOTS: lambda _: (file_name(settings, ".csv"), plots_csv(kind, plots.plotted()).encode()),
+            CHARTS: lambda _: (file_name(settings, ".svg"), plots_svg(kind, plots.plotted()).encode()),
             PICTURE: self.picture_file,
-            REPLAY: lambda _, __: self.replay_file(),
-            ARRAYS: lambda _, __: (file_name(settings, ".npz"), recording_npz(kind, self.recorder.kept())),
-            FILM: self.film_file,
+            REPLAY: lambda _: self.replay_file(),
+            ARRAYS: lambda _: (file_name(settings, ".npz"), recording_npz(kind, self.recorder.kept())),
         }
         if not self.busy.acquire(blocking=False):
             client.add_notification(event.target.value, "Another file is still being created.", auto_close_seconds=10.0)
             return
         make, work = makers[event.target.value], LongWork(client, event.target.value, "Couldn't create the file")
-        work.start(lambda: self.send(make, client, work), self.busy.release)
+        work.start(lambda: self.send(make, client), self.busy.release)
 
-    def send(self, make: Make, client: viser.ClientHandle, work: LongWork) -> str:
+    def send(self, make: Make, client: viser.ClientHandle) -> str:
         """Make a file and send it; returns the words on its end."""
-        name, content = make(client, work)
+        name, content = make(client)
         client.send_file_download(name, content, save_immediately=True)
         return f"{name}, {len(content) / 1e6:.2f} MB, was sent to the browser."
 
-    def picture_file(self, client: viser.ClientHandle, _: LongWork) -> tuple[str, bytes]:
+    def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
         """One browser's view, drawn again at the chosen size. Raises ValueError where it is of another scene by now."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
-        self.check_open()
-        return file_name(self.settings, ".png"), picture
-
-    def check_open(self) -> None:
-        """Raise ValueError where another scene is shown."""
         if not self.settings.is_open:
             raise ValueError("another scene was opened before it was ready")
-
-    def film_file(self, client: viser.ClientHandle, work: LongWork) -> tuple[str, bytes]:
-        """A PNG of every frame of the recording from the one that is shown on, drawn by one browser, in a ZIP file.
-
-        Raises ValueError where nothing was recorded, or where a hand chose another moment meanwhile.
-        """
-        frames = self.recorder.kept()
-        if not frames:
-            raise ValueError("nothing has been recorded yet: let the scene run first")
-        shown = self.recorder.shown
-        start = 0 if shown is None else next((i for i, kept in enumerate(frames) if kept is shown), 0)
-        chosen = frames[start : start + MAX_PICTURES]
-        self.settings.post(Pause())
-        size, transparent = PICTURE_SIZES[self.size.value], self.transparent.value
-        content, times = io.BytesIO(), ["picture,t [s]"]
-        with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as film:
-            for number, kept in enumerate(chosen, 1):
-                if number > 1 and self.recorder.shown is not chosen[number - 2]:
-                    raise ValueError("another moment was chosen before all pictures were taken")
-                self.recorder.send_frame(kept)
-                self.server.flush()
-                take_picture(client, BARRIER_SIZE)
-                film.writestr(f"{number:04d}.png", take_picture(client, size, transparent=transparent))
-                self.check_open()
-                times.append(f"{number:04d}.png,{kept.time!r}")
-                work.say(f"{number} of {len(chosen)}. Click any other moment to stop.")
-                if content.tell() > MAX_FILM:
-                    break
-            film.writestr("times.csv", "\n".join(times) + "\n")
-        return file_name(self.settings, "-film.zip"), content.getvalue()
+        return file_name(self.settings, ".png"), picture
 
     def replay_file(self) -> tuple[str, bytes]:
         """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""

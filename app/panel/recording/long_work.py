@@ -17,10 +17,6 @@ class LongWork:
         self.failed = failed
         self.words = client.add_notification(title, "…", loading=True)
 
-    def say(self, text: str) -> None:
-        """Say how far it is."""
-        self.words.body = text
-
     def start(self, work: Callable[[], str], done: Callable[[], None]) -> None:
         """Do the work, which returns the words on its end or raises. done: called in any case."""
 

@@ -5,7 +5,6 @@ import collections
 import math
 import threading
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -23,7 +22,6 @@ RATES = (1.0, 0.5, 0.2, 0.1)  # at which a recording is played, as parts of the 
 THINNED_SHARE = 0.9  # of MAX_BYTES that is left when frames were taken out
 SPACING_GROWTH = 1.1  # factor between two spacings that are tried
 MIN_SPACING, MAX_SPACING = 1e-3, 0.25  # time between two frames over their age, where frames are taken out
-DRAWN_TIMEOUT = 5.0  # [s] for the viewer's thread to send a frame of the recording
 STATE_INTERVAL = 0.1  # [s] in which the next frame with a state comes, where copies of states cost little
 
 
@@ -104,7 +102,6 @@ class Recorder:
         self.loops = False
         self.advanced_at = 0.0  # [s] of the clock
         self.played = 0.0  # [s] of wall time since the frame at `position` was shown
-        self.awaited: tuple[RecordedFrame, Future[None]] | None = None  # a frame that is to be sent
 
     def follow(self, snapshot: AnySnapshot) -> None:
         """Follow the lab by a snapshot: it goes on, began again or went back, which decides the shown frame."""
@@ -187,30 +184,6 @@ class Recorder:
                 times = [kept.time for kept in self.frames]
                 self.position = max(0, bisect.bisect_right(times, time + 1e-9) - 1)
                 self.playing, self.played = False, 0.0
-
-    def show_frame(self, kept: RecordedFrame) -> None:
-        """Show one frame, unless it is no longer kept."""
-        with self.lock:
-            self.position = next((i for i, one in enumerate(self.frames) if one is kept), self.position)
-            self.playing, self.played = False, 0.0
-
-    def send_frame(self, kept: RecordedFrame) -> None:
-        """Show one frame, and wait until the viewer's thread has sent it. Raises TimeoutError."""
-        self.show_frame(kept)
-        sent: Future[None] = Future()
-        self.awaited = kept, sent
-        self.wake()
-        try:
-            sent.result(DRAWN_TIMEOUT)
-        except TimeoutError:
-            raise TimeoutError("the recording could not be shown") from None
-
-    def note_sent(self, shown: RecordedFrame | None) -> None:
-        """Note that the viewer's thread has sent this: a frame of the recording, or None for the present."""
-        if self.awaited is not None and self.awaited[0] is shown:
-            _, sent = self.awaited
-            self.awaited = None
-            sent.set_result(None)
 
     def step(self, count: int) -> None:
         """Show a frame `count` further on, or back; from the present, the one before the last."""

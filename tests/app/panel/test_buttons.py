@@ -104,7 +104,6 @@ class Pressed:
         self.panel.status_at = self.panel.marks_at = 0.0
         self.panel.recorder.advance(time.monotonic())
         self.panel.update(self.viewer.loop.latest, [])
-        self.panel.recorder.note_sent(self.panel.recorder.shown)
 
     def shown(self) -> object:
         """State that a user may see: the panel's texts and values, what was sent, posted and asked for."""

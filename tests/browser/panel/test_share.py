@@ -1,16 +1,13 @@
 """Links, set-ups and recordings in the page."""
 
 import json
-import zipfile
 from collections.abc import Callable
-from itertools import pairwise
 from pathlib import Path
 from urllib.parse import quote
 
 import imageio.v3 as iio
 import pytest
 
-from app.messages import Pause, Reset
 from app.panel.sharing.changes import UNDO
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import NAMES, scene_named
@@ -41,7 +38,7 @@ def test_the_tab_has_three_groups_and_few_buttons(
         "This run", "This set-up", "Files",
     ]  # fmt: skip
     names = ("Keep curves", "Replay (last 20 s)", "Data (.npz)", "Copy link", "Save set-up", "Keep as preset",
-             "Save plots", "Record", "Picture")  # fmt: skip
+             "Save plots", "Record clip", "Picture")  # fmt: skip
     for name in names:
         tab.wait(tab.page.get_by_role("button", name=name, exact=True).is_visible, 20)
     assert not tab.page.get_by_role("button", name="Remove preset").is_visible()
@@ -133,15 +130,7 @@ def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
     assert preset.input_value() == "Mine: Seventeen beads"
 
 
-def saved(tab: Tab, button: str, folder: Path) -> Path:
-    """The file that a press of a button downloads."""
-    with tab.page.expect_download(timeout=60_000) as download:
-        tab.page.locator(button).click()
-    download.value.save_as(folder / download.value.suggested_filename)
-    return folder / download.value.suggested_filename
-
-
-def test_clip_and_plots_are_made_as_files(
+def test_clip_picture_and_plots_are_made_as_files(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path
 ) -> None:
     lab, _ = one_page
@@ -150,41 +139,28 @@ def test_clip_and_plots_are_made_as_files(
     tab.show("Share")
     lab.settings.set("plot_tip", True)
     tab.wait(lambda: len(lab.panel.recorder.frames) > 10 and "plot_tip" in lab.panel.plots.charts, 30)
-    tab.page.get_by_role("button", name="Record", exact=True).click()
+    tab.page.get_by_role("button", name="Record clip", exact=True).click()
     tab.page.wait_for_timeout(800)
-    clip = saved(tab, "[data-springtide-clip]", tmp_path).read_bytes()
+
+    def saved(button: str) -> Path:
+        with tab.page.expect_download(timeout=60_000) as download:
+            tab.page.get_by_role("button", name=button, exact=True).click()
+        download.value.save_as(tmp_path / download.value.suggested_filename)
+        return tmp_path / download.value.suggested_filename
+
+    with tab.page.expect_download(timeout=60_000) as download:
+        tab.page.locator("[data-springtide-clip]").click()  # its name says how long the clip is by now
+    clip = Path(download.value.path()).read_bytes()
     assert clip[4:8] == b"ftyp" or clip[:4] == b"\x1a\x45\xdf\xa3"  # MP4 or WebM
     for form, begin in (("CSV", b"t [s],"), ("SVG", b"<?xml"), ("PNG", b"\x89PNG")):
         tab.page.locator("[data-springtide-plots]").select_option(form)
-        made = saved(tab, "[data-springtide-charts]", tmp_path).read_bytes()
+        made = saved("Save plots").read_bytes()
         assert made.startswith(begin)
     assert iio.imread(made).std() > 1.0
+    picture = iio.imread(saved("Picture"))
+    sky = LIGHT_SKY.pixels(*picture.shape[:2])  # that the page shows
+    assert picture[0].mean(axis=0) == pytest.approx(sky[0].mean(axis=0), abs=3)
     lab.settings.set("plot_tip", False)
-
-
-@pytest.mark.long
-def test_a_film_is_made_as_pictures(one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path) -> None:
-    lab, _ = one_page
-    tab = open_tab(lab.port, drawn="colorMap")  # draws the background image too: its sky is checked
-    tab.follow(lab, SCENE)
-    tab.show("Share")
-    recorder, number = lab.panel.recorder, lab.loop.run.identity.number
-    lab.loop.commands.put(Reset())
-    tab.wait(lambda: recorder.line.number > number and len(recorder.frames) > 4, 30)
-    lab.loop.commands.put(Pause())
-    tab.wait(lambda: not lab.loop.run.running, 20)
-    frames = lab.panel.recorder.kept()
-    lab.panel.recorder.show_frame(frames[-4])
-    tab.page.locator("[data-springtide-film]").select_option("as pictures")
-    with zipfile.ZipFile(saved(tab, "[data-springtide-clip]", tmp_path)) as film:
-        assert len(film.namelist()) == 4 + 1
-        pictures = [iio.imread(film.read(name)) for name in film.namelist()[:-1]]
-        times = film.read("times.csv").decode().splitlines()
-    assert len({picture.shape for picture in pictures}) == 1
-    sky = LIGHT_SKY.pixels(*pictures[0].shape[:2])  # that the page shows
-    assert pictures[0][0].mean(axis=0) == pytest.approx(sky[0].mean(axis=0), abs=3)
-    assert all((before != after).any() for before, after in pairwise(pictures))  # the rope moves
-    assert [float(line.split(",")[1]) for line in times[1:]] == [kept.time for kept in frames[-4:]]
 
 
 def test_no_preset_has_a_name_that_the_address_bar_would_change() -> None:

@@ -99,7 +99,7 @@ function toggleClip(button) {
   }
   const type = CLIP_TYPES.find((one) => window.MediaRecorder?.isTypeSupported(one));
   if (!type) {
-    notice("springtide-clips", "This browser records no clips. Choose “As pictures” instead, or another browser.");
+    notice("springtide-clips", "This browser records no clips. Save a replay instead, or use another browser.");
     return;
   }
   /** @type {Blob[]} */
@@ -122,7 +122,7 @@ function toggleClip(button) {
     for (const track of made.stream.getTracks()) track.stop();
     clip = null;
     springtide.isRecording = false;
-    button.textContent = "Record";
+    button.textContent = "Record clip";
     download(new Blob(parts, { type }), type.startsWith("video/mp4") ? "springtide.mp4" : "springtide.webm");
   };
   made.start(1000);
@@ -192,8 +192,7 @@ page.listen(document, "click", (event) => {
   const button = event.target instanceof Element && event.target.closest("button");
   if (!button) return;
   if (button.textContent === "Copy link") pressed = performance.now();
-  const film = choiceOf("[data-springtide-film]");
-  if ("springtideClip" in button.dataset) clip || !film ? toggleClip(button) : make(film);
+  if ("springtideClip" in button.dataset) toggleClip(button);
   if (!("springtideCharts" in button.dataset)) return;
   const form = choiceOf("[data-springtide-plots]");
   form === "PNG" ? saveCharts(button) : make(`Plots as ${form}`);

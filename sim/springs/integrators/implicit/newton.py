@@ -31,8 +31,8 @@ from sim.springs.points.vector_ops import add_scaled, set_sum
 
 SETTLED = 1e-11  # size of corrections not taken, relative to the fastest velocity
 SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
-# A net's correction is cut or prolonged until less than this part of the forces along it is left, in at most TRIES tries
-# and to at most this multiple of its length.
+# A net's correction is cut or prolonged until less than this part of the forces along it is left, in at most TRIES
+# tries, to at most this multiple of its length.
 NEARLY, TRIES, FARTHEST = 0.7, 6, 3.0
 FEW = 12  # corrections of a net, after which new factors are quicker than more of them
 USABLE = 1e-3  # the last correction, relative to the fastest velocity, of a stage that may be taken unsettled
@@ -40,7 +40,7 @@ ROUND_OFF = 4e-15  # and to the farthest position over g, below which correction
 
 
 class Exactness(NamedTuple):
-    """Exactness with which a method has its stages solved. Those of a rope go to round-off, which costs next to nothing."""
+    """Exactness of the stages of a method. Those of a rope go to round-off, which costs next to nothing."""
 
     share: float  # of the change of velocity in a stage that corrections may leave, apart from round-off
     usable: float  # the last correction, relative to velocity and its change, of a stage that may be taken unsettled

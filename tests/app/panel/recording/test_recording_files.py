@@ -5,8 +5,6 @@ import io
 import json
 import math
 import xml.etree.ElementTree as ET
-import zipfile
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,7 +15,6 @@ from app.panel.recording.recorder import RecordedFrame, Recorder
 from app.panel.recording.recording_files import Plotted, arrays_of, plots_csv, plots_svg, recording_npz
 from app.scenes import NAMES, scene_named
 from app.server.loop.sim_loop import SimLoop
-from app.server.viewer import Viewer
 
 SMALL: dict[str, dict[str, Any]] = {  # scene -> what makes it cheap; a new scene needs no entry
     "rope": {"points": 5},
@@ -159,30 +156,3 @@ def test_a_part_of_the_plots_is_that_of_a_time() -> None:
     assert len(read_columns(plots_csv(kind, part))["t [s]"]) == pytest.approx(12, abs=1)
     sea = Plotted((), {"plot_wave_spectrum": (np.arange(9.0),) * 3})
     assert len(sea.between(1.0, 2.0).curves["plot_wave_spectrum"][0]) == 9  # type: ignore[arg-type]
-
-
-def test_a_film_has_a_picture_of_each_frame_and_ends_where_another_moment_is_chosen(
-    lab: Viewer, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    lab.served.stop_threads()
-    panel = lab.panel
-    frames = tuple(SimpleNamespace(time=0.1 * i) for i in range(4))
-    chosen: list[Any] = []
-    monkeypatch.setattr(panel.recorder, "kept", lambda: frames)
-    monkeypatch.setattr(panel.recorder, "send_frame", chosen.append)
-    monkeypatch.setattr(type(panel.recorder), "shown", property(lambda _: chosen[-1] if chosen else None))
-    monkeypatch.setattr("app.panel.recording.files.take_picture", lambda client, size, **_: repr(size).encode())
-    said: list[str] = []
-    client: Any = None
-    work: Any = SimpleNamespace(say=said.append)
-    name, content = panel.share.files.film_file(client, work)
-    assert name.endswith("-film.zip")
-    with zipfile.ZipFile(io.BytesIO(content)) as film:
-        assert film.namelist() == ["0001.png", "0002.png", "0003.png", "0004.png", "times.csv"]
-        times = film.read("times.csv").decode().split()
-    assert [line.split(",")[0] for line in times[2:]] == film.namelist()[:4]
-    assert said[-1].startswith("4 of 4.")
-    chosen.clear()
-    monkeypatch.setattr(panel.recorder, "send_frame", lambda kept: chosen.append(frames[0]))
-    with pytest.raises(ValueError, match="another moment was chosen"):
-        panel.share.files.film_file(client, work)

@@ -25,7 +25,7 @@ from benchmarks.peers.ladder import RATIO
 from benchmarks.peers.record import is_installed
 from benchmarks.timing import load
 from sim.mooring import Line, LineType, Point, System, critical_step, simulate, write_moordyn
-from sim.mooring.statics import Rest
+from sim.mooring.rest.statics import Rest
 from sim.springs import State
 
 CHAIN = LineType("chain", 0.09, 80.0, 5e7, -0.8, 1.0, 1.6, 0.0, 0.1)

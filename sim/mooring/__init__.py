@@ -10,9 +10,10 @@ run = simulate(system, motion={2: lambda t: (0.5 * math.sin(t), 0.0, 0.0)}, dura
 from sim.mooring.moordyn import changed_moordyn, read_moordyn, write_moordyn
 from sim.mooring.moored import moored
 from sim.mooring.motion import paths_to, point_forces
+from sim.mooring.parts import Line, LineType, MooredBody, Point
+from sim.mooring.rest.statics import Rest, at_rest
 from sim.mooring.run import MooringRun
-from sim.mooring.statics import Rest, at_rest
-from sim.mooring.system import Line, LineType, MooredBody, Point, System
+from sim.mooring.system import System
 from sim.springs.simulate import simulate
 from sim.springs.stability import critical_step
 from sim.springs.state import State, advance

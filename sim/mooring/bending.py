@@ -1,20 +1,16 @@
 """The bends of a mooring's lines: the kernels' rows, and their constant matrix."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.mooring.parts import MooringParts
 from sim.springs.forces.bending import BEND_STIFFNESS, LINKS, NODES, OFFSET, WEIGHTS
 from sim.springs.points.line_arrays import LineArrays
-
-if TYPE_CHECKING:
-    from sim.mooring.system import System
 
 Array = NDArray[np.float64]
 
 
-def bends_of(system: "System") -> Array:
+def bends_of(system: MooringParts) -> Array:
     """`bends` of the kernels' view: one of each inner node of a line that resists bending, and of each clamp."""
     rows: list[Array] = []
     for line in system.lines:

@@ -1,15 +1,12 @@
 """The links' laws for whole arrays: a constant EA, or a table of strain and tension."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.mooring.parts import LineType
 from sim.springs.points.line_arrays import LineArrays
-
-if TYPE_CHECKING:
-    from sim.mooring.system import LineType
 
 Array = NDArray[np.float64]
 
@@ -17,7 +14,7 @@ Array = NDArray[np.float64]
 class Curves:
     """The tables of all line types, in one array for the kernels."""
 
-    def __init__(self, types: "Iterable[LineType]") -> None:
+    def __init__(self, types: Iterable[LineType]) -> None:
         self.first: dict[tuple[tuple[float, float], ...], int] = {}
         rows: list[tuple[float, float, float]] = []
         for curve in dict.fromkeys(kind.curve for kind in types):
@@ -28,7 +25,7 @@ class Curves:
                 rows += zip(strain.tolist(), tension.tolist(), energy.tolist(), strict=True)
         self.table = np.array(rows, dtype=np.float64).reshape(-1, 3)
 
-    def rows_of(self, kind: "LineType") -> tuple[int, int]:
+    def rows_of(self, kind: LineType) -> tuple[int, int]:
         """First row and number of rows of a type's table; 0, 0 of one with a constant stiffness."""
         return (self.first[kind.curve], len(kind.curve)) if kind.curve else (0, 0)
 

@@ -8,7 +8,7 @@ import numpy as np
 from sim import floating
 from sim.floating.linear.hydrodynamics import check_water_depth, not_negative
 from sim.floating.linear.response import linear_forces
-from sim.mooring.system import MooredBody
+from sim.mooring.parts import MooredBody
 from sim.validation import argument_error
 from sim.water import Water
 

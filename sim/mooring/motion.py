@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sim.frames import Progress, check_steps, run_frames, steps_for
+from sim.mooring.parts import Point
+from sim.mooring.rest.statics import at_rest
 from sim.mooring.run import MooringRun
-from sim.mooring.statics import at_rest
-from sim.mooring.system import Point, System
+from sim.mooring.system import System
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import energy_history
 from sim.springs.forces.bending import set_line_tensions

@@ -9,7 +9,7 @@ import functools
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from sim.interruption import stop_request
 from sim.mooring.bending import bends_of
 from sim.mooring.elastic import Curves
-from sim.mooring.end_forces import LineEnds
-from sim.mooring.run import MooringRun
-from sim.mooring.statics import Rest, at_rest
+from sim.mooring.parts import Line, LineType, MooredBody, MooringParts, Point, Vector
+from sim.mooring.rest.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
 from sim.springs.forces import check_forces, declared
 from sim.springs.integrators import Integrator, discover
@@ -36,7 +35,6 @@ from sim.springs.points.line_arrays import (
     LineArrays,
     record_of,
 )
-from sim.springs.points.point_system import PointSystem
 from sim.validation import (
     argument_error,
     check_choice,
@@ -49,8 +47,6 @@ from sim.validation import (
 from sim.water import EARTH_GRAVITY, SEA_DENSITY, Water
 from sim.waves import Waves
 
-Vector = tuple[float, float, float]
-
 KINDS = ("fixed", "coupled", "free", "body")
 FARTHEST = 1e5  # [m] from the origin
 LINE_COST = 50.0  # of a node, over that of a point of a rope
@@ -60,74 +56,8 @@ MOST_DAMPING = 100.0  # ratio, of a segment
 MAX_DISPERSION_ERROR = 0.02  # of omega: what surface tension and rounded numbers may make
 
 
-class LineType(NamedTuple):
-    """Material and hydrodynamic coefficients of a line."""
-
-    name: str
-    diameter: float  # [m], of the volume
-    mass: float  # [kg/m] in air
-    stiffness: float  # EA [N]
-    damping: float = -1.0  # BA [N s]; negative: the damping ratio of a segment, with the sign changed
-    added_across: float = 1.0  # C_an
-    drag_across: float = 1.2  # C_dn
-    added_along: float = 0.0  # C_at
-    drag_along: float = 0.05  # C_dt
-    bending: float = 0.0  # EI [N m^2]
-    # (strain, tension [N]) rows, from (0, 0) on, instead of a constant EA; `stiffness` then is that of `damping`.
-    curve: tuple[tuple[float, float], ...] = ()
-
-    @property
-    def volume(self) -> float:
-        """Volume of a metre of line [m^3/m]."""
-        return math.pi / 4.0 * self.diameter**2
-
-
-class Point(NamedTuple):
-    """An end of lines: fixed, "coupled" (moved by the caller), free, or carried by a body."""
-
-    id: int
-    kind: str
-    position: Vector  # [m]; of a body's, at the body's place of rest
-    mass: float = 0.0  # [kg]
-    volume: float = 0.0  # [m^3]
-    drag_area: float = 0.0  # C_d A [m^2]
-    added_mass: float = 0.0  # C_a
-    body: int | None = None  # id of the body that carries it
-    force: Vector = (0.0, 0.0, 0.0)  # [N] steady, on a free point or on one that a body carries
-
-
-class Line(NamedTuple):
-    """A line from point `start` to point `end`."""
-
-    id: int
-    type: LineType
-    start: int
-    end: int
-    length: float  # [m], unstretched
-    segments: int
-    # Direction of the line, from start to end, in which a clamp holds it; None: free to turn. Only for lines with EI.
-    clamp_at_start: Vector | None = None
-    clamp_at_end: Vector | None = None
-
-
-class MooredBody(NamedTuple):
-    """A floating body of linear theory about its place of rest without lines: M q'' + B q' + C q = forces.
-
-    q: displacement [m] and small rotation [rad] about `place`. mass holds the added mass. `moored` makes it of a hull.
-    """
-
-    id: int
-    place: Vector  # [m]
-    mass: NDArray[np.float64]  # (6, 6) [kg, kg m, kg m^2]
-    stiffness: NDArray[np.float64]  # (6, 6) [N/m, N, N m]
-    damping: NDArray[np.float64] | None = None  # (6, 6)
-    # (waves, 6) complex [N/m, N]: each of the system's waves pushes by a Re(X exp(i theta)) where the body is; None: 0
-    excitation: NDArray[np.complex128] | None = None
-    steady: Sequence[float] = (0.0,) * 6  # [N, N m] force and moment that stay
-
-
 @dataclasses.dataclass(frozen=True)
-class System(PointSystem[MooringRun]):
+class System(MooringParts):
     """Lines, points and bodies in water of one depth."""
 
     lines: tuple[Line, ...]
@@ -242,7 +172,7 @@ class System(PointSystem[MooringRun]):
             raise argument_error(name, direction, "None, except for a line with EI at a fixed or coupled point")
 
     def at_rest(self) -> Rest:
-        """The static state: see `sim.mooring.statics.at_rest`."""
+        """The static state: see `sim.mooring.rest.statics.at_rest`."""
         return at_rest(self)
 
     @property
@@ -265,39 +195,6 @@ class System(PointSystem[MooringRun]):
             usable = [one.name for one in discover().values() if not (one.implicit or one.undamped_only)]
             allowed = f"one of {', '.join(usable)}: implicit methods know no water, bed or bodies, and pefrl no damping"
             raise argument_error("integrator", integrator.name, allowed)
-
-    @functools.cached_property
-    def coupled_nodes(self) -> dict[int, int]:
-        """The node of each coupled point, by its id."""
-        return {point.id: i for i, point in enumerate(self.points) if point.kind == "coupled"}
-
-    @functools.cached_property
-    def nodes_of(self) -> dict[int, NDArray[np.int64]]:
-        """Node numbers of each line (segments + 1,), by its id: points first, in their order, then inner nodes."""
-        index = {point.id: i for i, point in enumerate(self.points)}
-        found, used = {}, len(self.points)
-        for line in self.lines:
-            inner = np.arange(used, used + line.segments - 1)
-            found[line.id] = np.concatenate(([index[line.start]], inner, [index[line.end]])).astype(np.int64)
-            used += line.segments - 1
-        return found
-
-    @functools.cached_property
-    def links_of(self) -> dict[int, slice]:
-        """Places of each line's links among all, by its id."""
-        ends = np.cumsum([line.segments for line in self.lines]).tolist()
-        return {line.id: slice(end - line.segments, end) for line, end in zip(self.lines, ends, strict=True)}
-
-    @functools.cached_property
-    def line_ends(self) -> LineEnds:
-        """The start and the end of each line in turn."""
-        nodes = np.concatenate([self.nodes_of[line.id][[0, -1]] for line in self.lines])
-        links = np.concatenate([[self.links_of[line.id].start, self.links_of[line.id].stop - 1] for line in self.lines])
-        return LineEnds.of(self._unit_step_view, nodes, links)
-
-    @functools.cached_property
-    def node_count(self) -> int:
-        return len(self.points) + sum(line.segments - 1 for line in self.lines)
 
     def kernel_view(self, h: float) -> LineArrays:
         """The kernels' view for steps of h [s]. Its arrays are shared, except the one that kernels fill."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.mooring.statics import Rest
+from sim.mooring.rest.statics import Rest
 from sim.springs.points.acceleration import set_rest_forces
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.scenes.mooring.start_check import Fault
 from sim.mooring import System, at_rest
-from sim.mooring.statics import Rest, rest_of, straight
+from sim.mooring.rest.statics import Rest, rest_of, straight
 from sim.validation import ConvergenceError
 
 NO_REST = "No state of rest was found for the lines"

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring.moordyn.rows import FileBody
-from sim.mooring.system import Line, MooredBody, Point
+from sim.mooring.parts import Line, MooredBody, Point
 
 # Of a free body's weight on an arm of 1 m, as stiffness of rotation: statics need one where no line turns it.
 HELD = 1e-6

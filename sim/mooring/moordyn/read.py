@@ -24,7 +24,8 @@ from sim.mooring.moordyn.sections import (
     read_text,
     split_sections,
 )
-from sim.mooring.system import Point, System
+from sim.mooring.parts import Point
+from sim.mooring.system import System
 from sim.mooring.turning import with_turning
 from sim.tables import Row
 from sim.validation import ConvergenceError, Refusals, argument_error

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sim.mooring.moordyn.rows import COUPLED, FIXED, FREE, PINNED, FileBody, RodEnd, listed
 from sim.mooring.moordyn.sections import ROD_TYPES, RODS, check_columns, number_in, whole_in
-from sim.mooring.system import Line, LineType, Point, Vector
+from sim.mooring.parts import Line, LineType, Point, Vector
 from sim.tables import Row
 from sim.validation import argument_error
 

@@ -21,7 +21,7 @@ from sim.mooring.moordyn.sections import (
     read_text,
     whole_in,
 )
-from sim.mooring.system import Line, LineType, Point, Vector
+from sim.mooring.parts import Line, LineType, Point, Vector
 from sim.tables import Row, factor_of, measure_of, number_of
 from sim.tables.columns import FORCE, STRAIN
 from sim.validation import argument_error

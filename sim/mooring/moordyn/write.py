@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from sim.files import replacing
-from sim.mooring.system import LineType, System
+from sim.mooring.parts import LineType
+from sim.mooring.system import System
 from sim.validation import argument_error
 
 CURVE_FILE = "{stem}_{name}.dat"  # beside the file, of a line type with a table of strain and tension

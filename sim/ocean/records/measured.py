@@ -131,8 +131,9 @@ def measured_spectrum(
         theta = as_array("direction", direction, allowed)
         if theta.ndim != 1 or len(theta) < MIN_DIRECTIONS or not np.isfinite(theta).all():
             raise argument_error("direction", theta.tolist() if theta.ndim == 1 else theta.shape, allowed)
+        count = len(theta)
         theta, order = once_around(theta)
-        if len(theta) < len(direction):
+        if len(theta) < count:
             raise argument_error("direction", direction, allowed)
         shape, unit = (*f.shape, *theta.shape), "m2/Hz/rad"
     allowed = f"finite numbers, 0 or above [{unit}], of shape {shape}, some above 0"

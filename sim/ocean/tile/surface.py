@@ -12,7 +12,7 @@ from sim.ocean.tile.transforms import Transforms
 
 
 class Heights(Protocol):
-    """The heights that a surface is made of: `TileHeights`."""
+    """The part of `TileHeights` that a surface reads."""
 
     waves: TileWaves
     transforms: Transforms

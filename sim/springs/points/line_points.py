@@ -262,10 +262,3 @@ def set_line_pins(x, v, t, p):
         x[n + j] = p.bodies[b, PLACE + 1] + p.arms[i, 1] + dy
         x[2 * n + j] = p.bodies[b, PLACE + 2] + p.arms[i, 2] + dz
     set_carried(v, p)
-
-
-@kernel
-def inverse_mass_matrices(x, p):
-    """`p.inertia` of lines at x."""
-    set_inverse_masses(x, p)
-    return p.inertia

@@ -134,3 +134,18 @@ def test_frequencies_of_any_shape_have_the_answers_of_a_list():
     for name in ("added", "damping", "excitation"):
         assert np.array_equal(getattr(single, name), getattr(forces, name)[1])
     assert response_amplitude(body, [], 0.4).shape == (0, 6)
+
+
+def test_the_response_of_a_box_by_the_shipped_table_is_capytaines():
+    """Surge, heave and pitch in head seas, by Capytaine 3.0 on panels of 1.5 m: draft 4 m of 40 x 40 x 10 m."""
+    omega = np.array([0.35, 0.5, 0.65, 0.8, 0.95, 1.1])
+    mass = 1025.0 * 40.0 * 40.0 * 4.0
+    inertia = tuple(mass * np.array([0.35, 0.26, 0.26]) ** 2 * 40.0**2)
+    box = Body(Hull.box(40.0, 40.0, 10.0), mass=mass, center_of_gravity=(0.0, 0.0, 1.0), inertia=inertia)
+    found = np.abs(response_amplitude(box, omega))
+    for motion, expected, within in (
+        (0, (0.952, 0.876, 0.740, 0.552, 0.206, 0.270), 0.02),
+        (2, (0.996, 0.991, 0.994, 0.934, 0.536, 0.212), 0.01),
+        (4, (0.0123, 0.0248, 0.0415, 0.0686, 0.1523, 0.0559), 0.03),
+    ):
+        assert found[:, motion] == pytest.approx(expected, abs=within * max(expected))

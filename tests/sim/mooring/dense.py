@@ -12,7 +12,7 @@ from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.integrators import Integrator
 from sim.springs.points.line_arrays import BODY_MASS, LineArrays
 from sim.springs.points.line_arrays import STIFFNESS as OF_BODY
-from sim.springs.points.line_points import inverse_mass_matrices
+from sim.springs.points.line_points import set_inverse_masses
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,8 @@ def mass_matrix(x: Array, p: LineArrays) -> Array:
     nodes = np.flatnonzero(p.inverse_masses[: p.nodes] > 0.0)
     count, first = len(nodes), 3 * len(nodes)
     found = np.zeros((first + 6 * len(p.bodies),) * 2, dtype=np.float64)
-    rows = inverse_mass_matrices(np.ascontiguousarray(x).reshape(-1), p).reshape(6, p.cols)[:, nodes]
+    set_inverse_masses(np.ascontiguousarray(x).reshape(-1), p)
+    rows = p.inertia.reshape(6, p.cols)[:, nodes]
     blocks = np.linalg.inv(rows[[0, 1, 2, 1, 3, 4, 2, 4, 5]].T.reshape(-1, 3, 3))
     for d in range(3):
         for e in range(3):

@@ -16,7 +16,7 @@ from tests.refusals import assert_refused
 from tests.sim.mooring.dense import frequencies_squared, stiffness_matrix
 from tests.sim.mooring.systems import chain_on_bed
 
-FILES = Path(__file__).with_name("files")
+FILES = Path(__file__).with_name("moordyn") / "files"
 EI, LENGTH = 1e4, 10.0
 DRY = {"density": 0.0, "bed_stiffness": 0.0}
 

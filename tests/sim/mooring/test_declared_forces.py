@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, State, System, simulate
-from sim.mooring.balance import what_is_left
+from sim.mooring.rest.balance import what_is_left
 from sim.mooring.tangent import declared_stiffness
 from sim.springs.analysis.energy import energies
 from sim.springs.forces import OWN

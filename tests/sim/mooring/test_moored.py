@@ -8,7 +8,7 @@ import pytest
 
 from sim import floating
 from sim.mooring import Line, LineType, Point, System, moored, simulate
-from sim.mooring.statics import straight
+from sim.mooring.rest.statics import straight
 from sim.springs import State
 from sim.springs.points.acceleration import set_acceleration
 from sim.water import Water

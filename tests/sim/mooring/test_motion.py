@@ -21,7 +21,7 @@ from sim.mooring import (
     simulate,
 )
 from sim.mooring.motion import FARTHEST, PIECE, MooringFrames
-from sim.mooring.statics import Rest
+from sim.mooring.rest.statics import Rest
 from sim.springs.analysis.energy import energies, power
 from sim.springs.damping import damp_lines, make_decay
 from sim.springs.integrators import integrator_named

@@ -13,7 +13,7 @@ from sim.springs.stability import top_modes
 from tests.sim.mooring.dense import Array, frequencies_squared, longest_steps, unit_mass_matrices
 from tests.sim.mooring.systems import chain_on_bed, taut_rope
 
-FILES = sorted(Path(__file__).with_name("files").glob("*.txt"))
+FILES = sorted((Path(__file__).with_name("moordyn") / "files").glob("*.txt"))
 SYSTEMS = {
     **{f"chain of {n}": chain_on_bed(n) for n in (2, 5, 20, 80)},
     **{f"taut rope of {n}": taut_rope(n) for n in (2, 20)},

@@ -10,7 +10,7 @@ from sim.mooring.turning import stiffness_of_turning, with_turning
 from tests.sim.mooring.dense import frequencies_squared
 
 LENGTH, ARM, MASS, INERTIA, LIFT = 30.0, 2.0, 5e3, 1.2e4, 6e4
-FILES = Path(__file__).with_name("files")
+FILES = Path(__file__).with_name("moordyn") / "files"
 
 
 def tethered(lift: float = LIFT) -> System:

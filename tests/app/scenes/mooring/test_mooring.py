@@ -34,7 +34,8 @@ from app.scenes.mooring.readings.tensions import Tensions
 from app.scenes.mooring.start import NO_REST
 from app.scenes.mooring.view import MooringView
 from app.server.loop.sim_loop import SimLoop
-from sim.mooring import balance, critical_step, interior
+from sim.mooring import critical_step
+from sim.mooring.rest import balance, interior
 from sim.parameters import Parameter, check_record, parameters_of
 from sim.validation import ConvergenceError, DivergenceError
 from tests.sim.mooring.catenary import catenary

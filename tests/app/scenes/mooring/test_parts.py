@@ -21,7 +21,7 @@ from app.scenes.mooring.readings.excursion import Excursion
 from app.scenes.mooring.readings.report import tension_table
 from app.scenes.mooring.readings.restoring import level_tension, static_curve
 from app.scenes.mooring.scene import needs
-from sim.mooring.statics import at_rest
+from sim.mooring.rest.statics import at_rest
 
 FILES = Path(__file__).parents[3] / "sim" / "mooring" / "moordyn" / "files"
 SMALL: dict[str, Any] = {"segments": 12, "lines": 2, "steady_force": 10.0, "time_step": 1 / 120, "wave_height": 0.0}

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, System
-from sim.mooring.chains import Chains
-from sim.mooring.cones import (
+from sim.mooring.rest.chains import Chains
+from sim.mooring.rest.cones import (
     MIRROR,
     UNIT,
     Scaling,
@@ -18,8 +18,8 @@ from sim.mooring.cones import (
     product,
     quotient,
 )
-from sim.mooring.interior import InteriorState, along_central_path
-from sim.mooring.statics import straight
+from sim.mooring.rest.interior import InteriorState, along_central_path
+from sim.mooring.rest.statics import straight
 from tests.sim.mooring.systems import floating_body
 
 

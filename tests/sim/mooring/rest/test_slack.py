@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from sim.mooring import Line, LineType, Point, System
-from sim.mooring.balance import pull, what_is_left
-from sim.mooring.chains import Chains
-from sim.mooring.statics import MAX_CORRECTIONS, at_rest
+from sim.mooring.rest.balance import pull, what_is_left
+from sim.mooring.rest.chains import Chains
+from sim.mooring.rest.statics import MAX_CORRECTIONS, at_rest
 from sim.mooring.tangent import carried_coordinates, free_coordinates
 from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 from sim.validation import ConvergenceError
@@ -147,7 +147,7 @@ def test_a_small_mooring_rests_as_its_large_model_does():
 
 
 def test_what_cannot_rest_says_what_is_left(monkeypatch):
-    monkeypatch.setattr("sim.mooring.statics.MAX_CORRECTIONS", 1)
+    monkeypatch.setattr("sim.mooring.rest.statics.MAX_CORRECTIONS", 1)
     with pytest.raises(ConvergenceError, match=r"^static state of the mooring: no solution after .* N left$"):
         hanging(300.0, 4).at_rest()
 

@@ -5,7 +5,7 @@ ends at the surface. Each of these laws is a complementarity: of a link's slack 
 cones, of the bed's force and the gap to it, of the buoyancy that is missing or left and the depth or height beyond
 the surface. The method follows the central path, on which the products of all such pairs are equal, by Mehrotra's
 predictor and corrector. Forces need not balance on the way. Near the end the active laws are known, and
-`sim.mooring.balance` solves them.
+`sim.mooring.rest.balance` solves them.
 
 Source: L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010).
 """
@@ -16,11 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.mooring.balance import Pieces
 from sim.mooring.bending import bending_forces
-from sim.mooring.buoyancy import Volumes
-from sim.mooring.chains import Chains, Eliminated
-from sim.mooring.cones import (
+from sim.mooring.elastic import Elastic
+from sim.mooring.rest.balance import Pieces
+from sim.mooring.rest.buoyancy import Volumes
+from sim.mooring.rest.chains import Chains, Eliminated
+from sim.mooring.rest.cones import (
     MIRROR,
     UNIT,
     Scaling,
@@ -31,7 +32,6 @@ from sim.mooring.cones import (
     product,
     quotient,
 )
-from sim.mooring.elastic import Elastic
 from sim.mooring.tangent import forces_on_free, is_declared, moved, moves_on_free, others
 from sim.springs.points.acceleration import set_rest_forces
 from sim.springs.points.line_arrays import STIFFNESS, LineArrays

@@ -1,25 +1,23 @@
 """The static state of a mooring without waves.
 
-`sim.mooring.interior` comes near it from straight lines, whatever the mooring: so one state is found from any start.
-`sim.mooring.balance` solves it to round-off.
+`sim.mooring.rest.interior` comes near it from straight lines, so that one state is found from any start.
+`sim.mooring.rest.balance` solves it to round-off.
 """
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.mooring.balance import Laws, balanced
-from sim.mooring.chains import Chains
-from sim.mooring.interior import along_central_path
+from sim.mooring.parts import MooringParts
+from sim.mooring.rest.balance import Laws, balanced
+from sim.mooring.rest.chains import Chains
+from sim.mooring.rest.interior import along_central_path
 from sim.mooring.tangent import six_of
 from sim.springs.forces.bending import set_line_tensions
 from sim.springs.points.line_arrays import LineArrays
 from sim.validation import ConvergenceError
-
-if TYPE_CHECKING:
-    from sim.mooring.system import System
 
 MAX_CORRECTIONS = 60  # of both methods together
 FINISHING, LEAST_FINISHING = 12, 2  # of them at the end, at most, and before they run out
@@ -37,7 +35,7 @@ class Rest(NamedTuple):
     nodes: NDArray[np.float64]  # (3, n) of all nodes and bodies, as kernels have them
 
 
-def straight(system: "System", placed: dict[int, NDArray[np.float64]] | None = None) -> NDArray[np.float64]:
+def straight(system: MooringParts, placed: dict[int, NDArray[np.float64]] | None = None) -> NDArray[np.float64]:
     """Positions (3, n) [m] on straight lines, with the points in `placed`, by id, there."""
     placed = placed or {}
     x = np.zeros((3, system.node_count + 2 * len(system.bodies)))
@@ -49,7 +47,7 @@ def straight(system: "System", placed: dict[int, NDArray[np.float64]] | None = N
     return x
 
 
-def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = None) -> Rest:
+def at_rest(system: MooringParts, placed: dict[int, NDArray[np.float64]] | None = None) -> Rest:
     """The static state without waves, with points at their own places or at those in `placed`, by id.
 
     Raises ConvergenceError if no state of rest is found.
@@ -73,7 +71,7 @@ def at_rest(system: "System", placed: dict[int, NDArray[np.float64]] | None = No
     raise ConvergenceError("static state of the mooring", f"{left:.3g} N", done)
 
 
-def rest_of(system: "System", x: NDArray[np.float64], p: LineArrays) -> Rest:
+def rest_of(system: MooringParts, x: NDArray[np.float64], p: LineArrays) -> Rest:
     """The named parts of positions (3, n)."""
     tension, flat = np.empty(len(p.ends)), np.ascontiguousarray(x).reshape(-1)
     set_line_tensions(flat, np.zeros_like(flat), p, tension)

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.mooring.buoyancy import Volumes
-from sim.mooring.chains import Chains
 from sim.mooring.elastic import Elastic
+from sim.mooring.rest.buoyancy import Volumes
+from sim.mooring.rest.chains import Chains
 from sim.mooring.tangent import declared_stiffness, forces_on_free, links_at, moved, moves_on_free, six_of
 from sim.springs.forces.bending import BEND_STIFFNESS
 from sim.springs.points.acceleration import set_rest_forces

@@ -5,18 +5,14 @@ A small dense system is left of the points where lines end and of the bodies. It
 that of the whole mooring is.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring.bending import bending_entries
+from sim.mooring.parts import MooringParts
 from sim.mooring.tangent import carried_coordinates, free_coordinates
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
 from sim.springs.points.line_arrays import STIFFNESS, LineArrays
-
-if TYPE_CHECKING:
-    from sim.mooring.system import System
 
 Array = NDArray[np.float64]
 
@@ -120,7 +116,7 @@ class Band:
 class Chains:
     """The chains of a system, and how its points move by the coordinates that are left."""
 
-    def __init__(self, system: "System", p: LineArrays) -> None:
+    def __init__(self, system: MooringParts, p: LineArrays) -> None:
         self.p, self.points = p, len(system.points)
         self.lines = [(system.nodes_of[line.id], system.links_of[line.id]) for line in system.lines]
         rows, columns, values = bending_entries(p)

@@ -1,0 +1,1 @@
+"""Moorings at rest: an interior-point method from any start, then Newton's."""

@@ -62,7 +62,6 @@ def set_rope_mean_blocks(link, x0, x, g, p, links):
     links[j + 4 * n], links[j + 5 * n], links[j + 6 * n] = rx, ry, rz
 
 
-# A net takes the symmetric blocks of the tension at the midpoint, which conjugate gradients can solve with. Newton's
-# method then needs about as many corrections as with the exact blocks, each with half the products.
+# A net takes the symmetric blocks of the tension at the midpoint: its quasi-Newton method learns the rest.
 set_net_blocks = kernel(lambda x0, x, g, p, links: set_link_blocks(x, g, p, links), inline=True)
 set_mean_blocks = by_net(rope=set_rope_mean_blocks, grid=set_net_blocks)

@@ -30,7 +30,7 @@ from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.vector_ops import add_scaled, set_sum
 
 SETTLED = 1e-11  # size of corrections not taken, relative to the fastest velocity
-SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
+SETTLED_NET = 1e-10  # of a net: its corrections cost so much more
 # A net's correction is cut or prolonged until less than this part of the forces along it is left, in at most TRIES
 # tries, to at most this multiple of its length.
 NEARLY, TRIES, FARTHEST = 0.7, 6, 3.0
@@ -263,27 +263,50 @@ def change_norm(v, v0, p):
 
 
 @kernel(inline=True)
-def mended_speed_of_net(vm, v0, p, work):
-    n, twice = p.rows * p.cols, 0.0
-    for j in range(n):
-        if p.inverse_masses[j] > 0.0:
-            for e in range(3):
-                s = 2.0 * vm[e * n + j] - v0[e * n + j]
-                twice += p.mass[j] * s * s
-    return math.sqrt(max(0.0, 1.0 + 4.0 * dot(work.r, vm) / twice)) if twice > 0.0 else 1.0
-
-
-# Factor of the velocities after a midpoint step from v0, of velocity vm in its middle, that gives them the energy which
-# the work of the forces gave: the rest r of the residual took 2 r.vm of it. 0 where that is more than there is.
-mended_speed = by_net(rope=kernel(lambda vm, v0, p, work: 1.0, inline=True), grid=mended_speed_of_net)
-
-
-@kernel(inline=True)
 def total_mass(p):
     total = 0.0
     for j in range(p.rows * p.cols):
         total += p.mass[j]
     return total
+
+
+@kernel(inline=True)
+def mean_velocity(v, p, o):
+    """Of the free particles, one component, from index o on."""
+    momentum = mass = 0.0
+    for j in range(p.rows * p.cols):
+        if p.inverse_masses[j] > 0.0:
+            mass += p.mass[j]
+            momentum += p.mass[j] * v[o + j]
+    return momentum / mass if mass > 0.0 else 0.0
+
+
+@kernel
+def mended_speed_of_net(vm, v0, p, work):
+    n, twice = p.rows * p.cols, 0.0
+    for e in range(3):
+        mean = 2.0 * mean_velocity(vm, p, e * n) - mean_velocity(v0, p, e * n)
+        for j in range(n):
+            if p.inverse_masses[j] > 0.0:
+                twice += p.mass[j] * (2.0 * vm[e * n + j] - v0[e * n + j] - mean) ** 2
+    return math.sqrt(max(0.0, 1.0 + 4.0 * dot(work.r, vm) / twice)) if twice > 0.0 else 1.0
+
+
+@kernel
+def scale_speeds_of_net(scale, v, p):
+    n = p.rows * p.cols
+    for e in range(3):
+        mean = mean_velocity(v, p, e * n)
+        for j in range(n):
+            if p.inverse_masses[j] > 0.0:
+                v[e * n + j] = mean + scale * (v[e * n + j] - mean)
+
+
+# Factor of the velocities about their mean after a midpoint step from v0, of velocity vm in its middle, that gives them
+# the energy of the work of the forces: what is left of the residual r took 2 r.vm of it. 0 where no factor does. The
+# momentum stays. A rope is solved to round-off.
+mended_speed = by_net(rope=kernel(lambda vm, v0, p, work: 1.0, inline=True), grid=mended_speed_of_net)
+scale_speeds = by_net(rope=kernel(lambda scale, v, p: None, inline=True), grid=scale_speeds_of_net)
 
 
 @kernel(inline=True)
@@ -326,6 +349,7 @@ def solve_net_stage(x0, v0, g, t, exactness, p, x, v, work):
             after = dot(work.r, work.u)
             if abs(after) <= NEARLY * slope or tried == TRIES:
                 break
+            part = length
             if after > 0.0:
                 low, low_slope = length, after
                 part = min(slope / (slope - after), FARTHEST) if after < slope else FARTHEST

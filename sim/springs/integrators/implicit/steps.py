@@ -20,6 +20,7 @@ from sim.springs.integrators.implicit.newton import (
     make_work,
     mended_speed,
     most_of,
+    scale_speeds,
     solve_stage,
 )
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
@@ -87,13 +88,15 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
                 for j in range(x.shape[0]):
                     x0[j] += g * v[j]
                     v0[j] += g * a[j]
-            hardest, stage, last, part_settled = 0, 0, 1 if method == TR_BDF2 else 0, True
+            hardest, stage, last, part_settled, speed = 0, 0, 1 if method == TR_BDF2 else 0, True, 1.0
             while True:
                 taken, asked, settled, usable = solve_stage(x0, v0, g, then, exactness, p, xs, vs, work)
                 evals += asked
                 hardest = max(hardest, taken)
                 part_settled = part_settled and settled
-                is_taken = size == 1 or usable
+                if method == MIDPOINT and exactness.share > 0.0:
+                    speed = mended_speed(vs, v, p, work)
+                is_taken = size == 1 or (usable and speed > 0.0)
                 if stage == last or not is_taken:
                     break
                 stage, then = 1, after
@@ -109,13 +112,10 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
                     add_power(x, v, now, p, True, W * part, ledger)
                     add_power(x1, v1, now + GAMMA * part, p, True, W * part, ledger)
                 add_power(xs, vs, then, p, True, g if method == TR_BDF2 else part, ledger)
-            speed = mended_speed(vs, v, p, work) if method == MIDPOINT else 1.0
             for j in range(x.shape[0]):
-                if method == MIDPOINT:
-                    x[j] += part * vs[j]
-                    v[j] = speed * (2.0 * vs[j] - v[j])
-                else:
-                    x[j], v[j] = xs[j], vs[j]
+                x[j], v[j] = (x[j] + part * vs[j], 2.0 * vs[j] - v[j]) if method == MIDPOINT else (xs[j], vs[j])
+            if speed != 1.0:
+                scale_speeds(speed, v, p)
             done += size
             all_settled = all_settled and part_settled
             if hardest <= most // 2 and done % (2 * size) == 0:

@@ -251,7 +251,7 @@ def is_draupner(params: SquareSeaParams) -> bool:
 
 
 def sea_of(params: SquareSeaParams) -> tuple[object, ...]:
-    """All that decides how high its waves are."""
+    """The parameters and conditions that decide the heights of its waves."""
     return params.start, params.order, params.length, params.amplitude, params.seed, conditions(params)
 
 

@@ -47,7 +47,7 @@ def read_text(path: Path) -> str:
 
 
 def decoded(content: bytes) -> str:
-    """The content of a file as text; what is not UTF-8 in it, such as a comment, becomes a mark."""
+    """The content of a file as text; bytes that are not UTF-8, as in comments, become marks."""
     return content.decode("utf-8-sig", "replace")
 
 

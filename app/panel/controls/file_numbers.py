@@ -41,12 +41,15 @@ class FileNumbers:
         async def _(event: ViserEvent) -> None:
             if event.client is None:
                 return
-            if event.target.value == APPLY:
-                self.apply()
-            else:
-                name, content = editing.content(settings.params)
-                event.client.send_file_download(name, content, save_immediately=True)
-                self.say(f"{name} was sent to the browser.")
+            try:
+                if event.target.value == APPLY:
+                    self.apply()
+                else:
+                    name, content = editing.content(settings.params)
+                    event.client.send_file_download(name, content, save_immediately=True)
+                    self.say(f"{name} was sent to the browser.")
+            except (ValueError, ConvergenceError) as reason:
+                self.say(str(reason))
 
     def show(self) -> None:
         """Show the numbers of the chosen thing, unless they are shown: some may be half typed."""
@@ -59,14 +62,10 @@ class FileNumbers:
                 self.fields[name].value = write_number(value)
 
     def apply(self) -> None:
-        """Begin again with the numbers in the fields; of one that cannot be taken, say why."""
+        """Begin again with the numbers in the fields. Raises ValueError or ConvergenceError for one that cannot be."""
         before = self.editing.numbers(self.settings.params)[self.chooser.value]
-        try:
-            values = {name: read(name, field.value, before[name]) for name, field in self.fields.items()}
-            params = self.editing.changed(self.settings.params, self.chooser.value, values)
-        except (ValueError, ConvergenceError, OSError) as reason:
-            self.say(str(reason))
-            return
+        values = {name: read(name, field.value, before[name]) for name, field in self.fields.items()}
+        params = self.editing.changed(self.settings.params, self.chooser.value, values)
         self.say("")
         if params != self.settings.params:
             self.settings.begin_with(params)

@@ -69,6 +69,17 @@ def press(found: FileNumbers, viewer: Viewer, label: str) -> list[tuple[str, byt
     return sent
 
 
+def test_a_file_that_is_gone_is_told_without_its_folder(tmp_path: Path) -> None:
+    path = tmp_path / "moor.txt"
+    path.write_bytes(PATH.read_bytes())
+    params = MooringParams(moordyn_file=str(path), time_step=2e-3)
+    (name, *_) = numbers(params)
+    path.unlink()
+    with pytest.raises(ValueError, match=r"moor\.txt") as error:
+        changed(params, name, {LENGTH: 120.0, DIAMETER: 0.1})
+    assert str(tmp_path) not in str(error.value)
+
+
 def test_numbers_are_applied_undone_and_saved(panel: Viewer) -> None:
     found: Any = panel.panel.controls_tab.file_numbers
     assert found.chooser.options == tuple(numbers(FILE))

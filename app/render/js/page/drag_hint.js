@@ -28,7 +28,7 @@ function makeHint() {
   return made;
 }
 
-function end() {
+function remove() {
   ended = true;
   hint?.remove();
 }
@@ -54,11 +54,11 @@ onFrame((now) => {
   if (ended || !view?.camera || !view.canvas || !view.nodeRefFromName) return;
   if (isPressed && view.nodeRefFromName[PULL]?.visible) {
     store(KEY, "yes");
-    return end();
+    return remove();
   }
-  const place = document.querySelector("#springtide-cover.springtide-hidden") && freeEnd(view);
+  const end = freeEnd(view), place = end && document.querySelector("#springtide-cover.springtide-hidden") ? end : null;
   if (place) since ||= now;
-  if (since && now - since > SHOWN) return end();
+  if (since && now - since > SHOWN) return remove();
   if (place) hint ??= makeHint();
   if (!hint) return;
   hint.hidden = !place;

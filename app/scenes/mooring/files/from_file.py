@@ -11,6 +11,7 @@ from app.messages import Vector, vector_of
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.rows import LineRows, ends_of
 from sim.mooring import System, changed_moordyn, read_moordyn
+from sim.validation import unreadable
 
 LEAST_EXTENT = 1e-3  # [m]
 STRETCH = 0.01  # of the shortest line at the vessel, to which the vessel may be dragged beyond where it is straight
@@ -41,10 +42,14 @@ def opened(params: MooringParams) -> FileMooring:
 
 
 def content_of(path: str, changes: Changes) -> bytes:
-    """The content of a file with changes. Raises ValueError as `changed_moordyn` does."""
+    """The content of a file with changes. Raises ValueError as `changed_moordyn` does, or where the file is gone."""
     lengths = {int(of): value for what, of, value in changes if what == "length"}
     diameters = {of: value for what, of, value in changes if what == "diameter"}
-    return changed_moordyn(Path(path).read_bytes(), lengths, diameters)
+    try:
+        content = Path(path).read_bytes()
+    except OSError as error:
+        raise unreadable("file", Path(path).name, error) from None
+    return changed_moordyn(content, lengths, diameters)
 
 
 @functools.lru_cache(maxsize=4)

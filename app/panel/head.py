@@ -32,7 +32,7 @@ class Head:
         self.view, self.settings, self.scenes, self.reset_view = view, settings, scenes, reset_view
         self.running = True  # as the buttons show it
         self.told: tuple[object, ...] = ()  # shown at once when it changes
-        self.visited = ""  # preset of which the page has been told, for Back and Forward of the browser
+        self.visited = ""  # preset that the page knows, for Back and Forward of the browser
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
             self.chooser: GuiHandle | None = None

@@ -49,7 +49,7 @@ class HasQuantities(Protocol):
 
     @property
     def quantities(self) -> Quantities:
-        """The table, empty if there is none."""
+        """The table, or an empty one."""
         ...
 
     @property

@@ -60,7 +60,7 @@ class PaneLab(Protocol):
         ...
 
     def visitors(self) -> int:
-        """How many browsers are connected."""
+        """Number of connected browsers."""
         ...
 
     def call(self, action: Callable[[], None]) -> None:

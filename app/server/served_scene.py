@@ -59,7 +59,7 @@ class SceneHost(Protocol):
         ...
 
     def audience(self) -> int:
-        """How many browsers look."""
+        """Number of browsers that look."""
         ...
 
     def share_parameters(self, params: BaseParams) -> None:

@@ -54,7 +54,7 @@ class Foam:
 
 
 class SeaNow(Protocol):
-    """The parts of the scene of which the surface is drawn."""
+    """Parts of the scene for the drawing of the surface."""
 
     params: RadialSeaParams
     time: float  # [s]

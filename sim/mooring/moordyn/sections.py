@@ -47,7 +47,7 @@ def read_text(path: Path) -> str:
 
 
 def decoded(content: bytes) -> str:
-    """The content of a file as text; what is not UTF-8 in it, such as a comment, becomes a mark."""
+    """The content of a file as text; parts that are not UTF-8, such as comments, become marks."""
     return content.decode("utf-8-sig", "replace")
 
 

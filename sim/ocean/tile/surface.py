@@ -12,7 +12,7 @@ from sim.ocean.tile.transforms import Transforms
 
 
 class Heights(Protocol):
-    """What a surface is made of: `TileHeights`."""
+    """Data of a surface: `TileHeights`."""
 
     waves: TileWaves
     transforms: Transforms

@@ -31,8 +31,8 @@ from sim.springs.points.vector_ops import add_scaled, set_sum
 
 SETTLED = 1e-11  # size of corrections not taken, relative to the fastest velocity
 SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
-# A net's correction is cut or prolonged until less than this part of the forces along it is left, in so many tries at
-# most, to at most so many times its length.
+# A net's correction is cut or prolonged until less than this part of the forces along it is left, in at most this
+# number of tries, to at most this multiple of its length.
 NEARLY, TRIES, FARTHEST = 0.7, 6, 3.0
 FEW = 12  # corrections of a net, after which new factors are quicker than more of them
 USABLE = 1e-3  # the last correction, relative to the fastest velocity, of a stage that may be taken unsettled
@@ -40,7 +40,7 @@ ROUND_OFF = 4e-15  # and to the farthest position over g, below which correction
 
 
 class Exactness(NamedTuple):
-    """How exactly a method has its stages solved. Those of a rope go to round-off, which costs next to nothing."""
+    """Exactness with which a method has its stages solved. Those of a rope go to round-off, which costs next to nothing."""
 
     share: float  # of the change of velocity in a stage: that corrections may leave, apart from round-off
     usable: float  # the last correction, relative to velocity and its change, of a stage that may be taken unsettled
@@ -63,7 +63,7 @@ class NetSolver(NamedTuple):
     grid: Dissection
     diagonal: NDArray[np.float64]  # (rows cols, 6) flat
     beside: NDArray[np.float64]  # (rows cols, 4, 6) flat
-    kept: NDArray[np.float64]  # (1,): g [s] of the factors, 0 where there are none
+    kept: NDArray[np.float64]  # (1,): g [s] of the factors, 0 without any
     memory: Memory
     before: NDArray[np.float64]  # (3 rows cols,) residual before a correction
 
@@ -288,7 +288,7 @@ def total_mass(p):
 
 @kernel(inline=True)
 def remaining(size, last, before):
-    """What further corrections would add, as the last ones shrank: `size` after `last` and `before`."""
+    """Sum of further corrections, as the last ones shrank: `size` after `last` and `before`."""
     rate = size / last if before == np.inf else math.sqrt(size / before)
     return size * rate / (1.0 - rate) if rate < 1.0 else size
 

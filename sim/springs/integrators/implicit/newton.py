@@ -40,7 +40,7 @@ ROUND_OFF = 4e-15  # and to the farthest position over g, below which correction
 
 
 class Exactness(NamedTuple):
-    """Exactness with which a method has its stages solved. Those of a rope go to round-off, which costs next to nothing."""
+    """Exactness with which a method has its stages solved. A rope has them solved to round-off, which costs little."""
 
     share: float  # of the change of velocity in a stage: that corrections may leave, apart from round-off
     usable: float  # the last correction, relative to velocity and its change, of a stage that may be taken unsettled

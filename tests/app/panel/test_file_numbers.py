@@ -5,7 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from app.scenes.mooring.report import notes_of
+from app.scenes.mooring.readings.report import notes_of
 
 from app.panel.controls.file_numbers import APPLY, SAVE, FileNumbers
 from app.scenes import NAMES, scene_named

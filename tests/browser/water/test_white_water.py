@@ -14,7 +14,7 @@ from app.scenes.square_sea.parameters import SquareSeaParams
 from app.server.viewer import Viewer
 from sim.ocean.statistics.foam import whitecaps
 from tests.browser.conftest import NO_NOTES, new_page
-from tests.browser.test_water import PANEL_HIDDEN, wait
+from tests.browser.water.test_water import PANEL_HIDDEN, wait
 
 WIND = 24.0  # [m/s]
 # No sun, whose glitter is as white.

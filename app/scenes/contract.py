@@ -245,7 +245,7 @@ class FileEditing(NamedTuple):
     """Numbers of a file that a scene runs, which the panel changes."""
 
     title: str  # of their folder
-    thing: str  # with the numbers, by its name in the list
+    thing: str  # label of the list of its things, such as "Line"
     # params -> thing -> number with its unit -> its value; empty without a file.
     numbers: Callable[..., Mapping[str, Mapping[str, float]]]
     changed: Callable[..., BaseParams]  # (params, thing, numbers) -> params; raises ValueError

@@ -49,7 +49,7 @@ class HasQuantities(Protocol):
 
     @property
     def quantities(self) -> Quantities:
-        """The table, or an empty one."""
+        """The table, empty without entries."""
         ...
 
     @property

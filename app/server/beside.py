@@ -60,7 +60,7 @@ class PaneLab(Protocol):
         ...
 
     def visitors(self) -> int:
-        """Number of connected browsers."""
+        """The number of connected browsers."""
         ...
 
     def call(self, action: Callable[[], None]) -> None:

@@ -59,7 +59,7 @@ class SceneHost(Protocol):
         ...
 
     def audience(self) -> int:
-        """Number of browsers that look."""
+        """The number of browsers that look."""
         ...
 
     def share_parameters(self, params: BaseParams) -> None:

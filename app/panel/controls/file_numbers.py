@@ -22,7 +22,7 @@ class FileNumbers:
         self.editing, self.settings = editing, settings
         things = editing.numbers(settings.params)
         self.fields: dict[str, viser.GuiTextHandle] = {}
-        self.shown: tuple[str, dict[str, float]] | None = None  # the chosen thing, and its numbers
+        self.shown: tuple[str, dict[str, float]] | None = None  # the choice, and its numbers
         if not things:
             return
         with gui.add_folder(editing.title, expand_by_default=False):

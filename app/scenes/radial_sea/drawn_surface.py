@@ -54,7 +54,7 @@ class Foam:
 
 
 class SeaNow(Protocol):
-    """Parts of the scene for the drawing of the surface."""
+    """The parts of the scene that the surface is drawn from."""
 
     params: RadialSeaParams
     time: float  # [s]

@@ -47,7 +47,7 @@ def read_text(path: Path) -> str:
 
 
 def decoded(content: bytes) -> str:
-    """The content of a file as text; parts that are not UTF-8, such as comments, become marks."""
+    """The content of a file as text; bytes that are not UTF-8, as in a comment, become a mark."""
     return content.decode("utf-8-sig", "replace")
 
 

@@ -12,7 +12,7 @@ from sim.ocean.tile.transforms import Transforms
 
 
 class SurfaceHeights(Protocol):
-    """Data of a surface: `TileHeights`."""
+    """The heights that a surface is made of: `TileHeights`."""
 
     waves: TileWaves
     transforms: Transforms

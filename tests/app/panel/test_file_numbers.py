@@ -5,12 +5,12 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from app.scenes.mooring.readings.report import notes_of
 
 from app.panel.controls.file_numbers import APPLY, SAVE, FileNumbers
 from app.scenes import NAMES, scene_named
 from app.scenes.mooring.files.editing import DIAMETER, LENGTH, changed, content, lines_of, numbers
 from app.scenes.mooring.parameters import MooringParams
+from app.scenes.mooring.readings.report import notes_of
 from app.scenes.setups import described
 from app.server.loop.sim_loop import SimLoop
 from app.server.viewer import Viewer

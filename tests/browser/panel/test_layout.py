@@ -100,7 +100,8 @@ def test_a_phone_shows_the_race_first_and_its_plots_when_asked(
     tab.wait(lambda: tab.page.evaluate(MEASURE)["picture"] < 0.3 and not faults(tab.page), 20)
 
 
-@pytest.mark.parametrize("size", [(390, 844), pytest.param((560, 340), marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("size", [(390, 844), (560, 340)])
 def test_a_small_window_shows_all_of_the_picture(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], size: tuple[int, int]
 ) -> None:

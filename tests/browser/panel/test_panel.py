@@ -1,5 +1,7 @@
 """Numbers typed key by key, and what the panel says of playing, in a real browser."""
 
+import pytest
+
 from app.messages import Pause
 from app.panel.controls.control import title
 from app.panel.controls.scene_pictures import TITLE
@@ -90,6 +92,7 @@ def test_escape_and_arrows_and_leaving_a_field(shown: tuple[Viewer, Tab]) -> Non
     tab.wait(lambda: lab.settings.params.mass == 0.4, 10)
 
 
+@pytest.mark.long
 def test_a_preset_that_was_changed_is_chosen_again(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     preset = tab.page.get_by_label("Preset")

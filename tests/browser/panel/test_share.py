@@ -110,6 +110,7 @@ def test_a_file_is_loaded_or_refused_in_one_line(opened: tuple[Viewer, Tab], tmp
     tab.wait(lambda: vars(lab.settings.params)["points"] == 24, 20)
 
 
+@pytest.mark.long
 def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
     opened: tuple[Viewer, Tab], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -93,6 +93,7 @@ def test_the_bar_is_inside_the_window_at_every_size_in_any_order(shown: tuple[Vi
         tab.page.set_viewport_size(size)
 
 
+@pytest.mark.long
 def test_under_a_bar_of_the_whole_width_the_picture_is_new_up_to_the_top(open_tab: Callable[..., Tab]) -> None:
     """Chromium kept an old picture at the top, as high as an opaque bar at the foot."""
     lab = Viewer("127.0.0.1", 0)

@@ -72,6 +72,7 @@ def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     pin = lab.scene.state.x[:, 0, 0].copy()
@@ -79,13 +80,9 @@ def test_a_pin_is_moved_by_its_arrow(shown: tuple[Viewer, Tab]) -> None:
     # viser's note on drawing in software lies over the arrow.
     tab.page.evaluate("document.querySelectorAll('.mantine-Notification-root button').forEach(close => close.click())")
 
-    def drag_up() -> bool:
-        tab.drag(tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.4)))
-        tab.release()
-        tab.page.wait_for_timeout(500)
-        return lab.scene.pins.handles[0].position[2] > pin[2] + 0.1
-
-    tab.wait(drag_up)  # again where a slow page had not yet noticed what the mouse was over
+    (x, y), (x1, y1) = tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.4))
+    tab.hold(lambda: (x, y), (x1 - x, y1 - y), lambda: lab.scene.pins.handles[0].position[2] > pin[2] + 0.1)
+    tab.release()
     tab.wait(lambda: lab.scene.state.x[2, 0, 0] > pin[2] + 0.1)
     assert tab.errors == []
 

@@ -59,6 +59,7 @@ def test_every_race_is_drawn_with_its_charts_and_no_console_errors(
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_a_bead_is_dragged_and_another_preset_starts_at_once(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     without_charts = {"plot_errors": False, "plot_energies": False, "speed": 4.0}

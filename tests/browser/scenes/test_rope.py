@@ -77,13 +77,9 @@ def test_dragging_the_arrows_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     arrow = np.array(ROOT) + (0.0, 0.0, 0.2)
 
-    def drag_up() -> bool:
-        tab.drag(tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.5)))
-        tab.release()
-        tab.page.wait_for_timeout(500)
-        return lab.scene.handles.root.position[2] > ROOT[2] + 0.2
-
-    tab.wait(drag_up)  # again where a slow page had not yet noticed what the mouse was over
+    (x, y), (x1, y1) = tab.pixel(arrow), tab.pixel(arrow + (0.0, 0.0, 0.5))
+    tab.hold(lambda: (x, y), (x1 - x, y1 - y), lambda: lab.scene.handles.root.position[2] > ROOT[2] + 0.2)
+    tab.release()
     assert lab.scene.state.x[2, 0, 0] == pytest.approx(lab.scene.handles.root.position[2], abs=0.2)
     assert tab.errors == []
 

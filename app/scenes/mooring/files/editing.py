@@ -26,7 +26,7 @@ def lines_of(params: MooringParams) -> dict[str, Line]:
 
 
 def numbers(params: MooringParams) -> dict[str, dict[str, float]]:
-    """Changeable values of each line."""
+    """Changeable numbers of each line."""
     return {name: {LENGTH: one.length, DIAMETER: one.type.diameter} for name, one in lines_of(params).items()}
 
 

@@ -31,8 +31,8 @@ from sim.springs.points.vector_ops import add_scaled, set_sum
 
 SETTLED = 1e-11  # size of corrections not taken, relative to the fastest velocity
 SETTLED_NET = 1e-9  # of a net: its corrections cost so much more
-# A net's correction is cut or prolonged until less than this part of the forces along it is left, in at most this
-# number of tries, to at most this multiple of its length.
+# A net's correction is cut or prolonged until less than this part of the forces along it is left, in at most
+# TRIES tries and to at most this multiple of its length.
 NEARLY, TRIES, FARTHEST = 0.7, 6, 3.0
 FEW = 12  # corrections of a net, after which new factors are quicker than more of them
 USABLE = 1e-3  # the last correction, relative to the fastest velocity, of a stage that may be taken unsettled
@@ -288,7 +288,7 @@ def total_mass(p):
 
 @kernel(inline=True)
 def remaining(size, last, before):
-    """Sum of further corrections, as the last ones shrank: `size` after `last` and `before`."""
+    """Size of further corrections, as the last ones shrank: `size` after `last` and `before`."""
     rate = size / last if before == np.inf else math.sqrt(size / before)
     return size * rate / (1.0 - rate) if rate < 1.0 else size
 

@@ -23,7 +23,7 @@ from sim.springs.integrators.implicit.blocks import (
 )
 from sim.springs.integrators.implicit.dissection import Dissection, dissect, factorise, solve
 from sim.springs.integrators.implicit.mean_length import add_mean_lengths, set_mean_blocks
-from sim.springs.integrators.implicit.quasi_newton import Memory, make_memory, remember, set_step
+from sim.springs.integrators.implicit.quasi_newton import PastSteps, make_memory, remember, set_step
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.arrays import by_net, mass_at
@@ -40,7 +40,7 @@ ROUND_OFF = 4e-15  # and to the farthest position over g, below which correction
 
 
 class Exactness(NamedTuple):
-    """Exactness of the stages of a method. Those of a rope go to round-off, which costs next to nothing."""
+    """Exactness with which a method has its stages solved. A rope has them solved to round-off, which costs little."""
 
     share: float  # of the change of velocity in a stage that corrections may leave, apart from round-off
     usable: float  # the last correction, relative to velocity and its change, of a stage that may be taken unsettled
@@ -64,7 +64,7 @@ class NetSolver(NamedTuple):
     diagonal: NDArray[np.float64]  # (rows cols, 6) flat
     beside: NDArray[np.float64]  # (rows cols, 4, 6) flat
     kept: NDArray[np.float64]  # (1,): g [s] of the factors, 0 without any
-    memory: Memory
+    memory: PastSteps
     before: NDArray[np.float64]  # (3 rows cols,) residual before a correction
 
 

@@ -135,13 +135,12 @@ class MooringScene(LineScene):
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""
-        place = self.state.x[:, self.system.node_count :]
         return {
             "x": (self.points.copy(), "m"),
             "tension": (self.tension.copy(), "N"),
             "end_tension": (self.end_tension(), "N"),
             "body": (self.body_place(), "m"),
-            "rotation": (place[:, 1].copy(), "rad"),
+            "rotation": (self.rotation().copy(), "rad"),
         }
 
     def static_inputs(self, far: float = 0.0) -> StaticInputs:

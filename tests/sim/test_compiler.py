@@ -146,7 +146,6 @@ def test_kernels_run_interpreted():
     assert python(code, NUMBA_DISABLE_JIT="1") == "18.0 3.0"
 
 
-@pytest.mark.stress  # compiles the forces on a cloth; that threads start from a kept kernel is in test_jit
 def test_a_kernel_with_other_options_has_other_files():
     names = {jit.kernel(signed.py_func, **options).file_name for options in ({}, {"noalias": True}, {"inline": True})}
     assert len(names | {signed.file_name}) == 3
@@ -158,6 +157,7 @@ def test_a_kernel_that_counts_calls_none_that_returns_what_it_did_not_count():
     assert first(np.full(3, 2.0)) == 2.0
 
 
+@pytest.mark.stress  # compiles the forces on a cloth; that threads start from a kept kernel is in test_jit
 def test_a_parallel_part_of_a_kept_entry_runs(tmp_path):
     code = """
 import numpy as np

@@ -11,7 +11,7 @@ from sim.ocean.tile.tile_waves import TileWaves
 from sim.ocean.tile.transforms import Transforms
 
 
-class SurfaceHeights(Protocol):
+class SurfaceSource(Protocol):
     """The part of `TileHeights` that a surface reads."""
 
     waves: TileWaves
@@ -48,7 +48,7 @@ class Surface:
     Two-component fields are views of two planes: field[..., 0] is contiguous.
     """
 
-    def __init__(self, heights: SurfaceHeights, t: float, choppiness: float, fields: dict[str, np.ndarray]) -> None:
+    def __init__(self, heights: SurfaceSource, t: float, choppiness: float, fields: dict[str, np.ndarray]) -> None:
         """fields: those already computed; `heights` keeps the same dict, but no Surface: a cycle would hold memory."""
         self.heights, self.t, self.choppiness, self.fields = heights, t, choppiness, fields
         self.numbers, self.transforms = heights.waves.numbers, heights.transforms

@@ -23,7 +23,7 @@ from sim.springs.integrators.implicit.blocks import (
 )
 from sim.springs.integrators.implicit.dissection import Dissection, dissect, factorise, solve
 from sim.springs.integrators.implicit.mean_length import add_mean_lengths, set_mean_blocks
-from sim.springs.integrators.implicit.quasi_newton import PastSteps, make_memory, remember, set_step
+from sim.springs.integrators.implicit.quasi_newton import StepMemory, make_memory, remember, set_step
 from sim.springs.integrators.implicit.tangent import dot
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.arrays import by_net, mass_at
@@ -64,7 +64,7 @@ class NetSolver(NamedTuple):
     diagonal: NDArray[np.float64]  # (rows cols, 6) flat
     beside: NDArray[np.float64]  # (rows cols, 4, 6) flat
     kept: NDArray[np.float64]  # (1,): g [s] of the factors, 0 without any
-    memory: PastSteps
+    memory: StepMemory
     before: NDArray[np.float64]  # (3 rows cols,) residual before a correction
 
 
@@ -311,7 +311,7 @@ scale_speeds = by_net(rope=kernel(lambda scale, v, p: None, inline=True), grid=s
 
 @kernel(inline=True)
 def remaining(size, last, before):
-    """Size of further corrections, as the last ones shrank: `size` after `last` and `before`."""
+    """Sum of the corrections to come, as the last ones shrank: `size` after `last` and `before`."""
     rate = size / last if before == np.inf else math.sqrt(size / before)
     return size * rate / (1.0 - rate) if rate < 1.0 else size
 

@@ -19,7 +19,7 @@ KEPT = 5  # steps
 LEAST_RESISTANCE = 1e-6  # of the forces' work, that they must lose along a step which is kept
 
 
-class PastSteps(NamedTuple):
+class StepMemory(NamedTuple):
     """The last steps: how far they went, how much force they took, and the reciprocal of their product."""
 
     steps: NDArray[np.float64]  # (KEPT, 3 rows cols)
@@ -31,7 +31,7 @@ class PastSteps(NamedTuple):
 
 @kernel
 def make_memory(size):
-    return PastSteps(
+    return StepMemory(
         np.zeros((KEPT, size)), np.zeros((KEPT, size)), np.zeros(KEPT), np.zeros(KEPT), np.zeros(size)
     )  # fmt: skip
 

@@ -198,8 +198,8 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Steep storm": {
         "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",
         "start": "rogue", "plot_wave_gauge": True,
-        "foam_by_wind": False, "foam_threshold": 0.57, "foam_fade": 2.0, "view": "gauge", "clouds": 0.9, "daylight": 0.8,
-        "visibility": 2000.0,
+        "foam_by_wind": False, "foam_threshold": 0.57, "foam_fade": 2.0, "view": "gauge", "clouds": 0.9,
+        "daylight": 0.8, "visibility": 2000.0,
     },
 }  # fmt: skip
 

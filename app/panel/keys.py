@@ -14,7 +14,8 @@ Key = Literal["space", "G", "N", "P", "R", "U", "1", "2", "3", "4", "5", "6", "7
 DIGITS: tuple[Key, ...] = ("1", "2", "3", "4", "5", "6", "7", "8", "9")
 KEYS = Html(
     "<b>Space</b> play or pause · <b>N</b> step · <b>R</b> reset · <b>V</b> reset camera · <b>P</b> plots · "
-    "<b>G</b> grid · <b>U</b> undo · <b>C</b> to the first control · <b>L</b> projector · <b>1-9</b> presets"
+    "<b>G</b> grid · <b>U</b> undo · <b>C</b> to the first control · <b>L</b> projector · <b>1-9</b> presets · "
+    "<b>Tab</b> to the next control, on a Mac to buttons with Option"
 )
 
 

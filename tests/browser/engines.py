@@ -29,9 +29,14 @@ from tests.browser.conftest import NO_PIXELS
 
 START_TIME = 60.0  # [s] for which a browser may take to answer
 ANSWER_TIME = 180.0  # [s] the same for a command
+SIZE = (1000, 700)  # [pixels] of the page
 SCREEN = ("Xvfb", "-displayfd", "1", "-screen", "0", "1600x1200x24", "-nolisten", "tcp")
 SOFTWARE = {"LIBGL_ALWAYS_SOFTWARE": "1", "GALLIUM_DRIVER": "llvmpipe"}
-KEYS = {"Control": "\ue009", "Enter": "\ue007", "Escape": "\ue00c", "Tab": "\ue004", "Right": "\ue014", "Space": " "}
+KEYS = {
+    "Control": "\ue009", "Meta": "\ue03d", "Enter": "\ue007", "Escape": "\ue00c", "Tab": "\ue004",
+    "ArrowLeft": "\ue012", "ArrowRight": "\ue014", "ArrowDown": "\ue015", "Space": " ",
+}  # fmt: skip
+BUTTONS = ("left", "middle", "right")  # of a mouse, in the order of their numbers
 PREFERENCES = {
     "browser.shell.checkDefaultBrowser": False,
     "datareporting.policy.dataSubmissionEnabled": False,
@@ -39,6 +44,7 @@ PREFERENCES = {
     "app.update.enabled": False,
     "webgl.force-enabled": True,
     "remote.active-protocols": 1,
+    "browser.download.folderList": 2,  # the folder that is named
 }
 MINI_BROWSER = next(iter(Path("/usr/lib").glob("*/webkit2gtk-4.*/MiniBrowser")), None)
 Point = Sequence[float]
@@ -49,12 +55,23 @@ def free_port() -> int:
         return probe.getsockname()[1]
 
 
+def moves(points: Sequence[Point]) -> list[dict[str, Any]]:
+    """Actions that move a pointer along these points [pixels of the page]."""
+    how = {"type": "pointerMove", "duration": 40, "origin": "viewport"}
+    return [{**how, "x": round(x), "y": round(y)} for x, y in points]
+
+
 class Engine(abc.ABC):
     """What the browsers have in common: a page, which takes actions of WebDriver and runs JavaScript."""
 
+    releases_right = True  # whether the driver can release the right button of the mouse
+
     def __init__(self) -> None:
         self.folder = tempfile.mkdtemp(prefix="engine")
+        self.downloads = Path(self.folder, "downloads")
+        self.downloads.mkdir()
         self.processes: list[subprocess.Popen[str]] = []
+        self.is_closed = False
 
     def start(self, *command: str, **how: Any) -> subprocess.Popen[str]:
         """Start a process that ends with the browser."""
@@ -89,18 +106,52 @@ class Engine(abc.ABC):
             time.sleep(0.2)
         raise AssertionError(f"not within {seconds:g} s: {body}; {self.run('return document.body.innerText;')[:300]}")
 
-    def press(self, *points: Point) -> None:
-        """Press the mouse at the first point, move along the others, and release it."""
-        moves = [
-            {"type": "pointerMove", "x": round(x), "y": round(y), "duration": 40, "origin": "viewport"}
-            for x, y in points
-        ]
-        down, up = {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}
-        actions = [moves[0], down, *moves[1:], up]
-        self.act([{"type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"}, "actions": actions}])
+    @abc.abstractmethod
+    def resize(self, width: int, height: int, ratio: float = 1.0) -> None:
+        """Give the page a size [pixels of the page], and so many pixels of the screen for each of them."""
+
+    @abc.abstractmethod
+    def choose_file(self, selector: str, path: Path) -> None:
+        """Choose a file in a field of the page."""
+
+    def move(self, *points: Point) -> None:
+        """Move the mouse without a button."""
+        self.act_pointer(moves(points), "mouse")
+
+    def hold(self, *points: Point, button: int = 0, kind: str = "mouse") -> None:
+        """Press at the first point, move along the others, and hold. kind: "mouse" or "touch"."""
+        first, *others = moves(points)
+        self.act_pointer([first, {"type": "pointerDown", "button": button}, *others], kind)
+
+    def release(self, button: int = 0, kind: str = "mouse") -> None:
+        """End what `hold` began."""
+        self.act_pointer([{"type": "pointerUp", "button": button}], kind)
+
+    def act_pointer(self, actions: list[dict[str, Any]], kind: str) -> None:
+        self.act([{"type": "pointer", "id": kind, "parameters": {"pointerType": kind}, "actions": actions}])
+
+    def press(self, *points: Point, button: int = 0, kind: str = "mouse") -> None:
+        """Press at the first point, move along the others, and release."""
+        first, *others = moves(points)
+        ends = [{"type": "pointerDown", "button": button}, *others, {"type": "pointerUp", "button": button}]
+        self.act_pointer([first, *ends], kind)
+
+    def press_in_frame(self, number: int, *points: Point) -> None:
+        """The same in a frame of the page; points: [pixels] from its corner."""
+        left, top = self.run(
+            f"""const box = document.querySelectorAll("iframe")[{number}].getBoundingClientRect();
+            return [box.left, box.top];"""
+        )
+        self.press(*((left + x, top + y) for x, y in points))
+
+    def turn_wheel(self, point: Point, along: float) -> None:
+        """Turn the wheel of the mouse [pixels of scrolling] over a point."""
+        x, y = (round(at) for at in point)
+        step = {"type": "scroll", "x": x, "y": y, "deltaX": 0, "deltaY": round(along), "duration": 0}
+        self.act([{"type": "wheel", "id": "wheel", "actions": [step | {"origin": "viewport"}]}])
 
     def press_on(self, expression: str) -> None:
-        """Press the mouse on the middle of an element, once it is there and stands still."""
+        """Press the mouse on the middle of an element, once it is there and stands still; again where it moved away."""
         place = f"""const find = () => {expression}, places = [];
             for (let k = 0; k < 2; k++) {{
                 find()?.scrollIntoView({{ block: "nearest" }});
@@ -109,18 +160,34 @@ class Engine(abc.ABC):
                 places.push(box && [box.left + box.width / 2, box.top + box.height / 2]);
             }}
             const stands = places[1] && String(places[0]) === String(places[1]);
-            return stands && find().contains(document.elementFromPoint(...places[1])) && places[1];"""
-        self.press(self.wait(place))
+            if (!stands || !find().contains(document.elementFromPoint(...places[1]))) return null;
+            window.isPressed = false;
+            addEventListener("pointerdown", ({{ target }}) => (window.isPressed = Boolean(find()?.contains(target))),
+                             {{ once: true, capture: true }});
+            return places[1];"""
+        for _ in range(3):
+            self.press(self.wait(place))
+            with contextlib.suppress(RuntimeError):  # another page may have come
+                for _ in range(10):
+                    if self.run("return window.isPressed ?? true;"):
+                        return
+                    time.sleep(0.1)
+                continue
+            return
+        raise AssertionError(f"pressed in vain: {expression}")
 
     def type(self, *keys: str) -> None:
-        """Press keys one after the other: letters, or names in `KEYS`."""
-        actions = [
-            {"type": kind, "value": KEYS.get(key, key)} for key in keys for kind in ("keyDown", "keyUp")
-        ]  # fmt: skip
+        """Press keys one after the other: letters, names in `KEYS`, or keys that are held together, as "Control+k"."""
+        actions = []
+        for key in keys:
+            values = [KEYS.get(one, one) for one in (key.split("+") if len(key) > 1 else [key])]
+            actions += [{"type": "keyDown", "value": value} for value in values]
+            actions += [{"type": "keyUp", "value": value} for value in reversed(values)]
         self.act([{"type": "key", "id": "keys", "actions": actions}])
 
     def close(self) -> None:
         """End all processes, the browser before its X server."""
+        self.is_closed = True
         for process in reversed(self.processes):
             for kind in (signal.SIGTERM, signal.SIGKILL):
                 with contextlib.suppress(ProcessLookupError):
@@ -135,7 +202,8 @@ class Firefox(Engine):
 
     def __init__(self) -> None:
         super().__init__()
-        lines = (f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in PREFERENCES.items())
+        chosen = {**PREFERENCES, "browser.download.dir": str(self.downloads)}
+        lines = (f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in chosen.items())
         Path(self.folder, "user.js").write_text("".join(lines), "utf-8")
         port = free_port()
         command = ("firefox-esr", "--no-remote", "--profile", self.folder, "--remote-debugging-port", str(port))
@@ -154,7 +222,7 @@ class Firefox(Engine):
         self.context = self.send("browsingContext.getTree")["contexts"][0]["context"]
         script = f"() => {{ {NO_PIXELS} }}"
         self.send("script.addPreloadScript", functionDeclaration=script)
-        self.send("browsingContext.setViewport", context=self.context, viewport={"width": 1000, "height": 700})
+        self.resize(*SIZE)
 
     def send(self, method: str, **params: Any) -> Any:
         self.count += 1
@@ -180,6 +248,24 @@ class Firefox(Engine):
     def act(self, actions: list[dict[str, Any]]) -> None:
         self.send("input.performActions", context=self.context, actions=actions)
 
+    def press_in_frame(self, number: int, *points: Point) -> None:
+        (page,) = self.send("browsingContext.getTree", root=self.context)["contexts"]
+        whole, self.context = self.context, page["children"][number]["context"]
+        try:
+            self.press(*points)
+        finally:
+            self.context = whole
+
+    def resize(self, width: int, height: int, ratio: float = 1.0) -> None:
+        size = {"width": width, "height": height}
+        self.send("browsingContext.setViewport", context=self.context, viewport=size, devicePixelRatio=ratio)
+
+    def choose_file(self, selector: str, path: Path) -> None:
+        locator = {"type": "css", "value": selector}
+        (field,) = self.send("browsingContext.locateNodes", context=self.context, locator=locator)["nodes"]
+        element = {"sharedId": field["sharedId"]}
+        self.send("input.setFiles", context=self.context, element=element, files=[str(path)])
+
     def close(self) -> None:
         self.socket.close()
         super().close()
@@ -188,11 +274,19 @@ class Firefox(Engine):
 class WebKit(Engine):
     """WebKitGTK's MiniBrowser; its language is "C", which is none."""
 
+    releases_right = False
+
     def __init__(self) -> None:
         super().__init__()
         homes = ("HOME", "XDG_RUNTIME_DIR", "XDG_DATA_HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME")
+        self.turned = 0.0
         around = {**self.open_screen(), **dict.fromkeys(homes, self.folder), "LC_ALL": "C", "LANG": "C"}
-        around |= {"WEBKIT_DISABLE_SANDBOX_THIS_IS_DANGEROUS": "1", "NO_AT_BRIDGE": "1", "GDK_BACKEND": "x11"}
+        around |= {
+            "XDG_DOWNLOAD_DIR": str(self.downloads),
+            "WEBKIT_DISABLE_SANDBOX_THIS_IS_DANGEROUS": "1",
+            "NO_AT_BRIDGE": "1",
+            "GDK_BACKEND": "x11",
+        }
         port = free_port()
         self.address = f"http://127.0.0.1:{port}"
         command = ("dbus-run-session", "--", "WebKitWebDriver", f"--port={port}", "--host=127.0.0.1")
@@ -209,9 +303,10 @@ class WebKit(Engine):
                 time.sleep(0.2)
         self.address += f"/session/{session}"
         self.send("/timeouts", {"script": 120_000, "pageLoad": 120_000})
-        self.send("/window/rect", {"width": 1000, "height": 800})
+        self.resize(*SIZE)
 
     def send(self, path: str, data: dict[str, Any]) -> Any:
+        """The answer to a command of WebDriver."""
         headers = {"Content-Type": "application/json"}
         request = urllib.request.Request(self.address + path, json.dumps(data).encode(), headers)
         try:
@@ -236,39 +331,100 @@ class WebKit(Engine):
     def act(self, actions: list[dict[str, Any]]) -> None:
         self.send("/actions", {"actions": actions})
 
+    def turn_wheel(self, point: Point, along: float) -> None:
+        self.turned += along  # its driver takes a turn for where the wheel has been turned to
+        super().turn_wheel(point, self.turned)
+
+    def press_in_frame(self, number: int, *points: Point) -> None:
+        self.send("/frame", {"id": number})
+        try:
+            self.press(*points)
+        finally:
+            self.send("/frame", {"id": None})
+
+    def resize(self, width: int, height: int, ratio: float = 1.0) -> None:
+        """Its driver knows no ratio: the page is told another one. Its window has at least 447 pixels."""
+        self.send("/window/rect", {"width": width, "height": height})
+        around = self.run("return [outerWidth - innerWidth, outerHeight - innerHeight];")
+        self.send("/window/rect", {"width": width + around[0], "height": height + around[1]})
+        self.run(f"""Object.defineProperty(window, "devicePixelRatio", {{ value: {ratio:g}, configurable: true }});
+            dispatchEvent(new Event("resize"));""")
+
+    def choose_file(self, selector: str, path: Path) -> None:
+        element = self.send("/element", {"using": "css selector", "value": selector})
+        self.send(f"/element/{next(iter(element.values()))}/value", {"text": str(path)})
+
 
 class Chromium(Engine):
     """A page of the Chromium that the other tests use."""
 
     def __init__(self, chromium: Any) -> None:
         super().__init__()
-        self.page = chromium.new_page(viewport={"width": 1000, "height": 700})
+        self.errors = pytest.importorskip("playwright.sync_api").Error
+        self.page = chromium.new_page()
         self.page.add_init_script(NO_PIXELS)
+        self.page.on("download", lambda file: file.save_as(self.downloads / file.suggested_filename))
+        self.devtools = self.page.context.new_cdp_session(self.page)
+        self.resize(*SIZE)
 
     def open(self, address: str) -> None:
         self.page.goto(address)
 
     def run(self, body: str) -> Any:
-        return self.page.evaluate(f"async () => {{ {body} }}")
+        try:
+            return self.page.evaluate(f"async () => {{ {body} }}")
+        except self.errors as error:  # so when another page comes
+            raise RuntimeError(str(error)) from None
 
     def act(self, actions: list[dict[str, Any]]) -> None:
         mouse, keyboard = self.page.mouse, self.page.keyboard
-        names = {value: name for name, value in KEYS.items() if name != "Space"} | {"\ue014": "ArrowRight"}
-        for step in actions[0]["actions"]:
+        names = {value: name for name, value in KEYS.items() if name != "Space"}
+        (source,) = actions
+        if source.get("parameters") == {"pointerType": "touch"}:
+            return self.touch(source["actions"])
+        for step in source["actions"]:
             match step["type"]:
                 case "pointerMove":
                     mouse.move(step["x"], step["y"])
                 case "pointerDown":
-                    mouse.down()
+                    mouse.down(button=BUTTONS[step["button"]])
                 case "pointerUp":
-                    mouse.up()
+                    mouse.up(button=BUTTONS[step["button"]])
+                case "scroll":
+                    mouse.move(step["x"], step["y"])
+                    mouse.wheel(step["deltaX"], step["deltaY"])
                 case "keyDown":
                     keyboard.down(names.get(step["value"], step["value"]))
                 case "keyUp":
                     keyboard.up(names.get(step["value"], step["value"]))
+        return None
+
+    def touch(self, steps: list[dict[str, Any]]) -> None:
+        """The same with a finger, which Playwright cannot move."""
+        for step in steps:
+            match step["type"]:
+                case "pointerMove":
+                    self.finger = {"x": step["x"], "y": step["y"]}
+                    if step is not steps[0]:  # the finger is there
+                        self.send_touch("touchMove", [self.finger])
+                case "pointerDown":
+                    self.send_touch("touchStart", [self.finger])
+                case "pointerUp":
+                    self.send_touch("touchEnd", [])
+
+    def send_touch(self, kind: str, fingers: list[dict[str, Any]]) -> None:
+        self.devtools.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": fingers})
+
+    def resize(self, width: int, height: int, ratio: float = 1.0) -> None:
+        size = {"width": width, "height": height, "deviceScaleFactor": ratio, "mobile": False}
+        self.devtools.send("Emulation.setDeviceMetricsOverride", size)
+
+    def choose_file(self, selector: str, path: Path) -> None:
+        self.page.set_input_files(selector, str(path))
 
     def close(self) -> None:
-        self.page.close()
+        if threading.current_thread() is threading.main_thread():  # where Playwright takes it
+            self.page.close()
         super().close()
 
 
@@ -282,16 +438,30 @@ def missing(name: str) -> str:
     return ", ".join(lacks) or ("MiniBrowser" if name == "webkit" and MINI_BROWSER is None else "")
 
 
-@contextlib.contextmanager
-def opened(name: str, chromium: Any) -> Iterator[Engine]:
-    """A browser by its name; the test is skipped where it is not installed."""
+def make(name: str, chromium: Any) -> Engine:
+    """Start a browser by its name; the test is skipped where it is not installed."""
     if lacks := missing(name):
         pytest.skip(f"no {lacks} on the search path")
-    engine = Chromium(chromium) if name == "chromium" else {"firefox": Firefox, "webkit": WebKit}[name]()
-    guard = threading.Timer(0.8 * START_TIME + ANSWER_TIME, engine.close)  # so that no browser is left behind
+    return Chromium(chromium) if name == "chromium" else {"firefox": Firefox, "webkit": WebKit}[name]()
+
+
+@contextlib.contextmanager
+def guarded(engine: Engine) -> Iterator[Engine]:
+    """Close a browser that a test waits for too long, so that it is not left behind."""
+    guard = threading.Timer(0.8 * START_TIME + ANSWER_TIME, engine.close)
     guard.start()
     try:
         yield engine
     finally:
         guard.cancel()
+
+
+@contextlib.contextmanager
+def opened(name: str, chromium: Any) -> Iterator[Engine]:
+    """A browser by its name, for one test."""
+    engine = make(name, chromium)
+    try:
+        with guarded(engine):
+            yield engine
+    finally:
         engine.close()

@@ -19,7 +19,8 @@ export function beforeRender(stage, part) {
 let hooked = null; // viser makes another one with a new canvas
 onFrame(() => {
   const now = viewer(), own = now?.scene;
-  if (!own || hooked === own || !now.nodeRefFromName) return;
+  if (!own || !now.nodeRefFromName) return wake(); // its first frame is to find the parts
+  if (hooked === own) return;
   hooked = own;
   const earlier = own.onBeforeRender;
   own.onBeforeRender = function (renderer, scene, camera, target) {

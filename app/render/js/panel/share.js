@@ -13,6 +13,7 @@ import { onControls } from "../core/watch.js";
 import { chartsOfPage } from "./charts.js";
 import { labAt, ofLab, setupIn } from "./links.js";
 import { rowsOf } from "./rows.js";
+import { withDuration } from "./webm.js";
 
 const MAX_LENGTH = 5000; // [characters] that the lab takes
 const MAX_REPLAY = 2e8; // [bytes] of a replay that is read
@@ -89,6 +90,15 @@ function download(content, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
+// Save a clip of so many seconds.
+/** @param {Blob} made @param {number} seconds */
+async function saveClip(made, seconds) {
+  const { type } = made;
+  if (type.startsWith("video/mp4")) return download(made, "springtide.mp4");
+  const bytes = withDuration(new Uint8Array(await made.arrayBuffer()), seconds);
+  download(new Blob([bytes], { type }), "springtide.webm");
+}
+
 /** @type {MediaRecorder | null} */
 let clip = null; // the recorder of the clip that is being made
 /** @param {HTMLElement} button */
@@ -123,7 +133,7 @@ function toggleClip(button) {
     clip = null;
     springtide.isRecording = false;
     button.textContent = "Record clip";
-    download(new Blob(parts, { type }), type.startsWith("video/mp4") ? "springtide.mp4" : "springtide.webm");
+    saveClip(new Blob(parts, { type }), (performance.now() - started) / 1000);
   };
   made.start(1000);
   show();

@@ -29,9 +29,9 @@ from app.server.viewer import Viewer
 from app.server.web import page as served_page
 from tests.browser.conftest import HARMLESS_ERRORS, LATE_UPDATE, PIXEL
 from tests.browser.engines import SIZE, Engine, guarded, make
-from tests.browser.test_beside import CAMERA
-from tests.browser.test_engines import BUTTON, FIELD, RUNS, TAB, named, until
-from tests.browser.test_page import NO_WEBGL, REFUSED
+from tests.browser.page.test_beside import CAMERA
+from tests.browser.page.test_engines import BUTTON, FIELD, RUNS, TAB, named, until
+from tests.browser.page.test_page import NO_WEBGL, REFUSED
 
 ENGINES = ["chromium", *(pytest.param(name, marks=pytest.mark.long) for name in ("firefox", "webkit"))]
 # Rows that hold in WebKitGTK. The others were not seen to hold there: on a busy machine it takes seconds for a frame.

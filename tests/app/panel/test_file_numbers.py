@@ -18,7 +18,7 @@ from sim.mooring import read_moordyn
 from tests import coroutines
 from tests.waiting import wait_for
 
-PATH = Path(__file__).parents[2] / "sim/mooring/files/shared_line.txt"
+PATH = Path(__file__).parents[2] / "sim/mooring/moordyn/files/shared_line.txt"
 FILE = MooringParams(moordyn_file=str(PATH), time_step=2e-3)
 
 

@@ -90,7 +90,7 @@ function download(content, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-// Save a clip of so many seconds.
+// Save a clip of this length [s].
 /** @param {Blob} made @param {number} seconds */
 async function saveClip(made, seconds) {
   const { type } = made;

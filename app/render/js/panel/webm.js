@@ -10,7 +10,7 @@ const ADDED = 11; // bytes of a duration: identifier, size, and a number of doub
 /** @typedef {{ id: number, at: number, data: number, end: number, width: number }} Element */
 
 // The element at a place: { id, at: of its size, data: where its data begins, end, width: bytes of its size }. A size that is not
-// known ends with the bytes. Null where there is none.
+// known ends with the bytes. Null past the last one.
 /** @param {Uint8Array} bytes @param {number} start @returns {Element | null} */
 function elementAt(bytes, start) {
   const long = Math.clz32(bytes[start]) - 23, at = start + long, width = Math.clz32(bytes[at]) - 23;

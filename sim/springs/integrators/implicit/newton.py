@@ -272,7 +272,7 @@ def total_mass(p):
 
 @kernel(inline=True)
 def mean_velocity(v, p, o):
-    """Of the free particles, one component, from index o on."""
+    """Mean velocity of the free particles: one component, from index o on."""
     momentum = mass = 0.0
     for j in range(p.rows * p.cols):
         if p.inverse_masses[j] > 0.0:

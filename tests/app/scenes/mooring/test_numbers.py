@@ -111,7 +111,6 @@ def test_the_panel_says_the_readings(scene):
     ]
     assert order == sorted(order)
     assert report.kilonewtons(found.lines[0].fairlead) in str(report.figures_of(shown))
-    assert "line 1" in str(report.figures_of(shown))
     assert report.kilonewtons(1500.0).startswith("1.5")
     slack = found.lines[0]._replace(slack_since=2.0)
     assert "since 3" in str(report.slack_text(slack, 5.0))

@@ -75,7 +75,7 @@ def test_the_curve_of_a_file_goes_as_far_as_its_line_and_along_the_waves():
     ends = {point.id: point.position for point in mooring.system.points}
     x, y, z = np.subtract(ends[line.end], ends[line.start])
     straight = math.sqrt(line.length**2 - z * z)
-    offset, force = FileInputs(str(path), (0.6, 0.8), 0.0).curve()
+    offset, force = FileInputs(str(path), (), (0.6, 0.8), 0.0).curve()
     assert offset[-1] == pytest.approx(1.05 * (straight - math.hypot(x, y)), rel=0.2)
     assert offset[0] == -offset[-1]
     for i in (5, len(offset) // 2, len(offset) - 6):

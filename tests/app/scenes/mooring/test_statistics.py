@@ -141,7 +141,7 @@ def test_the_use_is_of_the_breaking_load_and_without_one_there_is_none():
     largest = max(line.at_fairlead.largest for line in scene.readings().lines)
     shown = snapshot_of(scene)
     assert "<th>use<br>%</th>" in str(tension_tables(shown))
-    assert f"({100.0 * largest / 1e6:.2g}" in str(figures_of(shown))
+    assert f", {100.0 * largest / 1e6:.2g}\xa0% of breaking load" in str(figures_of(shown))
     assert marks_of(shown)["breaking_load"] == ""
     scene.params = dataclasses.replace(scene.params, breaking_load=0.0)
     shown = snapshot_of(scene)

@@ -39,7 +39,13 @@ IN_WEBKIT = (
     "a_scene_runs_and_is_drawn_without_error", "the_camera_turns_moves_and_comes_back", "the_wheel_zooms",
     "a_point_of_the_rope_is_marked_and_pulled", "a_point_of_the_cloth_is_pulled", "the_arrows_move_the_root",
     "the_arrows_move_the_sphere", "the_buoy_is_pulled", "a_finger_pulls_the_rope", "numbers", "a_slider", "a_list",
-    "undo", "a_link_is_copied_or_the_page_says_how",
+    "undo", "a_link_is_copied_or_the_page_says_how", "a_set_up_is_chosen_from_a_file", "the_teacher_s_page",
+    "a_lost_context_comes_back", "a_server_that_ends_and_begins_again",
+    "a_page_is_loaded_again_left_and_come_back_to", "a_hidden_page_goes_on_once_it_is_shown",
+    "without_webgl_the_page_says_so", "without_storage_the_page_works", "less_motion_where_the_user_asks_for_it",
+    "a_replay_plays_from_a_file", "a_task_of_the_workbook", "a_clip_is_recorded_or_the_page_says_that_it_cannot",
+    "a_browser_that_hides_what_it_is", "a_touchpad_zooms", "a_window_of_another_size_or_zoom", "two_labs_side_by_side",
+    "a_checkbox_and_a_folder", "tabs", "buttons_and_keys_of_the_lab",
 )  # fmt: skip
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
 # What the page says of errors; also that viser's client has ended.

@@ -124,7 +124,6 @@ def settled_counts(page: Any) -> dict[str, int]:
         ("square_sea", 0.0, CUTS),
         ("rope", 0.0, CUTS),
         ("rope", 10.0, 1),
-        pytest.param("rope", 60.0, 1, marks=[pytest.mark.long, pytest.mark.timeout(600)]),
     ],
 )
 def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str, seconds: float, cuts: int) -> None:

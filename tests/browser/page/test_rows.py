@@ -45,6 +45,7 @@ IN_WEBKIT = (
     "without_webgl_the_page_says_so", "without_storage_the_page_works", "less_motion_where_the_user_asks_for_it",
     "a_replay_plays_from_a_file", "a_task_of_the_workbook", "a_clip_is_recorded_or_the_page_says_that_it_cannot",
     "a_browser_that_hides_what_it_is", "a_touchpad_zooms", "a_window_of_another_size_or_zoom", "two_labs_side_by_side",
+    "a_checkbox_and_a_folder", "tabs", "buttons_and_keys_of_the_lab",
 )  # fmt: skip
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
 # What the page says of errors; also that viser's client has ended.

@@ -9,7 +9,7 @@ import copy
 import dataclasses
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -211,13 +211,16 @@ class Race:
         for reference, entrant in zip(self.references, self.entrants, strict=False):
             reference.update(entrant.net)
 
-    def advance(self, moving: Net, ticks: int) -> None:
-        """Advance all by `ticks` ticks. moving: the net of rope 1 with the motions of root and pull.
+    def nets_with(self, moving: Net) -> list[Net]:
+        """The net of each entrant. moving: that of rope 1 with the motions of root and pull."""
+        return [dataclasses.replace(moving, families=entrant.net.families) for entrant in self.entrants]
+
+    def advance(self, nets: Sequence[Net], ticks: int) -> None:
+        """Advance all by `ticks` ticks. nets: of `nets_with`.
 
         Until all have arrived the race stays as it is: a solve may be ended early, or others look at it meanwhile.
         """
         duration = ticks * self.tick
-        nets = [dataclasses.replace(moving, families=entrant.net.families) for entrant in self.entrants]
         arrivals = [entrant.after(net, ticks) for entrant, net in zip(self.entrants, nets, strict=True)]
         references = copy.deepcopy(self.references)
         for reference, net in zip(references, nets, strict=False):

@@ -365,6 +365,28 @@ def test_labels_say_what_differs():
     assert RaceOf(RaceParams(ropes=1)).frame().labels == ("1: explicit Euler",)
 
 
+def test_nets_are_made_anew_only_where_something_moves_or_other_forces_act():
+    scene = RaceScene(RaceParams(stiffness_ratio=2.0))
+
+    def nets(ticks=1):
+        scene.advance(ticks)
+        return scene.moving_nets[1]
+
+    first = nets()
+    assert nets() is first
+    scene.handle(GrabTo(5, (0.5, 0.0, 0.5)))
+    assert nets() is not first
+    assert nets()[0].grab is not None
+    scene.handle(Release())
+    nets()
+    kept, rest = scene.keep(), nets()
+    assert nets() is rest
+    scene.change_forces(dataclasses.replace(scene.params, stiffness=2.0 * scene.params.stiffness))
+    assert [net.families[0].stiffness for net in nets()] == [2.0 * net.families[0].stiffness for net in rest]
+    scene.resume(kept)
+    assert [net.families[0].stiffness for net in nets()] == [net.families[0].stiffness for net in rest]
+
+
 def test_all_ropes_look_equally_large_from_the_front():
     params = RaceParams(ropes=6)
     position, target = np.array(RaceView.first_view(object.__new__(RaceView), params))
@@ -433,7 +455,7 @@ def test_a_long_race_keeps_fewer_rows_but_those_of_its_start():
     charts.row_interval = 1e-9
     assert all(chart.columns[0].size == 0 for chart in charts.charts().values())
     for _ in range(2 * MAX_ROWS + 10):
-        scene.race.advance(scene.net, 1)
+        scene.race.advance(scene.race.nets_with(scene.net), 1)
         charts.update()
     t = charts.charts()["plot_errors"].columns[0]
     assert MAX_ROWS / 2 <= len(t) <= MAX_ROWS

@@ -10,8 +10,6 @@ import statistics
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.linalg import splu
 
 from app.scenes.cloth.parameters import PRESETS, ClothParams
 from app.scenes.cloth.scene import ClothScene
@@ -67,6 +65,8 @@ def row(preset: str, stiffness: float, method: str, steps: int) -> dict[str, Any
 
 def sparse_matrix(p: Any, diagonal: np.ndarray, beside: np.ndarray) -> Any:
     """The matrix that `factorise` takes, (3 n, 3 n) of x, y, z of each particle in turn."""
+    from scipy.sparse import coo_array
+
     n, free = p.rows * p.cols, p.inverse_masses > 0.0
     whole = np.array([0, 1, 2, 1, 3, 4, 2, 4, 5])  # of six numbers, those of the nine
     number = np.arange(n).reshape(p.rows, p.cols)
@@ -96,6 +96,8 @@ def matrix_at(net: Net, state: State) -> tuple[Any, Any, Any]:
 
 def linear_row(stiffness: float, repeats: int) -> dict[str, Any]:
     """Least times of factors and of a solve, ours and SciPy's `splu` in the order of least fill of A + A^T."""
+    from scipy.sparse.linalg import splu
+
     net = net_of("Curtain", stiffness, "implicit_euler")
     state = State.at_rest(net)
     advance(net, state, "implicit_euler", STEP, 20)

@@ -508,10 +508,12 @@ def test_the_time_line(visit: Visit) -> None:
     )
     visit.page.press((left + 0.95 * width, middle), (left + 0.7 * width, middle), (left + 0.5 * width, middle))
     visit.page.wait('return document.querySelector("#springtide-time.springtide-is-past") !== null;')
-    shown = visit.page.run('return document.querySelector("#springtide-time").dataset.moment;')
+    line = 'const line = document.querySelector("#springtide-time"); return Number(line.dataset.moment)'
+    visit.page.wait(f'{line} - line.querySelector("input").valueAsNumber < 0.02;')  # at the end of the drag
+    shown = visit.page.run(f"{line};")
     visit.page.run('document.querySelector("#springtide-time input").focus();')
     visit.page.type("ArrowRight")
-    visit.page.wait(f'return Number(document.querySelector("#springtide-time").dataset.moment) > {shown};')
+    visit.page.wait(f"{line} > {shown};")
     visit.page.press_on('document.querySelector("#springtide-time [data-act=live]")')
     visit.page.wait('return document.querySelector("#springtide-time.springtide-is-past") === null;')
 

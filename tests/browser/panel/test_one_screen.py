@@ -23,7 +23,7 @@ TASKS = load_tasks()
 MIN_SLIDERS = 5
 MAX_HEAD = 150  # [pixels] of the block that always stays
 MAX_WORDS = 80
-MAX_STOPS = 8  # of Tab before the first control
+MAX_STOPS = 9  # of Tab before the first control; one of them is the folder of scenes in pictures
 # The names of the sliders that are whole in the window, the height of the block above the tabs [pixels], and the words.
 FIRST_VIEW = """() => {
     const panel = document.querySelector(".mantine-ScrollArea-viewport:has(.springtide-panel)");

@@ -134,7 +134,7 @@ def test_clip_picture_and_plots_are_made_as_files(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path
 ) -> None:
     lab, _ = one_page
-    tab = open_tab(lab.port, drawn="colorMap", ratio=0.1)  # a canvas that nothing is drawn on makes no clip
+    tab = open_tab(lab.port, drawn="colorMap")  # draws the background image too: the sky of the picture is checked
     tab.follow(lab, SCENE)
     tab.show("Share")
     lab.settings.set("plot_tip", True)

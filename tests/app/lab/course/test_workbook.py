@@ -108,7 +108,7 @@ def test_answers_are_kept(folder: Path, question: Question, text: str, kept: obj
     ("question", "text", "reason"),
     [
         (PREDICT, "sideways", "not one of the choices"), (MEASURE, "a lot", "number in m"), (MEASURE, "1,000", "comma"),
-        (MEASURE, "5 kg", "no unit"), (MEASURE, "1e999", "kept"), (MEASURE, "nan", "number"),
+        (MEASURE, "5 kg", "no unit"), (MEASURE, "1e999", "stored"), (MEASURE, "nan", "number"),
         (EXPLAIN, "x" * (MAX_TEXT + 1), "at most 4000"), (EXPLAIN, "a\x07b", "control"), (EXPLAIN, "\ud800", "control"),
     ],
 )  # fmt: skip

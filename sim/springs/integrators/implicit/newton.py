@@ -272,13 +272,16 @@ def total_mass(p):
 
 @kernel(inline=True)
 def mean_velocity(v, p, o):
-    """Mean velocity of the free particles: one component, from index o on."""
-    momentum = mass = 0.0
+    """Mean velocity, from index o on: of pinned particles, or of all where none is, so that their momentum stays."""
+    momentum = mass = held = 0.0
+    pins = 0
     for j in range(p.rows * p.cols):
-        if p.inverse_masses[j] > 0.0:
-            mass += p.mass[j]
-            momentum += p.mass[j] * v[o + j]
-    return momentum / mass if mass > 0.0 else 0.0
+        momentum += p.mass[j] * v[o + j]
+        mass += p.mass[j]
+        if p.inverse_masses[j] == 0.0:
+            pins += 1
+            held += v[o + j]
+    return held / pins if pins > 0 else momentum / mass
 
 
 @kernel

@@ -19,9 +19,9 @@ RAIN_HEIGHT = 350.0  # [m] of the clouds from which rain falls
 # here; `js/sea/water_shader.js` declares each of them with its meaning.
 WATER_UNIFORMS = (
     "deepColor", "scatterColor", "foamColor", "sunDirection", "sunLight", "optics", "lens", "ripple", "skyline",
-    "skyFold", "skyTint", "clouds", "wind", "seaState", "grid", "ringLaw", "gridMiddle", "shown", "wireColor", "slick",
-    "slickOptics", "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection", "rainRings", "rainVeil",
-    "firePlace", "fireLight", "gaugePlace",
+    "skyFold", "skyTint", "skyLow", "skyHigh", "clouds", "wind", "seaState", "grid", "ringLaw", "gridMiddle", "shown",
+    "wireColor", "slick", "slickOptics", "oilColor", "oilFilm", "oilExtinction", "cutout", "cutoutDirection",
+    "rainRings", "rainVeil", "firePlace", "fireLight", "gaugePlace",
 )  # fmt: skip
 MAX_WATERLINES = 13  # that the shader of the water mirrors, and draws foam and shade around
 # The same for the shader of the rain, `js/sea/rain.js`.
@@ -106,6 +106,10 @@ class Material:
     # reduced to its half, so that no place of the photograph is too bright.
     sky_fold: tuple[float, float, float] = (1.0, 0.3, 12.0)
     sky_tint: RGB = (1.0, 1.0, 1.0)  # colour filter on the photograph, linear, any value from 0
+    # Mean radiance of the photograph, linear, at the horizon and overhead: a browser that cannot draw into floats has a
+    # sky of these instead.
+    sky_low: RGB = (0.75, 0.80, 0.85)
+    sky_high: RGB = (0.20, 0.40, 0.70)
     draw_sky: bool = True
 
     # Drops that make a ring [1/(m2 s)] (0: no rain), wavelength [m] and speed [m/s] of the rings.
@@ -202,6 +206,8 @@ def uniform_table(
         "skyline": m.skyline,
         "skyFold": m.sky_fold,
         "skyTint": m.sky_tint,
+        "skyLow": m.sky_low,
+        "skyHigh": m.sky_high,
         "clouds": (m.clouds, m.cloud_size, m.cloud_darkness),
         "wind": (m.ripple_direction, m.gravity, m.foam_scale),
         "seaState": sea_state,

@@ -23,6 +23,10 @@ class Photograph:
     land_far: float  # [deg] height of the land opposite to the sun
     stretch: float  # slope at the horizon of the photograph's elevation over the drawn elevation
     fold: float  # share of the photograph's azimuths that is used
+    # Mean radiance, linear, at the horizon and overhead, more towards the sun; between them the share of the second is
+    # the square root of the sine of the elevation.
+    low: RGB
+    high: RGB
     exposure: float = 1.0
     limit: float = 5.0  # radiance that is reduced to its half
     tint: RGB = (1.0, 1.0, 1.0)  # colour filter, linear
@@ -40,6 +44,8 @@ SKIES = {
         land_far=10.0,
         stretch=0.6,
         fold=0.65,
+        low=(1.60, 1.85, 2.10),
+        high=(0.03, 0.07, 0.26),
         exposure=0.64,
         limit=1.2,
         tint=(0.72, 0.91, 1.28),
@@ -53,6 +59,8 @@ SKIES = {
         land_far=5.0,
         stretch=0.42,
         fold=0.36,
+        low=(5.42, 3.04, 1.51),
+        high=(0.17, 0.62, 1.40),
         exposure=0.36,
         limit=9.0,
         tint=(1.0, 0.9, 0.84),
@@ -67,6 +75,8 @@ SKIES = {
         land_far=8.0,
         stretch=0.6,
         fold=0.5,
+        low=(8.00, 4.60, 5.40),
+        high=(0.16, 0.42, 1.44),
         exposure=0.45,
         limit=2.0,
         tint=(1.0, 0.86, 0.9),
@@ -81,6 +91,8 @@ SKIES = {
         land_far=18.0,
         stretch=0.7,
         fold=0.8,
+        low=(0.48, 0.44, 0.36),
+        high=(0.02, 0.03, 0.04),
         exposure=0.6,
         limit=5.0,
         tint=(0.35, 0.6, 1.0),
@@ -118,6 +130,8 @@ def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Mater
         sky_fold=(photo.fold, 0.5, photo.limit),
         exposure=photo.exposure,
         sky_tint=photo.tint,
+        sky_low=photo.low,
+        sky_high=photo.high,
     )
 
 

@@ -79,6 +79,14 @@ HARMLESS_ERRORS = ("preventDefault inside passive",)
 # after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a
 # removal.
 LATE_UPDATE = "Tried to update non-existent component"
+# Takes away what a browser needs to draw into floats. viser's client still tries, once with each photograph.
+NO_FLOATS = """for (const name of ["getExtension", "getSupportedExtensions"]) {
+    const get = WebGL2RenderingContext.prototype[name], isFloat = (one) => /color_buffer|texture_float/.test(one);
+    WebGL2RenderingContext.prototype[name] = function (...all) {
+        const found = isFloat(all[0]) ? null : get.apply(this, all);
+        return Array.isArray(found) ? found.filter((one) => !isFloat(one)) : found; };
+}"""
+LOADING_ERRORS = "renderTarget is not in UnsignedByteType"
 HOLD_TIME = 5.0  # [s] after which a drag that holds nothing is tried again
 STUCK = 0.6  # of the time of a test, after which its browser is ended
 

@@ -65,11 +65,16 @@ interface ShadedContext extends ShadedNode {
 }
 interface NodeShader {
   suffix: string;
-  unpack?(node: Pick<ShadedNode, "base" | "mesh">): boolean; // brings the vertices up to date before the camera of the frame is placed
+  unpack?(node: ShadedNode): boolean; // brings the vertices up to date before the camera of the frame is placed
   update(context: ShadedContext): three.Material | null; // returns the material that has the shader
   removeUnused?(): void; // disposes of what removed nodes left
 }
 
+// Radiances of a sky by formula: at the horizon and overhead.
+interface SkyColors {
+  low: number[];
+  high: number[];
+}
 // What else is drawn beside a mesh has its classes (sea/dome.js).
 interface Beside {
   mesh: three.Mesh;

@@ -93,6 +93,14 @@ def test_the_head_tells_how_long_a_step_takes_and_who_looks(lab: Viewer) -> None
         assert ("4 browsers share this lab." in words) is (visitors > 1)
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_the_help_says_how_buttons_are_reached_by_keys_on_a_mac(viewer: Viewer, name: str) -> None:
+    viewer.open(name)
+    viewer.served.stop_threads()
+    words = viewer.panel.controls_tab.help.content
+    assert "<b>Tab</b> to the next control, on a Mac to buttons with Option" in words
+
+
 def test_lines_under_controls_are_written_some_times_a_second(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     lab.served.stop_threads()
     calls: list[object] = []

@@ -1,11 +1,14 @@
 """Water as browsers without shaders see it, and the photograph of the sky above it, without a browser."""
 
 import dataclasses
+import io
 import math
+from importlib import resources
 
 import numpy as np
 import pytest
 import viser
+from PIL import Image
 
 from app.render.injection import disable_shaders
 from app.render.material import Material, SlickRegion, blend
@@ -54,3 +57,38 @@ def test_the_sun_is_drawn_where_the_shader_shows_that_of_the_photograph(name: st
     e, g, land = math.degrees(drawn_elevation(photo)), photo.stretch, photo.land_near
     assert land + e * (g + (90.0 - land - 90.0 * g) * e / 8100.0) == pytest.approx(photo.sun_height, abs=1e-9)
     assert land + 90.0 * (g + (90.0 - land - 90.0 * g) / 90.0) == pytest.approx(90.0)
+
+
+# Of viser, by the name of the sky.
+MAPS = {"park": "rooitou_park", "sunset": "venice_sunset", "dawn": "kiara_1_dawn", "night": "dikhololo_night"}
+LIGHT = np.array([0.3, 0.5, 0.2])  # the weights of the shader
+
+
+def photographed(name: str) -> np.ndarray:
+    """Radiance (height, width, 3) of a photograph of viser's: a JPEG, and its logarithmic gain in another behind it."""
+    data = (resources.files(viser) / f"_assets/hdri/{MAPS[name]}_1k.jpg").read_bytes()
+    parts = [data.index(b"\xff\xd8\xff"), data.rindex(b"\xff\xd8\xff")]
+    seen, gain = (np.asarray(Image.open(io.BytesIO(data[at:])).convert("RGB"), float) / 255.0 for at in parts)
+    largest = float(data.split(b'GainMapMax="')[1].split(b'"')[0])
+    return np.maximum((seen**2.2 + 1.0 / 64.0) * 2.0 ** (largest * gain) - 1.0 / 64.0, 0.0)
+
+
+@pytest.mark.parametrize("name", SKIES)
+def test_the_sky_by_formula_is_as_bright_as_that_of_the_photograph(name: str) -> None:
+    """Mean over bearings, more towards the sun, at each elevation; what is bright is reduced as in the shader."""
+    photo, image = SKIES[name], photographed(name)
+    height, width, _ = image.shape
+    bearing, drawn = np.meshgrid(np.linspace(-np.pi, np.pi, 180, endpoint=False), np.radians(np.arange(2.0, 85.0, 2.0)))
+    land = (
+        np.radians(photo.land_near + (photo.land_far - photo.land_near) * (0.5 - 0.5 * np.cos(bearing))) * 2.0 / np.pi
+    )
+    e = drawn * 2.0 / np.pi
+    up = land + e * (photo.stretch + (1.0 - land - photo.stretch) * e)  # in right angles
+    column = np.floor((photo.sun_column + bearing * photo.fold / (2.0 * np.pi)) * width).astype(int) % width
+    light = image[((1.0 - up) * height / 2.0).astype(int), column]
+    share = np.sqrt(np.sin(up * np.pi / 2.0))[..., None]
+    formed = (1.0 - share) * np.array(photo.low) + share * np.array(photo.high)
+    seen, alike = (c / (1.0 + c @ LIGHT / photo.limit)[..., None] for c in (light, formed))
+    weights = 1.0 + np.cos(bearing[0])
+    alike, seen = (np.average(c, axis=1, weights=weights) for c in (alike, seen))
+    assert (np.sqrt(((alike - seen) ** 2).mean(0)) < seen.mean(0) / 3.0).all()

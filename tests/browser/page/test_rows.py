@@ -27,7 +27,7 @@ from app.scenes.springs.rope_parameters import ROOT
 from app.server.replay_file import replay_html
 from app.server.viewer import Viewer
 from app.server.web import page as served_page
-from tests.browser.conftest import HARMLESS_ERRORS, LATE_UPDATE, PIXEL
+from tests.browser.conftest import HARMLESS_ERRORS, LATE_UPDATE, LOADING_ERRORS, NO_FLOATS, PIXEL
 from tests.browser.engines import SIZE, Engine, guarded, make
 from tests.browser.page.test_beside import CAMERA
 from tests.browser.page.test_engines import BUTTON, FIELD, RUNS, TAB, named, until
@@ -44,6 +44,7 @@ IN_WEBKIT = (
     "a_page_is_loaded_again_left_and_come_back_to", "a_hidden_page_goes_on_once_it_is_shown",
     "without_webgl_the_page_says_so", "without_storage_the_page_works", "less_motion_where_the_user_asks_for_it",
     "a_replay_plays_from_a_file", "a_task_of_the_workbook", "a_clip_is_recorded_or_the_page_says_that_it_cannot",
+    "without_float_targets_the_sea_has_a_sky",
     "a_browser_that_hides_what_it_is", "a_touchpad_zooms", "a_window_of_another_size_or_zoom", "two_labs_side_by_side",
     "a_checkbox_and_a_folder", "tabs", "buttons_and_keys_of_the_lab",
 )  # fmt: skip
@@ -56,12 +57,15 @@ for (const kind of ["error", "warn"]) {
 }
 addEventListener("error", (event) => window.noted.push(["error", event.message]));
 addEventListener("unhandledrejection", (event) => window.noted.push(["error", String(event.reason)]));"""
-STANDARD_DEVIATION = """const small = document.createElement("canvas"), pen = small.getContext("2d");
+NUMBERS = """const small = document.createElement("canvas"), pen = small.getContext("2d");
     [small.width, small.height] = [50, 35];
     pen.drawImage(document.querySelector("canvas[data-engine]"), 0, 0, 50, 35);
     const numbers = [...pen.getImageData(0, 0, 50, 35).data].filter((_, k) => k % 4 !== 3);
-    const mean = numbers.reduce((sum, one) => sum + one, 0) / numbers.length;
-    return Math.sqrt(numbers.reduce((sum, one) => sum + (one - mean) ** 2, 0) / numbers.length);"""
+    const meanOf = (some) => some.reduce((sum, one) => sum + one, 0) / some.length;"""
+STANDARD_DEVIATION = f"""{NUMBERS}
+    const mean = meanOf(numbers);
+    return Math.sqrt(meanOf(numbers.map((one) => (one - mean) ** 2)));"""
+SKY_IS_BRIGHT = f"{NUMBERS} return window.__springtide.showsWhole() && meanOf(numbers.slice(0, 3 * 50 * 8)) > 60;"
 SCENE_IS_SHOWN = (
     "const cover = document.getElementById('springtide-cover'); return cover.classList.contains('springtide-hidden');"
 )
@@ -757,6 +761,17 @@ def test_a_browser_that_hides_what_it_is(visit: Visit, with_script: Callable[[st
     visit.until(lambda: visit.viewer.loop.scene.time > 0.5, "it does not run")
     assert not any("too big" in text for _, text in visit.page.run("return window.noted;"))
     assert visit.errors() == []
+    visit.page.open("about:blank")
+
+
+def test_without_float_targets_the_sea_has_a_sky(visit: Visit, with_script: Callable[[str], None]) -> None:
+    with_script(NO_FLOATS)
+    visit.open("&fixedDpr=0.2&without=floats")
+    visit.follow("square_sea")
+    visit.page.run("window.drawsPixels = true;")
+    visit.page.wait(SKY_IS_BRIGHT, 200)
+    visit.page.run("window.drawsPixels = false;")
+    assert [error for error in visit.errors() if LOADING_ERRORS not in error] == []
     visit.page.open("about:blank")
 
 

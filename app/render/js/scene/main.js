@@ -13,7 +13,7 @@ import { onControls } from "../core/watch.js";
 import { openWater } from "../sea/open_water.js";
 import { rain } from "../sea/rain.js";
 import { skiesDrawn } from "../sea/sky_table.js";
-import { drawnSea, water } from "../sea/water.js";
+import { drawnSea, seaSky, water } from "../sea/water.js";
 import { followContext } from "../shading/context.js";
 import { QUALITY } from "../shading/quality.js";
 import { beginFrame, isLinked, meshOf } from "../shading/shaders.js";
@@ -79,7 +79,7 @@ function dressScene(renderer, scene, camera) {
   QUALITY.beforeRender(renderer);
   beginFrame();
   renewInstances(renderer, scene);
-  preparePhotograph(renderer, scene);
+  preparePhotograph(renderer, scene, seaSky());
   drawOneLightOfEachSun(scene);
   /** @type {string[]} */
   const active = [];

@@ -1,13 +1,15 @@
-// The photograph of the sky: a smaller copy without a graphics card, and another one after the graphics context was lost.
+// The photograph of the sky: a smaller copy without a graphics card, another one after the graphics context was lost, and a
+// sky by formula where the browser does not draw into floats, as viser does with the photograph.
 //
 // Before three draws with a photograph, it blurs it for reflections. In software this takes four seconds for 1024 x 512
 // pixels, and half a second for the copy. viser draws the photograph once, so that it is lost with the context: its numbers
 // are read once, beside the page, and it is made of them again.
 
 import { toHalf } from "../sea/half_floats.js";
-import { contextNumber } from "../shading/context.js";
+import { contextNumber, drawsFloats } from "../shading/context.js";
 import { QUALITY } from "../shading/quality.js";
-import { FLOAT, HALF_FLOAT, LINEAR } from "../shading/three.js";
+import { BLURRED_CUBE, FLOAT, HALF_FLOAT, LINEAR } from "../shading/three.js";
+import { blurredCube, ROOM } from "./formula_sky.js";
 
 const SMALL_SKY = 256; // [pixels] width of the copy; the table of the sky has as many columns
 const KEPT_SKY = 512; // [pixels] width, at most, of what is made again
@@ -98,10 +100,28 @@ function stateOf(renderer, photograph) {
   return state;
 }
 
+/** @type {{ key: string, texture: three.Texture } | null} */
+let formed = null; // the sky by formula that is shown
+
+// The sky by formula in the place of a photograph, or of the last one.
+/** @param {three.Texture} photograph @param {SkyColors} sky */
+function formSky(photograph, sky) {
+  const key = [...sky.low, ...sky.high].join();
+  if (formed?.key !== key) {
+    formed?.texture.dispose();
+    formed = { key, texture: Object.assign(textureOf(photograph, blurredCube(sky)), { mapping: BLURRED_CUBE }) };
+  }
+  return formed.texture;
+}
+
 // Give the scene the smaller copy, the same at all qualities, since another size would need other programs; and the one that
 // is made again where the photograph is lost.
-/** @param {three.Renderer} renderer @param {three.Scene} scene */
-export function preparePhotograph(renderer, scene) {
+/** @param {three.Renderer} renderer @param {three.Scene} scene @param {SkyColors | null} sky */
+export function preparePhotograph(renderer, scene, sky) {
+  if (scene.environment && !drawsFloats(renderer)) {
+    replace(scene, scene.environment, formSky(scene.environment, sky ?? ROOM));
+    return;
+  }
   while (QUALITY.isSoftware() && scene.environment && scene.environment.image?.width > SMALL_SKY) {
     const larger = scene.environment;
     if (!smallerCopies.has(larger)) smallerCopies.set(larger, halve(renderer, larger));

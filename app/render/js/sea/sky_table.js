@@ -1,6 +1,7 @@
 // The photograph of the sky as a table by azimuth, elevation and blur, which the shaders of water, sky and rain look up.
 // It is drawn anew when the photograph or a uniform that it depends on changes. A browser that cannot draw into half
-// floats, or does not link the table's program, has no table: there each pixel looks at the photograph itself.
+// floats, or does not link the table's program, has no table: there each pixel looks at the photograph itself, or
+// at the sky in its place (scene/photograph.js).
 
 import { startedViewer } from "../core/viewer.js";
 import { contextNumber } from "../shading/context.js";

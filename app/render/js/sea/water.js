@@ -6,13 +6,13 @@
 // the frame of the node, z up; three's world is rotated against it. viser's own mesh is not drawn: its vertices fill
 // textures, which the polar grid (polar_grid.js) and the fragment shader read.
 
-import { contextNumber } from "../shading/context.js";
+import { contextNumber, drawsFloats } from "../shading/context.js";
 import { applyPacked } from "../shading/packed.js";
 import { keyWithDetails, QUALITY } from "../shading/quality.js";
 import { disposeMaterials, dress, isLinked, meshOf, refused } from "../shading/shaders.js";
 import { MAX_WATERLINES, WATER_UNIFORMS } from "../shared.js";
 import { makeDome, makeGrid } from "./dome.js";
-import { writeHalfFloats } from "./half_floats.js";
+import { halvedTexture, writeHalfFloats } from "./half_floats.js";
 import { disposeLit, lightSea, LIT_FRAGMENT, PLACED } from "./lit_sea.js";
 import { aimPolar, finenessOf, setFineness } from "./polar_grid.js";
 import { awaitsSky, drawSkyTable, wantSky, withSky } from "./sky_table.js";
@@ -23,6 +23,13 @@ export const seas = new Map(); // name of the node -> what this file has made fo
 // Name of the node -> its uniforms. They are kept for good, because viser may keep a material for a new geometry.
 /** @type {Map<string, three.Uniforms>} */
 export const uniformsByName = new Map();
+
+// The colours of the sky of the sea that is there, by which a photograph is replaced, or null.
+/** @returns {SkyColors | null} */
+export function seaSky() {
+  const [sea] = seas.values();
+  return sea ? { low: sea.uniforms.skyLow.value.toArray(), high: sea.uniforms.skyHigh.value.toArray() } : null;
+}
 
 // The uniforms of the sea that is drawn, or null: what stands in it is lit by its sky.
 export const drawnSea = () => [...seas.values()].find(({ isReady }) => isReady)?.uniforms ?? null;
@@ -96,8 +103,14 @@ function filledTexture(renderer, texture, width, height, halves, repeats) {
   const before = flags.map(([flag]) => [flag, gl.getParameter(flag)]);
   for (const [flag, value] of flags) gl.pixelStorei(flag, value);
   gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGBA, gl.HALF_FLOAT, halves);
+  if (repeats && drawsFloats(renderer)) gl.generateMipmap(gl.TEXTURE_2D);
+  else if (repeats) {
+    for (let level = 1, one = { halves, width, height }; one.width > 1 || one.height > 1; level++) {
+      one = halvedTexture(one.halves, one.width, one.height);
+      gl.texSubImage2D(gl.TEXTURE_2D, level, 0, 0, one.width, one.height, gl.RGBA, gl.HALF_FLOAT, one.halves);
+    }
+  }
   for (const [flag, value] of before) gl.pixelStorei(flag, value);
-  if (repeats) gl.generateMipmap(gl.TEXTURE_2D);
   return texture;
 }
 
@@ -136,11 +149,12 @@ function fillWaves(sea, renderer, rest) {
   }
 }
 
-/** @param {Sea} sea @param {three.Mesh} data */
-function readMaterial(sea, data) {
-  readUniforms(sea.uniforms, WATER_UNIFORMS, data);
-  sea.uniforms.fromSea.value.copy(sea.mesh.matrixWorld);
-  sea.uniforms.toSea.value.copy(sea.mesh.matrixWorld).invert();
+/** @param {ShadedNode} node */
+function readMaterial({ base, mesh, data }) {
+  const uniforms = uniformsOf(base, mesh);
+  readUniforms(uniforms, WATER_UNIFORMS, data);
+  uniforms.fromSea.value.copy(mesh.matrixWorld);
+  uniforms.toSea.value.copy(mesh.matrixWorld).invert();
 }
 
 /** @param {Sea} sea */
@@ -237,7 +251,8 @@ export const water = {
     }
     if (!seas.size) document.documentElement.style.removeProperty(SKY);
   },
-  unpack({ base, mesh }) {
+  unpack({ base, mesh, data }) {
+    readMaterial({ base, mesh, data });
     const surface = meshOf(`${base}/water_surface`), rest = meshOf(`${base}/water_rest`);
     if (!surface || !rest) return false;
     return applyPacked(mesh, surface, "slopeAndFoam", rest.geometry.attributes.position.array);
@@ -262,8 +277,7 @@ export const water = {
     }
     wantSky();
     mesh.layers.mask = 0; // the polar grid is drawn in its place
-    if (!this.unpack({ base, mesh })) return null;
-    readMaterial(sea, data);
+    if (!this.unpack({ base, mesh, data })) return null;
     standIn(sea, scene);
     fillWaves(sea, renderer, rest.geometry.attributes.position.array);
     const lines = meshOf(`${base}/water_lines`);

@@ -107,6 +107,8 @@ export const WATER_GLSL = {
     uniform vec3 sunDirection; // towards the sun, of length 1
     uniform vec3 sunLight; // irradiance
     uniform vec3 skyTint; // colour filter on the photograph
+    uniform vec3 skyLow; // its mean radiance at the horizon
+    uniform vec3 skyHigh; // and overhead
     uniform vec3 clouds; // cover, size of a cloud, share of its light that thick cloud takes away
     uniform vec3 wind; // direction of ripples, foam and clouds [rad], gravity [m/s2], size of a patch of foam [m]
     uniform vec3 lens; // haze distance [m], exposure, share of the sun's disc and glitter that is visible
@@ -132,13 +134,15 @@ export const WATER_GLSL = {
     vec3 photograph(vec3 d, float blur) {
       #if defined(USE_ENVMAP) && defined(ENVMAP_TYPE_CUBE_UV)
         vec3 c = textureCubeUV(envMap, envMapRotation * (mat3(fromSea) * d), blur).rgb;
-        // Bright places keep their hue. The sun's disc is drawn separately, as the photograph is blurred.
-        float light = dot(c, vec3(0.3, 0.5, 0.2));
-        c = max(mix(vec3(light), c, 1.15), 0.0) * pow(skyTint, vec3(0.7 + 2.0 * clamp(d.z, 0.0, 0.6)));
-        return c / (1.0 + light / skyFold.z) * envMapIntensity;
+        float gain = envMapIntensity;
       #else
-        return mix(vec3(0.75, 0.8, 0.85), vec3(0.2, 0.4, 0.7), sqrt(max(d.z, 0.0)));
+        vec3 c = mix(skyLow, skyHigh, sqrt(max(d.z, 0.0))); // as in scene/formula_sky.js
+        float gain = 1.0;
       #endif
+      // Bright places keep their hue. The sun's disc is drawn separately, as the photograph is blurred.
+      float light = dot(c, vec3(0.3, 0.5, 0.2));
+      c = max(mix(vec3(light), c, 1.15), 0.0) * pow(skyTint, vec3(0.7 + 2.0 * clamp(d.z, 0.0, 0.6)));
+      return c / (1.0 + light / skyFold.z) * gain;
     }
 
     // Noise of several octaves with the shapes of clouds, about -1 to 1.

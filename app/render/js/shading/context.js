@@ -15,6 +15,11 @@ function next() {
   springtide.contexts = number += 1;
 }
 
+// True if a renderer can draw into textures of floats, and the browser make smaller copies of these.
+/** @param {three.Renderer} renderer */
+export const drawsFloats = ({ extensions }) =>
+  extensions.has("EXT_color_buffer_float") || extensions.has("EXT_color_buffer_half_float");
+
 // Follow the context of a renderer. life: of the renderer.
 /** @param {three.Renderer} renderer @param {import("../core/life.js").Life} life */
 export function followContext(renderer, life) {

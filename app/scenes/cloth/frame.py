@@ -29,8 +29,8 @@ class ClothReadings(NamedTuple):
 
     stability: Gauge
     exact: bool  # the gauge is that of the state; otherwise a bound for all states
-    corrections: float  # Newton corrections a step, of implicit methods
+    corrections: float  # corrections a step, of implicit methods
     note: str  # reason why another method runs than the one chosen, or ""
     threads: int  # that compute the forces
     left_out: int = 0  # most particles that self-collision has left out, its list of pairs being full
-    unsettled: int = 0  # steps since the start that were taken before Newton's method had settled
+    unsettled: int = 0  # steps since the start that were taken before the solver had settled

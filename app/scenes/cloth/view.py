@@ -151,9 +151,9 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
         readings, strain, p = snapshot.readings, snapshot.frame.strain, snapshot.frame.params
         parts: list[Html] = []
         if readings.corrections:
-            parts.append(fill("<div>{:.1f} Newton iterations a step</div>", readings.corrections))
+            parts.append(fill("<div>{:.1f} corrections a step</div>", readings.corrections))
         if readings.unsettled:
-            parts.append(fill("<div>Newton's method had not settled in {}</div>", counted(readings.unsettled, "step")))
+            parts.append(fill("<div>the solver had not settled in {}</div>", counted(readings.unsettled, "step")))
         if readings.left_out:
             parts.append(
                 fill("<div>too crowded: self-collision left out {}</div>", counted(readings.left_out, "particle"))

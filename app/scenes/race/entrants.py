@@ -46,7 +46,7 @@ class Result(NamedTuple):
     stiffness: float  # [N/m]
     gauge: Gauge
     evals: float  # force evaluations a step, lately
-    corrections: float  # Newton corrections a step, lately; 0 for explicit methods
+    corrections: float  # corrections a step, lately; 0 for explicit methods
     step_time: float  # [s] of processor time that a step takes
     error: float  # [m] largest distance of a point from the reference run; NaN without one
     error_floor: float  # [m] smallest error that the reference run can tell; NaN without one

@@ -37,13 +37,13 @@ def stability_text(result: Result) -> Html:
 
 def result_rows(result: Result, stiffness_differs: bool) -> Html:
     """One rope: a row with its name, and one with its numbers or with the reason why it has stopped."""
-    iterations = f", {result.corrections:.1f} Newton iterations a step" if result.corrections else ""
+    corrections = f", {result.corrections:.1f} corrections a step" if result.corrections else ""
     name = fill(
         '<tr><td colspan="5" style="padding-top:5px"><span class="springtide-dot" style="background:{}"></span> '
         "<b>{}</b>{}</td></tr>",
         PALETTE[result.number - 1],
         rope_name(result, stiffness_differs),
-        iterations,
+        corrections,
     )
     if result.failure:
         return fill('{}<tr><td colspan="5" style="color:{}">{}</td></tr>', name, ERROR_COLOUR, result.failure)

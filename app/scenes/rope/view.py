@@ -176,7 +176,7 @@ def cost_text(cost: NumericalCost | None) -> Html:
     energy = cost.numerical_dissipation
     damping = f", {number(cost.damping_dissipation)} J by damping" if cost.damping_dissipation > 0.0 else ""
     return fill(
-        '<div style="margin-bottom:6px">{} Newton iterations a step. Energy {} by the method: {}{}.</div>',
+        '<div style="margin-bottom:6px">{} corrections a step. Energy {} by the method: {}{}.</div>',
         bold(f"{cost.corrections:.1f}"),
         "taken" if energy >= 0 else "added",
         bold(f"{number(abs(energy))} J"),

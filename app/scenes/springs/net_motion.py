@@ -24,7 +24,7 @@ class NetMotion:
         self.state = State.at_rest(net)
         self.account = EnergyAccount(net, self.state)
         self.max_reach = bound(net, self.state)  # [m] from the first particle, along an axis
-        self.evals, self.corrections = float(method.evals), 0.0  # force evaluations, Newton corrections a step
+        self.evals, self.corrections = float(method.evals), 0.0  # force evaluations, corrections a step
         self.counted = 0, 0  # force evaluations and steps at the last count
 
     @property
@@ -82,7 +82,7 @@ class NetMotion:
         evals, steps = self.state.force_evals - self.counted[0], self.state.steps - self.counted[1]
         if steps and self.method.implicit:
             self.evals = evals / steps
-            self.corrections = max(0.0, self.evals - self.method.evals_outside_newton)
+            self.corrections = max(0.0, self.evals - self.method.evals_outside_corrections)
         self.counted = self.state.force_evals, self.state.steps
 
     def gauge(self, modes: list[Mode] | None = None) -> Gauge:

@@ -6,7 +6,7 @@ To add one, write a module in this folder with
    (3 rows cols,) in place by `steps` steps of h [s] from time t, calls `accelerate` inside its loop and `set_pins` at
    every time it evaluates forces, and returns how many force evaluations that took. With `with_account` it adds what
    damping took and what pins put in [J] to ledger[0] and ledger[1], by a quadrature of its own order. An implicit one
-   counts in ledger[2] the steps that it took before Newton's method had settled.
+   counts in ledger[2] the steps that it took before the solver had settled.
 2. `stable_step(omega, rate)`: the largest stable step [s] of x'' + rate x' + omega^2 x = 0, with omega [rad/s] and
    rate [1/s] from 0 on, in closed form or from the largest step at which the method's amplification stays within 1.
    0 if no step is stable, inf if every step is.
@@ -34,8 +34,8 @@ class Integrator(NamedTuple):
     summary: str  # when to choose it
     lag: float = 0.0  # v is stored this part of a step before x
     undamped_order: int = 0  # where it differs from `order`
-    implicit: bool = False  # a force evaluation is then one correction of Newton's method, `evals` the least number
-    evals_outside_newton: int = 0  # of implicit methods: force evaluations a step beside those corrections
+    implicit: bool = False  # a force evaluation is then one correction of the solver, `evals` the least number
+    evals_outside_corrections: int = 0  # of implicit methods: further force evaluations a step
     l_stable: bool = False  # motions that it does not resolve decay within a step
     undamped_only: bool = False  # refuses nets with damping
     march: Callable[..., tuple[int, int, int, float]] | None = None  # adaptive methods: with steps of its own choosing

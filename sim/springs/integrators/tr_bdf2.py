@@ -20,5 +20,5 @@ def stable_step(omega: float, rate: float) -> float:
 RECORD = Integrator(
     "tr_bdf2", 2, False, 3, stable_step, partial(advance_implicit, TR_BDF2),
     "For stiff ropes with some accuracy: L-stable and second order.",
-    implicit=True, l_stable=True, evals_outside_newton=1,
+    implicit=True, l_stable=True, evals_outside_corrections=1,
 )  # fmt: skip

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.fresh import python
+
 ROOT = Path(__file__).parents[4]
 SIGNATURES = """
 import sys
@@ -53,6 +55,24 @@ for preset in sorted(records, key=lambda preset: len(kind.needs(records[preset])
     assert not new, (preset, new)
 """
 )
+
+# With an empty cache: what is loaded has no signatures of what it calls.
+BEFORE_THE_FIRST_FRAME = f"""{SIGNATURES}
+from app.scenes.ahead.compiling import compile_job, uncompiled
+from app.scenes.cloth.parameters import ClothParams
+
+for job in uncompiled("cloth", ClothParams()):
+    compile_job(job)
+print(*sorted({{module for module, _, _ in signatures()}}))
+"""
+
+
+@pytest.mark.long  # compiles with an empty cache
+def test_a_cloth_with_an_explicit_method_waits_for_no_implicit_solver(tmp_path: Path) -> None:
+    modules = python(BEFORE_THE_FIRST_FRAME, SPRINGTIDE_CACHE=str(tmp_path)).splitlines()[-1].split()
+    assert "sim.springs.integrators.leapfrog" in modules
+    implicit = [module for module in modules if module.startswith("sim.springs.integrators.implicit")]
+    assert implicit == ["sim.springs.integrators.implicit.tangent"]  # of the critical step
 
 
 @pytest.mark.long  # compiles or loads all kernels of a scene in a process of its own

@@ -224,7 +224,7 @@ def test_the_readings_give_the_cost_of_an_implicit_step():
 
 
 @pytest.mark.parametrize("name", [name for name, record in INTEGRATORS.items() if record.implicit])
-def test_corrections_are_force_evaluations_but_those_outside_of_newtons_method(name):
+def test_corrections_are_the_force_evaluations_of_the_solver(name):
     scene = ClothScene(dataclasses.replace(SMALL, integrator=name, time_step=1 / 120))
     before = scene.state.force_evals
     scene.advance(2)
@@ -263,7 +263,7 @@ def test_one_step_a_frame_is_taken_while_it_takes_longer_than_a_frame_and_droppe
     assert "slower than real time" in status_line(loop.latest)
     assert "Faster: fewer rows and columns" in status_line(loop.latest)
     assert loop.run.pacer.dropped > 100
-    assert "Newton iterations a step" in ClothView.readout(object.__new__(ClothView), loop.latest)
+    assert "corrections a step" in ClothView.readout(object.__new__(ClothView), loop.latest)
 
 
 def test_the_mesh_has_two_triangles_a_cell_with_the_same_orientation():

@@ -289,7 +289,7 @@ def test_a_rope_at_rest_is_not_assessed_again():
     for moved, has_news in ((0.9e-3, False), (1.1e-3, True)):  # of a link
         scene.state.x[2, 0, -1] = scene.assessed_x[2, 0, -1] + moved * scene.net.families[0].rest
         assert scene.has_news() is has_news
-    # Newton corrections of an implicit method may change at any time.
+    # The corrections of an implicit method may change at any time.
     assert assessed(gravity=0.0, integrator="tr_bdf2") > 0
 
 
@@ -332,7 +332,7 @@ def test_another_method_goes_on_with_the_same_account() -> None:
 
 
 def test_the_cost_of_a_method_does_not_count_the_steps_of_the_one_before() -> None:
-    """RK4 computes the forces four times a step, and has no Newton corrections."""
+    """RK4 computes the forces four times a step, and has no corrections."""
     scene = Rope(RopeParams(integrator="rk4", time_step=1 / 240))
     run(scene, 30, 4)
     change(scene, integrator="implicit_midpoint")

@@ -144,7 +144,7 @@ def test_a_step_takes_the_declared_evaluations(name):
     advance(pulled, falling, record, 1e-3, 5)
     first = resting.force_evals - 5 * record.evals  # some methods evaluate the forces once at the start
     assert first in (0, 1)
-    stages = record.evals - record.evals_outside_newton if record.implicit else 0
+    stages = record.evals - record.evals_outside_corrections if record.implicit else 0
     assert falling.force_evals - first == 5 * (record.evals + stages)
 
 

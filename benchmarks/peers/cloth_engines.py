@@ -4,6 +4,7 @@ Most engines damp along the springs only, or not at all. The damping of this tas
 error.
 """
 
+import functools
 import math
 import os
 from collections.abc import Callable, Iterator
@@ -98,8 +99,11 @@ def pypbd_springs(net: Net, h: float) -> Run:
     return run
 
 
-def mujoco_tendons(net: Net, h: float) -> Run:
-    """Point masses on three sliders each, joined by spatial tendons."""
+def mujoco_tendons(integrator: str, net: Net, h: float) -> Run:
+    """Point masses on three sliders each, joined by spatial tendons.
+
+    integrator: "Euler", explicit in the positions, or "discrete", implicit in positions and velocities.
+    """
     import mujoco  # type: ignore[import-not-found]
 
     slides = "".join(f'<joint type="slide" axis="{axis}"/>' for axis in ("1 0 0", "0 1 0", "0 0 1"))
@@ -114,7 +118,7 @@ def mujoco_tendons(net: Net, h: float) -> Run:
         for i, j, rest, k, b in springs(net)
     )
     model = mujoco.MjModel.from_xml_string(
-        f'<mujoco><option integrator="Euler" jacobian="sparse" gravity="0 0 {net.gravity[2]}">'
+        f'<mujoco><option integrator="{integrator}" jacobian="sparse" gravity="0 0 {net.gravity[2]}">'
         f'<flag contact="disable" eulerdamp="disable"/></option><worldbody>{bodies}</worldbody>'
         f"<tendon>{tendons}</tendon></mujoco>"
     )
@@ -153,7 +157,15 @@ ENGINES = (
         ENGINE_STEP,
     ),
     Peer("pypbd XPBD, one thread", "pypbd", pypbd_springs, "isotropic", MAX_ROWS, ENGINE_STEP),
-    Peer("mujoco Euler, tendons", "mujoco", mujoco_tendons, "axial", 64),
+    Peer("mujoco Euler, tendons", "mujoco", functools.partial(mujoco_tendons, "Euler"), "axial", 64),
+    Peer(
+        "mujoco discrete, tendons",
+        "mujoco",
+        functools.partial(mujoco_tendons, "discrete"),
+        "axial",
+        64,
+        ENGINE_STEP,
+    ),
 )
 
 # Programs that cannot be given this task, and why.

@@ -23,10 +23,10 @@ from sim.springs import Net
 QUICK_METHODS = ("leapfrog_lagged", "leapfrog", "rk4", "dopri5", "dop853", "symplectic_euler")
 
 
-def ladders(net: Net) -> list[list[OwnRun]]:
-    """Our runs of the task, a ladder for each quick method; their kernels are loaded."""
+def ladders(net: Net, methods: Sequence[str] = QUICK_METHODS) -> list[list[OwnRun]]:
+    """Our runs of the task, a ladder for each method; their kernels are loaded."""
     found = []
-    for name in QUICK_METHODS:
+    for name in methods:
         run(net, name, 1)
         found.append(
             [

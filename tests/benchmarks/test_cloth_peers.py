@@ -10,6 +10,7 @@ from benchmarks.peers.ladder import rungs
 from benchmarks.peers.own_runs import OwnRuns
 from benchmarks.peers.record import is_installed
 from benchmarks.reference import largest_distances
+from benchmarks.tasks import stiff
 from benchmarks.tasks.cloth import ladders
 from sim.springs.points.acceleration import set_acceleration
 
@@ -59,3 +60,13 @@ def test_engines_that_are_installed_solve_the_same_cloth(peer):
     net = cloth.benchmark_cloth(8, peer.damping)
     theirs = peer.make(net, rungs(peer, net, quick=False)[0].value)(cloth.DURATION)
     assert largest_distances((theirs,), cloth.reference(net))[0] < 0.02
+
+
+def test_a_stiff_cloth_has_a_reference_and_our_runs_approach_it():
+    net, _, ours = stiff.peer_task(6, "axial")
+    (true,) = ours.reference.positions
+    assert ours.reference.uncertainty < 1e-7
+    assert np.linalg.norm(true - net.x0, axis=0).max() > 0.25  # it has fallen
+    for name in ("implicit_euler", "tr_bdf2"):
+        coarse, fine = (largest_distances(cloth.positions(net, name, n), ours.reference)[0] for n in (32, 128))
+        assert fine < 0.35 * coarse < 0.01

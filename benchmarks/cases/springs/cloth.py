@@ -37,9 +37,11 @@ MEASURED = ("force evaluations", "time [ms]", "least [ms]", "x real time", "erro
 MAX_ERROR = 0.5  # [m] a larger one means another motion altogether
 
 
-def benchmark_cloth(n: int, damping_model: str = "isotropic") -> Net:
-    """The cloth of C(n): particles and links are equal, as the peers take one number."""
-    net = cloth(n, n, 1.0, 1.0, 1.0, 981.0, 490.0, 98.0, 0.002, pinned="all corners", damping_model=damping_model)
+def benchmark_cloth(
+    n: int, damping_model: str = "isotropic", stiffness: float = 981.0, pinned: str = "all corners"
+) -> Net:
+    """The cloth of C(n): particles and links are equal, as the peers take one number. stiffness: structural [N/m]."""
+    net = cloth(n, n, 1.0, 1.0, 1.0, stiffness, 490.0, 98.0, 0.002, pinned=pinned, damping_model=damping_model)
     return dataclasses.replace(net, mass=1.0 / (n * n), mass_ratios=None, side_ratio=1.0)
 
 

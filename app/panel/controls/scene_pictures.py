@@ -7,7 +7,7 @@ import viser
 
 from app.render.handles.viser_inside import uuid_of
 from app.render.handles.viser_types import GuiHandle
-from app.render.markup.html import fill, join
+from app.render.markup.html import Html, fill, join
 from sim.parameters import in_words
 
 TITLE = "Scenes in pictures"
@@ -20,17 +20,15 @@ def add_scene_pictures(gui: viser.GuiApi, chooser: GuiHandle, scenes: tuple[str,
         return
     with gui.add_folder(TITLE, expand_by_default=False):
         buttons = join(
-            fill(
-                '<button type="button" data-springtide-scene="{0}">'
-                '<img alt="" src="data:image/jpeg;base64,{1}">{0}</button>',
-                in_words(name),
-                picture(name),
-            )
+            fill('<button type="button" data-springtide-scene="{0}">{1}{0}</button>', in_words(name), picture(name))
             for name in scenes
         )
         gui.add_html(str(fill('<div class="springtide-scenes" data-springtide-chooser="{}">{}</div>', uuid, buttons)))
 
 
-def picture(scene: str) -> str:
-    """A small picture of a scene, JPEG in base 64."""
-    return base64.b64encode((resources.files("assets") / "scenes" / f"{scene}.jpg").read_bytes()).decode()
+def picture(scene: str) -> Html:
+    """A small picture of a scene; nothing for one without a file in `assets/scenes`."""
+    file = resources.files("assets") / "scenes" / f"{scene}.jpg"
+    if not file.is_file():
+        return Html("")
+    return fill('<img alt="" src="data:image/jpeg;base64,{}">', base64.b64encode(file.read_bytes()).decode())

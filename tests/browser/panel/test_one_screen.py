@@ -22,7 +22,7 @@ SAMPLE = ("rope",)  # the other scenes are looked at under -m long
 TASKS = load_tasks()
 MIN_SLIDERS = 5
 MAX_HEAD = 150  # [pixels] of the block that always stays
-MAX_WORDS = 80
+MAX_WORDS = 92  # with the line of help
 MAX_STOPS = 9  # of Tab before the first control; one of them is the folder of scenes in pictures
 # The names of the sliders that are whole in the window, the height of the block above the tabs [pixels], and the words.
 FIRST_VIEW = """() => {

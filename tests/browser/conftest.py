@@ -56,7 +56,7 @@ VERTICES = """name => { const ref = window.__viserMutable?.nodeRefFromName?.[nam
     let text = "";
     for (let at = 0; at < bytes.length; at += 4096) text += String.fromCharCode(...bytes.subarray(at, at + 4096));
     return btoa(text); }"""
-# Where a point of the scene [m] is on the page [pixels].
+# Position on the page [pixels] of a point of the scene [m].
 PIXEL = """point => { const viewer = window.__viserMutable, camera = viewer.camera;
     const nodes = Object.entries(viewer.nodeRefFromName);
     const top = nodes.find(([name, node]) => node && name.split("/").length === 2)[1];

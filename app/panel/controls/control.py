@@ -77,7 +77,7 @@ class Control:
     ) -> None:
         """folder: its container in the panel, within which it is made.
 
-        settings: have the value, and take what a browser sets. The control holds no value of its own.
+        settings: hold the value, and are set by a browser's input. The control stores no value itself.
         """
         self.gui, self.folder, self.name, self.settings = gui, folder, name, settings
         self.parameter = parameter = parameters_of(settings.params)[name]
@@ -110,7 +110,7 @@ class Control:
 
     @property
     def value(self) -> Value:
-        """The value as it is set now."""
+        """The current value."""
         return getattr(self.settings.params, self.name)
 
     @property

@@ -1,6 +1,7 @@
 """The scenes to choose from as pictures, beside the list of their names."""
 
 import base64
+import functools
 from importlib import resources
 
 import viser
@@ -14,7 +15,7 @@ TITLE = "Scenes in pictures"
 
 
 def add_scene_pictures(gui: viser.GuiApi, chooser: GuiHandle, scenes: tuple[str, ...]) -> None:
-    """A folder of a picture for each scene; the page hands on which is pressed to the list (js/panel/scenes.js)."""
+    """A folder of a picture for each scene; a press on the page chooses the scene in the list (js/panel/scenes.js)."""
     uuid = uuid_of(chooser)
     if not uuid:
         return
@@ -26,6 +27,7 @@ def add_scene_pictures(gui: viser.GuiApi, chooser: GuiHandle, scenes: tuple[str,
         gui.add_html(str(fill('<div class="springtide-scenes" data-springtide-chooser="{}">{}</div>', uuid, buttons)))
 
 
+@functools.cache
 def picture(scene: str) -> Html:
     """A small picture of a scene; nothing for one without a file in `assets/scenes`."""
     file = resources.files("assets") / "scenes" / f"{scene}.jpg"

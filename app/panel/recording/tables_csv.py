@@ -1,4 +1,4 @@
-"""Tables of the panel as CSV: their cells as they are shown, with numbers in the form that programs read."""
+"""Tables of the panel as CSV: the displayed cells, with numbers in machine-readable form."""
 
 import csv
 import io
@@ -9,7 +9,7 @@ from app.formats.formatting import NO_NUMBER, SUPERSCRIPTS, THOUSANDS
 
 POWER = re.compile(r" × 10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 DIGITS = str.maketrans({sign: chr(plain) for plain, sign in SUPERSCRIPTS.items()})
-HIDDEN_CLASS = "springtide-info"  # of a sign with a text of its own
+HIDDEN_CLASS = "springtide-info"  # of an information sign, whose text is no part of its cell
 NO_TABLE = "there is no table here now"
 
 

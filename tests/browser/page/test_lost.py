@@ -107,7 +107,7 @@ def counted_page(chromium: Any) -> Any:
 
 
 def settled_counts(page: Any) -> dict[str, int]:
-    """What a page holds, once that no longer changes."""
+    """Counts of the objects that a page holds, once they are constant."""
     page.wait_for_selector(".springtide-panel[data-state]")
     page.wait_for_selector("#springtide-cover.springtide-hidden", state="attached")
     found, again = {}, {"": 0}

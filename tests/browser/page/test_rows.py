@@ -118,7 +118,7 @@ class Visit:
         self.page.wait(SCENE_IS_SHOWN)
 
     def pixel(self, point: Any) -> list[float]:
-        """Where a point of the scene [m] is on the page."""
+        """Position on the page [pixels] of a point of the scene [m]."""
         return self.page.run(f"return ({PIXEL})({json.dumps([float(at) for at in point])});")
 
     def camera(self) -> list[float]:
@@ -126,7 +126,7 @@ class Visit:
         return self.page.run(f"return ({CAMERA})();")
 
     def errors(self) -> list[str]:
-        """What the page has said of errors since it was asked last."""
+        """Errors that the page has reported since the last call."""
         noted = self.page.run("return window.noted.splice(0);")
         harmless = (*HARMLESS_ERRORS, LATE_UPDATE)
         return [text for kind, text in noted if kind == "error" and not any(words in text for words in harmless)]

@@ -1,4 +1,4 @@
-"""What is a browser's and what is everybody's, in two real browsers: docs/architecture.md has the table."""
+"""State of one browser and state shared by all, in two real browsers: docs/architecture.md has the table."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -69,7 +69,7 @@ def turn(tab: Tab, by: float = 90.0) -> None:
 
 
 def meet(acts: Tab, other: Tab) -> None:
-    """All that one browser has sent so far has come to the other: a step is shown there, which is everybody's."""
+    """Wait until all messages of one browser have reached the other: a step, which is shared, is shown there."""
     time = clock(other)
     key("n")(acts)
     other.wait(lambda: clock(other) != time, 20)
@@ -171,7 +171,7 @@ def key(name: str) -> Callable[[Tab], None]:
 
 
 def shared(tab: Tab) -> dict[str, Any]:
-    """What a page shows of that which is everybody's."""
+    """The shared state that a page shows."""
     charts = tab.page.locator(".u-wrap").count()
     return {
         "stiffness": field(tab, "Stiffness [N/m]"),

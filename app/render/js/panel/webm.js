@@ -24,7 +24,7 @@ function elementAt(bytes, start) {
   return { id, at, data: at + width, end: isUnknown ? bytes.length : at + width + size, width };
 }
 
-// The bytes of a clip with its duration [s]; as they are where they have one, or are not as expected.
+// The bytes of a clip with its duration [s]; unchanged if they have one already or are not in the expected form.
 /** @param {Uint8Array<ArrayBuffer>} bytes @param {number} seconds */
 export function withDuration(bytes, seconds) {
   const head = elementAt(bytes, 0), segment = head?.id === EBML ? elementAt(bytes, head.end) : null;

@@ -3,7 +3,7 @@
 const GAP = 0.15; // between two labels, in heights of a label
 const MAX_RAISE = 12; // [heights of a label] by which one is raised: one that had to be higher is hidden
 
-// By how many of its own heights each label is raised, so that none covers another; null: it is hidden.
+// The shift of each label upwards, in label heights, so that no two overlap; null for a hidden label.
 // labels: the lowest first; in coordinates of the picture.
 /** @typedef {{ left: number, right: number, bottom: number, height: number }} Label */
 /** @param {Label[]} labels @returns {(number | null)[]} */

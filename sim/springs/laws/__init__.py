@@ -82,12 +82,6 @@ over_step = chosen({numbers: law.over_step or general_over_step for numbers, law
 
 
 @kernel(inline=True)
-def is_limited(law, k, b, rest, length, rate):
-    """True if damping takes all of the tension: neither depends on small changes of length and rate."""
-    return damping(law, k, b, rest, length, rate) < damping(law, k, b, rest, length, 0.0)
-
-
-@kernel(inline=True)
 def lost_share(b, acting, both, s):
     """Share of the relative velocity that a damping b [N s/m] takes in a time s [s], over `both` [1/kg].
 

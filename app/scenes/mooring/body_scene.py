@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Place, SceneCommand, Vector, vector_of
-from app.scenes.mooring.arrangement import body_of, build, hull_of, line_types, rows_of, sea_of
+from app.scenes.mooring.arrangement import body_of, build, held, hull_of, line_types, rows_of, sea_of
 from app.scenes.mooring.attachments import Attachments
 from app.scenes.mooring.line_scene import LineScene
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.readings.restoring import StaticInputs
+from app.scenes.mooring.readings.restoring import CurveInputs
 from app.scenes.mooring.start import rest_or_start
 from app.scenes.mooring.start_check import Fault, fault_of, overload_of
 
@@ -143,10 +143,8 @@ class MooringScene(LineScene):
             "rotation": (self.rotation().copy(), "rad"),
         }
 
-    def static_inputs(self, far: float = 0.0) -> StaticInputs:
+    def curve_inputs(self, far: float = 0.0) -> CurveInputs:
         """Everything that the restoring curve depends on. far: [m] offset to which it goes at least."""
-        system, (x, y) = self.system, self.wave_direction.tolist()
-        return StaticInputs(
-            self.attached.places, system.lines, vector_of(self.excursion.rest), (x, y), self.params.length,
-            self.params.reach, far, system.depth, system.gravity, system.density,
-        )  # fmt: skip
+        rest, p, (x, y) = self.excursion.rest, self.params, self.wave_direction.tolist()
+        system = held(self.system.lines, self.system.points, vector_of(np.subtract(rest, self.body.place)), p.depth)
+        return CurveInputs(system, (x, y), self.attached.places.slack(rest, p.length), p.reach, far)

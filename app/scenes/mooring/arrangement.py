@@ -46,6 +46,11 @@ class Places(NamedTuple):
         return float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
 
 
+def at_most(length: float, vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A vector, shortened where it is longer."""
+    return vector * min(1.0, length / max(float(np.linalg.norm(vector)), 1e-9))
+
+
 def water_of(params: MooringParams) -> Water:
     """The water of the parameters, or that of their file."""
     if not params.moordyn_file:

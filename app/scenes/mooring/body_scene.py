@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Place, SceneCommand, Vector, vector_of
-from app.scenes.mooring.arrangement import body_of, build, held, hull_of, line_types, rows_of, sea_of
+from app.scenes.mooring.arrangement import at_most, body_of, build, held, hull_of, line_types, rows_of, sea_of
 from app.scenes.mooring.attachments import Attachments
 from app.scenes.mooring.line_scene import LineScene
 from app.scenes.mooring.parameters import MooringParams
@@ -85,9 +85,7 @@ class MooringScene(LineScene):
     def on_the_bed(self, place: Vector) -> Vector:
         """The place [m] of an anchor, no farther than its line reaches from the body's place of rest."""
         longest = math.hypot(self.params.length, self.params.depth)
-        away = np.array(place[:2]) - self.excursion.rest[:2]
-        away *= min(1.0, longest / max(float(np.linalg.norm(away)), 1e-9))
-        x, y = (self.excursion.rest[:2] + away).tolist()
+        x, y = (self.excursion.rest[:2] + at_most(longest, place[:2] - self.excursion.rest[:2])).tolist()
         return x, y, -self.params.depth
 
     def on_the_hull(self, place: Vector) -> Vector:
@@ -124,8 +122,7 @@ class MooringScene(LineScene):
         v = self.state.v[:, self.system.node_count]
         force = mass * (GRAB_RATE**2 * (np.array(self.grabbed[1]) - self.body_place()) - 2.0 * GRAB_RATE * v)
         limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.gravity
-        force *= min(1.0, limit / max(float(np.linalg.norm(force)), 1e-9))
-        return np.concatenate((force, np.zeros(3)))[None]
+        return np.concatenate((at_most(limit, force), np.zeros(3)))[None]
 
     def is_bounded(self) -> bool:
         """False once anything is not finite or is farther away than lines reach."""

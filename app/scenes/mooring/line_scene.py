@@ -292,7 +292,7 @@ class LineScene(abc.ABC):
         wave, excursion = self.wave_direction, self.excursion
         now = float((self.body_place() - excursion.rest)[:2] @ wave)
         pull = -float(self.force_of_lines() @ wave)
-        return {"plot_restoring": self.restoring.chart(self.curve_inputs, excursion.farthest, now, pull)}
+        return {"plot_restoring": self.restoring.chart(self.curve_inputs, self.rows, excursion.farthest, now, pull)}
 
     @property
     def wave_direction(self) -> NDArray[np.float64]:

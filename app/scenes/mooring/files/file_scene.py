@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import SceneCommand, Vector, vector_of
-from app.scenes.mooring.arrangement import extent, sea_of
+from app.scenes.mooring.arrangement import at_most, extent, sea_of
 from app.scenes.mooring.files.from_file import opened, slack_of
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.line_scene import LineScene, fade_at
@@ -77,8 +77,7 @@ class FileScene(LineScene):
         """Carry out a command of the mouse, or begin the statistics again: a vessel follows as far as lines reach."""
         super().handle(command)
         if self.grabbed is not None:
-            away = np.subtract(self.grabbed[1], self.middle)[:2]
-            away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))
+            away = at_most(self.file.farthest, np.subtract(self.grabbed[1], self.middle)[:2])
             self.vessel.target = vector_of(np.append(away, 0.0))
 
     def body_place(self) -> NDArray[np.float64]:

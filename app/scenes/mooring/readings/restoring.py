@@ -1,7 +1,7 @@
 """The static restoring curve: the force of all lines over the offset along the waves, and the force now."""
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from app.messages import ChartLine
 from app.scenes.charts import PALETTE, Chart
+from app.scenes.mooring.rows import LineRows
 from sim.interruption import raise_if_stopped
-from sim.mooring import Rest, System, at_rest
+from sim.mooring import System, at_rest
 from sim.validation import ConvergenceError
 
 SHARES = np.sin(0.5 * math.pi * np.linspace(-1.0, 1.0, 17))  # of the way, closer where the curve is steep
@@ -29,8 +30,11 @@ class CurveInputs(NamedTuple):
     extent: float  # [m] of the mooring
     far: float  # [m] offset to which the curve goes at least
 
-    def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Offsets [m] along the waves, and the force [N] of all lines against each; NaN without a state of rest."""
+    def curve(self, rows: LineRows) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Offsets [m] along the waves, and the force [N] of all lines against each; NaN without a state of rest.
+
+        rows: those of the system's lines.
+        """
         offset = max(REACH * self.slack, LEAST_REACH * self.extent, self.far) * SHARES
         force = np.full(len(offset), math.nan)
         coupled = {point.id: point.position for point in self.system.points if point.kind == "coupled"}
@@ -40,20 +44,9 @@ class CurveInputs(NamedTuple):
                 rest = at_rest(self.system, {one: np.add(place, away) for one, place in coupled.items()})
             except ConvergenceError:
                 continue
-            force[i] = -level_force(self.system, rest, coupled) @ self.wave
+            tension = np.concatenate([rest.tension[line.id] for line in self.system.lines])[rows.links]
+            force[i] = -float(rows.level_force(rows.points(rest.nodes), tension) @ self.wave)
         return offset, force
-
-
-def level_force(system: System, rest: Rest, points: Collection[int]) -> NDArray[np.float64]:
-    """Level force (2,) [N] of lines at rest on the points with these ids."""
-    total = np.zeros(2)
-    for line in system.lines:
-        x, tension = rest.x[line.id], rest.tension[line.id]
-        for point, end, following, link in ((line.start, 0, 1, 0), (line.end, -1, -2, -1)):
-            if point in points:
-                way = x[following] - x[end]
-                total += tension[link] * way[:2] / np.linalg.norm(way)
-    return total
 
 
 class RestoringCurve:
@@ -63,16 +56,18 @@ class RestoringCurve:
         self.made_of: object = None
         self.curve: tuple[NDArray[np.float64], NDArray[np.float64]] = (np.zeros(0), np.zeros(0))  # [m], [N]
 
-    def chart(self, inputs: Callable[[float], CurveInputs], farthest: float, now: float, pull: float) -> Chart:
+    def chart(
+        self, inputs: Callable[[float], CurveInputs], rows: LineRows, farthest: float, now: float, pull: float
+    ) -> Chart:
         """The chart; the curve is found again where anything that it depends on is another.
 
-        inputs: for a curve that goes to an offset [m] at least. farthest: offset [m] so far. now, pull: offset along
-        the waves [m], and the force of the lines against it [N].
+        inputs: for a curve that goes to an offset [m] at least. rows: of all lines. farthest: offset [m] so far. now,
+        pull: offset along the waves [m], and the force of the lines against it [N].
         """
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
         key = inputs(2.0 ** math.ceil(math.log2(max(farthest, 1e-3))))
         if key != self.made_of:
-            self.curve = key.curve()
+            self.curve = key.curve(rows)
             self.made_of = key
         offset, force = self.curve
         x = np.append(offset, now)

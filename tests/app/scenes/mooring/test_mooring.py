@@ -176,7 +176,7 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
 
 def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed_one():
     pushed, free = (MooringScene(MooringParams(segments=20, wave_height=0.0, steady_force=f)) for f in (15.0, 0.0))
-    offset, force = free.curve_inputs().curve()
+    offset, force = free.curve_inputs().curve(free.rows)
     assert np.interp(0.0, offset, force) == pytest.approx(0.0, abs=400.0)
     assert (np.diff(force) > 0.0).all()
     moved = float(pushed.body_place()[0] - free.body_place()[0])
@@ -275,7 +275,7 @@ def test_the_restoring_curve_is_that_of_the_rest_now(changed):
     charts = scene.curves()
     assert charts is not None
     offset, static, _ = charts["plot_restoring"].columns
-    expected = scene.curve_inputs(2.0 ** math.ceil(math.log2(max(scene.excursion.largest, 1e-3)))).curve()
+    expected = scene.curve_inputs(2.0 ** math.ceil(math.log2(max(scene.excursion.largest, 1e-3)))).curve(scene.rows)
     assert np.interp(expected[0], offset, static) == pytest.approx(1e-3 * expected[1], abs=1e-6)
 
 

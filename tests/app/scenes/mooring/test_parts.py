@@ -68,7 +68,7 @@ def test_the_curve_is_the_sum_of_the_lines_each_by_itself(floats):
     moved.position = moved.target = tuple(np.add(moved.position, (0.0, 5.0, 0.0)).tolist())
     scene.take_system()
     inputs = scene.curve_inputs()
-    offset, force = inputs.curve()
+    offset, force = inputs.curve(scene.rows)
     wave = np.array(inputs.wave)
     for i in range(0, len(offset), 4):
         alone = 0.0
@@ -89,7 +89,7 @@ def test_the_curve_of_a_file_goes_as_far_as_its_line_and_along_the_waves():
     x, y, z = np.subtract(ends[line.end], ends[line.start])
     straight = math.sqrt(line.length**2 - z * z)
     inputs = CurveInputs(mooring.system, (0.6, 0.8), slack_of(mooring.system)[0], mooring.extent, 0.0)
-    offset, force = inputs.curve()
+    offset, force = inputs.curve(mooring.rows)
     assert offset[-1] == pytest.approx(1.05 * (straight - math.hypot(x, y)), rel=0.2)
     assert offset[0] == -offset[-1]
     for i in (5, len(offset) // 2, len(offset) - 6):

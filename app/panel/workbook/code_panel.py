@@ -3,7 +3,7 @@
 import numpy as np
 import viser
 
-from app.formats.formatting import number
+from app.formats.formatting import metres, number
 from app.lab.check.diagnosis.shown import equation_lines
 from app.lab.check.program_check import Verdict
 from app.lab.course.live_values import LiveValues
@@ -211,7 +211,8 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
     if report.left_at == report.left_at:
         said.append(coloured(f"Your {scene} left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
     elif report.difference == report.difference:
-        said.append(fill("{} from the program's {}.", bold(length_text(report.difference)), TRANSLUCENT[scene]))
+        apart = "Less than 1 µm" if report.difference < SAME else metres(report.difference)
+        said.append(fill("{} from the program's {}.", bold(apart), TRANSLUCENT[scene]))
         said.append(difference_chart(report, scene))
     if report.grid != (0, 0):
         rows, cols = report.grid
@@ -223,11 +224,6 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
         often = "once" if report.restarts == 1 else f"{report.restarts} times"
         said.append(faint(f"It fell behind {often}, so it was restarted from the built-in {scene}."))
     return said
-
-
-def length_text(length: float) -> str:
-    """A distance between the ropes."""
-    return "Less than 1 µm" if length < SAME else f"{number(length)} m"
 
 
 def difference_chart(report: StudentReport, thing: str) -> Html:

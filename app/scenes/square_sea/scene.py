@@ -66,17 +66,18 @@ def warm_up() -> Pieces:
 def compile_drawn_sea() -> None:
     """Call all kernels of a small sea with rain."""
     small = SquareSeaParams(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
-    for params in (small, SquareSeaParams(**{**vars(small), "choppiness": 0.0})):
-        scene = SquareSeaScene(params)
-        for _ in range(4):
-            scene.advance(30)
-            scene.frame()
+    call_kernels(small, dataclasses.replace(small, choppiness=0.0))
 
 
 def compile_nonlinear_sea() -> None:
     """Call all kernels of both kinds of nonlinear sea."""
     small = SquareSeaParams(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
-    for params in (small, dataclasses.replace(small, start="breather", spectrum="regular")):
+    call_kernels(small, dataclasses.replace(small, start="breather", spectrum="regular"))
+
+
+def call_kernels(*seas: SquareSeaParams) -> None:
+    """Advance seas by some frames."""
+    for params in seas:
         scene = SquareSeaScene(params)
         for _ in range(4):
             scene.advance(30)

@@ -104,7 +104,7 @@ class ClothFunctions(Functions):
             return force.reshape(x.shape)
         a, b, c, d = corners(x.reshape(shape))
         area = 0.5 * np.cross(d - a, c - b)
-        u = np.array(f.wind) - 0.25 * sum(corners(v.reshape(shape)))
+        u = np.array((f.wind_x, f.wind_y, f.wind_z)) - 0.25 * sum(corners(v.reshape(shape)))
         flow = (u * area).sum(axis=-1, keepdims=True)
         size, speed = (np.maximum(np.linalg.norm(y, axis=-1, keepdims=True), 1e-150) for y in (area, u))
         along = np.abs(flow) * (f.air_drag - f.air_lift * np.abs(flow) / size / speed)

@@ -87,7 +87,7 @@ def bent_rope(sphere: bool) -> tuple[np.ndarray, np.ndarray, Segment]:
     x[:, 0], x[:, 2] = -0.2 * np.arange(n), 3.0 - 0.02 * np.arange(n) ** 2
     v = np.linspace(0.0, 1.0, n)[:, None] * np.array([0.3, 0.2, -0.5])
     radius = 0.4 if sphere else 0.0
-    forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, floor=0.0, radius=radius, centre=(-0.6, 0.0, 2.5), friction=0.3)
+    forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, floor=0.0, sr=radius, sx=-0.6, sz=2.5, friction=0.3)
     return x, v, Segment(*TRIAL_STEPS, forces, np.zeros((0, 4, 3)))
 
 
@@ -169,7 +169,7 @@ class LiveNet(Service):
         answers: "queue.SimpleQueue[Marched]",
     ) -> None:  # fmt: skip
         """Take steps, and answer whatever happens: a scene waits for it."""
-        self.method, self.sphere = method, any(segment.forces.radius > 0.0 for segment in segments)
+        self.method, self.sphere = method, any(segment.forces.sr > 0.0 for segment in segments)
         own = functools.partial(self.material.own_of, method=method, sphere=self.sphere)
 
         def job(runner: Runner, own: frozenset[str]) -> MarchResult:

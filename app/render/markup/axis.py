@@ -42,13 +42,13 @@ class Scale(NamedTuple):
         return self.low <= low and high <= self.high and high - low >= MIN_FILLED * (self.high - self.low)
 
 
-def scale_of(low: float, high: float, least: float = 0.0, intervals: int = INTERVALS) -> Scale:
+def scale_of(low: float, high: float, least: float = 0.0) -> Scale:
     """A scale for data from low to high; it spans at least `least`, about the middle of the data."""
     size = max(abs(low), abs(high))
     if high - low < least:
         middle = 0.5 * (low + high)
         low, high = middle - 0.5 * least, middle + 0.5 * least
-    rough = max(high - low, MIN_SPAN * size) / intervals if size or least else 1.0 / intervals
+    rough = max(high - low, MIN_SPAN * size) / INTERVALS if size or least else 1.0 / INTERVALS
     step = round_step(rough)
     first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
     return Scale(first * step, max(last, first + 1) * step, step)
@@ -79,8 +79,8 @@ class Axis(NamedTuple):
 
 def fitted(name: str, low: float, high: float, start: float, length: float, intervals: int = INTERVALS) -> Axis:
     """An axis from `low` to `high`, which need not be round, with the round numbers between them."""
-    scale = scale_of(low, high, intervals=intervals)
-    slack = 1e-9 * scale.step
+    step = round_step((high - low) / intervals)
+    scale, slack = Scale(math.floor(low / step) * step, math.ceil(high / step) * step, step), 1e-9 * step
     marks = zip(scale.ticks, scale.words, strict=True)
     inside = tuple(mark for mark in marks if low - slack <= mark[0] <= high + slack)
     return Axis(name, low, high, start, length, inside)

@@ -22,7 +22,7 @@ STATIC_LINE, NOW_LINE = ChartLine("static", PALETTE[0], 2.0), ChartLine("now", P
 
 
 class CurveInputs(NamedTuple):
-    """Everything that a restoring curve depends on; equal where the curve is the same."""
+    """Everything that a restoring curve depends on."""
 
     system: System  # in still water; its coupled points move along the waves
     wave: tuple[float, float]  # unit vector along the waves
@@ -53,7 +53,7 @@ class RestoringCurve:
     """The curve of the arrangement as it was last asked for."""
 
     def __init__(self) -> None:
-        self.made_of: object = None
+        self.made_of: CurveInputs | None = None
         self.curve: tuple[NDArray[np.float64], NDArray[np.float64]] = (np.zeros(0), np.zeros(0))  # [m], [N]
 
     def chart(
@@ -66,7 +66,8 @@ class RestoringCurve:
         """
         # Of the offsets so far it takes the next power of two, so that it is seldom found again.
         key = inputs(2.0 ** math.ceil(math.log2(max(farthest, 1e-3))))
-        if key != self.made_of:
+        # Systems are kept by those who make them; equal ones may hold arrays, which `==` cannot compare.
+        if self.made_of is None or key.system is not self.made_of.system or key[1:] != self.made_of[1:]:
             self.curve = key.curve(rows)
             self.made_of = key
         offset, force = self.curve

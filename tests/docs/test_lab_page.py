@@ -16,7 +16,8 @@ from sim.parameters import parameters_of
 from tests.docs.pages import ROOT, text_of
 
 PAGE = text_of(ROOT / "docs" / "lab.md")
-FILES = dict(re.findall(r"^File `([^`]+)`:\n\n```\w+\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL))
+EXAMPLES = ROOT / "docs" / "examples"
+FILES = {path: text_of(EXAMPLES / path) for path in re.findall(r"\]\(examples/(my_tasks/[^)]+)\)", PAGE)}
 COMMANDS = re.findall(r"^```sh\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 
 

@@ -155,7 +155,7 @@ class SquareSeaParams:
     )
     plot_wave_spectrum: bool = in_plots(False, doc="Spectrum at the wave gauge beside theory", title="Wave spectrum")
 
-    spectrum_file: str = ""  # a measured spectrum; it is named on the command line only, never by a browser
+    spectrum_file: str = ""  # a measured spectrum; named on the command line only, never by a browser
     spectrum_time: str = ""  # of its record, "" for the last one
 
 
@@ -203,7 +203,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
 }  # fmt: skip
 
-ABOUT = {  # preset -> what it shows and what to try
+ABOUT = {  # preset -> a sentence: its subject and something to try
     "Earth breeze": "Waves of a breeze on the Earth: turn the wind up, or choose another planet.",
     "Storm arriving": "A storm raises waves, foam and rain on a calm sea within 20 s.",
     "Storm over": "A storm dies down within 20 s, at sunset.",
@@ -218,7 +218,7 @@ ABOUT = {  # preset -> what it shows and what to try
 
 
 class RogueRecord(NamedTuple):
-    """A rogue wave as it was measured."""
+    """A measured rogue wave."""
 
     height: float  # [m] significant
     crest: float  # [m]
@@ -229,7 +229,7 @@ DRAUPNER = RogueRecord(11.9, 18.5, (12.0, 13.0))  # 1 January 1995, from the las
 
 
 class RainSettings(NamedTuple):
-    """Parameters of the rainfall: when one of these changes, it starts again."""
+    """Parameters of the rainfall: a change of one restarts it."""
 
     rate: float  # [mm/h]
     drops: int  # largest number of drops drawn
@@ -241,7 +241,7 @@ class RainSettings(NamedTuple):
 
 
 def marches(params: SquareSeaParams) -> bool:
-    """True if the sea is solved step by step, in place of the sum of linear waves, which is known at all times."""
+    """True if the sea is solved step by step; the sum of linear waves is known at all times."""
     return params.order > 1 or params.start in MARCHING_STARTS
 
 
@@ -251,7 +251,7 @@ def is_draupner(params: SquareSeaParams) -> bool:
 
 
 def sea_of(params: SquareSeaParams) -> tuple[object, ...]:
-    """The parameters and conditions that decide the heights of its waves."""
+    """The parameters and conditions that determine the heights of its waves."""
     return params.start, params.order, params.length, params.amplitude, params.seed, conditions(params)
 
 
@@ -262,12 +262,12 @@ def draupner_sea() -> tuple[object, ...]:
 
 
 def acting(params: SquareSeaParams) -> SquareSeaParams:
-    """The parameters with those replaced that have no effect where the sea is solved."""
+    """The parameters, with those replaced that have no effect on a solved sea."""
     return dataclasses.replace(params, **LINEAR_ONLY) if marches(params) else params
 
 
 def solved_points(p: SquareSeaParams) -> int:
-    """Points a side of the grid that is solved; of long-crested waves, along x alone."""
+    """Points along a side of the solved grid; of long-crested waves, along x alone."""
     size = int(p.size)
     if not marches(p) or p.start in LONG_CRESTED_STARTS:
         return size
@@ -275,7 +275,7 @@ def solved_points(p: SquareSeaParams) -> int:
 
 
 def gauge_home(params: SquareSeaParams) -> tuple[float, float]:
-    """Initial place of the wave gauge [m], until a click moves it: near the camera, or where a high wave is to come."""
+    """Initial place of the wave gauge [m], until a click moves it: near the camera, or at a coming high wave."""
     x, y = (
         math.copysign(min(abs(share) * params.length, math.inf if marches(params) else limit), share)
         for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
@@ -320,7 +320,7 @@ def rain_settings(params: SquareSeaParams) -> RainSettings:
 
 
 def hidden(params: SquareSeaParams) -> set[str]:
-    """Names of the parameters that have no effect while the others are as they are."""
+    """Names of the parameters without effect beside the present others."""
     names = unused_waves(params)
     if params.planet != "by mass":
         names |= {"planet_mass", "radius_rule"}

@@ -171,5 +171,5 @@ class RaceScene:
             "separation": (separations, "m, of each reference run from a second one that started 0.1 nm away"),
             "error": (np.array([race.error(e) for e in race.entrants]), "m, NaN where a rope or the reference failed"),
             "energy": (np.array([entrant.stored_energy() for entrant in race.entrants]), "J, stored"),
-            "numerical_dissipation": (taken, "J, that the method took"),
+            "numerical_dissipation": (taken, "J, dissipated by the method"),
         }

@@ -57,15 +57,15 @@ class RadialSeaParams:
         affects="look", title="Cutaway",
     )  # fmt: skip
     follow: str = in_main(
-        "free", choices=CAMERA_TARGETS, doc="Target that the camera looks at and moves with", affects="look",
+        "free", choices=CAMERA_TARGETS, doc="Target that the camera follows", affects="look",
         title="Camera follows",
     )  # fmt: skip
 
     waves: bool = in_waves(True, doc="Waves; without them the sea is level")
     wind_direction: float = in_main(25.0, -180.0, 180.0, "°", "Direction that the wind blows to, from +x towards +y")
-    spectrum: str = in_waves("jonswap", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
+    spectrum: str = in_waves("jonswap", choices=SPECTRUM_TITLES, doc="Spectrum of the waves")
     wave_count: int = in_waves(
-        96, 8, 512, "", "Number of waves in the sum, whose height and slope the panel tells; each has the same energy",
+        96, 8, 512, "", "Number of waves in the sum, each of the same energy; the panel shows their height and slope",
         log_from=8, title="Number of waves",
     )  # fmt: skip
     choppiness: float = in_waves(
@@ -103,18 +103,18 @@ class RadialSeaParams:
     )  # fmt: skip
 
     spill_volume: float = in_spill(
-        100.0, 1.0, 1e5, "m³", "Oil that was spilled, all at once", log_from=1.0, title="Volume spilled"
+        100.0, 1.0, 1e5, "m³", "Volume of oil spilled, all at once", log_from=1.0, title="Volume spilled"
     )
     temperature: float = in_spill(
         15.0, 0.0, 30.0, "°C", "Temperature of the oil; the water's density stays as at 15 °C"
     )
     spill_hours: float = in_spill(
         0.0, 0.0, 120.0, "h",
-        "Time since the spill: the oil evaporates, takes up water and thickens, and floats here as it is by then",
+        "Time since the spill, during which the oil evaporates, takes up water and thickens",
         title="Time since the spill",
     )  # fmt: skip
     spread: bool = in_spill(
-        False, doc="The layer is as thin as the oil has spread by then, instead of as thick as set",
+        False, doc="Use the thickness to which the oil has spread by then, instead of the one set",
         title="Thickness as spread",
     )  # fmt: skip
 

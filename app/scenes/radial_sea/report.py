@@ -144,8 +144,8 @@ def weight_tables(readings: RadialReadings) -> tuple[Html, ...]:
         table((("buoyancy now", ""), *wet, ("buoyancy", "N")), forces),
         table((("mean upward force, 60 s", ""), ("weight", "N"), ("buoyancy", "N"), ("waves", "N"), ("drag", "N"),
                ("own motion", "N")), means),
-        faint("On average buoyancy carries the weight. Waves, drag and what the motion meets (added mass, radiated "
-              "waves, lines, a pull) push up and down; over a minute little of them remains."),
+        faint("On average buoyancy carries the weight. Waves, drag and reactions to the motion (added mass, "
+              "radiated waves, lines, a pull) push up and down, and nearly cancel over a minute."),
     )  # fmt: skip
 
 

@@ -64,7 +64,7 @@ class SquareSeaParams:
     gravity: float = in_main(9.81, 0.01, 1000.0, "m/s²", "Gravity", log_from=0.01)
     view: str = in_main("deck", choices=VIEW_TITLES, doc="Place of the camera", affects="look")
 
-    spectrum: str = in_waves("pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
+    spectrum: str = in_waves("pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum of the waves")
     wind_direction: float = in_main(20.0, -180.0, 180.0, "°", "Direction that the wind blows to, from +x towards +y")
     transition: float = in_waves(
         3.0, 0.0, 600.0, "s", "Time for the sea to adapt to new weather", log_from=0.1, title="Time to adapt"
@@ -145,7 +145,7 @@ class SquareSeaParams:
     gauge: bool = in_look(True, doc="Draw the wave gauge, a buoy", title="Wave gauge")
     sky: str = in_look("park", choices=SKY_TITLES, doc="Sky and its light")
     sun: float = in_look(18.0, -180.0, 180.0, "°", "Direction of the sun, from +x towards +y", title="Sun direction")
-    clouds: float = in_look(0.4, 0.0, 1.0, "", "Fraction of the sky that clouds cover", title="Cloud cover")
+    clouds: float = in_look(0.4, 0.0, 1.0, "", "Fraction of the sky covered by clouds", title="Cloud cover")
     daylight: float = in_look(0.85, 0.05, 3.0, "", "Brightness", title="Brightness")
     visibility: float = in_look(3000.0, 50.0, 20000.0, "m", "Distance at which haze hides the sea", log_from=50.0)
 

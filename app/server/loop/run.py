@@ -25,7 +25,7 @@ from sim.validation import DivergenceError
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
 MAX_BYTES = 100e6  # of all runs kept for an undo; beyond that the oldest are dropped
 ROW_BYTES = 32  # of a number in a plot row, with its place in the tuple
-BEGUN = "the lab was reset or went on from another moment"  # answer to a program that awaits a time
+BEGUN = "the lab was reset or resumed from another moment"  # answer to a program that awaits a time
 
 
 class Goal(NamedTuple):

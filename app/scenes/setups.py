@@ -370,7 +370,7 @@ def preset_named(what: str, preset: object, kind: SceneKind[Any, Any, Any]) -> M
 def preset_setup(option: str, preset: str, kind: SceneKind[Any, Any, Any], folder: Path | None = None) -> Setup:
     """The set-up that a preset names. preset: a name, or the path of a file, relative to `folder`.
 
-    Raises ValueError, naming the option, where there is no such preset of this scene or a value is not allowed.
+    Raises ValueError, naming the option, if there is no such preset of this scene or a value is not allowed.
     """
     if preset in kind.presets:
         return make_setup(kind, preset)

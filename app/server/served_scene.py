@@ -51,7 +51,7 @@ class SceneHost(Protocol):
 
     @property
     def beside(self) -> ComparisonCalls | None:
-        """Shows other set-ups beside this lab; None where this one is beside another."""
+        """Shows other set-ups beside this lab; None if this one is beside another."""
         ...
 
     def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:

@@ -69,7 +69,7 @@ class Viewer:
         one is a pane of, and its number from 2: it is reached through the other's port. opened: the server, if it
         listens already. With either of them `host`, `port` and `access` say nothing.
 
-        Raises OSError where the port cannot be bound.
+        Raises OSError if the port cannot be bound.
         """
         self.compiling = Compiling() if beside is None else beside[0].compiling
         self.workbook, self.session = workbook, session
@@ -277,7 +277,7 @@ class Viewer:
 
     @property
     def beside(self) -> ComparisonCalls | None:
-        """Shows other set-ups beside this lab; None where this one is beside another."""
+        """Shows other set-ups beside this lab; None if this one is beside another."""
         return None if self.pane_of else ComparisonCalls(self.comparing.want, self.comparing.end, self.pane_words)
 
     def pane_words(self) -> tuple[PaneWords, ...]:

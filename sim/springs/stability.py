@@ -260,7 +260,7 @@ def mixed_vectors(
 
 
 def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any) -> NDArray[np.float64] | None:
-    """The unit vector (3 rows cols,) of the stiffest mode that slides on floor or sphere; None where none does.
+    """The unit vector (3 rows cols,) of the stiffest mode that slides on floor or sphere; None if none does.
 
     The stiffest mode of all may be normal to the surface, where friction does not act.
     """
@@ -379,7 +379,7 @@ def critical_stiffness(
     """The largest stiffness [N/m] of the stiffest links that is stable at step h [s], all families scaled together.
 
     0 if none is (h too long for the damping or the contacts), inf if all are; positions stay as they are.
-    modes: the `top_modes` of the state, where they are known.
+    modes: the `top_modes` of the state, if known.
     Raises ValueError for an unknown integrator or a step that is not above 0.
     """
     record = integrator_named(integrator)
@@ -452,7 +452,7 @@ def last_stable(margin: Callable[[float], float], start: float) -> float:
 def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes: list[Mode] | None = None) -> Gauge:
     """h omega of the mode nearest to its limit at step h [s], and that limit.
 
-    modes: the `top_modes` of the state, where they are known.
+    modes: the `top_modes` of the state, if known.
     """
     return gauge_of(modes_at(net, state) if modes is None else modes, integrator_named(integrator), h)
 

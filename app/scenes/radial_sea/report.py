@@ -29,7 +29,7 @@ HEIGHT = (
     "Significant height: the mean of the highest third of the waves, from trough to crest. Mean slope: the root of the "
     "mean squared slope."
 )
-LEAST_LEFT = 1e-3  # share of a wave below which nothing is said of how much it is
+LEAST_LEFT = 1e-3  # fraction of a wave, below which no number is shown
 SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))
 
 
@@ -241,7 +241,7 @@ def fluids_html(snapshot: Snapshot) -> Html:
 
 
 def surfaces_html(snapshot: Snapshot) -> Html:
-    """The lab's question 1.2-6, answered by measurement where that is asked for."""
+    """The lab's question 1.2-6, answered by measurement on request."""
     readings: RadialReadings = snapshot.readings
     if not readings.surfaces:
         return Html()

@@ -40,7 +40,7 @@ class LastMoments:
         self.frames.clear()
 
     def __iter__(self) -> Iterator[LastFrame]:
-        """The moments, with the box about their points: only a divergence asks for it."""
+        """The moments, with the box about their points, which only a divergence needs."""
         return (LastFrame(t, frame, vector_of(x.min(axis=0)), vector_of(x.max(axis=0))) for t, frame, x in self.frames)
 
 

@@ -183,7 +183,7 @@ class NetScene(abc.ABC, Generic[P]):
             for _ in range(steps):
                 motion.take_steps(net, self.state, 1, with_account=self.with_account)
                 found = extremes(self.state.x, self.state.v)
-                if found.reach < MAX_OVERSHOOT * motion.max_reach:  # false of a NaN as well
+                if found.reach < MAX_OVERSHOOT * motion.max_reach:  # false for NaN too
                     self.frame()
                 if not motion.holds(found):
                     break

@@ -123,7 +123,7 @@ def foam_text(r: "SeaReadings", g: float) -> str:
 
 
 def breaking_text(params: SquareSeaParams) -> str:
-    """A warning where the waves are too high for the depth; "" where they are not."""
+    """A warning where the waves are too high for the depth; "" if they are not."""
     if params.deep:
         return ""
     height = here(params).height

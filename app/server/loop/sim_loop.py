@@ -197,7 +197,7 @@ class SimLoop:
 
     def handle_waiting(self) -> bool:
         """Handle the waiting commands once they are merged, after a reset that was cancelled, unless the first of them
-        that concerns the scene begins it again; True where there was one.
+        that concerns the scene begins it again; True if there was one.
 
         Those that follow a cancelled one wait for the next tick, where what has cancelled it may supersede them.
         """

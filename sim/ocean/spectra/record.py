@@ -110,7 +110,7 @@ class Spectrum(NamedTuple, Generic[C]):
     significant_height: Callable[[C], float] | None  # Hs [m] if a closed form exists
     peak: Callable[[C], float] | None  # peak angular frequency [rad/s] if a closed form exists
     conditions: type[C]
-    # S(omega) [m2 s] over all directions, where it is known; without it `density` is integrated
+    # S(omega) [m2 s] over all directions, if known; without it `density` is integrated
     frequency: Callable[[np.ndarray, C], np.ndarray] | None = None
     wind_height: float = 10.0  # [m] of its wind speed
     by_wind: bool = True  # the wind makes its waves: no wind, no waves

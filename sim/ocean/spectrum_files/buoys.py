@@ -157,7 +157,7 @@ def records_of(text: str, path: Path) -> Records:
 
 
 def paired(words: list[str], path: Path, number: int) -> tuple[list[str], np.ndarray]:
-    """Values and frequencies [Hz] of "0.1 (0.033) 0.2 (0.038)", maybe behind one number, the separation frequency."""
+    """Values and frequencies [Hz] of "0.1 (0.033) 0.2 (0.038)", optionally after the separation frequency."""
     words = words[len(words) % 2 :] if words and len(words) > 1 and not words[1].startswith("(") else words
     places = words[1::2]
     if len(words) % 2 or not all(word.startswith("(") and word.endswith(")") for word in places):

@@ -176,7 +176,7 @@ def factorise_net(g, p, work):
 
 @kernel(inline=True)
 def largest(u):
-    """Largest magnitude, NaN where there is one."""
+    """Largest magnitude, NaN if there is one."""
     found = 0.0
     for j in range(u.shape[0]):
         size = abs(u[j])

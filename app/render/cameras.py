@@ -39,7 +39,7 @@ def all_cameras(server: viser.ViserServer) -> Iterator[Camera]:
 
 
 def lowest_camera(server: viser.ViserServer) -> float | None:
-    """Height [m] of the lowest camera of a browser; None where there is no browser."""
+    """Height [m] of the lowest camera of a browser; None if there is no browser."""
     heights = [float(client.camera.position[2]) for client in server.get_clients().values()]
     return min((height for height in heights if math.isfinite(height)), default=None)
 

@@ -133,7 +133,7 @@ def test_a_body_shape_is_one_file(extended):
 @pytest.mark.long
 def test_a_task_is_two_files_and_its_solutions(extended):
     copy, touched = extended("Add a task")
-    assert len(touched) == 5
+    assert len(touched) == 4
     new, check, test = commands(section("Add a task"))
     run_command(copy, new)
     assert "def phase_speed(k, gravity):" in (copy / "solved" / "square_sea.py").read_text("utf-8")

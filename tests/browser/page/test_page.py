@@ -14,7 +14,7 @@ from tests.browser.conftest import new_page
 
 
 def shown(page: Any) -> str:
-    """The words on the cover; "" where it is not there."""
+    """The words on the cover; "" if it is not there."""
     return page.evaluate(
         """() => { const cover = document.getElementById("springtide-cover");
            return !cover || cover.classList.contains("springtide-hidden") ? "" : cover.innerText; }"""

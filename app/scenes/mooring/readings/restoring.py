@@ -49,7 +49,7 @@ class StaticInputs(NamedTuple):
 
 
 class RestoringCurve:
-    """The curve of the arrangement as it was last asked for."""
+    """The last curve of the arrangement."""
 
     def __init__(self) -> None:
         self.made_of: object = None
@@ -61,7 +61,7 @@ class RestoringCurve:
         inputs: for a curve that goes to an offset [m] at least. farthest: offset [m] so far. now, pull: offset along
         the waves [m], and the force of the lines against it [N].
         """
-        # Of the offsets so far it takes the next power of two, so that it is seldom found again.
+        # The range is the next power of two above the offsets so far, so that it is rarely recomputed.
         key = inputs(2.0 ** math.ceil(math.log2(max(farthest, 1e-3))))
         if key != self.made_of:
             self.curve = key.curve()

@@ -275,7 +275,7 @@ def test_an_endless_file_is_run_once_for_all_its_functions(tmp_path: Path) -> No
     assert {verdict.sentence for verdict in verdicts} == {said}
 
 
-# Bytes of a file -> what Python says of it, or "" where it runs.
+# Bytes of a file -> what Python says of it, or "" if it runs.
 ENCODINGS = {
     b"# gr\xf6\xdfe\n": r"line 1: SyntaxError: Non-UTF-8 code starting with '\xf6', but no encoding declared",
     b"\n\n\n# gr\xf6\xdfe\n": r"line 4: SyntaxError: Non-UTF-8 code starting with '\xf6', but no encoding declared",

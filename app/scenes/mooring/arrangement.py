@@ -1,6 +1,7 @@
 """The mooring that the parameters describe: sea, body, anchors, fairleads and lines as a `System`."""
 
 import dataclasses
+import functools
 import itertools
 import math
 from typing import NamedTuple
@@ -37,6 +38,17 @@ class Places(NamedTuple):
 
     anchors: tuple[Vector, ...]  # [m]
     fairleads: tuple[Vector, ...]  # [m] from the body's centre
+
+    def slack(self, body: NDArray[np.float64], length: float) -> float:
+        """Level way [m] from the body's place to where the first line of this length [m] is straight."""
+        ways = body + np.subtract(self.fairleads, self.anchors)
+        straight = np.sqrt(np.maximum(length**2 - ways[:, 2] ** 2, 0.0))
+        return float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
+
+
+def at_most(length: float, vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A vector, shortened where it is longer."""
+    return vector * min(1.0, length / max(float(np.linalg.norm(vector)), 1e-9))
 
 
 def water_of(params: MooringParams) -> Water:
@@ -207,6 +219,18 @@ def build(params: MooringParams, places: Places, body: MooredBody, sea: Waves | 
         tuple(lines), tuple(points), params.depth, (body,), GRAVITY, DENSITY, friction=params.friction,
         current=(params.current * c, params.current * s, 0.0), waves=sea,
     )  # fmt: skip
+
+
+@functools.lru_cache(maxsize=2)
+def held(lines: tuple[Line, ...], points: tuple[Point, ...], moved: Vector, depth: float) -> System:
+    """The lines in still water between fixed anchors and a body that is held: its points are coupled, `moved` [m]."""
+    placed = [
+        point._replace(kind="coupled", position=vector_of(np.add(point.position, moved)), body=None)
+        if point.kind == "body"
+        else point._replace(kind="fixed" if point.kind == "coupled" else point.kind)
+        for point in points
+    ]
+    return System(lines, tuple(placed), depth, (), GRAVITY, DENSITY)
 
 
 def rows_of(system: System, params: MooringParams) -> LineRows:

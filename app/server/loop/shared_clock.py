@@ -1,4 +1,4 @@
-"""One clock for several simulation loops: all advance by the same simulated time, and the slowest sets the pace.
+"""One clock for several simulation loops: all advance by the same simulated time, and the slowest sets the speed.
 
 The clock's time rises with the wall clock, but never beyond what every loop can take: `LEAD` after the next step of the
 one that is farthest behind. Each loop takes the steps that lead to the clock's time. Once the clock stands, all come to

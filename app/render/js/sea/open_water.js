@@ -183,8 +183,8 @@ export const openWater = {
     vectors.forEach((vector, k) => vector.fromArray(numbers, 3 * k));
     const [x, y, heading] = vectors[1].toArray(), { position } = mesh;
     const at = mesh.localToWorld(position.clone().set(x, y, 0));
-    const ahead = mesh.localToWorld(position.clone().set(x + Math.cos(heading), y + Math.sin(heading), 0)).sub(at);
-    vectors[1].set(at.x, at.z, Math.atan2(ahead.z, ahead.x));
+    const ahead = mesh.localToWorld(position.clone().set(x + Math.cos(heading), y + Math.sin(heading), 0));
+    vectors[1].set(at.x, at.z, Math.atan2(ahead.z - at.z, ahead.x - at.x));
     openUniforms.openTime.value = WEB_STEP * mesh.geometry.attributes.position.version;
     openUniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     if (openDome?.mesh !== mesh) {

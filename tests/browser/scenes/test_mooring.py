@@ -43,6 +43,7 @@ def test_open_water_lies_around_the_mooring(open_tab: Callable[..., Tab]) -> Non
     assert errors == []
 
 
+@pytest.mark.long
 def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Callable[..., Tab]) -> None:
     lab = Viewer("127.0.0.1", 0)
     try:

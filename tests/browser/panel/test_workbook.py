@@ -90,6 +90,7 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     page.evaluate("address => history.replaceState(null, '', address)", address)
 
 
+@pytest.mark.long
 def test_a_link_to_a_task_shows_its_tab_until_another_is_chosen(one_page: tuple[Viewer, Tab]) -> None:
     """In a lab without a folder, whose first tab is another, also where the link opens another scene."""
     lab, tab = one_page

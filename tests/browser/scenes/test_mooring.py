@@ -69,6 +69,7 @@ def test_the_shadow_on_the_bed_is_that_of_the_body_where_it_is(open_tab: Callabl
     assert shadow < 0.8 * min(lit)
 
 
+@pytest.mark.long
 def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Callable[..., Tab]) -> None:
     lab = Viewer("127.0.0.1", 0)
     try:

@@ -173,7 +173,7 @@ class ComparedLabs:
             raise
         first.comparison = self
         self.seat(first)
-        shared: Future[None] = Future()  # until the record has the parameters of the first lab: a change comes after them
+        shared: Future[None] = Future()  # until the record has the parameters of the first lab, before a change
         first.call(lambda: shared.set_result(None))
         with contextlib.suppress(TimeoutError):
             shared.result(FIRST_TIMEOUT)

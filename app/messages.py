@@ -41,7 +41,7 @@ def vector_of(x: NDArray[np.floating]) -> Vector:
 
 
 def finite_vector(values: Iterable[object], max_distance: float = MAX_DISTANCE) -> Vector | None:
-    """Three finite numbers, each bounded to `max_distance`; None where it is not three finite numbers."""
+    """Three finite numbers, each bounded to `max_distance`; None if it is not three finite numbers."""
     try:
         x, y, z = (float(c) for c in values)  # type: ignore[arg-type]
     except (TypeError, ValueError):
@@ -88,7 +88,7 @@ class StepOnce(NamedTuple):
 class RunOn(NamedTuple):
     """Run, and pause as soon as an event begins."""
 
-    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # True if it happens just now
+    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # True while it happens
 
 
 class Halt(NamedTuple):
@@ -100,7 +100,7 @@ class Halt(NamedTuple):
 class Reset(NamedTuple):
     """Back to the start of the scene; parameters and camera stay."""
 
-    act: int = 0  # number of the person's act that asks for it (`History`); 0: no person does
+    act: int = 0  # number of the person's act behind it (`History`); 0: none
 
 
 class Checkpoint(NamedTuple):
@@ -115,7 +115,7 @@ class Take(NamedTuple):
     """Take a whole record of parameters; of several the latest counts.
 
     Parameters of another act than the one with which the present run began begin another run. Others go on with the
-    present one, as the effect of the change asks for.
+    present one, depending on the effect of the change.
     """
 
     params: BaseParams  # the scene's record
@@ -176,8 +176,8 @@ class Ask(NamedTuple):
 class Advance(NamedTuple):
     """Run for a simulated time, to a whole step, then go on or stand still as before; answer with the time then [s].
 
-    Where nobody looks it runs as fast as it can. The answer is a DivergenceError where the run halts before, and a
-    RuntimeError where it begins again.
+    Where nobody looks it runs as fast as it can. The answer is a DivergenceError if the run halts before, and a
+    RuntimeError if it begins again.
     """
 
     seconds: float
@@ -244,8 +244,8 @@ class Status(NamedTuple):
     # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
     replayed: tuple[Vector, Vector] | None = None
     unmade: bool = False  # the scene could not begin with its parameters
-    pace: float = 1.0  # factor on `speed` that the scene asks for: below 1 is slow motion
-    restarted: bool = False  # an undo has lately found that the run was not kept, so it began again
+    pace: float = 1.0  # factor on `speed` requested by the scene: below 1 is slow motion
+    restarted: bool = False  # a recent undo had to restart the run, which was not kept
     faster: str = ""  # advice that makes a capped run faster, or ""
 
 

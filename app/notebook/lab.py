@@ -90,8 +90,8 @@ class Lab:
         """Let the lab run for `seconds` [s] of simulated time, to a whole step; returns the time then [s].
 
         After it the clock goes on, or stands still where it did before. With a browser on it the lab runs at its speed,
-        without one as fast as it can. Raises ValueError for what is not a time, DivergenceError where the run stops
-        before, and RuntimeError where it is reset or another scene is opened meanwhile.
+        without one as fast as it can. Raises ValueError for what is not a time, DivergenceError if the run stops
+        before, and RuntimeError if it is reset or another scene is opened meanwhile.
         """
         check_number("seconds", seconds, "s", 0.0, MAX_WAIT)
         answer: Future[float] = Future()
@@ -124,7 +124,7 @@ class Lab:
     def picture(self, width: int = 960, height: int = 540) -> Still:
         """A picture [pixels] of a browser's view, which stays in the notebook.
 
-        Raises RuntimeError where no browser shows the lab, and TimeoutError where one does not draw.
+        Raises RuntimeError if no browser shows the lab, and TimeoutError if one does not draw.
         """
         return take_still(self._open, width, height)
 
@@ -166,7 +166,7 @@ class Lab:
 
     @property
     def _open(self) -> Viewer:
-        """The viewer. Raises RuntimeError where the lab was stopped."""
+        """The viewer. Raises RuntimeError if the lab was stopped."""
         self._check_open()
         return self._viewer
 
@@ -191,7 +191,7 @@ class Lab:
         return self._result_of(answer, served)
 
     def _result_of(self, answer: "Future[T]", served: ServedScene) -> T:
-        """The answer of a scene. Raises RuntimeError where it is closed before it has answered."""
+        """The answer of a scene. Raises RuntimeError if it is closed before it has answered."""
         try:
             while True:
                 with contextlib.suppress(TimeoutError):

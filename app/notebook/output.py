@@ -22,7 +22,7 @@ def shell() -> Any:
 
 
 def cell_of_now() -> tuple[str, str]:
-    """The cell that is executed and the number of its execution; "" where the notebook does not say."""
+    """The cell that is executed and the number of its execution; "" if the notebook does not say."""
     parent = getattr(shell(), "get_parent", dict)() or {}
     cell = (parent.get("metadata") or {}).get("cellId") or ""
     return str(cell), str((parent.get("header") or {}).get("msg_id") or "")

@@ -28,7 +28,7 @@ class Still:
 def take_still(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TIMEOUT) -> Still:
     """View of the newest browser, drawn again at width x height [pixels]. timeout: [s] for drawing it.
 
-    Raises ValueError for what is not a size, RuntimeError where no browser shows the lab, and TimeoutError where it
+    Raises ValueError for what is not a size, RuntimeError if no browser shows the lab, and TimeoutError if it
     does not draw.
     """
     for name, side in (("width", width), ("height", height)):

@@ -33,7 +33,7 @@ def lab_words() -> list[str]:
 
     The exercises are made where it has no answers yet, whatever other files it holds.
 
-    None where the environment names no folder, or one that cannot be made.
+    None if the environment names no folder, or one that cannot be made.
     """
     named = os.environ.get(LAB_VARIABLE)
     if not named:

@@ -1,4 +1,4 @@
-"""Live plots in a dock of their own, made when first asked for. Rows are kept whether a plot is open or not."""
+"""Live plots in a dock, made on first use. Rows are kept whether or not a plot is open."""
 
 import bisect
 import collections
@@ -61,14 +61,14 @@ class Plots:
         self.kept: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
         self.curves: Mapping[str, Chart | Columns] = {}  # the whole charts as the scene made them last
         self.kept_curves: Mapping[str, Chart | Columns] = {}  # those of an earlier run
-        self.has_begun = False  # parameters have been read: charts that open from now on were asked for
+        self.has_begun = False  # parameters have been read: charts that open from now on were requested
         self.sent_at = 0.0
         self.drawn = 0  # charts that were sent again
 
     def keep(self, on: bool) -> float | None:
         """Keep the curves as they are, to be drawn beside those of the runs that follow, or drop them.
 
-        Returns the time [s] of the last that is kept; None where nothing is.
+        Returns the time [s] of the last that is kept; None if nothing is.
         """
         self.kept = tuple(self.rows) if on else ()
         self.kept_curves = self.curves if on else {}
@@ -114,7 +114,7 @@ class Plots:
             self.dock = Dock(panel, panel.add_tab("Plots"))
             panel.dock_left()
         self.dock.panel.visible = bool(wanted)
-        # A small screen folds it at first, so that the picture has more room. It is unfolded when a user asks for it.
+        # A small screen folds it at first, so that the picture has more space. Opening a plot unfolds it.
         if wanted and not was_open and self.has_begun:
             self.dock.panel.expand()
         for name in (*self.kind.plots, *self.kind.curves):

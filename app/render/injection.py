@@ -102,7 +102,7 @@ def record_shaders(server: viser.ViserServer) -> None:
 
 
 def injector_of(server: viser.ViserServer) -> ShaderInjector | None:
-    """The shader injector of a server, made on the first call; None where shaders are disabled."""
+    """The shader injector of a server, made on the first call; None if shaders are disabled."""
     if server in _disabled:
         return None
     if server not in _injectors:

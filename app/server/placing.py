@@ -24,7 +24,7 @@ class CameraPlacing:
         place_cameras(server, *view.first_view(params), view.FIELD_OF_VIEW)
 
     def update(self, snapshot: AnySnapshot, placing: Placing | None) -> None:
-        """Place the cameras as a picture asks for. placing: as the settings ask for, once its run is shown."""
+        """Place the cameras for a picture. placing: requested by the settings, once its run is shown."""
         status = snapshot.status
         if status.replayed is not None and not status.halted:
             self.fit(snapshot.params, status.replayed)

@@ -74,7 +74,7 @@ def thinned(frames: Sequence[RecordedFrame]) -> list[RecordedFrame]:
 def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted) -> str:
     """The page of a replay of the last of these frames. plotted: the data of the plots.
 
-    Raises ValueError where there is no frame.
+    Raises ValueError if there is no frame.
     """
     if not frames:
         raise ValueError("nothing has been recorded yet: let the scene run first")

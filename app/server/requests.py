@@ -1,4 +1,4 @@
-"""Scenes that browsers ask for: of several that wait only the last counts."""
+"""Scenes that browsers request: of several waiting only the last counts."""
 
 import itertools
 import queue
@@ -37,5 +37,5 @@ class SceneRequests:
         return request
 
     def is_newer(self, number: int) -> bool:
-        """True if a scene was asked for after the request of this number; it may have been taken out already."""
+        """True if a scene was requested after the request of this number; it may already have been taken out."""
         return self.number != number or not self.waiting.empty()

@@ -90,7 +90,7 @@ class Engine(abc.ABC):
 
     @abc.abstractmethod
     def run(self, body: str) -> Any:
-        """The result of the body of an async function in the page. Raises RuntimeError where it throws."""
+        """The result of the body of an async function in the page. Raises RuntimeError if it throws."""
 
     @abc.abstractmethod
     def act(self, actions: list[dict[str, Any]]) -> None:
@@ -429,7 +429,7 @@ class Chromium(Engine):
 
 
 def missing(name: str) -> str:
-    """What this machine lacks for a browser; "" where it lacks nothing."""
+    """What this machine lacks for a browser; "" if it lacks nothing."""
     needed = {
         "firefox": ("firefox-esr", "Xvfb"),
         "webkit": ("WebKitWebDriver", "Xvfb", "dbus-run-session"),

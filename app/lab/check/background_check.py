@@ -79,7 +79,7 @@ class BackgroundCheck(Service):
         return dataclasses.replace(verdict, text=f"{verdict.text}; trying again"), False
 
     def ask(self, folder: Path, name: str) -> Verdict | None:
-        """The verdict of the process on a function; None where it ends before."""
+        """The verdict of the process on a function; None if it ends before."""
         with self.starting:
             if self.closed.is_set():
                 return None

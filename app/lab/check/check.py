@@ -18,9 +18,9 @@ class TaskResult:
     """One task of one student."""
 
     task: Task
-    program: Verdict | None  # None where nothing is to be programmed
+    program: Verdict | None  # None if nothing is to be programmed
     answers: tuple[AnswerVerdict, ...]
-    points: Points | None = None  # a curve of the function, where it was asked for
+    points: Points | None = None  # a curve of the function, if requested
 
     @property
     def state(self) -> str:
@@ -79,7 +79,7 @@ class FolderResult:
 def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool, runners: Runners) -> FolderResult:
     """Check all tasks of a student's folder; with the report's curves, if `curves`. runners: those that may be aborted.
 
-    Raises ValueError where it is no folder.
+    Raises ValueError if it is no folder.
     """
     check_is_folder(folder)
     began = time.monotonic()

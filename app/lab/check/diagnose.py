@@ -109,7 +109,7 @@ def has_form(student: StudentFunction, form: Callable[..., Any], trial: Trial) -
 
 
 def explain(student: StudentFunction) -> Explanation | None:
-    """The difference of a function from the reference by its structure; None where that does not tell."""
+    """The difference of a function from the reference by its structure; None if that does not tell."""
     check = student.task.check
     try:
         if (method := getattr(check, "METHOD", None)) is not None:
@@ -237,7 +237,7 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
 
 
 def compared_parts(trials: Sequence[Trial]) -> list[where.Difference] | None:
-    """The trials with their differences; None where results have other shapes."""
+    """The trials with their differences; None if results have other shapes."""
     if not all(same_shape(trial.found, trial.right) for trial in trials):
         return None
     return [where.compared(trial.sample, parts(trial.found), parts(trial.right)) for trial in trials]

@@ -61,7 +61,7 @@ class Verdict:
 
 @dataclasses.dataclass(frozen=True)
 class Points:
-    """A curve of the student's function beside the reference. student: None where it has no result."""
+    """A curve of the student's function beside the reference. student: None if it has no result."""
 
     x_label: str
     y_label: str
@@ -118,7 +118,7 @@ def place_of(file: str, line: int | None) -> str:
 
 
 def draw(runner: Runner, task: Task) -> Points | None:
-    """The curve of a task for the report; None where the task has none."""
+    """The curve of a task for the report; None if the task has none."""
     curve = getattr(task.check, "CURVE", None)
     if curve is None:
         return None

@@ -90,7 +90,7 @@ def as_number(value: int | float) -> float:
 
 
 def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: str, key: str, value: Value) -> None:
-    """Change one value of answers.toml. answers: those in the file. Raises OSError where that cannot be done.
+    """Change one value of answers.toml. answers: those in the file. Raises OSError if that cannot be done.
 
     The file is whole at every moment. All the rest stays as it is, comments too, unless the file is written in a way
     that leaves no place for the value; then it is written anew.
@@ -106,7 +106,7 @@ def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: s
 
 
 def change_name(folder: Path, tasks: Sequence[Task], answers: Answers, name: str) -> None:
-    """Change the student's name, as `change_answer` does a value. Raises OSError where that cannot be done."""
+    """Change the student's name, as `change_answer` does a value. Raises OSError if that cannot be done."""
     path = folder / FILE
     text = path.read_bytes().decode(ENCODING) if path.exists() else ""
     changed = NAME.sub(lambda _: f"name = {quoted(name)}", text, count=1)
@@ -117,7 +117,7 @@ def change_name(folder: Path, tasks: Sequence[Task], answers: Answers, name: str
 
 
 def with_value(text: str, task: str, key: str, value: Value) -> str | None:
-    """The text of answers.toml with one value changed and no other line; None where there is no plain place for it."""
+    """The text of answers.toml with one value changed and no other line; None if there is no plain place for it."""
     lines = text.split("\n")
     heads = [i for i, line in enumerate(lines) if line.strip() == f"[{task}]"]
     if not heads:  # a task without questions has no heading at first
@@ -165,7 +165,7 @@ def is_toml(text: str) -> bool:
 
 
 def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
-    """The text of answers.toml, with the questions as comments. Answers that no task asks for are kept."""
+    """The text of answers.toml, with the questions as comments. Answers of unknown questions are kept."""
     left = dict(answers.values)
     lines = [
         "# Your answers. Write between the quotation marks; a number needs none.",

@@ -40,7 +40,7 @@ def folder_names(folders: Iterable[Path]) -> dict[Path, str]:
 def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
     """Write the exercises into a new or empty folder; returns the files. solutions: with the reference solutions.
 
-    Raises ValueError where the folder holds something, OSError where it cannot be written.
+    Raises ValueError if the folder holds something, OSError if it cannot be written.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise argument_error("DIR", str(folder), "a new or empty folder")
@@ -50,7 +50,7 @@ def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False)
 def add_exercises(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
     """Write the exercises into a folder, and leave files that are there as they are; returns the files written.
 
-    The answers come last: with them a folder is complete. Raises OSError where the folder cannot be written.
+    The answers come last: with them a folder is complete. Raises OSError if the folder cannot be written.
     """
     texts = {name: file_text(name, tasks, solutions=solutions) for name in files_of(tasks)}
     texts["README.md"] = readme_text(folder.absolute().name, tasks)

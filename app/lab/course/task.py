@@ -141,7 +141,7 @@ class Task(TaskFile, frozen=True, kw_only=True):
     """One task of the lab."""
 
     name: str
-    check: Any = None  # the Python file of a programming task; None where checks were not asked for
+    check: Any = None  # the Python file of a programming task; None if checks were not requested
 
     @property
     def function(self) -> Any:
@@ -211,7 +211,7 @@ def prepared(key: str, value: Any) -> Any:
 
 
 def load_check(path: Path) -> ModuleType:
-    """The Python file of a programming task. Raises ValueError where it lacks a part."""
+    """The Python file of a programming task. Raises ValueError if it lacks a part."""
     spec = importlib.util.spec_from_file_location(f"springtide_task_{path.stem}", path)
     assert spec is not None
     assert spec.loader is not None

@@ -41,7 +41,7 @@ class Workbook:
 
         programs: function -> state of its latest check.
 
-        Raises ValueError where there is nothing to show, or a law is no formula.
+        Raises ValueError if there is nothing to show, or a law is no formula.
         """
         self.all_tasks, self.folder, self.programs = tuple(tasks), folder, programs
         self.tasks = tuple(task for task in tasks if folder is not None or task.guide is not None)
@@ -53,7 +53,7 @@ class Workbook:
         self.answers = Answers("", {})
         self.file = None if folder is None else FileWatch(folder, FILE, 0.0)
         self.revision: int = 0  # number of changes of the answers
-        self.looked_at: set[str] = set()  # names of the tasks that show their answer, where there is no folder
+        self.looked_at: set[str] = set()  # names of the tasks that show their answer, if there is no folder
         self.refresh()
         self.index = 0 if folder is None else self.first_open()
 
@@ -135,7 +135,7 @@ class Workbook:
     def answer(self, task: Task, question: Question, text: str) -> None:
         """Keep an answer as it was typed or chosen; an empty one takes it back.
 
-        Raises ValueError for one that is not allowed, OSError where the file cannot be written.
+        Raises ValueError for one that is not allowed, OSError if the file cannot be written.
         """
         if question.key == PREDICTION and self.is_shown(task):
             raise ValueError("You have seen the answer, so the prediction can no longer be changed.")
@@ -153,14 +153,14 @@ class Workbook:
             self.refresh()
 
     def read_whole(self, folder: Path) -> Answers:
-        """The answers as they are in the file. Raises ValueError where it cannot be read."""
+        """The answers as they are in the file. Raises ValueError if it cannot be read."""
         found = read_answers(folder)
         if found.error and (folder / FILE).exists():
             raise ValueError(f"{found.error}. Nothing is saved until you repair this.")
         return found
 
     def store(self, task: str, key: str, value: Value) -> None:
-        """Change one value of answers.toml. Raises ValueError where the file cannot be read, OSError for writing."""
+        """Change one value of answers.toml. Raises ValueError if the file cannot be read, OSError for writing."""
         if self.folder is None:
             return
         with self.lock:
@@ -172,7 +172,7 @@ class Workbook:
 
         words: its subject, as a part of the name, without spaces and dots.
 
-        Raises ValueError where there are as many as the report shows, OSError where it cannot be written.
+        Raises ValueError if there are as many as the report shows, OSError if it cannot be written.
         """
         assert self.folder is not None
         folder = self.folder / PICTURES
@@ -220,7 +220,7 @@ class Workbook:
 
 
 def check_laws(task: Task) -> None:
-    """Raises ValueError where a law of the task's guide is no formula."""
+    """Raises ValueError if a law of the task's guide is no formula."""
     for law in task.guide.law if task.guide is not None else ():
         try:
             formula(law)
@@ -249,6 +249,6 @@ def answer_of(question: Question, text: str) -> Value:
 
 
 def read_off(question: Question, values: LiveValues) -> str:
-    """The live value that answers a question, as it would be typed; "" where the scene has none now."""
+    """The live value that answers a question, as it would be typed; "" if the scene has none now."""
     found = values.get(question.read_off)
     return f"{found.value:.6g}" if isinstance(found, LiveNumber) and abs(found.value) < 1e300 else ""

@@ -18,7 +18,7 @@ from app.lab.course.tasks.springs.step_rk4 import step_rk4
 from app.lab.process.rope_march import ClothData, Functions, Unfit, fitting, not_a_number
 
 FILE = "cloth.py"  # where the tasks have these functions
-# Fractions of a step at which each method asks for the acceleration.
+# Fractions of a step at which each method evaluates the acceleration.
 MOMENTS = {"step_euler": (0.0,), "step_symplectic": (0.0,), "step_rk4": (0.0, 0.5, 0.5, 1.0)}
 
 
@@ -75,7 +75,7 @@ class ClothFunctions(Functions):
         return a
 
     def start_clock(self, x: np.ndarray, v: np.ndarray) -> None:
-        """Start a step. The steps of a cloth are the program's: when they ask for the acceleration is known."""
+        """Start a step. The steps of a cloth are the program's, with known times of the accelerations."""
         self.moments = iter(MOMENTS[self.step])
 
     def time_in_step(self, x: np.ndarray) -> float:
@@ -83,7 +83,7 @@ class ClothFunctions(Functions):
         return next(self.moments) * self.segment.h
 
     def acceleration(self, x: Any, v: Any) -> np.ndarray:
-        """The accelerations [m/s2], shape (n, 3), that a step asks for."""
+        """The accelerations [m/s2], shape (n, 3), for a step."""
         a = super().acceleration(x, v)
         a[self.pins] = 0.0
         return a

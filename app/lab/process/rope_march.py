@@ -85,7 +85,7 @@ class ClothData(NamedTuple):
 
 
 class Segment(NamedTuple):
-    """Some steps during which the forces stay the same; its last two fields are for the scene that asks for them."""
+    """Some steps during which the forces stay the same; its last two fields are for the calling scene."""
 
     steps: int
     h: float  # [s]
@@ -194,7 +194,7 @@ class Functions:
         return fitting(name, value, shape, self.get(name))
 
     def acceleration(self, x: Any, v: Any) -> np.ndarray:
-        """The accelerations [m/s2], shape (n, 3), that a step asks for."""
+        """The accelerations [m/s2], shape (n, 3), for a step."""
         x, v = np.asarray(x, np.float64), np.asarray(v, np.float64)
         if x.ndim != 2 or x.shape[1] != 3 or x.shape != v.shape:
             text = f"{self.step} calls acceleration(x, v) with shapes {x.shape} and {v.shape}; both must be (n, 3)"
@@ -209,7 +209,7 @@ class Functions:
         return a
 
     def time_in_step(self, x: np.ndarray) -> float:
-        """Time [s] since the start of the step at which it asks for the acceleration at x.
+        """Time [s] since the start of the step for which it needs the acceleration at x.
 
         A root that moves is the clock, see `advance`. Otherwise it is not known; then the sphere is taken at the start
         by Euler's method, and else in the middle.

@@ -55,7 +55,7 @@ class Forked:
         return True
 
     def send_signal(self, number: int) -> None:
-        """Send a signal. Raises OSError where that is not possible."""
+        """Send a signal. Raises OSError if that is not possible."""
         if self.returncode is None:
             os.kill(self.pid, number)
 
@@ -84,7 +84,7 @@ class Template:
     def fork(self, command: Sequence[str], environment: dict[str, str], trace: int, *, compiles: bool) -> Forked:
         """Fork a process. command, environment: that start the template. trace: a file of the new process.
 
-        Raises OSError where there can be no more processes.
+        Raises OSError if there can be no more processes.
         """
         theirs_in, ours_in = os.pipe()
         ours_out, theirs_out = os.pipe()
@@ -157,7 +157,7 @@ class Template:
     def ask(self, request: int, pid: int, files: Sequence[int] = ()) -> int:
         """The answer to a request; with the lock held.
 
-        Raises ConnectionError where no template runs, TimeoutError where it does not answer, another OSError of a fork.
+        Raises ConnectionError if no template runs, TimeoutError if it does not answer, another OSError of a fork.
         """
         if self.connection is None:
             raise ConnectionError("the fork server has not started yet")
@@ -179,7 +179,7 @@ class Template:
 
 
 def can_fork() -> bool:
-    """True where processes can be forked, and watched while they are another's children."""
+    """True if processes can be forked, and watched while they are another's children."""
     if sys.platform != "linux":
         return False
     try:

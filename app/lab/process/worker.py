@@ -39,7 +39,7 @@ from app.lab.process.template import fork_on_request
 from app.lab.process.wire import pack, receive, send, unpack
 
 MAX_LINES = 10_000  # printed in one call or march
-MEMORY = 768 * 2**20  # [bytes] that a call may ask for, where the system can limit it
+MEMORY = 768 * 2**20  # [bytes] that a call may allocate, if the system can limit it
 EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
 LOOK_AT_PARENT = 1.0  # [s] between two looks whether the lab still runs
 PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on where it is, and the time that it has taken
@@ -83,7 +83,7 @@ class Worker:
         sys.stdout = sys.stderr = self.output
         self.modules: dict[str, ModuleType] = {}
         self.states: dict[str, Any] = {}  # of the modules, before any watched call
-        self.edits: list[Edit] = []  # of the last function that was asked for
+        self.edits: list[Edit] = []  # of the last requested function
         self.compiled: dict[str, Callable[..., Any]] = {}
         self.was_tried = was_tried
         self.in_call = threading.Event()

@@ -60,7 +60,7 @@ follow();
 
 
 def page(students: Sequence[Student], revision: int, nonce: str) -> str:
-    """The whole page, which asks for `rows` again as they change. nonce: that the policy allows scripts with."""
+    """The whole page, which requests `rows` after each change. nonce: of the policy for scripts."""
     return fill(
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'

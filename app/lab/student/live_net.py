@@ -39,7 +39,7 @@ class StudentReport(NamedTuple):
     compiled: tuple[str, ...] = ()  # functions that run compiled
     method: str = ""
     sphere: bool = False
-    seconds: float = 0.0  # for each step, lately
+    seconds: float = 0.0  # recent time of a step
     step: float = 0.0  # h [s]
     behind: float = 0.0  # [s] of simulated time
     restarts: int = 0  # number of restarts from the program's rope, after it was too late

@@ -29,10 +29,10 @@ class Call(NamedTuple):
     columns: tuple[NDArray[np.float64], ...]  # (n, ...) each: row i holds the arguments of call i
     allowed: Interval  # range of the function's values
     shape: tuple[int, ...] | None = ()  # of what it returns; None: its number of entries counts
-    program: float = math.nan  # the program's own result, where there is one call
+    program: float = math.nan  # the program's own result, if there is one call
 
     def same(self, other: "Call") -> bool:
-        """True if both ask for the same."""
+        """True if both are the same request."""
         return len(self.columns) == len(other.columns) and all(
             np.array_equal(a, b) for a, b in zip(self.columns, other.columns, strict=True)
         )
@@ -50,7 +50,7 @@ class TableReport(NamedTuple):
     """A scene's report on the functions that move it, for the panel. It is replaced, never changed."""
 
     running: Mapping[str, str] = {}  # function -> what it moves
-    idle: Mapping[str, str] = {}  # function -> why the scene has no use for it just now
+    idle: Mapping[str, str] = {}  # function -> reason why the scene does not use it at present
     differences: tuple[tuple[str, float, float, str], ...] = ()  # name, the student's, the program's, unit
     off: bool = False  # the scene could run by them, and runs by the program's
 
@@ -63,7 +63,7 @@ class TableUser:
         self.taken: dict[str, Table] = {}  # that the sea runs by
 
     def ask(self, calls: Mapping[str, Call], idle: Mapping[str, str]) -> None:
-        """Ask for these tables. idle: function -> why it has no use just now; its table is not taken any more."""
+        """Request these tables. idle: function -> reason why it is not used; its table is no longer taken."""
         self.taken = {name: table for name, table in self.taken.items() if name in calls}
         self.live.report = self.live.report._replace(idle=idle)
         self.live.want(calls)
@@ -92,7 +92,7 @@ class LiveTables(Service):
 
     @property
     def errors(self) -> dict[str, RunError]:
-        """Errors of the newest version of the functions that are asked for."""
+        """Errors of the newest version of the requested functions."""
         errors = {name: self.versions.errors.get(self.uses[name]) for name in self.calls}
         return {name: error for name, error in errors.items() if error is not None}
 
@@ -117,7 +117,7 @@ class LiveTables(Service):
         self.wake()
 
     def compute(self) -> None:
-        """Compute the tables that are out of date, unless this is asked for once more."""
+        """Compute the tables that are out of date, unless a newer request arrives."""
         if not self.inbox.empty():
             return
         before, calls, found, is_busy = self.tables, self.calls, {}, False

@@ -19,7 +19,7 @@ class Controls(Mapping[str, Control]):
         self.parameters = parameters_of(settings.params)
         self.own: dict[str, Control] = {}
         self.again: list[Control] = []  # controls of parameters that are shown a second time, as in a task
-        self.hidden: set[str] = set()  # names of parameters that mean nothing just now
+        self.hidden: set[str] = set()  # names of parameters without effect at present
         self.lock = threading.Lock()  # the viewer thread shows others again, the event loop sets them
         self.folders: dict[str, viser.GuiFolderHandle] = {}
 
@@ -33,7 +33,7 @@ class Controls(Mapping[str, Control]):
         return len(self.own)
 
     def add_group(self, group: str, *, is_open: bool) -> None:
-        """The folder of a group of parameters, where there are any, in the container that is open."""
+        """The folder of a group of parameters, if any, in the container that is open."""
         names = [name for name, parameter in self.parameters.items() if parameter.group == group]
         if not names:
             return
@@ -57,7 +57,7 @@ class Controls(Mapping[str, Control]):
         return Control(self.gui, folder, name, self.settings)
 
     def show(self, hidden: set[str]) -> None:
-        """Show the record; hide the controls that mean nothing just now, and the folders in which nothing is left."""
+        """Show the record; hide the controls without effect at present, and the folders left empty."""
         self.hidden = hidden
         with self.lock:
             for control in (*self.own.values(), *self.again):

@@ -98,14 +98,14 @@ class Files:
         return f"{name}, {len(content) / 1e6:.2f} MB, was sent to the browser."
 
     def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """One browser's view, drawn again at the chosen size. Raises ValueError where it is of another scene by now."""
+        """One browser's view, drawn again at the chosen size. Raises ValueError if it is of another scene by now."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
         if not self.settings.is_open:
             raise ValueError("another scene was opened before it was ready")
         return file_name(self.settings, ".png"), picture
 
     def replay_file(self) -> tuple[str, bytes]:
-        """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""
+        """The recording up to the moment that is shown as one page. Raises ValueError if nothing was recorded."""
         shown = self.recorder.shown
         frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]
         page = self.make_replay(self.settings.kind, frames, self.plots.plotted())

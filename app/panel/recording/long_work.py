@@ -1,4 +1,4 @@
-"""Words about work that takes long, such as a file: the browser that asked is told, whatever scene it shows by then."""
+"""Notes on long work, such as a file, for the browser that requested it, whatever scene it shows by then."""
 
 import threading
 import traceback
@@ -10,7 +10,7 @@ SHOWN_TIME = 10.0  # [s] for which the end of a work is shown
 
 
 class LongWork:
-    """One work in a separate thread, with a notification in the browser that asked for it."""
+    """Work in a separate thread, with a notification in the requesting browser."""
 
     def __init__(self, client: viser.ClientHandle, title: str, failed: str) -> None:
         """title: names the work. failed: begins the words on why it came to nothing."""

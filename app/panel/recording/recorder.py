@@ -38,7 +38,7 @@ class RecordedFrame(NamedTuple):
 
     @property
     def frame(self) -> object:
-        """The scene's own record; made anew at each call where it is packed."""
+        """The scene's own record; unpacked at each call if it is packed."""
         return self.packed if self.packing is None else self.packing.unpack(self.packed)
 
 

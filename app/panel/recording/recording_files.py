@@ -37,7 +37,7 @@ def recording_npz(kind: AnyKind, frames: Sequence[RecordedFrame]) -> bytes:
     """The arrays that were drawn as an .npz file: each (frames, ...) under its name, `t` [s], and `about` as JSON.
 
     `about` holds the scene, the parameters at the end, and the unit of each array. The file holds the last frames that
-    have the same arrays in the same shapes. Raises ValueError where nothing was recorded.
+    have the same arrays in the same shapes. Raises ValueError if nothing was recorded.
     """
     if not frames:
         raise ValueError("nothing has been recorded yet: let the scene run first")
@@ -91,7 +91,7 @@ def plots_csv(kind: AnyKind, plotted: Plotted) -> str:
     """Plots as CSV with units, a column each; an empty cell: no value there. A column without any is left out.
 
     Plots over the same first column share it. Others stand beside them, and the shorter ones end with empty cells.
-    Raises ValueError where there is nothing.
+    Raises ValueError if there is nothing.
     """
     units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
     columns: list[tuple[str, Column]] = []
@@ -134,7 +134,7 @@ def plot_charts(kind: AnyKind, plotted: Plotted) -> list[Drawing]:
 
 
 def plots_svg(kind: AnyKind, plotted: Plotted) -> str:
-    """All plots of a scene in one SVG file, one below the other. Raises ValueError where there is nothing to draw."""
+    """All plots of a scene in one SVG file, one below the other. Raises ValueError if there is nothing to draw."""
     charts = plot_charts(kind, plotted)
     if not charts:
         raise ValueError(NOTHING)

@@ -30,7 +30,7 @@ class ReportPictures:
     def take(self, client: viser.ClientHandle, task: Task, name: str, is_shown: Callable[[], bool]) -> str:
         """Keep a picture in the student's folder; returns the words on it. In a separate thread.
 
-        Raises ValueError where the view is no longer that of the task.
+        Raises ValueError if the view is no longer that of the task.
         """
         picture = take_picture(client, (PICTURE_WIDTH, 0), jpeg=True)
         if not is_shown():

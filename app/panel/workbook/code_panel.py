@@ -30,7 +30,7 @@ from app.render.markup.html import (
 from app.scenes.charts import PALETTE
 
 SAME = 1e-6  # [m] below which two ropes are the same
-ROUNDING = 1e-9  # [m] by which a right solution may differ where nothing else explains a difference
+ROUNDING = 1e-9  # [m] by which a right solution may differ if nothing else explains a difference
 CHART_WIDTH, CHART_HEIGHT = 280, 148  # [pixels] of the chart of the difference
 CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 42, 22  # [pixels] of its margins
 MAX_POINTS = 150  # of its line
@@ -44,7 +44,7 @@ COLOURS = {
 }
 
 
-HINTS = {  # scene -> what to begin with
+HINTS = {  # scene -> first step
     "rope": "Write spring_force in rope.py and save it: the rope uses it right away.",
     "cloth": "Write cloth_forces or cloth_links in cloth.py and save it: the cloth uses it right away.",
     "square_sea": "Write gravity, spectrum or dispersion in square_sea.py and save it: the sea uses it right away.",
@@ -63,7 +63,7 @@ class CodePanel:
     def __init__(self, gui: viser.GuiApi, session: Session, scene: str) -> None:
         self.session, self.scene = session, scene
         self.net = session.cloth if scene == "cloth" else session.rope
-        self.state = session.state  # as the headline shows it
+        self.state = session.state  # as shown by the headline
         self.calls: dict[str, Call] = {}  # of functions at the numbers of the scene
         with gui.add_folder("Your code"):
             self.text = gui.add_html("")
@@ -99,14 +99,14 @@ class CodePanel:
 
 
 def tables_of(session: Session) -> TableReport:
-    """Functions that run by tables, and of the others those that the student has begun."""
+    """Functions that run by tables, and the others that the student has begun."""
     report, begun = session.tables.report, session.begun
     idle = {name: why for name, why in report.idle.items() if name in begun}
     return report._replace(idle=idle, off=bool(session.tables.tables) and not session.tables.shown)
 
 
 def place_of(error: RunError) -> str:
-    """The file of an error, and its line where it is known."""
+    """The file of an error, and its line if known."""
     return f"{error.file}, line {error.line}" if error.line else error.file
 
 
@@ -116,12 +116,12 @@ def is_busy(state: CodeState) -> bool:
 
 
 def busy_text(state: CodeState) -> Html:
-    """The reason, and that it is tried again."""
+    """The reason, and a note that it will be tried again."""
     return coloured(f"could not be run ({state.error.text if state.error else ''}); trying again", WARNING_COLOUR)
 
 
 def mistake_of(session: Session, begun: frozenset[str]) -> str:
-    """The first mistake of a function that is begun, in the order of the lab; "" if none is known."""
+    """The first mistake of a function under way, in the order of the lab; "" if none is known."""
     verdicts = ((task.name, session.versions.verdicts.get(task.name)) for task in session.tasks if task.name in begun)
     found = next(((name, verdict) for name, verdict in verdicts if verdict and verdict.state == "wrong"), None)
     return "" if found is None else f"{found[0]} is wrong: {found[1].mistake or found[1].sentence}"
@@ -130,7 +130,7 @@ def mistake_of(session: Session, begun: frozenset[str]) -> str:
 def headline(state: CodeState, report: StudentReport, tables: TableReport, scene: str, mistake: str = "") -> Html:
     """State of the files on one line, for the head of the panel.
 
-    mistake: of a function that runs.
+    mistake: in a running function.
     """
     if is_busy(state):
         return fill("Your code: {}", busy_text(state))
@@ -227,7 +227,7 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
 
 
 def difference_chart(report: StudentReport, thing: str) -> Html:
-    """The course of the difference as a line; nothing without a difference. thing: "rope" or "cloth".
+    """Chart of the difference over time; "" without a difference. thing: "rope" or "cloth".
 
     A chart of viser's (uPlot) in a folder widens the panel with each change of its axes.
     """
@@ -250,7 +250,7 @@ def difference_chart(report: StudentReport, thing: str) -> Html:
 
 
 def function_lines(session: Session, scene: str) -> Html:
-    """State and errors of every function that is begun: mistakes first, and of these those in the file of the scene."""
+    """State and errors of each function under way: mistakes first, beginning with the file of the scene."""
     verdicts, waiting = session.versions.verdicts, session.check.waiting
     rows: list[tuple[int, bool, Html]] = []
     is_left = False

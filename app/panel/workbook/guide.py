@@ -43,7 +43,7 @@ STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Saved."}
 class SnapshotValues(Mapping[str, LiveValue]):
     """Values that a task may name: the parameters, quantities of the scene, the clock, and the state of the run.
 
-    A quantity is computed when it is first asked for; one that the scene does not have now is missing.
+    A quantity is computed when first read; one that the scene lacks at present is missing.
     """
 
     def __init__(self, kind: AnyKind, snapshot: AnySnapshot) -> None:
@@ -217,7 +217,7 @@ class GuideTab:
         self.values: LiveValues = {}
         self.stale = True  # True if something other than live values has to be shown anew
         self.revision: int = workbook.revision
-        self.refusal = ""  # reason why the last thing that was asked for was not possible
+        self.refusal = ""  # reason why the last request was refused
         self.unwritten = ""  # reason why a step could not be ticked off at the last look
         self.pictures = ReportPictures(workbook)
         self.shown: Task | None = None

@@ -102,7 +102,7 @@ class StudentCloth(StudentNet):
     def pictured(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float32]] | None:
         """The program's cloth (3, r, c) [m] as it is drawn beside the student's, and that, (rows, cols, 3) [m].
 
-        None where there is no cloth of the student's. x: (3, r, c) [m] the program's now.
+        None if there is no cloth of the student's. x: (3, r, c) [m] the program's now.
         """
         assert self.sheet is not None
         shape = (self.sheet.rows, self.sheet.cols, 3)

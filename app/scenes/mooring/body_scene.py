@@ -128,7 +128,7 @@ class MooringScene(LineScene):
         """False once anything is not finite or is farther away than lines reach."""
         p = self.params
         far = FARTHEST * (p.length + p.reach + p.depth)
-        return bool(np.abs(self.state.x).max() < far)  # false of a NaN as well
+        return bool(np.abs(self.state.x).max() < far)  # false for NaN too
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""

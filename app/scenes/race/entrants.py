@@ -45,8 +45,8 @@ class Result(NamedTuple):
     step: float  # [s]
     stiffness: float  # [N/m]
     gauge: Gauge
-    evals: float  # force evaluations a step, lately
-    corrections: float  # corrections a step, lately; 0 for explicit methods
+    evals: float  # recent force evaluations a step
+    corrections: float  # recent corrections a step; 0 for explicit methods
     step_time: float  # [s] of processor time that a step takes
     error: float  # [m] largest distance of a point from the reference run; NaN without one
     error_floor: float  # [m] smallest error that the reference run can tell; NaN without one
@@ -248,7 +248,7 @@ class Race:
         return math.nan if entrant.failure else self.reference_of(entrant).distance(entrant.state.x)
 
     def error_floor(self, entrant: Entrant) -> float:
-        """Smallest error [m] that the reference run can tell; NaN where there is no reference."""
+        """Smallest error [m] that the reference run can tell; NaN if there is no reference."""
         reference = self.reference_of(entrant)
         return TRUST_FACTOR * reference.separation if reference.is_available and reference.horizon is None else math.nan
 
@@ -281,7 +281,7 @@ class Race:
         return np.ascontiguousarray([entrant.state.x[:, 0].T for entrant in self.entrants])
 
     def reference_points(self) -> NDArray[np.float64] | None:
-        """(ropes, points, 3) [m] of the reference runs, or None where one is missing."""
+        """(ropes, points, 3) [m] of the reference runs, or None if one is missing."""
         references = [self.reference_of(entrant) for entrant in self.entrants]
         if any(not reference.is_available or reference.horizon is not None for reference in references):
             return None

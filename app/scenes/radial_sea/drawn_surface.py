@@ -74,7 +74,7 @@ class SeaNow(Protocol):
         ...
 
     def tile_now(self) -> Sea:
-        """The square sea, made where it is not there."""
+        """The square sea, made if it is not there."""
         ...
 
     def slick_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -113,7 +113,7 @@ class RadialReadings(NamedTuple):
     clean_slope: float  # without the oil
     middle_period: float  # [s] above which half of the energy of the waves is
     oil_budget: OilBudget
-    surfaces: dict[str, SurfaceReading]  # radial and square sea side by side; empty unless asked for
+    surfaces: dict[str, SurfaceReading]  # radial and square sea side by side; empty unless requested
     age: float  # [s] for which the waves have run under the oil
     past: Mapping[FluidColumn, float]  # fluids that the waves have run on -> [s]
     weathering: Weathering | None  # the spill over five days; None without one

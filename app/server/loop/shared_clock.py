@@ -26,7 +26,7 @@ class Seat:
         self.offset = clock.origin  # [s] of the clock, at which the scene's time was 0
         self.reached = clock.origin  # [s] of the clock, to which the loop has come
         self.step = 0.0  # [s] of the scene
-        self.pace = 1.0  # factor on the speed that the scene asks for
+        self.pace = 1.0  # factor on the speed requested by the scene
         self.running = True
         self.halted = False
 
@@ -96,7 +96,7 @@ class SharedClock:
     def advance(self, wall: float, speed: float) -> None:
         """Let `wall` seconds pass at `speed`, as far as all loops can follow; called by the first seat's loop.
 
-        Where one scene asks for slow motion, all have it.
+        If one scene requests slow motion, all have it.
         """
         speed *= min((seat.pace for seat in self.seats), default=1.0)
         most = MAX_DEBT * speed

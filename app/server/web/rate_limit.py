@@ -65,7 +65,7 @@ class RateLimit:
         self.unasked = 0  # pictures since the last ping
 
     async def send(self, data: bytes) -> None:
-        """Send a message, a picture once there is room for it. Raises ConnectionClosed where the browser has gone."""
+        """Send a message, a picture once there is room for it. Raises ConnectionClosed if the browser has gone."""
         if len(data) < SMALL:
             await self.send_now(data)
             return
@@ -152,7 +152,7 @@ def put_small_first(server: viser.ViserServer) -> None:
 
 
 async def small_first(windows: Windows, limit: RateLimit) -> Windows:
-    """The same messages; where there is no room only small updates of the panel, and later the newest of the others."""
+    """The same messages; if there is no room only small updates of the panel, and later the newest of the others."""
     loop = asyncio.get_running_loop()
     held: dict[str, ViserMessage] = {}  # waiting messages, in order, by the key of the message that supersedes them
     more: asyncio.Future[Window] | None = None

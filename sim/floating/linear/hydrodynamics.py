@@ -419,7 +419,7 @@ def natural_frequency(linear: LinearHull, axis: int, mass: float, stiffness: flo
 
     mass [m3 or m5]: of the solid over the fluid's density; stiffness [m2 or m4]: over the weight density. Roll and
     pitch carry the sway and surge that come with them. added scales the added mass. 0 where no force restores. Raises
-    ConvergenceError where the search does not end.
+    ConvergenceError if the search does not end.
     """
     if stiffness <= 0.0:
         return 0.0

@@ -35,7 +35,7 @@ SLACK = 1e-6  # by which the second term stays inside what the first one allows
 
 
 class Measured:
-    """Densities over frequency, and maybe direction, with the functions of a `Spectrum`."""
+    """Densities over frequency and optionally direction, with the functions of a `Spectrum`."""
 
     def __init__(self, frequency: np.ndarray, density: np.ndarray, direction: np.ndarray | None = None) -> None:
         """frequency (n,) [Hz] rising, density (n,) [m2/Hz], or (n, m) [m2/Hz/rad] at directions (m,) [rad], rising."""

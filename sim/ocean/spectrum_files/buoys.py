@@ -104,8 +104,8 @@ def files_beside(path: Path) -> dict[str, Path]:
 def moment_at(path: Path, kind: str, time: datetime.datetime, frequency: np.ndarray) -> np.ndarray | None:
     """Values (n,) of a file of directions at this time and these frequencies [Hz]; None without them.
 
-    Where one is missing, it is that of the nearest frequency that has one.
-    Raises ValueError for values that this kind cannot have: files whose names are exchanged.
+    A missing value is that of the nearest frequency with one.
+    Raises ValueError for values impossible for this kind, as in files with exchanged names.
     """
     records = records_of(read_text(path, FORMS), path)
     largest = TURN if kind.startswith("alpha") else PERCENT
@@ -157,7 +157,7 @@ def records_of(text: str, path: Path) -> Records:
 
 
 def paired(words: list[str], path: Path, number: int) -> tuple[list[str], np.ndarray]:
-    """Values and frequencies [Hz] of "0.1 (0.033) 0.2 (0.038)", maybe behind one number, the separation frequency."""
+    """Values and frequencies [Hz] of "0.1 (0.033) 0.2 (0.038)", optionally after the separation frequency."""
     words = words[len(words) % 2 :] if words and len(words) > 1 and not words[1].startswith("(") else words
     places = words[1::2]
     if len(words) % 2 or not all(word.startswith("(") and word.endswith(")") for word in places):
@@ -229,7 +229,7 @@ def system_of(
 
     The direction is of the compass or in degrees; None if it is missing. None for waves that are missing.
     """
-    # each by itself, as none is a neighbour of another
+    # each by itself: they are no neighbours
     H, T = (float(floats([word], path, number)[0]) for word in words[:2])
     if not (math.isfinite(H) and math.isfinite(T)):
         return None

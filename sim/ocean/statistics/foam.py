@@ -51,7 +51,7 @@ def threshold(coverage: float, spread: float, frequency: float, lasting: float) 
 
 @functools.lru_cache(maxsize=4)
 def excess(coverage: float, frequency: float, lasting: float) -> float:
-    """The z of `threshold`; cached, because every frame needs it and it seldom changes."""
+    """The z of `threshold`; cached, because every frame needs it and it rarely changes."""
 
     def too_little(z: float) -> float:
         rate = frequency / (2.0 * math.pi) * math.exp(-0.5 * z * z)

@@ -22,7 +22,7 @@ SETTLED_SHARE = 1e-7  # share of a change still to come below which it counts as
 
 
 class DrawnWaves(NamedTuple):
-    """The waves that conditions ask for."""
+    """The waves under given conditions."""
 
     unit: np.ndarray  # amplitudes over their size, a full plane (`unit_amplitudes`)
     target: np.ndarray  # sqrt(S dk^2) [m], a full plane

@@ -41,7 +41,7 @@ def find_pairs(x, p):
 
     Where p.pairs is full, the particles after that are left out; its last row keeps the largest number of them.
 
-    No pairs where p.stop asks for an end: who calls a kernel that may end in here looks at p.stop afterwards.
+    No pairs if p.stop cancels: callers of a kernel that may stop here check p.stop afterwards.
     """
     n = p.rows * p.cols
     reach = (1.0 + SKIN) * p.thickness

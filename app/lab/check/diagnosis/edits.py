@@ -41,7 +41,7 @@ Change: TypeAlias = Callable[[Any], ast.AST | None]  # of a node in a copy; None
 
 
 class Edit(NamedTuple):
-    """A function with one edit. before, after: the expression or line that differs; after is "" where it is taken out.
+    """A function with one edit. before, after: the expression or line that differs; after is "" if it is taken out.
 
     line: in the file. condition: "always" or "never" where a condition is fixed, which before has.
     """

@@ -73,7 +73,7 @@ def watched(
     function: Callable[..., Any], modules: Sequence[ModuleType], arguments: Sequence[Any], folder: Path, anew: Anew,
     *, twice: bool,
 ) -> Any:  # fmt: skip
-    """The result of a function at these arguments. Raises Effect where it has a side effect.
+    """The result of a function at these arguments. Raises Effect if it has a side effect.
 
     modules: in which it may keep something. folder: of the student's files. twice: also compare a second call with
     equal arguments.
@@ -174,7 +174,7 @@ def file_and_line(place: CodeLine | None) -> tuple[str, int | None]:
 
 
 def statement_at(place: CodeLine | None) -> ast.stmt | None:
-    """The innermost statement on a line; None where it holds others, or the file cannot be read."""
+    """The innermost statement on a line; None if it holds others, or the file cannot be read."""
     if place is None:
         return None
     try:
@@ -299,7 +299,7 @@ def shake() -> None:
 def traced(
     function: Callable[..., Any], arguments: tuple[Any, ...], folder: Path, has_changed: Callable[[Sequence[Any]], bool]
 ) -> CodeLine | None:
-    """The line of a student's that changes something, by a call at these arguments; None where it is not found.
+    """The line of a student's that changes something, by a call at these arguments; None if it is not found.
 
     has_changed: from the arguments.
     """

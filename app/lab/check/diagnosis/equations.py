@@ -1,4 +1,4 @@
-"""A tableau as equations, each beside that of the method that was asked for.
+"""A tableau as equations, each beside that of the required method.
 
 An equation names the positions and velocities of the stages where the method does: "x + h v3" rather than
 "x + h v + h²/2 a2". That of a student is written with the terms of the right one as far as possible, so that the terms
@@ -98,7 +98,7 @@ def terms_for(line: TableauRow, symbols: Mapping[str, np.ndarray]) -> dict[Monom
 
 
 def evaluated(expression: Expression, terms: Mapping[Monomial, np.ndarray], like: np.ndarray) -> np.ndarray | None:
-    """An expression as a vector; None where it has a term that there is not."""
+    """An expression as a vector; None if it has an unknown term."""
     if any(term not in terms for term in expression):
         return None
     return sum((c * terms[term] for term, c in expression.items()), np.zeros_like(like))
@@ -218,7 +218,7 @@ def method_of(tableau: StepTableau) -> RightMethod:
 
 
 class ComparedRow(NamedTuple):
-    """A row of a tableau beside that of the method that was asked for."""
+    """A row of a tableau beside that of the required method."""
 
     name: str
     found: Expression

@@ -14,7 +14,7 @@ class Piece(NamedTuple):
 class Equation(NamedTuple):
     """One equation of a function.
 
-    name: its left side, as "x3" or "new x". found: the student's right side, in pieces. right: the right one; "" where
+    name: its left side, as "x3" or "new x". found: the student's right side, in pieces. right: the right one; "" if
     both agree.
     """
 

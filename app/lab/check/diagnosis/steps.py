@@ -108,7 +108,7 @@ def is_chained(row: ComparedRow) -> bool:
 
 
 def weights_of(row: ComparedRow) -> float | None:
-    """The sum of the weights of a result with the right terms; None where it is 1, or a term is another one."""
+    """The sum of the weights of a result with the right terms; None if it is 1, or a term is another one."""
     if row.name not in PARTS or set(row.found) != set(row.right) or len(row.right) < 3:
         return None
     total = sum(c for (_, power), c in row.found.items() if power == 1)

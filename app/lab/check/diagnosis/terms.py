@@ -148,7 +148,7 @@ def explain_terms(
     student: Function, terms: Sequence[Term], groups: Sequence[Group], names: Sequence[str],
     samples: Sequence[tuple[Any, ...]],
 ) -> Explanation | None:  # fmt: skip
-    """The difference of a function from a sum of terms; None where no change of one or two of them explains it.
+    """The difference of a function from a sum of terms; None if no change of one or two of them explains it.
 
     student: a function of the arguments. terms: what its result must add up, at all samples. names: of the arguments.
     """
@@ -306,7 +306,7 @@ def of_value(change: Callable[[np.ndarray], np.ndarray]) -> Apply:
 
 
 def exponent_in(values: np.ndarray, doubled: np.ndarray) -> float | None:
-    """The power of an argument in values, a multiple of 1/2; None where they are no power of it.
+    """The power of an argument in values, a multiple of 1/2; None if they are no power of it.
 
     doubled: the values with twice the argument.
     """
@@ -318,7 +318,7 @@ def exponent_in(values: np.ndarray, doubled: np.ndarray) -> float | None:
 def power_text(name: str, has: float | None, exponent: float, *, whole: bool) -> str:
     """Words for a term that has another power of an argument.
 
-    has: the right one; None where it is no power. whole: there is no other term.
+    has: the right one; None if it is no power. whole: there is no other term.
     """
     now = exponent if has is None else has + exponent
     if now == 0.0 and whole:

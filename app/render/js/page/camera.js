@@ -1,4 +1,4 @@
-// The camera of the page: it stays above floor and water, and the picture stands in the middle of what panels leave free.
+// The camera of the page: it stays above floor and water, and the picture is centred in the part that panels leave free.
 //
 // Of viser this file uses window.__viserMutable: cameraControl (the camera-controls library), camera, scene (its
 // onBeforeRender runs before every frame), nodeRefFromName and requestRender; and the boxes of its panels.
@@ -12,8 +12,8 @@ import { waterHeight } from "./water_height.js";
 
 const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor
 const WATER_CLEARANCE = 0.25; // [m] of the camera above the water
-const MAX_WAVE_HEIGHT = 40; // [m] above the mean water, from which on no wave is looked for
-const MIN_ASPECT = 1.05; // width over height of what the field of view shows at least: that of all presets
+const MAX_WAVE_HEIGHT = 40; // [m] above the mean water; higher cameras need no look at waves
+const MIN_ASPECT = 1.05; // least width over height of the field of view, enough for all presets
 const PANELS =
   "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root), " +
   ".mantine-Tabs-root:has(> [aria-label=\"Collapse panel Plots\"])";
@@ -62,7 +62,7 @@ const shownNode = (name) => {
   return node || null;
 };
 
-// The lowest height that the camera may have: { always, now }, for good and above the wave that is there now.
+// The least height of the camera: { always, now }, in any sea and above the present wave.
 /** @param {three.Camera} camera */
 function lowest(camera) {
   const floor = shownNode("/floor"), sea = shownNode("/sea");
@@ -91,7 +91,7 @@ function keepAbove(camera, controls) {
     const moved = lastTarget && lastTarget.distanceTo(target) > 1e-6 * controls.distance;
     const cosine = (always - target.y) / controls.distance;
     if (!moved && cosine < 1) {
-      // A turn slides along the floor.
+      // A turn of the camera slides along the floor.
       const polar = Math.acos(Math.max(cosine, -1));
       const azimuth = controls.azimuthAngle;
       controls.rotatePolarTo(polar, false);
@@ -108,7 +108,7 @@ function keepAbove(camera, controls) {
       camera.position.y = always;
       target.y += lift;
     }
-    now = lowest(camera).now; // of the place that it has now
+    now = lowest(camera).now; // at its new place
   }
   lastTarget = target;
   // Above a crest the camera is lifted for this frame only, so that it comes down again behind the crest.
@@ -116,7 +116,7 @@ function keepAbove(camera, controls) {
   camera.updateMatrixWorld();
 }
 
-// Before each frame: a canvas or a scene of viser's may be another one than before.
+// Before each frame: viser may have replaced the canvas or the scene.
 /** @param {three.Camera} camera */
 function placeCamera(camera) {
   const { cameraControl: controls, camera: own, canvas } = startedViewer();
@@ -127,7 +127,7 @@ function placeCamera(camera) {
   splats?.material.uniforms.projectionMatrixCustom.value.copy(camera.projectionMatrix);
 }
 
-// viser's splats have a projection of their own, which knows nothing of the shift: they get that of the camera.
+// viser's splats have a projection of their own, without the shift: they get the camera's.
 /** @type {three.Mesh | null} */
 let splats = null; // the mesh of all splats
 

@@ -1,15 +1,15 @@
-// The time line along the foot of the scene: a bar as wide as the scene, with the recording and its moment that is shown.
+// The time line along the foot of the scene: a bar as wide as the scene, with the recording and its shown moment.
 //
-// The panel says the state in `data-springtide-time`, and takes actions through the hidden field that is named there. The
-// bar stands beside the panel, or above it where the panel is a sheet at the foot; what else stands at the foot of the
-// scene has its place from `--springtide-left`, `--springtide-right` and `--springtide-foot`, the bar's distances from the edges
-// of the window, and `--springtide-bar`, its height.
+// The panel gives the state in `data-springtide-time`, and receives actions through the hidden field named there. The bar is
+// beside the panel, or above it if the panel is a sheet at the foot. Other elements at the foot of the scene are placed by
+// `--springtide-left`, `--springtide-right` and `--springtide-foot`, the bar's distances from the edges of the window, and
+// `--springtide-bar`, its height.
 //
 import { PAGE, send as sendToLab } from "../core/viewer.js";
 import { onChange, onLook } from "../core/watch.js";
 import { footOf, wordsOf } from "./foot.js";
 
-const SEND_INTERVAL = 40; // [ms] between two moments that are sent while a hand moves along the bar
+const SEND_INTERVAL = 40; // [ms] between two moments sent during a drag along the bar
 const PANELS = "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root)";
 const bar = document.createElement("div");
 bar.id = "springtide-time";
@@ -27,7 +27,7 @@ const back = part("output"), speed = part("select"), line = part("input"), momen
 /** @param {string} act @returns {HTMLButtonElement} */
 const button = (act) => /** @type {HTMLButtonElement} */ (bar.querySelector(`[data-act=${act}]`));
 /**
- * What the panel says: times are in seconds; shown: null at the present.
+ * The panel's state: times are in seconds; shown: null at the present.
  * @typedef {{ inbox: string, run: number, low: number, high: number, shown: number | null, rate: number,
  *   rates: number[], loops: boolean, playing: boolean, resumable: boolean, size: string }} State
  */
@@ -47,7 +47,7 @@ function put(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-// Say the moment that the bar shows: under a hand it is the hand's.
+// Show the moment of the bar; during a drag, the one under the pointer.
 /** @param {boolean} isPast */
 function say(isPast) {
   const words = wordsOf(Number(line.value), state.high, isPast);
@@ -99,7 +99,7 @@ line.addEventListener("change", () => {
   sendMoment();
   held = false;
 });
-line.addEventListener("pointerup", () => setTimeout(() => line.blur())); // the keys go to the lab again
+line.addEventListener("pointerup", () => setTimeout(() => line.blur())); // so that keys go to the lab again
 speed.addEventListener("change", () => send("rate", speed.value));
 bar.addEventListener("click", (event) => {
   const act = event.target instanceof Element && event.target.closest("button")?.dataset.act;

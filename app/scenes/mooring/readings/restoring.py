@@ -50,7 +50,7 @@ class CurveInputs(NamedTuple):
 
 
 class RestoringCurve:
-    """The curve of the arrangement as it was last asked for."""
+    """The last curve of the arrangement."""
 
     def __init__(self) -> None:
         self.made_of: CurveInputs | None = None
@@ -64,7 +64,7 @@ class RestoringCurve:
         inputs: for a curve that goes to an offset [m] at least. rows: of all lines. farthest: offset [m] so far. now,
         pull: offset along the waves [m], and the force of the lines against it [N].
         """
-        # Of the offsets so far it takes the next power of two, so that it is seldom found again.
+        # The range is the next power of two above the offsets so far, so that it is rarely recomputed.
         key = inputs(2.0 ** math.ceil(math.log2(max(farthest, 1e-3))))
         # Systems are kept by those who make them; equal ones may hold arrays, which `==` cannot compare.
         if self.made_of is None or key.system is not self.made_of.system or key[1:] != self.made_of[1:]:

@@ -78,7 +78,7 @@ def ripple_slope(p: RadialSeaParams, column: FluidColumn, age: float) -> float:
 
 @functools.lru_cache(maxsize=4)
 def ripple_decay(column: FluidColumn) -> float:
-    """Decay rate [1/s] of a wave of RIPPLE_LENGTH; kept, as it is asked for in each picture."""
+    """Decay rate [1/s] of a wave of RIPPLE_LENGTH; cached, as each picture needs it."""
     return float(column.roots(np.array([2.0 * math.pi / RIPPLE_LENGTH]))[1][0])
 
 

@@ -190,7 +190,7 @@ class WellBlowout:
 
 @functools.lru_cache(maxsize=2)
 def spread_radius(volume: float, age: float, column: FluidColumn) -> float:
-    """Radius [m] of the slick of so much oil [m3] after `age` [s]; kept, as a frame asks for it several times."""
+    """Radius [m] of the slick of this much oil [m3] after `age` [s]; cached, as a frame needs it several times."""
     oil, water = column.oil, column.water
     return slick_radius(
         volume,

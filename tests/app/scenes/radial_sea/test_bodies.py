@@ -128,7 +128,7 @@ def test_the_slick_of_the_jet_counts_at_rest() -> None:
 
 
 def test_a_body_in_the_slick_is_predicted_in_its_oil() -> None:
-    """And in the mixture alone where there is one: it takes the oil up."""
+    """And in the mixture alone if there is one: it takes the oil up."""
     for changes, is_layered in (({}, True), ({"spill": "layer"}, True), ({"spill": "mixed"}, False)):
         bodies = scene_with(**CALM, bodies=2, **changes).bodies
         column, before = bodies.column, [bodies.prediction(i).draft for i in range(2)]

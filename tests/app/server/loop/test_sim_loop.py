@@ -45,7 +45,7 @@ class Params:
 
 
 class Clock:
-    """Wall time that only moves when the test or a step moves it."""
+    """Wall time that moves only with the test or a step."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -94,7 +94,7 @@ class Scene:
         self.fails = None
 
     def handle(self, command: object) -> None:
-        """No command means anything to it."""
+        """Ignore all commands."""
 
     def keep(self) -> float:
         return self.time
@@ -180,7 +180,7 @@ def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
 
 def test_the_next_part_of_a_frame_has_the_steps_that_there_is_time_for() -> None:
     fixed_step, budget = FixedStep(), SOLVE_SHARE * FRAME_INTERVAL
-    assert fixed_step.next_part(4, 0.5 * budget) > 4  # at a cost that is not known
+    assert fixed_step.next_part(4, 0.5 * budget) > 4  # at an unknown cost
     fixed_step.cost = 0.01 * budget
     assert fixed_step.next_part(100, 0.8 * budget) in (19, 20)
     for spent in (budget, 2.0 * budget):

@@ -129,15 +129,11 @@ def records_of(text: str, path: Path) -> Records:
 
     Raises ValueError that names the line.
     """
-    lines = [(i, line.split()) for i, line in enumerate(text.splitlines(), start=1) if line.strip()]
-    head = " ".join(lines[0][1]).lstrip("# ").split()
-    clock = 5 if head[4:5] == ["mm"] else 4
-    is_paired = any("(" in word for _, words in lines[:3] for word in words)
+    head, clock, lines = parts_of(text)
+    is_paired = any("(" in word for words in (head, *(words for _, words in lines[:1])) for word in words)
     frequency = None if is_paired else floats(head[clock:], path, 1)
     times, rows = [], []
-    for number, words in lines[1:]:
-        if words[0].startswith("#"):
-            continue
+    for number, words in lines:
         times.append(clock_time(words[:clock], path, number))
         values = words[clock:]
         if is_paired:
@@ -154,6 +150,16 @@ def records_of(text: str, path: Path) -> Records:
     values = np.array(rows)
     values[values < 0.0] = math.nan
     return Records(times, frequency, values)
+
+
+def parts_of(text: str) -> tuple[list[str], int, list[tuple[int, list[str]]]]:
+    """The words of a table's head, how many of them are the clock, and the numbers and words of the lines below.
+
+    Lines that are empty or a comment are left out.
+    """
+    lines = [(i, line.split()) for i, line in enumerate(text.splitlines(), start=1) if line.strip()]
+    head = " ".join(lines[0][1]).lstrip("# ").split() if lines else []
+    return head, 5 if head[4:5] == ["mm"] else 4, [line for line in lines[1:] if not line[1][0].startswith("#")]
 
 
 def paired(words: list[str], path: Path, number: int) -> tuple[list[str], np.ndarray]:
@@ -189,23 +195,19 @@ def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spect
     Those are swell and wind sea of an NDBC summary (.spec), or WVHT, DPD and MWD of standard meteorological data. They
     spread as cos2s.
     """
-    lines = [(i, line.split()) for i, line in enumerate(text.splitlines(), start=1) if line.strip()]
-    head = " ".join(lines[0][1]).lstrip("# ").split()
+    head, clock, lines = parts_of(text)
     kind = next((one for one in SUMMARIES if set(SUMMARIES[one][0][:2]) <= set(head)), None)
     if kind is None:
         raise argument_error("path", str(path), f"{file_of_densities(path)}; this has no waves: {' '.join(head)[:80]}")
-    clock = 5 if head[4:5] == ["mm"] else 4
     times, rows = [], []
-    for number, words in lines[1:]:
-        if words[0].startswith("#"):
-            continue
+    for number, words in lines:
         if len(words) != len(head):
             raise line_error(path, number, f"{len(head)} columns, not {len(words)}")
         row = dict(zip(head, words, strict=True))
         try:
             found = [system_of([row[one] for one in columns], s, path, number) for *columns, s in SUMMARIES[kind]]
         except KeyError as missing:
-            raise line_error(path, lines[0][0], f"the columns of {kind}; {missing} is not here") from None
+            raise line_error(path, 1, f"the columns of {kind}; {missing} is not here") from None
         systems = [system for system in found if system is not None]
         if systems:
             times.append(clock_time(words[:clock], path, number))

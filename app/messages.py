@@ -104,7 +104,7 @@ class Reset(NamedTuple):
 
 
 class Checkpoint(NamedTuple):
-    """A state from which a scene can go on."""
+    """A state from which a scene can continue."""
 
     value: object  # as `Scene.keep` gave it
     arrays: Mapping[int, int]  # identity -> bytes of each array in it; some are shared with the states before
@@ -114,19 +114,19 @@ class Checkpoint(NamedTuple):
 class Take(NamedTuple):
     """Take a whole record of parameters; of several the latest counts.
 
-    Parameters of another act than the one with which the present run began begin another run. Others go on with the
+    Parameters of another act than the one with which the present run began begin another run. Others continue with the
     present one, depending on the effect of the change.
     """
 
     params: BaseParams  # the scene's record
-    start: bool = False  # begin again and run, whatever has changed, as for a preset
-    state: Checkpoint | None = None  # go on from here and run; of a scene that had these parameters
+    start: bool = False  # restart and run, whatever has changed, as for a preset
+    state: Checkpoint | None = None  # continue from here and run; of a scene that had these parameters
     act: int = 0  # number of the act with which the run of these parameters begins; 0: that of the present run
     back: bool = False  # go back to the last run of that act, as it was when it was left; `start`: if it was not kept
 
     @property
     def changes_only(self) -> bool:
-        """True if the run goes on from where it is, unless it is of another act or affects the start."""
+        """True if the run continues from where it is, unless it is of another act or affects the start."""
         return not self.start and self.state is None and not self.back
 
 
@@ -174,10 +174,10 @@ class Ask(NamedTuple):
 
 
 class Advance(NamedTuple):
-    """Run for a simulated time, to a whole step, then go on or stand still as before; answer with the time then [s].
+    """Run for a simulated time, to a whole step, then continue or stand still as before; answer with the time then [s].
 
     Where nobody looks it runs as fast as it can. The answer is a DivergenceError if the run halts before, and a
-    RuntimeError if it begins again.
+    RuntimeError if it restarts.
     """
 
     seconds: float
@@ -200,7 +200,7 @@ class RunIdentity(NamedTuple):
 
 
 class RunLine:
-    """The runs to which a record over time belongs: the present one, and those that it goes on from."""
+    """The runs to which a record over time belongs: the present one, and those that it continues from."""
 
     def __init__(self) -> None:
         self.runs: list[RunIdentity] = []
@@ -270,7 +270,7 @@ class Snapshot(NamedTuple, Generic[P, F, R]):
     readings: R  # the scene's own record
     params: P  # the parameters that this moment was made with
     curves: Mapping[str, object] | None = None  # parameter -> columns of its chart
-    state: Checkpoint | None = None  # of this moment, to go on from later; in some snapshots only
+    state: Checkpoint | None = None  # of this moment, to resume from later; in some snapshots only
 
 
 class LastFrame(NamedTuple):

@@ -89,8 +89,8 @@ class Lab:
     def wait(self, seconds: float) -> float:
         """Let the lab run for `seconds` [s] of simulated time, to a whole step; returns the time then [s].
 
-        After it the clock goes on, or stands still where it did before. With a browser on it the lab runs at its speed,
-        without one as fast as it can. Raises ValueError for what is not a time, DivergenceError if the run stops
+        Afterwards the clock continues or stands still as before. With a browser the lab runs at its speed, without
+        one as fast as it can. Raises ValueError for what is not a time, DivergenceError if the run stops
         before, and RuntimeError if it is reset or another scene is opened meanwhile.
         """
         check_number("seconds", seconds, "s", 0.0, MAX_WAIT)

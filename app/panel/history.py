@@ -9,7 +9,7 @@ from app.messages import BaseParams
 from app.render.cameras import ClientCamera
 
 MAX_SETTINGS = 100  # kept; beyond that the oldest are dropped
-SAME_CHANGE = 1.0  # [s] after a change of a number, or the release of its slider, within which it goes on
+SAME_CHANGE = 1.0  # [s] after a change of a number, or the release of its slider, within which it continues
 
 
 class EarlierSettings(NamedTuple):

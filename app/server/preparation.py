@@ -38,7 +38,7 @@ class Preparation:
     def compile(self, kind: AnyKind, params: BaseParams, *, covers: bool, given_up: Callable[[], bool]) -> bool:
         """Compile the kernels of a scene. Returns False if it was given up before they were all there.
 
-        covers: show the progress in place of the page. An open scene shows `notice`, and goes on meanwhile.
+        covers: show the progress in place of the page. An open scene shows `notice`, and continues meanwhile.
         """
         jobs = self.compiling.missing(kind.name, params)
         if not jobs:

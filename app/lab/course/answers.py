@@ -93,7 +93,7 @@ def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: s
     """Change one value of answers.toml. answers: those in the file. Raises OSError if that cannot be done.
 
     The file is whole at every moment. All the rest stays as it is, comments too, unless the file is written in a way
-    that leaves no place for the value; then it is written anew.
+    that leaves no place for the value; then it is rewritten.
     """
     path = folder / FILE
     # As bytes, so that lines end as they did.

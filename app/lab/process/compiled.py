@@ -70,7 +70,7 @@ def compile_functions(path: Path, own: Collection[str]) -> tuple[dict[str, Calla
 
 
 def load(path: Path, name: str) -> types.ModuleType:
-    """The student's module, run once more."""
+    """The student's module, run again."""
     spec = importlib.util.spec_from_file_location(f"{path.stem}_{name}", path)
     assert spec is not None
     assert spec.loader is not None

@@ -136,7 +136,7 @@ class Worker:
             frames = traceback.walk_stack(sys._current_frames()[main or 0])
             codes = [(frame.f_code, line) for frame, line in frames]
             own = [(code, line) for code, line in codes if Path(code.co_filename).parent == self.folder]
-            with self.sending, contextlib.suppress(OSError):  # the lab has gone
+            with self.sending, contextlib.suppress(OSError):  # the lab has ended
                 if self.in_call.is_set():  # no place comes after the result
                     at = [(Path(code.co_filename).name, line, code.co_name) for code, line in own] or [("", 0, "")]
                     send(self.outgoing, ["at", *at[0], time.process_time() - self.began])
@@ -267,7 +267,7 @@ class Worker:
             self.say(["callback", number, pack(list(arguments), lambda _: 0)])
             message = receive(self.incoming)
             if message is None:
-                os._exit(0)  # the lab has gone
+                os._exit(0)  # the lab has ended
             if message[0] == "refused":
                 raise ValueError(message[1])
             return unpack(message[1], self.remote)

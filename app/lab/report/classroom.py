@@ -48,7 +48,7 @@ class Desk:
         self.tasks, self.versions, self.answers = tasks, Versions(folder, tasks), FileWatch(folder, FILE)
         self.student = Student(folder)
         self.drawn: Saved | None = None  # the version whose rope is drawn
-        self.is_open = True  # something is to be looked at once more
+        self.is_open = True  # something is to be looked at again
 
     def checked(self) -> Student:
         """The state of the folder as it is now; the same object if nothing has changed.

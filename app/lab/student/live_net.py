@@ -153,7 +153,7 @@ class LiveNet(Service):
         self.do(functools.partial(self.answer, method, x, v, segments, answers))
 
     def attempt(self) -> None:
-        """Try the newest version in a few steps as the last ones were; if it works, the scene begins again with it."""
+        """Try the newest version in a few steps as the last ones were; if it works, the scene restarts with it."""
         method, sphere = self.method, self.sphere
 
         def job(runner: Runner, own: frozenset[str]) -> MarchResult:

@@ -62,7 +62,7 @@ class FileNumbers:
                 self.fields[name].value = write_number(value)
 
     def apply(self) -> None:
-        """Begin again with the numbers in the fields. Raises ValueError or ConvergenceError for one that cannot be."""
+        """Restart with the numbers in the fields. Raises ValueError or ConvergenceError for one that cannot be."""
         before = self.editing.numbers(self.settings.params)[self.chooser.value]
         values = {name: read(name, field.value, before[name]) for name, field in self.fields.items()}
         params = self.editing.changed(self.settings.params, self.chooser.value, values)

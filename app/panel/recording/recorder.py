@@ -33,7 +33,7 @@ class RecordedFrame(NamedTuple):
     packed: object  # the scene's own record, or its packed form
     params: BaseParams
     arrays: Mapping[int, int]  # identity -> bytes of each array of frame and state; some are shared with other frames
-    state: Checkpoint | None = None  # to go on from
+    state: Checkpoint | None = None  # to resume from
     packing: FramePacking | None = None
 
     @property
@@ -81,7 +81,7 @@ class Recorder:
     """Records on the viewer's thread; the page's controls choose on viser's event loop. One lock for both.
 
     While a frame is chosen, the page shows it, and nothing is recorded. Another run begins a new recording; one that
-    goes on from a moment of the recording continues it there.
+    resumes from a moment of the recording continues it there.
     Where memory is short, frames are taken out, the more the older they are: the time between those that stay grows in
     proportion to their age. Those with a state stay rather than others.
     """
@@ -104,10 +104,10 @@ class Recorder:
         self.played = 0.0  # [s] of wall time since the frame at `position` was shown
 
     def follow(self, snapshot: AnySnapshot) -> None:
-        """Follow the lab by a snapshot: it goes on, began again or went back, which decides the shown frame."""
+        """Follow the lab by a snapshot, which decides the shown frame: the lab continued, restarted or went back."""
         with self.lock:
             status = snapshot.status
-            if status.running and not self.was_running:  # the lab goes on: the present is shown
+            if status.running and not self.was_running:  # the lab continues: the present is shown
                 self.position, self.playing = None, False
             self.was_running = status.running
             known = self.line.number

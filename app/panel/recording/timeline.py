@@ -79,7 +79,7 @@ class Timeline:
         self.recorder.show_present()
 
     def resume(self, moment: float) -> None:
-        """Go on from a time [s] of the recording, or from the last state before it."""
+        """Continue from a time [s] of the recording, or from the last state before it."""
         self.recorder.show_time(moment)
         kept = self.recorder.resumable()
         if kept is not None and kept.state is not None:

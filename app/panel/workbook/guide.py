@@ -215,7 +215,7 @@ class GuideTab:
         """
         self.gui, self.kind, self.workbook, self.set_up = gui, kind, workbook, set_up
         self.values: LiveValues = {}
-        self.stale = True  # True if something other than live values has to be shown anew
+        self.stale = True  # True if something other than live values has to be shown again
         self.revision: int = workbook.revision
         self.refusal = ""  # reason why the last request was refused
         self.unwritten = ""  # reason why a step could not be ticked off at the last look

@@ -49,11 +49,11 @@ class Seat:
         self.offset = self.clock.origin
 
     def go_on_from(self, time: float) -> None:
-        """The run goes on from another time [s] of its own; from here on it advances as the others do."""
+        """The run continues from another time [s] of its own; from here on it advances as the others do."""
         self.offset = self.clock.time - time
 
     def begin_others(self) -> None:
-        """Have all other runs begin again, as this one does."""
+        """Have all other runs restart, as this one does."""
         if self in self.clock.seats:
             self.clock.origin = self.clock.time
             self.tell_others(Reset())

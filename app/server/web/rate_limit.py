@@ -65,7 +65,7 @@ class RateLimit:
         self.unasked = 0  # pictures since the last ping
 
     async def send(self, data: bytes) -> None:
-        """Send a message, a picture once there is room for it. Raises ConnectionClosed if the browser has gone."""
+        """Send a message, a picture once there is room for it. Raises ConnectionClosed if the browser has left."""
         if len(data) < SMALL:
             await self.send_now(data)
             return
@@ -117,7 +117,7 @@ class RateLimit:
         self.probe_at = self.clock() + PROBE_INTERVAL
 
     def learn(self, sent: Sent) -> None:
-        """A picture has arrived, or the browser has gone."""
+        """A picture has arrived, or the browser has left."""
         if sent in self.on_the_way:
             self.on_the_way.remove(sent)
             self.bytes_on_the_way -= sent.size
@@ -137,7 +137,7 @@ class RateLimit:
 
 
 def has_come(pong: "asyncio.Future[float]") -> bool:
-    """True if a pong is there; otherwise it has not come yet, or the browser has gone."""
+    """True if a pong is there; otherwise it has not come yet, or the browser has left."""
     return pong.done() and not pong.cancelled() and pong.exception() is None
 
 

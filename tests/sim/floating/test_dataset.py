@@ -108,7 +108,7 @@ def test_a_dataset_of_one_heading_is_used_at_that_heading_only(tmp_path, depths)
     for body in (one, chosen):
         assert_is_capytaines(body, depths.sel(water_depth=20.0), "", heading)
         assert_refused("heading", lambda body=body: response_amplitude(body, [0.8], 0.7), "0.785398 rad")
-    w = [0.3, 0.349]  # below the dataset, where the damping goes on
+    w = [0.3, 0.349]  # below the dataset, where the damping continues
     B = linear_forces(one, [*w, 0.35], heading).damping[:, 2, 2]
     assert B[1] == pytest.approx(B[2], rel=0.01)
     shares = [radiated_share(float(wavenumber(np.array(v / math.sqrt(9.81)), 1.0, 20.0)), 20.0) for v in w]

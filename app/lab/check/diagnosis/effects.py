@@ -290,7 +290,7 @@ def restored() -> Iterator[None]:
 
 
 def shake() -> None:
-    """Draw random numbers, so that a function that sets their seed changes their state once more."""
+    """Draw random numbers, so that a function that sets their seed changes their state again."""
     for name in ("numpy.random", "random"):
         if (module := sys.modules.get(name)) is not None:
             module.random()
@@ -323,7 +323,7 @@ def traced(
     sys.settrace(lambda frame, event, arg: trace if is_own(frame) else None)
     try:
         function(*arguments)
-    except Exception:  # it is called once more, in another state
+    except Exception:  # it is called again, in another state
         pass
     finally:
         sys.settrace(before)

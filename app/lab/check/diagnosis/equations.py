@@ -22,7 +22,7 @@ MOST_VELOCITIES = 4  # of an expression of the right method
 SUPERSCRIPTS = {1: "", 2: "²", 3: "³", 4: "⁴"}
 NEW = "new"
 SAME_COEFFICIENT = 1e-6
-SINGULAR = 1e-9  # share of the largest determinant, below which terms are no basis
+SINGULAR = 1e-9  # fraction of the largest determinant, below which terms are no basis
 
 Monomial = tuple[str, int]  # a symbol, and the power of h before it
 Expression = dict[Monomial, float]  # a sum of terms with coefficients

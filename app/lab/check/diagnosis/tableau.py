@@ -16,7 +16,7 @@ MOST_STAGES = 12
 # [s], of the calls: where the polynomials of h between 0.15 and 2.5 are known best.
 STEPS = tuple(1.325 - 1.175 * np.cos(np.pi * (np.arange(8) + 0.5) / 8))
 POWERS = np.arange(-1, 5)  # of h
-LINEAR = 1e-5  # share of a vector that no combination explains, above which a step is not one of these methods
+LINEAR = 1e-5  # fraction of a vector that no combination explains, above which a step is not one of these methods
 ROUNDING = 1e-9  # of a coefficient in double precision
 AMPLIFIED = 120.0  # ratio of the error of a coefficient to that of the results, with these steps and powers
 FIRST_ACCELERATION = 2  # column of a tableau

@@ -46,7 +46,7 @@ PRESETS = 3
 class RunSeen:
     """A run of the model, as it was seen last."""
 
-    time: float | None = 0.0  # [s]; None: it goes on from somewhere, and was not seen yet
+    time: float | None = 0.0  # [s]; None: it continues from somewhere, and was not seen yet
     arrays: dict[str, np.ndarray] | None = None  # None: changed since it was seen
     running: bool = False
     act: int = 0  # the program's number of it; 0: not seen
@@ -84,7 +84,7 @@ class Model:
         )
 
     def undo(self) -> None:
-        """The screen before the last act; a run goes on from where it is, or from where it was left."""
+        """The screen before the last act; a run continues from where it is, or from where it was left."""
         if not self.before:
             return
         now, self.screen = self.screen, self.before.pop()

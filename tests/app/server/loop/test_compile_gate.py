@@ -1,4 +1,4 @@
-"""Parameters that need what is not compiled yet wait for it; the scene goes on with the old ones."""
+"""Parameters that need what is not compiled yet wait for it; the scene continues with the old ones."""
 
 from concurrent.futures import Future
 

@@ -1,4 +1,4 @@
-"""Numbers of a file that the scene runs: changed in the panel, and the file with them sent to the browser."""
+"""Numbers of the scene's file: changed in the panel, and sent to the browser within the file."""
 
 import math
 
@@ -16,7 +16,7 @@ APPLY, SAVE = "Apply", "Save file"
 
 
 class FileNumbers:
-    """The folder, in the container that is open; it is shown while a file is open."""
+    """The folder, in the open container; it is shown while a file is open."""
 
     def __init__(self, gui: viser.GuiApi, editing: FileEditing, settings: SceneSettings) -> None:
         self.editing, self.settings = editing, settings
@@ -52,7 +52,7 @@ class FileNumbers:
                 self.say(str(reason))
 
     def show(self) -> None:
-        """Show the numbers of the chosen thing, unless they are shown: some may be half typed."""
+        """Show the numbers of the chosen thing, unless they are already shown: some may be half typed."""
         if not self.fields:
             return
         now = self.chooser.value, dict(self.editing.numbers(self.settings.params)[self.chooser.value])
@@ -62,7 +62,7 @@ class FileNumbers:
                 self.fields[name].value = write_number(value)
 
     def apply(self) -> None:
-        """Restart with the numbers in the fields. Raises ValueError or ConvergenceError for one that cannot be."""
+        """Restart with the numbers in the fields. Raises ValueError or ConvergenceError for an impossible one."""
         before = self.editing.numbers(self.settings.params)[self.chooser.value]
         values = {name: read(name, field.value, before[name]) for name, field in self.fields.items()}
         params = self.editing.changed(self.settings.params, self.chooser.value, values)
@@ -71,12 +71,12 @@ class FileNumbers:
             self.settings.begin_with(params)
 
     def say(self, text: str) -> None:
-        """Say something below the buttons."""
+        """Show a sentence below the buttons."""
         self.line.content = note(fill('<div role="status">{}</div>', text)) if text else ""
 
 
 def read(name: str, text: str, before: float) -> float:
-    """The number above 0 that a text is; `before` where it is shown so. Raises ValueError."""
+    """The number above 0 in a text; `before` if the text still shows that. Raises ValueError."""
     if text == write_number(before):  # which may have fewer digits
         return before
     value = number_of(text.strip())

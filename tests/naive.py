@@ -38,9 +38,13 @@ def link_force(net, family, r, vr):
     n = r / length
     if net.damping_model == "axial":
         vr = (vr @ n) * n
-    if isinstance(net.law, Slack) and length <= family.rest:
-        vr = 0.0 * vr
-    return tension(net, family, length) * n + family.damping * vr
+    damping, pull, rate = family.damping, tension(net, family, length), vr @ n
+    if isinstance(net.law, Slack):
+        if length <= family.rest:
+            damping = 0.0
+        elif pull + damping * rate < 0.0:
+            damping = pull / -rate
+    return pull * n + damping * vr
 
 
 def surfaces(net, x, t):

@@ -2,7 +2,7 @@
 
 import contextlib
 import dataclasses
-from collections.abc import Container, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -59,24 +59,25 @@ def with_spectrum(params: Any, path: Path, time: str | None, has_length: bool) -
     return dataclasses.replace(params, length=tile_length(spectrum, params))
 
 
-def with_mooring(params: Any, path: Path, given: Container[str]) -> Any:
+def with_mooring(params: Any, path: Path, setup: Any) -> Any:
     """The parameters with the mooring of a MoorDyn file, a stable time step, and no breaking load, which no file has.
 
-    given: names of parameters that keep their values.
+    setup: its parameters keep their values, and its changes are those of the file that it names.
     Raises ValueError for another scene or a file that cannot be read, ConvergenceError for one without a state of rest.
     """
+    from app.scenes.setups import with_changes
     from sim.mooring import critical_step
     from sim.parameters import clamp_value, parameters_of
     from sim.validation import argument_error
 
     if not hasattr(params, "moordyn_file"):
         raise argument_error("--mooring", str(path), "a MoorDyn file with the scene mooring only")
-    from app.scenes.mooring.files.from_file import mooring_of
+    from app.scenes.mooring.files.from_file import opened
 
-    system = mooring_of(str(path)).system
+    params = with_changes(dataclasses.replace(params, moordyn_file=str(path)), setup)
+    system, given = opened(params).system, setup.values
     if system.node_count > MAX_MOORING_NODES:
         raise argument_error("--mooring", f"{path} of {system.node_count} nodes", f"at most {MAX_MOORING_NODES}")
-    params = dataclasses.replace(params, moordyn_file=str(path))
     if "breaking_load" not in given:
         params = dataclasses.replace(params, breaking_load=0.0)
     if "time_step" in given:

@@ -105,7 +105,7 @@ def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = 
     if arguments.hull is not None:
         params = with_hull(params, arguments.hull, mesh_reading(arguments))
     if arguments.mooring is not None:
-        params = with_mooring(params, arguments.mooring, setup.values)
+        params = with_mooring(params, arguments.mooring, setup)
     if arguments.spectrum is not None:
         params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in setup.values)
     file = arguments.mooring or arguments.spectrum

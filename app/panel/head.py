@@ -53,7 +53,11 @@ class Head:
     async def on_preset(self, event: ViserEvent) -> None:
         """Take the preset that a browser chose; viser also calls this after `show_preset`, without a client."""
         if event.client_id is not None and event.target.value in self.settings.presets:
-            self.settings.load(event.target.value)
+            try:
+                self.settings.load(event.target.value)
+            except ValueError as reason:  # a set-up of the user, of another file
+                event.client.add_notification("Couldn't open this set-up", str(reason), color="red")
+                self.show_preset()
 
     async def on_button(self, event: ViserEvent) -> None:
         """Carry out the label of the pressed button."""

@@ -7,17 +7,17 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias, cast
+from typing import TypeAlias, cast
 
 import numpy as np
 import viser
 from numpy.typing import NDArray
 from viser import uplot
 
-from app.formats.round_step import round_step
 from app.messages import ChartLine, PlotRow, RunIdentity, RunLine, RunRow
 from app.panel.recording.recording_files import Plotted
 from app.render.handles.viser_types import GuiHandle
+from app.render.markup.axis import Scale, scale_of
 from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
 from app.scenes.contract import AnyKind, AnySnapshot
 
@@ -29,54 +29,12 @@ PADDING = (8, 16, 0, 0)  # [pixels] above, right, below, left: room for half of 
 DIGIT_WIDTH, TICK_ROOM = 7.5, 16.0  # [pixels] of a digit of a tick, and beside the words
 LOGARITHMIC_TICK_WIDTH = 66.0  # [pixels] for the words at a logarithmic scale
 FIRST_AXIS_HEIGHT = 28  # [pixels] of its ticks and their words
-TICKS = 4  # approximate number of intervals on a scale
-MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
-MIN_FILLED = 0.3  # fraction of a scale that its data must fill; otherwise the scale is remade
 KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a hexadecimal byte, [pixels]
 DOT_SIZE = 11  # [pixels] of a dot
 CROSS_CLASS = "springtide-cross"  # of lines that are crosses
 EMPTY = np.array([0.0, 1.0])  # the times of a chart without rows
 
-Look: TypeAlias = tuple[str, tuple[ChartLine, ...], float | None, "Scale | None"]
-
-
-class Scale(NamedTuple):
-    """A linear scale from one round number to another, with a tick every `step`."""
-
-    low: float
-    high: float
-    step: float
-
-    @property
-    def ticks(self) -> tuple[float, ...]:
-        """The ticks from end to end."""
-        return tuple(self.low + k * self.step for k in range(round((self.high - self.low) / self.step) + 1))
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """The words at the ticks, with enough digits to distinguish them."""
-        if 1e-4 <= self.step < 1e5:
-            digits = max(0, -math.floor(math.log10(self.step) + 1e-9))
-            words = [f"{tick + 0.0:.{digits}f}" for tick in self.ticks]
-        else:
-            words = [f"{tick:.3g}" if abs(tick) > 1e-9 * self.step else "0" for tick in self.ticks]
-        return tuple(word.replace("-", "\N{MINUS SIGN}") for word in words)
-
-    def fits(self, low: float, high: float) -> bool:
-        """True if data from low to high lie within, and fill enough of it."""
-        return self.low <= low and high <= self.high and high - low >= MIN_FILLED * (self.high - self.low)
-
-
-def scale_of(low: float, high: float, least: float = 0.0) -> Scale:
-    """A scale for data from low to high; it spans at least `least`, about the middle of the data."""
-    size = max(abs(low), abs(high))
-    if high - low < least:
-        middle = 0.5 * (low + high)
-        low, high = middle - 0.5 * least, middle + 0.5 * least
-    rough = max(high - low, MIN_SPAN * size) / TICKS if size or least else 1.0 / TICKS
-    step = round_step(rough)
-    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
-    return Scale(first * step, max(last, first + 1) * step, step)
+Look: TypeAlias = tuple[str, tuple[ChartLine, ...], float | None, Scale | None]
 
 
 @dataclass

@@ -13,7 +13,7 @@ from app.panel.workbook.task_setups import setup_of_task
 from app.render.cameras import ClientCamera, client_cameras
 from app.scenes.contract import Advice, AnyKind, PostCommand
 from app.scenes.own_setups import own_files
-from app.scenes.setups import FILES, Setup, file_name, make_setup
+from app.scenes.setups import FILES, Setup, file_name, make_setup, with_changes
 from sim.parameters import changed_names, clamp_value, effect_of_change, parameters_of
 
 OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
@@ -64,8 +64,11 @@ class SceneSettings:
 
     def params_of(self, preset: str) -> BaseParams:
         """The parameters of a preset. The hull from a file, which is not a parameter, stays."""
-        own = self.own.get(preset)
-        return with_fields_of(self.params, (own or make_setup(self.kind, preset)).params)
+        return self.params_of_setup(self.own.get(preset) or make_setup(self.kind, preset))
+
+    def params_of_setup(self, setup: Setup) -> BaseParams:
+        """The parameters of a set-up of this scene, with the file that is open, changed as the set-up says."""
+        return with_changes(with_fields_of(self.params, setup.params), setup)
 
     def nearest_preset(self, params: BaseParams) -> str:
         """Name of the preset nearest to the parameters."""
@@ -128,12 +131,12 @@ class SceneSettings:
         self.show_setup(setup_of_task(setup), None)
 
     def show_setup(self, setup: Setup, client: int | None) -> None:
-        """Show a set-up from a link or a file, with its camera for one browser."""
+        """Show a set-up from a link or a file, with its camera for one browser. Raises ValueError as `with_changes`."""
         camera = None if setup.camera is None or client is None else ClientCamera(client, *setup.camera)
         if setup.scene != self.kind.name:
             self.open_scene(setup.scene, setup.params, camera)
             return
-        params = with_fields_of(self.params, setup.params)
+        params = self.params_of_setup(setup)
         self.load_params(params, setup.preset or next(iter(self.kind.presets)), () if camera is None else (camera,))
 
     def open_first_view_of(self, scene: str) -> None:

@@ -5,8 +5,8 @@ The address `/?scene=rope&preset=...&stiffness=2000` and the file
     {"version": 1, "scene": "rope", "preset": "...", "parameters": {"stiffness": 2000}, "name": "...", "note": "..."}
 
 are equivalent: a preset (by default the scene's defaults), and the values that differ from it. A number is written so
-that reading returns exactly the same number. A hull, a mooring or a spectrum from a file is no parameter: a set-up has
-the file's name, `"hull": "boat.stl"`, and its reader is asked to add the file.
+that reading returns exactly the same number. A hull, a mooring or a spectrum from a file is no parameter: a set-up file
+has its name, `"hull": "boat.stl"`, and the changes made to it in the panel; its reader is asked to add the file.
 
 A replay (HTML) holds such a file in a block, and a recording (.npz) all parameters: both open like one.
 """
@@ -15,6 +15,7 @@ import dataclasses
 import difflib
 import io
 import json
+import math
 import struct
 import zipfile
 import zlib
@@ -55,9 +56,13 @@ FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Spring
 NO_VALUES: Mapping[str, Value] = MappingProxyType({})
 # options that add a file to a scene -> the fields of its parameters with their paths
 FILES = {"hull": "hull", "mooring": "moordyn_file", "spectrum": "spectrum_file"}
-FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", *FILES, "name", "note")
+CHANGES = "file_changes"  # the field with what was changed of such a file, and its name in a set-up
+CHANGED = ("length", "diameter")  # kinds of change
+MOST_CHANGES = 200
+FILE_KEYS = ("version", "scene", "preset", "parameters", "camera", *FILES, CHANGES, "name", "note")
 
 Camera = tuple[Vector, Vector]  # position and target [m]
+Changes = tuple[tuple[str, str, float], ...]  # one of CHANGED, of what, and its value [m]
 
 
 class Setup(NamedTuple):
@@ -71,6 +76,7 @@ class Setup(NamedTuple):
     name: str = ""
     note: str = ""
     files: Mapping[str, str] = {}  # of FILES: the name of the added file, whose content is in no set-up
+    changes: Changes = ()  # of that file
     task: str = ""  # of the lab, that a link opens too
 
 
@@ -103,10 +109,24 @@ def added_files(params: object) -> dict[str, str]:
 def missing_files(setup: Setup, present: object = None) -> str:
     """Advice for adding the files of a set-up, or "" if it needs none or the parameters `present` have them."""
     missing = [(option, name) for option, name in setup.files.items() if added_files(present).get(option) != name]
+    end = ", then open the set-up again for its changes of the file." if setup.changes else "."
     return " ".join(
-        f"The {option} {name} is missing: the set-up only names it. Restart with --{option} {name} to add the file."
+        f"The {option} {name} is missing: the set-up only names it. Restart with --{option} {name} to add the file{end}"
         for option, name in missing
     )
+
+
+def with_changes(params: BaseParams, setup: Setup) -> BaseParams:
+    """The parameters with a set-up's changes of their file, if it is the one that the set-up names.
+
+    Raises ValueError where this file, of the same name, cannot have them.
+    """
+    editing = scene_named(setup.scene).file_editing
+    if editing is None or not setup.files or added_files(params) != setup.files:
+        return params
+    found = dataclasses.replace(params, **{CHANGES: setup.changes})
+    editing.numbers(found)
+    return found
 
 
 def differing_values(kind: AnyKind, params: BaseParams, preset: str) -> dict[str, Value]:
@@ -278,6 +298,8 @@ def write_file(
     if camera is not None:
         content["camera"] = camera_numbers(camera)
     content |= files
+    if changes := getattr(params, CHANGES, ()):
+        content[CHANGES] = [list(one) for one in changes]
     if name:
         content["name"] = read_text("name", name, MAX_NAME)
     if note:
@@ -324,7 +346,27 @@ def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Set
     note = read_text(f"{where}: note", content.get("note", ""), MAX_NOTE)
     names = {one: file_name(read_text(f"{where}: {one}", content.get(one, ""), MAX_FILE_NAME)) for one in FILES}
     files = {option: file for option, file in names.items() if file}
-    return setup._replace(camera=camera, name=name, note=note, files=files)
+    changes = read_changes(f"{where}: {CHANGES}", content.get(CHANGES, []))
+    return setup._replace(camera=camera, name=name, note=note, files=files, changes=changes)
+
+
+def read_changes(what: str, given: object) -> Changes:
+    """The changes of a file as JSON holds them. Raises ValueError."""
+    if not isinstance(given, list) or len(given) > MOST_CHANGES:
+        raise argument_error(what, shortened(str(given)), f"a list of at most {MOST_CHANGES} changes")
+    found: list[tuple[str, str, float]] = []
+    for one in given:
+        if not (
+            isinstance(one, list)
+            and len(one) == 3
+            and one[0] in CHANGED
+            and type(one[2]) in (int, float)
+            and 0.0 < one[2] < math.inf
+        ):
+            allowed = f'["length", "1", 210.0]: {" or ".join(CHANGED)}, of what, and metres above 0'
+            raise argument_error(what, shortened(str(one)), allowed)
+        found.append((one[0], read_text(what, one[1], MAX_NAME), float(one[2])))
+    return tuple(found)
 
 
 def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -438,5 +480,6 @@ def recorded_setup(file: BinaryIO) -> str:
         "scene": kind.name,
         "parameters": values,
         **{option: content["parameters"].get(field, "") for option, field in FILES.items()},
+        CHANGES: content["parameters"].get(CHANGES, []),
     }
     return json.dumps(setup, ensure_ascii=False)

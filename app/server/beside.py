@@ -1,5 +1,6 @@
 """Two or three labs side by side: the first one, and a lab in each further pane, on one clock and under one sky."""
 
+import contextlib
 import threading
 import traceback
 from collections.abc import Callable, Mapping, Sequence
@@ -18,7 +19,7 @@ from app.server.loop.sim_loop import SimLoop
 from app.server.loop.snapshots import kept_state
 from app.server.requests import SceneRequests
 
-KEEP_TIMEOUT = 5.0  # [s] for the first lab to hand over the state from which it resumes after the comparison
+FIRST_TIMEOUT = 5.0  # [s] for the first lab to hand over its state or its parameters
 
 
 class PaneLab(Protocol):
@@ -172,6 +173,10 @@ class ComparedLabs:
             raise
         first.comparison = self
         self.seat(first)
+        shared: Future[None] = Future()  # until the record has the parameters of the first lab, before a change
+        first.call(lambda: shared.set_result(None))
+        with contextlib.suppress(TimeoutError):
+            shared.result(FIRST_TIMEOUT)
 
     def kept(self) -> tuple[SimLoop, BaseParams, Checkpoint] | None:
         """The run of the first lab, to be resumed later; None if it does not answer."""
@@ -179,7 +184,7 @@ class ComparedLabs:
         answer: Future[object] = Future()
         loop.commands.put(Ask(lambda: kept_state(loop.run), answer))
         try:
-            state = answer.result(KEEP_TIMEOUT)
+            state = answer.result(FIRST_TIMEOUT)
         except Exception:
             return None
         return (loop, self.first.settings.params, state) if isinstance(state, Checkpoint) else None

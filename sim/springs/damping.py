@@ -16,8 +16,9 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.forces import each
-from sim.springs.laws import by_damping, damps
-from sim.springs.points.arrays import by_net
+from sim.springs.forces.links import lengthening
+from sim.springs.laws import by_damping, lost_share
+from sim.springs.points.arrays import by_net, span
 from sim.springs.points.each_link import TINY, each_link, stretch
 from sim.springs.points.line_points import set_inverse_masses
 from sim.springs.points.order import in_turn
@@ -155,38 +156,17 @@ def set_link_shares(link, latest, s, p, decay):
 def make_net_decay(p, s):
     """Array (families + 1, rows cols): the share of each family's link that begins at a point; last the fraction of
     a point's velocity that drag leaves, 1 for pins.
-
-    Where links are not damped at any length, the shares once more: `damp` has those that act just now in the first.
     """
     families, n, w = p.offsets.shape[0], p.rows * p.cols, p.inverse_masses
-    decay = np.zeros((kept_shares(p.law, families) + families + 1, n))
+    decay = np.zeros((families + 1, n))
     set_link_shares(np.zeros(3), s, p, decay)
     last, keep = 0.0, 1.0
     for j in range(n):
         if w[j] != last:
             last, keep = w[j], math.exp(-p.drag * w[j] * s)
         decay[families, j] = keep
-    for q in range(kept_shares(p.law, families)):
-        for j in range(n):
-            decay[families + 1 + q, j] = decay[q, j]
     return decay
 
-
-# Rows of `make_net_decay` that keep the shares of links whose damping comes and goes.
-kept_shares = by_damping(
-    always=kernel(lambda law, families: 0, inline=True),
-    at_some_lengths=kernel(lambda law, families: families, inline=True),
-)
-
-
-@each_link()
-def choose_shares(link, law, x, decay, p):
-    """Shares of 0 for the links whose damping does not act at positions x, and their own for the others."""
-    own = decay[p.offsets.shape[0] + 1 + link.family, link.a]
-    decay[link.family, link.a] = own if damps(law, link.rest, stretch(x, p, link)[3]) else 0.0
-
-
-set_shares = by_damping(always=kernel(lambda law, x, decay, p: None, inline=True), at_some_lengths=choose_shares)
 
 make_no_decay = kernel(lambda p, s: np.empty((0, 0)))
 # Factors of `damp` for a time s [s]. Of lines nothing is known: masses in water change with the tangents.
@@ -216,19 +196,49 @@ def damp_rope_links(x, v, decay, p, reverse):
         damp_rope(v, decay, p, reverse)
 
 
-damp_all_links = by_net(rope=damp_rope_links, grid=damp_links)
+damp_rows = by_net(rope=damp_rope_links, grid=damp_links)
+
+
+@each_link()
+def damp_limited(link, law, x, v, s, decay, p, reverse):
+    """Links whose damping may be limited by their tension, one by one, as the limit depends on the velocities."""
+    length, rate, acting = lengthening(x, v, p, link)
+    if acting == 0.0:
+        return
+    rx, ry, rz, _ = stretch(x, p, link)
+    n, a, b, share = p.rows * p.cols, link.a, link.b, decay[link.family, link.a]
+    wa, wb = p.inverse_masses[a], p.inverse_masses[b]
+    if acting != link.damping:
+        share = lost_share(link.damping, acting, rate, wa + wb, s)
+    dx, dy, dz = span(v, n, a, b)
+    if p.axial:
+        dx, dy, dz = rate * rx / length, rate * ry / length, rate * rz / length
+    v[a] += wa * share * dx
+    v[n + a] += wa * share * dy
+    v[2 * n + a] += wa * share * dz
+    v[b] -= wb * share * dx
+    v[n + b] -= wb * share * dy
+    v[2 * n + b] -= wb * share * dz
 
 
 @kernel(noalias=True, inline=True)
-def damp_motion(x, v, decay, p, reverse):
+def damp_whole(law, x, v, s, decay, p, reverse):
+    """Links whose damping always acts whole, many at once."""
+    damp_rows(x, v, decay, p, reverse)
+
+
+damp_all_links = by_damping(whole=damp_whole, limited=damp_limited)
+
+
+@kernel(noalias=True, inline=True)
+def damp_motion(x, v, s, decay, p, reverse):
     """Link damping, then drag, or in reverse. Drag scales every free velocity; moving pins keep theirs."""
     n = np.uint64(p.rows * p.cols)
     keep = decay[p.offsets.shape[0]]
     for turn in range(2):
         if in_turn(turn, 2, reverse) == 0:
             if p.damped:
-                set_shares(p.law, x, decay, p)
-                damp_all_links(x, v, decay, p, reverse)
+                damp_all_links(p.law, x, v, s, decay, p, reverse)
         elif p.drag > 0.0:
             scale(v, keep, np.uint64(0), n)
             scale(v, keep, n, n)
@@ -252,7 +262,7 @@ def damp_inline(x, v, t, s, decay, p, reverse):
     outside = other_acts(p)
     if outside and reverse:
         work += damp_others(x, v, t, s, p, reverse)
-    damp_motion(x, v, decay, p, reverse)
+    damp_motion(x, v, s, decay, p, reverse)
     if outside and not reverse:
         work += damp_others(x, v, t, s, p, reverse)
     return work

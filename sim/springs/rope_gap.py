@@ -12,19 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.damping import kept_shares, other_acts
+from sim.springs.damping import other_acts
+from sim.springs.laws import by_damping
 from sim.springs.points.arrays import by_net
 
 PAD = 4  # numbers beside a component in the room of `cross_gap`, the width of its window
 never = kernel(lambda p: False, inline=True)
+acts_whole = by_damping(
+    whole=kernel(lambda law: True, inline=True), limited=kernel(lambda law: False, inline=True)
+)  # fmt: skip
 
 
 @kernel(inline=True)
 def rope_gaps_merge(p):
     """Links on their own, damped alike in all directions, act on each component of the velocities alone."""
-    if kept_shares(p.law, 1) > 0:
-        return False
-    return p.damped and not (p.axial or other_acts(p))
+    return acts_whole(p.law) and p.damped and not (p.axial or other_acts(p))
 
 
 # True if `cross_gap` knows the net's damping.

@@ -1,7 +1,7 @@
 """What adding one thing costs: a copy of the sources has each of them, in one file or one folder.
 
-The examples are those of docs/contributing.md, in its order. All but one are long: they compile kernels anew, in
-processes of their own.
+The examples are those of docs/contributing.md, in its order. All are long: they compile kernels anew, in processes of
+their own.
 """
 
 import functools
@@ -118,6 +118,7 @@ def test_a_parameter_is_one_line_in_one_file(extended):
         assert file["x"][-1, -1, 2] - file["x"][0, -1, 2] < fall < 0.0
 
 
+@pytest.mark.long
 def test_a_body_shape_is_one_file(extended):
     copy, touched = extended("Add a body shape")
     assert len(touched) == 1

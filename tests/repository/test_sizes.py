@@ -1,6 +1,7 @@
 """A function fits a screen or two, a class has one job, a name means one class, and a folder is seen at a glance."""
 
 import ast
+import functools
 import importlib
 from collections import Counter
 from pathlib import Path
@@ -15,6 +16,7 @@ MAX_FILES = 16  # of code in a folder
 CODE = {".css", ".html", ".js", ".mjs", ".py", ".ts"}
 
 
+@functools.cache
 def classes_below(*tops: str) -> list[tuple[Path, ast.ClassDef]]:
     """All classes, with their files."""
     paths = (path for top in tops for path in sorted((ROOT / top).rglob("*.py")))

@@ -1,16 +1,13 @@
 """Numbers of the scene's file: changed in the panel, and sent to the browser within the file."""
 
-import math
-
 import viser
 
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import ViserEvent
 from app.render.markup.html import fill, note
 from app.scenes.contract import FileEditing
-from sim.quantities import write_number
-from sim.tables import number_of
-from sim.validation import ConvergenceError
+from sim.quantities import read_number, write_number
+from sim.validation import ConvergenceError, argument_error, check_positive
 
 APPLY, SAVE = "Apply", "Save file"
 
@@ -63,8 +60,7 @@ class FileNumbers:
 
     def apply(self) -> None:
         """Restart with the numbers in the fields. Raises ValueError or ConvergenceError for an impossible one."""
-        before = self.editing.numbers(self.settings.params)[self.chooser.value]
-        values = {name: read(name, field.value, before[name]) for name, field in self.fields.items()}
+        values = {name: read(name, field.value) for name, field in self.fields.items()}
         params = self.editing.changed(self.settings.params, self.chooser.value, values)
         self.say("")
         if params != self.settings.params:
@@ -75,11 +71,11 @@ class FileNumbers:
         self.line.content = note(fill('<div role="status">{}</div>', text)) if text else ""
 
 
-def read(name: str, text: str, before: float) -> float:
-    """The number above 0 in a text; `before` if the text still shows that. Raises ValueError."""
-    if text == write_number(before):  # which may have fewer digits
-        return before
-    value = number_of(text.strip())
-    if value is None or not math.isfinite(value) or value <= 0.0:
-        raise ValueError(f"{name}: {text!r} is not allowed; allowed: a number above 0")
-    return value
+def read(name: str, text: str) -> float:
+    """The number above 0 in a text, in the unit of the name or with another unit. Raises ValueError."""
+    title, _, unit = name.removesuffix("]").partition(" [")
+    try:
+        value = read_number(text, unit)
+    except ValueError as reason:
+        raise argument_error(title, text, f"above 0 {unit}; {reason}") from None
+    return check_positive(title, value, unit)

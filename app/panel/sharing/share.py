@@ -10,7 +10,7 @@ import numpy as np
 import viser
 
 from app.lab.course.workbook import Workbook
-from app.messages import Vector
+from app.messages import BaseParams, Vector
 from app.panel.plots import Plots
 from app.panel.recording.files import Files, MakeReplay, file_name
 from app.panel.recording.recorder import Recorder
@@ -21,14 +21,16 @@ from app.panel.workbook.task_setups import read_link
 from app.render.cameras import place_camera
 from app.render.handles.viser_inside import uuid_of
 from app.render.handles.viser_types import GuiHandle, ViserEvent
-from app.render.markup.html import fill, note
+from app.render.markup.html import Html, faint, fill, join, lines, note
 from app.scenes.comparisons import comparison_named
 from app.scenes.own_setups import keep_own, remove_own
 from app.scenes.setups import (
+    CHANGES,
     MAX_NAME,
     MAX_NOTE,
     Camera,
     Setup,
+    added_files,
     missing_files,
     read_file,
     write_file,
@@ -149,9 +151,14 @@ class Share:
         elif isinstance(subject, str) and self.beside is None:
             return  # a lab beside another opens no comparison
         else:
+            change = self.change(subject, page)
+            try:
+                self.show(subject, client.client_id)
+            except ValueError as reason:  # of a file of the same name
+                self.refuse(client, str(reason))
+                return
             if len(self.server.get_clients()) > 1:
-                self.changes.latest = self.change(subject, page)
-            self.show(subject, client.client_id)
+                self.changes.latest = change
 
     def change(self, subject: Setup | str, page: str) -> SceneSwitch:
         """The change made by a page that opens something."""
@@ -208,7 +215,7 @@ class Share:
         if event.target.value == COPY:
             query = write_query(settings.kind, settings.params, settings.loaded, camera)
             link = fill('<a class="springtide-link" data-springtide-link="{}" href="{}">{}</a>', query, query, query)
-            self.say("This set-up", link)
+            self.say("This set-up", join((link, not_in_link(settings.params))))
             self.confirm(event.target, COPY, "Copied")
             return
         if event.target.value != SAVE:
@@ -258,6 +265,14 @@ class Share:
         """Keep notice and buttons up to date."""
         self.notice.draw()
         self.end_confirmations()
+
+
+def not_in_link(params: BaseParams) -> Html:
+    """The files of these parameters that a link does not name; nothing without any."""
+    files = added_files(params).values()
+    what = " and its changes" if getattr(params, CHANGES, ()) else ""
+    said = [faint(f"A link does not name {file}{what}; a saved set-up does.") for file in files]
+    return lines(said) if said else Html()
 
 
 def camera_of(client: viser.ClientHandle) -> Camera:

@@ -133,6 +133,7 @@ declare namespace viser {
     nodeRefFromName: Record<string, three.Object3D | undefined>;
     requestRender(): void;
     sendMessage: ((message: object) => void) | null;
+    sendCamera?: (() => void) | null;
     getRenderRequestState: string;
   }
   // After it has begun to draw.
@@ -442,7 +443,8 @@ declare namespace three {
 
 // What the unit tests use of Node.
 declare module "node:test" {
-  export function test(name: string, body: () => void): void;
+  interface Timers { enable(which: { apis: string[] }): void; tick(time: number): void }
+  export function test(name: string, body: (context: { mock: { timers: Timers } }) => void): void;
 }
 declare module "node:assert/strict" {
   const assert: {

@@ -161,7 +161,7 @@ class LineScene(abc.ABC):
         """The state for a file: name -> (array, unit)."""
 
     @abc.abstractmethod
-    def static_inputs(self, far: float = 0.0) -> CurveInputs:
+    def curve_inputs(self, far: float = 0.0) -> CurveInputs:
         """Everything that the restoring curve depends on. far: [m] offset to which it goes at least."""
 
     def lying(self) -> NDArray[np.float64]:
@@ -292,7 +292,7 @@ class LineScene(abc.ABC):
         wave, excursion = self.wave_direction, self.excursion
         now = float((self.body_place() - excursion.rest)[:2] @ wave)
         pull = -float(self.force_of_lines() @ wave)
-        return {"plot_restoring": self.restoring.chart(self.static_inputs, excursion.farthest, now, pull)}
+        return {"plot_restoring": self.restoring.chart(self.curve_inputs, self.rows, excursion.farthest, now, pull)}
 
     @property
     def wave_direction(self) -> NDArray[np.float64]:

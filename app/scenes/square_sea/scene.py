@@ -15,7 +15,7 @@ from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import Pieces
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
-from app.scenes.square_sea.foam import MeshFoam, WavePace
+from app.scenes.square_sea.foam import MeshFoam, WaveSlope
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import (
     DRAUPNER,
@@ -66,17 +66,18 @@ def warm_up() -> Pieces:
 def compile_drawn_sea() -> None:
     """Call all kernels of a small sea with rain."""
     small = SquareSeaParams(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
-    for params in (small, SquareSeaParams(**{**vars(small), "choppiness": 0.0})):
-        scene = SquareSeaScene(params)
-        for _ in range(4):
-            scene.advance(30)
-            scene.frame()
+    call_kernels(small, dataclasses.replace(small, choppiness=0.0))
 
 
 def compile_nonlinear_sea() -> None:
     """Call all kernels of both kinds of nonlinear sea."""
     small = SquareSeaParams(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
-    for params in (small, dataclasses.replace(small, start="breather", spectrum="regular")):
+    call_kernels(small, dataclasses.replace(small, start="breather", spectrum="regular"))
+
+
+def call_kernels(*seas: SquareSeaParams) -> None:
+    """Advance seas by some frames."""
+    for params in seas:
         scene = SquareSeaScene(params)
         for _ in range(4):
             scene.advance(30)
@@ -206,7 +207,7 @@ class SquareSeaScene:
     def clear_mesh(self) -> None:
         """Start a new drawn mesh, without foam."""
         n = min(int(self.params.mesh), solved_points(self.params))
-        self.foam, self.waves = MeshFoam(n), WavePace()
+        self.foam, self.waves = MeshFoam(n), WaveSlope()
         self.drawn: SeaFrame | None = None
         self.drawn_at = self.time
         self.statistics.measured_at, self.statistics.earlier_height = -math.inf, None
@@ -341,7 +342,7 @@ class SquareSeaScene:
     def make_frame(self, fields: Fields, dt: float) -> SeaFrame:
         """The mesh of these fields with the foam of the last one faded over dt [s]."""
         p = self.params
-        self.counts["paces"] += self.waves.update(self.sea, self.time, p.amplitude)
+        self.counts["slopes"] += self.waves.update(self.sea, self.time, p.amplitude)
         vertices, slopes = self.foam.make_mesh(fields, acting(p), dt, self.waves, self.expected_foam_cover(self.time))
         return SeaFrame(p, self.time, vertices, slopes, self.foam.values, self.waves.slope, None, None, SentSurface())
 

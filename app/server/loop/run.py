@@ -71,7 +71,7 @@ class SceneRun:
         self.unmade = False  # the scene could not begin, and waits for other values
         self.running = not paused
         self.halted = ""
-        self.pacer = FixedStep()
+        self.fixed_step = FixedStep()
         self.replay: Replay | None = None  # of a run that has just diverged
         self.seat: Seat | None = None  # at a clock shared with other loops
         self.goal: Goal | None = None  # awaited by a program
@@ -132,7 +132,7 @@ class SceneRun:
     def keep_time(self, wall: float) -> bool:
         """Take the steps that are due; True if there were any."""
         frame = self.clock.frame_interval(self.scene.frame_interval)
-        n = self.pacer.steps(wall, self.scene.params.speed * self.scene.pace, self.scene.step, frame)
+        n = self.fixed_step.steps(wall, self.scene.params.speed * self.scene.pace, self.scene.step, frame)
         if self.goal is not None:
             n = min(n, steps_to(self.scene, self.goal.until))
         return self.take_steps(n)
@@ -140,7 +140,7 @@ class SceneRun:
     def take_steps(self, n: int) -> bool:
         """Take steps that are due, few at first if their cost is unknown; True if there were any."""
         if n:
-            (self.advance_within_budget if self.pacer.cost_unknown and self.running else self.advance)(n)
+            (self.advance_within_budget if self.fixed_step.cost_unknown and self.running else self.advance)(n)
         return n > 0
 
     def note_place(self) -> None:
@@ -157,8 +157,8 @@ class SceneRun:
         if seat.is_first and self.running:
             seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
         due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
-        n = self.pacer.most(due, self.clock.frame_interval(self.scene.frame_interval))
-        self.pacer.capped = n < due or (seat.is_first and seat.clock.late)
+        n = self.fixed_step.most(due, self.clock.frame_interval(self.scene.frame_interval))
+        self.fixed_step.capped = n < due or (seat.is_first and seat.clock.late)
         return self.take_steps(n)
 
     def aim_at(self, seconds: float, answer: Future[float]) -> None:
@@ -207,21 +207,21 @@ class SceneRun:
         part, spent = 1, 0.0
         while n > 0 and part > 0 and self.running and self.replay is None and not self.request[STOP]:
             part = min(part, n)
-            self.pacer.cost = 0.0
+            self.fixed_step.cost = 0.0
             spent += self.advance(part)
             n -= part
-            part = self.pacer.next_part(part, spent)
-        self.pacer.cost_unknown = False
+            part = self.fixed_step.next_part(part, spent)
+        self.fixed_step.cost_unknown = False
         if n > 0 and self.running:
-            self.pacer.capped, self.pacer.debt = True, 0.0
-            self.pacer.dropped += n if self.seat is None else 0
+            self.fixed_step.capped, self.fixed_step.debt = True, 0.0
+            self.fixed_step.dropped += n if self.seat is None else 0
 
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
         start = self.clock.effort()
         self.guarded(lambda: self.scene.advance(n), STEPS)
         seconds = self.clock.effort() - start
-        self.pacer.learn(n, seconds)
+        self.fixed_step.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
 
@@ -253,7 +253,7 @@ class SceneRun:
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
         """Continue the replay of a divergence, and halt at its end; True if there is news to show."""
-        self.pacer.capped = False
+        self.fixed_step.capped = False
         changed = replay.play(wall)
         if replay.ended:
             self.halt(replay.reason)
@@ -283,7 +283,7 @@ class SceneRun:
             self.replay = None
             spent += self.advance(1)
             if self.halted != halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
-                self.pacer.dropped += count - done - 1
+                self.fixed_step.dropped += count - done - 1
                 return
 
     def give_up(self, reason: str) -> None:
@@ -296,7 +296,7 @@ class SceneRun:
         """Discard the state of the run, before the scene continues from its start or from another moment."""
         self.give_up(BEGUN)
         self.halted, self.replay, self.unfinished, self.unmade = "", None, None, False
-        self.pacer.debt = 0.0
+        self.fixed_step.debt = 0.0
 
     def identify(self, act: int = 0, before: int = 0, since: float = 0.0) -> None:
         """Give the new run its number; see `RunIdentity`. act: 0 for that of the run before."""
@@ -402,7 +402,7 @@ class RunSequence:
             self.change_start(params)
         else:
             self.end_replay()
-            run.pacer.cost_unknown = True
+            run.fixed_step.cost_unknown = True
             run.guarded(lambda: scene.change_forces(params), OTHER_FORCES)
             scene.params = params  # even if the scene failed, so that a reset uses them
 
@@ -417,7 +417,7 @@ class RunSequence:
         """Restart the scene with these parameters; it plays if it played before or had halted."""
         run = self.run
         self.end_replay()
-        run.scene.params, run.pacer.cost_unknown = params, True
+        run.scene.params, run.fixed_step.cost_unknown = params, True
         if run.seat is not None:
             run.seat.begin_others()
         run.reset(act)
@@ -432,7 +432,7 @@ class RunSequence:
     def begin_with(self, params: BaseParams, act: int, left: LeftRun | None = None) -> None:
         """Restart the scene with these parameters, playing; or restore a run that was left."""
         run = self.run
-        run.scene.params, run.pacer.cost_unknown = params, True
+        run.scene.params, run.fixed_step.cost_unknown = params, True
         if run.seat is not None:
             run.seat.begin_others()
             run.seat.tell_others(Play())
@@ -443,7 +443,7 @@ class RunSequence:
         """Resume from a checkpoint, with its parameters, playing."""
         run = self.run
         run.clear()
-        run.scene.params, run.pacer.cost_unknown = params, True
+        run.scene.params, run.fixed_step.cost_unknown = params, True
         run.snapshots.forget_rates()
         run.guarded(lambda: run.scene.resume(state.value))
         run.identify(act, state.run, run.scene.time)

@@ -1,4 +1,4 @@
-"""One clock for several simulation loops: all advance by the same simulated time, and the slowest sets the pace.
+"""One clock for several simulation loops: all advance by the same simulated time, and the slowest sets the speed.
 
 The clock's time rises with the wall clock, but at most to `LEAD` after the next step of the slowest loop. Each loop
 takes the steps up to the clock's time. Once the clock stands still, all reach it, so that their times differ by less

@@ -186,7 +186,7 @@ class SimLoop:
             self.scene.handle(command)
         is_begun = self.latest.status.run == run.identity
         if drags or self.latest.params != params or not is_begun:
-            run.pacer.capped = activity == STEPS
+            run.fixed_step.capped = activity == STEPS
             run.snapshots.publish_in_solve(params, with_frame=within_steps)
 
     def drags_waiting(self) -> list[GrabTo | Place | Release]:

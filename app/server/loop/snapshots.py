@@ -40,7 +40,7 @@ class ShownRun(Protocol):
     identity: RunIdentity
     audience: Callable[[], int]
     clock: TickClock
-    pacer: FixedStep
+    fixed_step: FixedStep
     counts: collections.Counter[str]
     activity: Activity
     running: bool
@@ -179,7 +179,7 @@ class Snapshots:
         while len(history) > 2 and history[0][0] < wall - RATE_WINDOW:
             history.popleft()
         elapsed = wall - history[0][0]
-        capped = run.pacer.capped and run.running
+        capped = run.fixed_step.capped and run.running
         return Status(
             running=run.running,
             time=simulated,

@@ -7,13 +7,12 @@ import numpy as np
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
 from sim.springs.forces.record import Force, of_nets
-from sim.springs.laws import damps, force_density, stiffness, tension
+from sim.springs.laws import damping as damping_of
 from sim.springs.laws import energy as link_energy
+from sim.springs.laws import force_density, lost_share, stiffness, tension
 from sim.springs.points.arrays import add_pair, by_net, is_moving, link_at, push, span
 from sim.springs.points.each_link import TINY, acting_damping, each_link, stretch
 from sim.springs.points.line_points import kick, mobility
-
-MOST_OF_PULL = 1.0 - 1e-15  # fraction of a line's pull that damping may take, so that round-off does not make it push
 
 
 @kernel(noalias=True, inline=True)
@@ -30,7 +29,8 @@ def link_forces(x, v, f, ia, ib, of, n, N, M, law, k, b, rest, axial):
             rr = rx * rx + ry * ry + rz * rz + TINY
             closing = (v[q] - v[p]) * rx + (v[N + q] - v[N + p]) * ry + (v[N + N + q] - v[N + N + p]) * rz
             length = math.sqrt(rr)
-            s = force_density(law, k, rest, length) + (b * closing / rr if damps(law, rest, length) else 0.0)
+            c = damping_of(law, k, b, rest, length, closing / length)
+            s = force_density(law, k, rest, length) + c * closing / rr
             f[of + j] = s * rx
             f[M + of + j] = s * ry
             f[M + M + of + j] = s * rz
@@ -47,10 +47,12 @@ def link_forces(x, v, f, ia, ib, of, n, N, M, law, k, b, rest, axial):
             p, q = ia + j, ib + j
             rx, ry, rz = x[q] - x[p], x[N + q] - x[N + p], x[N + N + q] - x[N + N + p]
             length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
-            s, c = force_density(law, k, rest, length), b if damps(law, rest, length) else 0.0
-            f[of + j] = s * rx + c * (v[q] - v[p])
-            f[M + of + j] = s * ry + c * (v[N + q] - v[N + p])
-            f[M + M + of + j] = s * rz + c * (v[N + N + q] - v[N + N + p])
+            du, dv, dw = v[q] - v[p], v[N + q] - v[N + p], v[N + N + q] - v[N + N + p]
+            s = force_density(law, k, rest, length)
+            c = damping_of(law, k, b, rest, length, (du * rx + dv * ry + dw * rz) / length)
+            f[of + j] = s * rx + c * du
+            f[M + of + j] = s * ry + c * dv
+            f[M + M + of + j] = s * rz + c * dw
 
 
 @kernel(inline=True)
@@ -72,29 +74,12 @@ def scale_ends(f, of, n, M, s):
 
 
 @kernel(inline=True)
-def unlimited(p, damping, rate, pull):
-    return damping
-
-
-@kernel(inline=True)
-def without_push(p, damping, rate, pull):
-    """Damping [N s/m] of a link of lines that pulls by `pull` [N] and grows by `rate` [m/s].
-
-    A line does not push: one that shortens is damped by no more than what it pulls.
-    """
-    return min(damping, -MOST_OF_PULL * pull / rate) if rate < 0.0 else damping
-
-
-limited_damping = by_net(rope=unlimited, grid=unlimited, lines=without_push)
-
-
-@kernel(inline=True)
 def lengthening(x, v, p, link):
-    """Length [m] of a link, the rate [m/s] at which it grows, and its damping [N s/m] if it acts."""
+    """Length [m] of a link, the rate [m/s] at which it grows, and the part of its damping [N s/m] that acts."""
     rx, ry, rz, length = stretch(x, p, link)
     du, dv, dw = span(v, p.rows * p.cols, link.a, link.b)
-    rate, pull = (du * rx + dv * ry + dw * rz) / length, tension(link.law, link.stiffness, link.rest, length)
-    return length, rate, limited_damping(p, acting_damping(link, length), rate, pull)
+    rate = (du * rx + dv * ry + dw * rz) / length
+    return length, rate, acting_damping(link, length, rate)
 
 
 @each_link()
@@ -118,13 +103,13 @@ def accelerate(link, x, v, t, p, with_damping, f, a):
 
 @each_link("sum")
 def damp(link, x, v, t, s, p, reverse):
-    """Damp lines: the closing speed of a link's nodes decays exponentially. For nets: `sim.springs.damping`."""
+    """Damp lines: the closing speed of a link's nodes decays exactly. For nets: `sim.springs.damping`."""
     rx, ry, rz, _ = stretch(x, p, link)
     length, rate, damping = lengthening(x, v, p, link)
     rx, ry, rz = rx / length, ry / length, rz / length
     both = mobility(p, link.a, rx, ry, rz) + mobility(p, link.b, rx, ry, rz)
-    if both != 0.0 and damping != 0.0:
-        impulse = -math.expm1(-damping * both * s) / both * rate
+    impulse = lost_share(link.damping, damping, rate, both, s) * rate
+    if impulse != 0.0:
         kick(p, v, link.a, impulse * rx, impulse * ry, impulse * rz)
         kick(p, v, link.b, -impulse * rx, -impulse * ry, -impulse * rz)
     return 0.0
@@ -171,7 +156,7 @@ def moving_pins_power(x, v, p, elastic, damping):
 
 
 @kernel(noalias=True, inline=True)
-def row_damping_power(x, v, p, a, b, count, n, first, rest):
+def row_damping_power(x, v, p, a, b, count, n, first):
     """Power [W] that damping takes in the links (a, b), (a + 1, b + 1), ..., of numbers `first` on: they vectorise."""
     total = 0.0
     if p.axial:
@@ -180,15 +165,16 @@ def row_damping_power(x, v, p, a, b, count, n, first, rest):
             rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[n + n + d] - x[n + n + c]
             du, dv, dw = v[d] - v[c], v[n + d] - v[n + c], v[n + n + d] - v[n + n + c]
             closing, rr = du * rx + dv * ry + dw * rz, rx * rx + ry * ry + rz * rz + TINY
-            power = closing * closing / rr * link_at(p, first + j).damping
-            total += power if damps(p.law, rest, math.sqrt(rr)) else 0.0
+            length = math.sqrt(rr)
+            total += closing * closing / rr * acting_damping(link_at(p, first + j), length, closing / length)
     else:
         for j in range(count):
             c, d = a + j, b + j
             rx, ry, rz = x[d] - x[c], x[n + d] - x[n + c], x[n + n + d] - x[n + n + c]
             du, dv, dw = v[d] - v[c], v[n + d] - v[n + c], v[n + n + d] - v[n + n + c]
-            power = (du * du + dv * dv + dw * dw) * link_at(p, first + j).damping
-            total += power if damps(p.law, rest, math.sqrt(rx * rx + ry * ry + rz * rz)) else 0.0
+            length = math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
+            acting = acting_damping(link_at(p, first + j), length, (du * rx + dv * ry + dw * rz) / length)
+            total += (du * du + dv * dv + dw * dw) * acting
     return total
 
 
@@ -200,7 +186,7 @@ def damping_power_by_rows(x, v, p):
         begin, count = max(0, -dj), np.uint64(max(0, p.cols - abs(dj)))
         for i in range(p.rows - di):
             a, b = np.uint64(i * p.cols + begin), np.uint64((i + di) * p.cols + begin + dj)
-            total += row_damping_power(x, v, p, a, b, count, n, first, p.families[q, 0])
+            total += row_damping_power(x, v, p, a, b, count, n, first)
             first += count
     return total
 
@@ -240,7 +226,7 @@ def tangent(link, x, u, t, p, part, longest, out):
     # Of a link that is pressed further only this counts: it buckles, which no step can mend.
     across = max(across, -along)
     if part == DAMPING:
-        along = acting_damping(link, length)
+        along = acting_damping(link, length, 0.0)
         across = 0.0 if p.axial else along
     elif part == STIFFEST:
         along = max(along, stiffness(link.law, link.stiffness, link.rest, (1.0 + longest) * link.rest))

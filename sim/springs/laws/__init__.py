@@ -10,13 +10,14 @@ To add one, write a module in this folder with
 4. `LAW = Law(...)`, from which the panel, the command line and the tests take it.
 """
 
+import math
 from typing import Any
 
 import numpy as np
 
 from sim.jit import chosen, kernel, modules_of
 from sim.springs.laws.curve import OF_LINES
-from sim.springs.laws.record import Law, at_any_length
+from sim.springs.laws.record import Law, always_whole
 from sim.validation import check_choice, check_number
 
 TAUT = 1e-9  # strain of a link that is just taut
@@ -42,7 +43,7 @@ def by_law(name: str) -> Any:
 force_density = by_law("force_density")
 stiffness = by_law("stiffness")
 energy = by_law("energy")
-damps = by_law("damps")
+damping = by_law("damping")
 
 
 @kernel(inline=True)
@@ -80,11 +81,33 @@ def general_over_step(law, k, rest, before, after):
 over_step = chosen({numbers: law.over_step or general_over_step for numbers, law in OF_LINKS.items()})
 
 
-def by_damping(always: Any, at_some_lengths: Any) -> Any:
-    """A kernel that stands for one of these, by whether damping acts at any length by its argument `law`."""
-    return chosen(
-        {numbers: always if law.damps is at_any_length else at_some_lengths for numbers, law in OF_LINKS.items()}
-    )
+@kernel(inline=True)
+def is_limited(law, k, b, rest, length, rate):
+    """True if damping takes all of the tension: neither depends on small changes of length and rate."""
+    return damping(law, k, b, rest, length, rate) < damping(law, k, b, rest, length, 0.0)
+
+
+@kernel(inline=True)
+def lost_share(b, acting, rate, both, s):
+    """Share of the relative velocity that a damping b [N s/m] takes in a time s [s], over `both` [1/kg].
+
+    acting: the part of b that acts at first, at `rate` [m/s]. If it is less than b it takes the constant force of the
+    tension, acting |rate|, until the rate is so small that b takes no more; from then on the rate decays exponentially.
+    both: the sum of the inverse masses of both ends.
+    """
+    if both == 0.0 or acting == 0.0:
+        return 0.0
+    if acting == b:
+        return -math.expm1(-b * both * s) / both
+    whole_from = (1.0 / acting - 1.0 / b) / both  # [s]
+    if s <= whole_from:
+        return acting * s
+    return (1.0 - acting / b * math.exp(-b * both * (s - whole_from))) / both
+
+
+def by_damping(whole: Any, limited: Any) -> Any:
+    """A kernel that stands for one of these, by whether damping always acts whole by its argument `law`."""
+    return chosen({numbers: whole if law.damping is always_whole else limited for numbers, law in OF_LINKS.items()})
 
 
 def law_of(numbers: Any) -> Law:

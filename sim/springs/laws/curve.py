@@ -59,11 +59,13 @@ def energy(law, k, rest, length):
 
 
 @kernel(inline=True)
-def damps(law, rest, length):
-    return law.slack_damping or length > rest
+def damping(law, k, b, rest, length, rate):
+    if law.slack_damping or length > rest:
+        return slack.without_push(b, length * force_density(law, k, rest, length), rate)
+    return 0.0
 
 
 OF_LINES = Law(
     "curve", "Link of a line under water", TensionCurve(np.zeros((0, 3)), 0.0, 0.0, False), force_density, stiffness,
-    energy, slack.length, damps,
+    energy, slack.length, damping,
 )  # fmt: skip

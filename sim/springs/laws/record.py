@@ -7,9 +7,9 @@ from sim.jit import kernel
 
 
 @kernel(inline=True)
-def at_any_length(law, rest, length):
-    """True: the damping of the law acts at any length."""
-    return True
+def always_whole(law, k, b, rest, length, rate):
+    """b: the damping of the law acts at any length and rate."""
+    return b
 
 
 class Law(NamedTuple):
@@ -22,5 +22,7 @@ class Law(NamedTuple):
     stiffness: Callable[..., Any]  # (numbers, k, rest, length) -> derivative of the tension by the length [N/m]
     energy: Callable[..., Any]  # (numbers, k, rest, length) -> stored energy [J]
     length: Callable[..., Any]  # (numbers, k, rest, tension) -> length [m] at a tension above 0 [N], of arrays
-    damps: Callable[..., Any] = at_any_length  # (numbers, rest, length) -> whether the link's damping acts
+    # (numbers, k, b, rest, length, rate) -> the part of a damping b [N s/m] that acts where the length grows by `rate`
+    # [m/s]. Where that is less than at rate 0, it takes all of the tension.
+    damping: Callable[..., Any] = always_whole
     over_step: Callable[..., Any] | None = None  # the function of this name in `sim.springs.laws`, where it is simpler

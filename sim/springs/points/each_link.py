@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from sim.jit import generated, kernel
-from sim.springs.laws import damps
+from sim.springs.laws import damping
 from sim.springs.points.arrays import link_at, link_count, span
 from sim.springs.points.order import in_turn
 
@@ -58,6 +58,6 @@ def stretch(x, p, link):
 
 
 @kernel(inline=True)
-def acting_damping(link, length):
-    """The damping [N s/m] of a link of this length [m], 0 if it does not act."""
-    return link.damping if damps(link.law, link.rest, length) else 0.0
+def acting_damping(link, length, rate):
+    """The part of a link's damping [N s/m] that acts at this length [m] where it grows by `rate` [m/s]."""
+    return damping(link.law, link.stiffness, link.damping, link.rest, length, rate)

@@ -1,17 +1,21 @@
 """Lines of an opened MoorDyn file are changed in the panel, and written again."""
 
+import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from app.__main__ import make_parser
+from app.commands.options import read_params
 from app.panel.controls.file_numbers import APPLY, SAVE, FileNumbers
+from app.panel.sharing.share import not_in_link
 from app.scenes import NAMES, scene_named
 from app.scenes.mooring.files.editing import DIAMETER, LENGTH, changed, content, lines_of, numbers
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.readings.report import notes_of
-from app.scenes.setups import described
+from app.scenes.setups import described, make_setup, missing_files, read_file, with_changes, write_file
 from app.server.loop.sim_loop import SimLoop
 from app.server.viewer import Viewer
 from sim.mooring import read_moordyn
@@ -39,6 +43,47 @@ def test_a_file_that_was_changed_and_written_is_that_which_runs(tmp_path: Path) 
     assert read_moordyn(PATH, lambda line: None) == SimLoop(scene_named("mooring").make(FILE)).scene.file.system
     assert "changed here: length of 1 is 123.25 m" in notes_of(running.latest)["Files"]
     assert described(scene_named("mooring"), params)["mooring"]["lines"][0]["length"] == 123.25
+
+
+def edited() -> MooringParams:
+    """The file with another length of its first line and another diameter of the second one's type."""
+    first, second, *_ = numbers(FILE)
+    params = changed(FILE, first, {LENGTH: 123.25, DIAMETER: numbers(FILE)[first][DIAMETER]})
+    return changed(params, second, {LENGTH: numbers(FILE)[second][LENGTH], DIAMETER: 0.123})
+
+
+def test_a_setup_holds_the_changes_of_the_file_that_it_names() -> None:
+    params, kind = edited(), scene_named("mooring")
+    setup = read_file(write_file(kind, params))
+    assert len(setup.changes) == 2
+    assert with_changes(FILE, setup) == params
+    assert with_changes(params, read_file(write_file(kind, FILE))) == FILE  # that of the unchanged file
+    assert with_changes(params, make_setup(kind)) == params  # a preset names no file
+    other = MooringParams(moordyn_file="another.txt")
+    assert with_changes(other, setup) == other
+    assert "open the set-up again for its changes" in missing_files(setup, other)
+    assert missing_files(setup, FILE) == ""
+
+
+def test_a_run_of_the_command_line_has_the_changes_of_its_setup(tmp_path: Path) -> None:
+    path, kind = tmp_path / "changed.json", scene_named("mooring")
+    path.write_text(write_file(kind, edited()), "utf-8")
+    words = ["run", "mooring", "--preset", str(path), "--mooring", str(PATH), "--seconds", "1", "--out", "run.npz"]
+    params = read_params(kind, make_parser().parse_args(words))
+    assert params.file_changes == edited().file_changes
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        "length", [["length", "1"]], [["mass", "1", 2.0]], [["length", 1, 2.0]], [["length", "1", -2.0]],
+        [["length", "1", True]], [["length", "1", 1e999]], [["length", "1", 2.0]] * 201,
+    ],
+)  # fmt: skip
+def test_changes_that_a_file_cannot_have_are_refused_by_name(bad: object) -> None:
+    content = {"version": 2, "scene": "mooring", "parameters": {}, "mooring": "a.txt", "file_changes": bad}
+    with pytest.raises(ValueError, match="set-up: file_changes"):
+        read_file(json.dumps(content))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -84,14 +129,14 @@ def test_numbers_are_applied_undone_and_saved(panel: Viewer) -> None:
     found: Any = panel.panel.controls_tab.file_numbers
     assert found.chooser.options == tuple(numbers(FILE))
     before = found.fields[LENGTH].value
-    found.fields[LENGTH].value = "130"
+    found.fields[LENGTH].value = "0,13 km"
     press(found, panel, APPLY)
     assert panel.settings.params.file_changes == (("length", "1", 130.0),)
     wait_for(lambda: panel.scene.params.file_changes)
     assert panel.scene.file.system.lines[0].length == 130.0
     ((name, written),) = press(found, panel, SAVE)
     assert (name, b"130.0" in written) == ("shared_line-changed.txt", True)
-    for wrong, words in (("-1", "a number above 0"), ("long", "'long'"), ("", "''")):
+    for wrong, words in (("-1", "-1.0 is not allowed; allowed: above 0 m"), ("long", "'long'"), ("", "''")):
         found.fields[LENGTH].value = wrong
         press(found, panel, APPLY)
         assert words in found.line.content.replace("&#39;", "'")
@@ -104,3 +149,21 @@ def test_numbers_are_applied_undone_and_saved(panel: Viewer) -> None:
     assert found.fields[LENGTH].value == before
     wait_for(lambda: not panel.scene.params.file_changes)
     assert panel.scene.file.system == read_moordyn(PATH, lambda line: None)
+
+
+def test_an_opened_setup_changes_the_file_and_undo_takes_it_back_in_either_order(panel: Viewer) -> None:
+    kind = scene_named("mooring")
+    plain, own = (read_file(write_file(kind, params)) for params in (FILE, edited()))
+    for setup, changes in ((own, edited().file_changes), (plain, ()), (own, edited().file_changes)):
+        panel.settings.show_setup(setup, None)
+        assert panel.settings.params.file_changes == changes
+        wait_for(lambda changes=changes: panel.scene.params.file_changes == changes)
+    assert panel.scene.file.system.lines[0].length == 123.25
+    panel.settings.undo()
+    assert panel.settings.params.file_changes == ()
+    missing = own._replace(changes=(("length", "99", 1.0),))
+    with pytest.raises(ValueError, match="length of line: 99"):
+        panel.settings.show_setup(missing, None)
+    assert panel.settings.params.file_changes == ()
+    assert "and its changes" in not_in_link(edited())
+    assert not_in_link(MooringParams()) == ""

@@ -29,8 +29,14 @@ def small_scene(name: str, step: float) -> Any:
     return kind.make(kind.params(**values, time_step=step))
 
 
-@pytest.mark.parametrize("step", [1 / 60, 1 / 120, 1 / 600])
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize(
+    ("name", "step"),
+    [
+        pytest.param(name, step, marks=pytest.mark.long if (name, step) == ("radial_sea", 1 / 600) else ())
+        for name in SMALL
+        for step in (1 / 60, 1 / 120, 1 / 600)
+    ],
+)
 def test_rows_come_at_the_declared_rate_and_evenly(name: str, step: float) -> None:
     scene, interval = small_scene(name, step), SMALL[name][1]
     count = round(DURATION / interval)

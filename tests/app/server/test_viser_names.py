@@ -88,6 +88,7 @@ def run_without(names: tuple[str, ...]) -> dict[str, list[str]]:
     return {row[1]: row[2:] for row in rows if row[0] == "found"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "names", [SAMPLE, pytest.param(NAMES, marks=pytest.mark.stress, id="all")], ids=lambda names: names[0]
 )

@@ -175,6 +175,7 @@ def test_no_link_leads_the_page_to_another_server(chromium: Any) -> None:
             page.close()
 
 
+@pytest.mark.long
 def test_without_viser_s_inner_object_the_page_still_works(chromium: Any) -> None:
     """The page's own scripts find nothing: plain water, and no error."""
     viewer = Viewer("127.0.0.1", 0)

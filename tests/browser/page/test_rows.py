@@ -48,6 +48,7 @@ IN_WEBKIT = (
     "a_browser_that_hides_what_it_is", "a_touchpad_zooms", "a_window_of_another_size_or_zoom", "two_labs_side_by_side",
     "a_checkbox_and_a_folder", "tabs", "buttons_and_keys_of_the_lab",
 )  # fmt: skip
+DRAWN = ("rope", "race", "square_sea")  # scenes that are drawn in seconds; the others are drawn by the long tests
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
 # What the page says of errors; also that viser's client has ended.
 HOOK = """window.noted = [];
@@ -251,7 +252,9 @@ def another_lab() -> Iterator[Callable[..., Viewer]]:
 # Scenes
 
 
-@pytest.mark.parametrize("scene", NAMES)
+@pytest.mark.parametrize(
+    "scene", [pytest.param(name, marks=() if name in DRAWN else pytest.mark.long) for name in NAMES]
+)
 def test_a_scene_runs_and_is_drawn_without_error(visit: Visit, scene: str) -> None:
     visit.page.run(
         """const put = WebGL2RenderingContext.prototype.linkProgram; window.programs = [];
@@ -504,6 +507,7 @@ def test_undo(visit: Visit) -> None:
         visit.until(lambda: visit.param("points") == 10, "undone")
 
 
+@pytest.mark.long
 def test_the_time_line(visit: Visit) -> None:
     visit.until(lambda: visit.viewer.loop.scene.time > 2.0, "it does not run")
     left, middle, width = visit.page.run(
@@ -611,6 +615,7 @@ def test_a_replay_plays_from_a_file(visit: Visit, tmp_path: Path) -> None:
 # Sessions
 
 
+@pytest.mark.long
 def test_a_task_of_the_workbook(visit: Visit, tmp_path: Path) -> None:
     tasks = load_tasks()
     folder = tmp_path / "mylab"
@@ -656,6 +661,7 @@ def test_the_teacher_s_page(visit: Visit, tmp_path: Path) -> None:
             server.server_close()
 
 
+@pytest.mark.long
 def test_two_labs_side_by_side(visit: Visit, another_lab: Callable[..., Viewer]) -> None:
     viewer = another_lab()
     viewer.open("rope")
@@ -712,6 +718,7 @@ def test_a_server_that_ends_and_begins_again(visit: Visit, another_lab: Callable
         visit.page.wait(f"if (window.isFirst) return false; {RUNS}")
 
 
+@pytest.mark.long
 def test_a_page_is_loaded_again_left_and_come_back_to(visit: Visit) -> None:
     visit.page.run("window.isFirst = true; setTimeout(() => location.reload());")
     visit.page.wait(f"if (window.isFirst) return false; {RUNS}")
@@ -730,6 +737,7 @@ def test_a_hidden_page_goes_on_once_it_is_shown(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_without_webgl_the_page_says_so(visit: Visit, with_script: Callable[[str], None]) -> None:
     with_script(NO_WEBGL)
     visit.page.open(f"{visit.address}?without=webgl")
@@ -737,6 +745,7 @@ def test_without_webgl_the_page_says_so(visit: Visit, with_script: Callable[[str
     visit.page.open("about:blank")
 
 
+@pytest.mark.long
 def test_without_storage_the_page_works(visit: Visit, with_script: Callable[[str], None]) -> None:
     with_script(REFUSED)
     visit.open("&fixedDpr=0.2&without=storage")
@@ -749,6 +758,7 @@ def test_without_storage_the_page_works(visit: Visit, with_script: Callable[[str
     visit.page.open("about:blank")
 
 
+@pytest.mark.long
 def test_a_browser_that_hides_what_it_is(visit: Visit, with_script: Callable[[str], None]) -> None:
     """As Firefox does with resistFingerprinting: small textures, no name, and another ratio of pixels."""
     with_script(
@@ -764,6 +774,7 @@ def test_a_browser_that_hides_what_it_is(visit: Visit, with_script: Callable[[st
     visit.page.open("about:blank")
 
 
+@pytest.mark.long
 def test_without_float_targets_the_sea_has_a_sky(visit: Visit, with_script: Callable[[str], None]) -> None:
     with_script(NO_FLOATS)
     visit.open("&fixedDpr=0.2&without=floats")
@@ -779,7 +790,13 @@ def test_without_float_targets_the_sea_has_a_sky(visit: Visit, with_script: Call
 
 
 @pytest.mark.parametrize(
-    ("width", "height", "ratio"), [(800, 600, 1.0), (390, 844, 1.0), (667, 467, 1.5), (1000, 700, 2.0)]
+    ("width", "height", "ratio"),
+    [
+        pytest.param(800, 600, 1.0, marks=pytest.mark.long),
+        (390, 844, 1.0),
+        (667, 467, 1.5),
+        pytest.param(1000, 700, 2.0, marks=pytest.mark.long),
+    ],
 )
 def test_a_window_of_another_size_or_zoom(visit: Visit, width: int, height: int, ratio: float) -> None:
     """Also at a zoom of 150 %."""

@@ -54,6 +54,7 @@ def load(tab: Tab, path: Path, content: object) -> None:
     tab.page.locator("[data-springtide-load]").set_input_files(str(path))
 
 
+@pytest.mark.long
 def test_a_link_is_taken_shown_to_the_others_and_made_again(
     opened: tuple[Viewer, Tab], open_tab: Callable[..., Tab], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -130,6 +131,7 @@ def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
     assert preset.input_value() == "Mine: Seventeen beads"
 
 
+@pytest.mark.long
 def test_clip_picture_and_plots_are_made_as_files(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path
 ) -> None:

@@ -121,6 +121,7 @@ def test_under_a_bar_of_the_whole_width_the_picture_is_new_up_to_the_top(open_ta
         lab.shut()
 
 
+@pytest.mark.long
 def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
     shown: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
 ) -> None:

@@ -81,6 +81,7 @@ def drag_at_random(tab: Tab, moves: random.Random, count: int) -> None:
             mouse.wheel(0, moves.choice([-300, 300]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drags", [4, pytest.param(50, marks=pytest.mark.stress)])
 def test_reset_view_after_random_drags_gives_the_first_view(shown: tuple[Viewer, Tab], drags: int) -> None:
     lab, tab = shown

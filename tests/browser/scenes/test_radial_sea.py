@@ -98,6 +98,7 @@ def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Vie
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_a_buoy_dragged_under_bobs_back(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     load(lab, waves=False, rig=False, rings=32, spokes=32)

@@ -84,6 +84,7 @@ def wait_for(page: Any, shaders: list[str]) -> None:
     page.wait_for_function(f"shaders => ({DRAWN})().join() === shaders.join()", arg=shaders, timeout=60_000)
 
 
+@pytest.mark.long
 def test_a_page_never_waits_for_a_program_of_the_sea(chromium: Any) -> None:
     with open_sea(chromium, BESIDE) as (lab, page):
         wait_for(page, ["springtide-water/sea plain"])

@@ -33,6 +33,7 @@ def share_of_white(picture: np.ndarray) -> float:
     return float((picture > 0.5 * (dark + white)).mean())
 
 
+@pytest.mark.long
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize(
     "quality", ["low", *(pytest.param(one, marks=pytest.mark.stress) for one in ("medium", "high"))]

@@ -24,7 +24,7 @@ def regular(k: float, amplitude: float, heading: float = 0.0, **more) -> RadialS
     )
 
 
-@pytest.mark.parametrize("heading", [0.0, 2.0])
+@pytest.mark.parametrize("heading", [pytest.param(0.0, marks=pytest.mark.long), 2.0])
 def test_a_loaded_barge_heaves_and_pitches_as_its_response_amplitude(heading):
     hull = Hull.box(30.0, 10.0, 5.0)
     density = FluidColumn().surface.density

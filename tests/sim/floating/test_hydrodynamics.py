@@ -85,7 +85,8 @@ def place(hull: Hull, density: float) -> tuple[float, float, float]:
 @pytest.mark.parametrize(
     ("name", "axis"),
     [
-        *[("box", 2), ("ball", 2), ("drum", 4), ("barge", 3)],
+        *[("ball", 2), ("barge", 3)],
+        *[pytest.param(name, axis, marks=pytest.mark.long) for name, axis in (("box", 2), ("drum", 4))],
         *[pytest.param(name, 2, marks=pytest.mark.stress) for name in ("drum", "barge")],
         *[
             pytest.param(name, axis, marks=pytest.mark.stress)

@@ -164,6 +164,7 @@ def steady(body: Body, w: float, heading: float, periods: int = 5, skipped: int 
     return (fit[0] + 1j * fit[1]) / height
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [1, *(pytest.param(number, marks=pytest.mark.stress) for number in (2, 9, 17))])
 def test_in_time_a_body_moves_with_long_waves_too(number: int) -> None:
     body, heading = twenty()[number]

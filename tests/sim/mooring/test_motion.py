@@ -121,7 +121,7 @@ def test_each_integrator_has_its_order_on_a_line_in_waves(integrator):
     order = springs.INTEGRATORS[integrator].order
     duration = 2.0
     finest = end_of(system, rest, "dopri5", duration / 8192, duration)
-    first = {1: 1024, 2: 64, 4: 64, 5: 64, 8: 32}[order]
+    first = {1: 1024, 2: 64, 4: 64, 5: 64, 8: 8}[order]  # of the eighth, 32 reach the round-off of the reference
     errors = [
         np.abs(end_of(system, rest, integrator, duration / n, duration) - finest).max() for n in (first, 2 * first)
     ]

@@ -5,6 +5,7 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from sim.jit import kernel
@@ -15,15 +16,16 @@ from sim.springs.analysis.strain import strain_range
 from sim.springs.analysis.tension import rope_tension
 from sim.springs.forces.matrices import DAMPING, STIFFNESS
 from sim.springs.laws import energy as link_energy
-from sim.springs.laws import largest_stiffness, over_step, stiffness, tension
+from sim.springs.laws import largest_stiffness, lost_share, over_step, stiffness, tension
 from sim.springs.laws.stiffening import Stiffening
 from sim.springs.net import Family
 from sim.springs.stability import gershgorin
-from sim.springs.state import acceleration, energy
+from sim.springs.state import acceleration, energy, velocities
 from sim.springs.statics import equilibrium, hanging_chain
 from tests import naive
 from tests.sim.springs.analysis.test_energy import PATH, residual
 from tests.sim.springs.forces.test_forces import agrees, own_power, shaken
+from tests.sim.springs.nets import DAMPABLE
 from tests.sim.springs.reference import exact, integrated, slope
 from tests.sim.springs.test_stability import products
 
@@ -102,12 +104,14 @@ def test_a_length_has_the_tension_it_was_asked_for(name):
 
 @pytest.mark.parametrize("model", ["isotropic", "axial"])
 @pytest.mark.parametrize(
-    ("make", "shape", "name"), [*((rope, (9,), name) for name in OTHERS), (cloth, (3, 4), "stiffening")]
+    ("make", "shape", "name"), [*((rope, (9,), name) for name in OTHERS), *((cloth, (3, 4), name) for name in OTHERS)]
 )
 def test_forces_are_the_formulas(make, shape, name, model):
     net = make(*shape, damping_model=model, law=name)
     for seed in range(3):
-        agrees(net, *shaken(net, seed))
+        x, v = shaken(net, seed)
+        agrees(net, x, v)
+        agrees(net, x, 30.0 * v)  # many links that shorten so fast that their damping takes all of their tension
 
 
 @pytest.mark.parametrize("model", ["isotropic", "axial"])
@@ -181,6 +185,71 @@ def bouncing(steps, method):
     period = 2.0 * v0 / 10.0 + 2.0 * (np.pi - np.arctan(v0 * 20.0 / 10.0)) / 20.0
     advance(net, state, method, period / steps, steps)
     return np.hypot(state.x[2, 0, 1] + 2.0, (state.v[2, 0, 1] - v0) / 20.0)
+
+
+def on_damped_line(x, v, model="isotropic", omega=20.0, ratio=0.3):
+    """1 kg on a line of 1 m without gravity, x beyond its rest length and moving outwards at v, and the net."""
+    net = rope(2, 1.0, 1.0, omega**2, 2.0 * ratio * omega, 0.0, 0.0, damping_model=model, law="slack")
+    state = State.at_rest(net)
+    state.x[0, 0, 1], state.v[0, 0, 1] = -1.0 - x, -v
+    return net, state
+
+
+@pytest.mark.parametrize("model", ["isotropic", "axial"])
+@pytest.mark.parametrize("method", DAMPABLE)
+def test_a_taut_line_that_shortens_fast_neither_pulls_nor_pushes(method, model):
+    """Its tension would hold 0.3 m/s back; at 2 m/s its damping takes all of it, and the mass moves uniformly."""
+    net, state = on_damped_line(0.01, -2.0, model)
+    advance(net, state, method, 1e-3, 100, with_account=True)
+    assert state.x[:, 0, 1] == pytest.approx([-1.01 + 0.2, 0.0, 0.0], abs=1e-12)
+    assert velocities(net, state)[:, 0, 1] == pytest.approx([2.0, 0.0, 0.0], abs=1e-11)
+    # It takes what the line had stored.
+    record = INTEGRATORS[method]
+    assert state.dissipated == pytest.approx(0.5 * 400.0 * 0.01**2, rel=0.02 if record.order > 1 else 0.2)
+
+
+@pytest.mark.parametrize("model", ["isotropic", "axial"])
+@pytest.mark.parametrize("method", DAMPABLE)
+def test_a_mass_comes_back_from_a_damped_line_at_the_closed_form_s_speed(method, model):
+    """x = (u/w) exp(-g t) sin(w t) until x'' = 0, at w t = 2 acos(z): from then on the speed is u exp(-g t)."""
+    omega, ratio, u = 20.0, 0.3, 3.0
+    decay, turn = ratio * omega, omega * np.sqrt(1.0 - ratio**2)
+    leaves, start, end = 2.0 * np.arccos(ratio) / turn, 0.02, 0.2
+    still, speed = np.exp(-decay * start) * u, np.exp(-decay * leaves) * u
+    x = still * np.sin(turn * start) / turn
+    v = still * (np.cos(turn * start) - decay / turn * np.sin(turn * start))
+    place = speed * np.sin(turn * leaves) / turn - speed * (end - leaves)
+    errors = []
+    for steps in (250, 1000):
+        net, state = on_damped_line(x, v, model, omega, ratio)
+        advance(net, state, method, (end - start) / steps, steps)
+        errors.append(np.hypot(-1.0 - state.x[0, 0, 1] - place, (velocities(net, state)[0, 0, 1] - speed) / omega))
+    # A quarter of the step leaves a quarter of the error at first order, a sixteenth at second.
+    assert errors[1] < (3e-3 if INTEGRATORS[method].order == 1 else 2e-5)
+    assert errors[1] < (0.3 if INTEGRATORS[method].order == 1 else 0.13) * errors[0] + 1e-7
+
+
+@kernel
+def set_lost_shares(b, acting, rate, both, times, out):
+    for j in range(times.shape[0]):
+        out[j] = lost_share(b, acting, rate, both, times[j])
+
+
+def test_the_share_that_limited_damping_takes_is_the_solution_of_its_equation():
+    b, pull, both, rate = 12.0, 30.0, 1.5, -9.0
+    times = np.array([0.01, 0.1, 0.14, 0.15, 0.2, 1.0])
+    shares = np.empty_like(times)
+    set_lost_shares(b, pull / -rate, rate, both, times, shares)
+    found = solve_ivp(
+        lambda t, r: both * np.minimum(pull, -b * r), (0.0, 1.0), [rate], rtol=1e-10, atol=1e-13, max_step=1e-3,
+        t_eval=times,
+    )  # fmt: skip
+    assert (1.0 - shares * both) * rate == pytest.approx(found.y[0], rel=1e-6)
+    set_lost_shares(b, b, 5.0, both, times, shares)
+    assert shares * both == pytest.approx(1.0 - np.exp(-b * both * times))
+    for acting, sum_of_both in ((0.0, both), (b, 0.0), (2.0, 0.0)):
+        set_lost_shares(b, acting, rate, sum_of_both, times, shares)
+        assert not shares.any()
 
 
 @pytest.mark.parametrize("method", ["leapfrog", "implicit_midpoint"])

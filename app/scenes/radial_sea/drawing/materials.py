@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from app.render.colormap import rgb
 from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline, blend
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.oil.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
@@ -41,7 +42,7 @@ THICKNESS_RATIO = 1.01  # of two thicknesses of a slick for which the decay of r
 
 def rgb_of(colour: str) -> np.ndarray:
     """(3,) sRGB in 0..1 of "#rrggbb"."""
-    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+    return np.array(rgb(colour)) / 255.0
 
 
 @functools.cache

@@ -148,13 +148,13 @@ def test_the_headline_tells_whether_a_net_or_a_table_runs(version: int, running:
 def test_the_course_of_the_difference_ends_at_the_edge_of_its_chart() -> None:
     report = StudentReport(times=np.array([1.0, 2.0, 4.0]), differences=np.array([0.0, 0.1, 0.2]))
     chart = difference_chart(report, "cloth")
-    assert "Distance from the program's cloth [m]</text>" in chart
+    assert "Distance from the program&#39;s cloth [m]</text>" in chart
     (line,) = re.findall(r'<polyline points="([^"]+)"', chart)
     places = np.array([[float(one) for one in place.split(",")] for place in line.split()])
     parts = np.array([0.0, 1 / 3, 1.0])
     assert places[:, 0] == pytest.approx(CHART_LEFT + parts * (CHART_WIDTH - CHART_LEFT - 4), abs=0.06)
     assert (np.diff(places[:, 1]) < 0.0).all()
-    assert re.findall(r">([\d.]+ s)</text>", chart) == ["1.0 s", "4.0 s"]
+    assert re.findall(r">([\d.]+)</text>", chart)[:4] == ["1", "2", "3", "4"]
 
 
 def test_functions_of_the_open_scene_stand_before_the_others_of_their_state() -> None:

@@ -134,7 +134,7 @@ def test_the_mouse_drags_the_vessel_no_farther_than_its_lines_reach():
 
 def test_the_restoring_curve_is_the_force_of_the_lines_on_the_vessel():
     scene = scene_of("shared_line", wave_height=0.0, plot_restoring=True)
-    offset, force = scene.static_inputs(2.0).curve()
+    offset, force = scene.curve_inputs(2.0).curve(scene.rows)
     assert np.isfinite(force).all()
     assert (np.diff(force) > 0.0).all()
     middle = len(offset) // 2
@@ -188,7 +188,7 @@ def test_a_file_without_coupled_points_has_no_vessel(tmp_path):
     scene.advance(400)
     assert scene.readings().most_offset == 0.0
     assert np.isfinite(scene.frame().points).all()
-    assert (scene.static_inputs(1.0).curve()[1] == 0.0).all()
+    assert (scene.curve_inputs(1.0).curve(scene.rows)[1] == 0.0).all()
 
 
 def test_a_setup_holds_the_name_of_the_file_only():

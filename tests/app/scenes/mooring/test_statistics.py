@@ -17,6 +17,7 @@ from app.scenes.mooring.parameters import PRESETS, MooringParams, hidden
 from app.scenes.mooring.readings.report import figures_of, kilonewtons, marks_of, notes_of, tension_tables
 from app.scenes.mooring.readings.tensions import SETTLING_PERIODS, RunningStatistics, Tensions
 from app.scenes.quantities import measured
+from app.scenes.setups import make_setup
 from sim.numerics.extreme_values import LEAST_PEAKS
 from sim.parameters import check_record
 from tests.app.scenes.mooring.test_start import FILES
@@ -154,8 +155,9 @@ def test_the_use_is_of_the_breaking_load_and_without_one_there_is_none():
 
 def test_a_file_has_no_breaking_load_until_one_is_set():
     path = FILES / "chain.txt"
-    assert with_mooring(MooringParams(), path, ()).breaking_load == 0.0
-    assert with_mooring(MooringParams(breaking_load=5000.0), path, ("breaking_load",)).breaking_load == 5000.0
+    assert with_mooring(MooringParams(), path, make_setup(SCENE, "")).breaking_load == 0.0
+    own = make_setup(SCENE, "", {"breaking_load": 5000.0})
+    assert with_mooring(own.params, path, own).breaking_load == 5000.0
     assert "breaking_load" not in hidden(MooringParams(moordyn_file=str(path)))
 
 

@@ -115,6 +115,7 @@ def test_a_random_design_has_a_dimension_of_cases_and_its_seed(here, tmp_path):
         assert np.isfinite(data.tip_height).all()
 
 
+@pytest.mark.long
 @needs_signals
 @pytest.mark.parametrize(
     "how",

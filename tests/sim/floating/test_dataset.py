@@ -150,7 +150,7 @@ def test_of_several_speeds_the_part_without_speed_is_read(tmp_path, depths):
 
 @pytest.mark.parametrize("first", [0.0, -180.0, 90.0, -360.0])
 def test_directions_of_a_full_turn_have_one_at_both_ends_once(tmp_path, first):
-    """0 to 360 degrees, or -180 to 180, as without the double one."""
+    """0 to 360 degrees, or -180 to 180, as without the repeated one."""
     turn = np.arange(13) * 30.0
     values = np.random.default_rng(1).uniform(0.5, 1.5, 12)[np.arange(13) % 12]  # no symmetry helps
 

@@ -1,4 +1,4 @@
-"""Checks of the files and folders that a command is to write, made before any work."""
+"""Checks of a command's output files and folders, made before any work."""
 
 import os
 from pathlib import Path

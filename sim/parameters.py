@@ -33,8 +33,8 @@ class Parameter(NamedTuple):
     """The declaration of one parameter. `choices` is non-empty for named values only; low and high bound numbers.
 
     title: in the panel, "" for the name in words. choice_titles: in the panel, of each of `choices`.
-    affects: effect of a change. "look": only on the picture or the speed of the clock; "forces": the motion goes on
-    under other forces; "start": the scene begins again.
+    affects: effect of a change. "look": only on the picture or the speed of the clock; "forces": the motion continues
+    under other forces; "start": the scene restarts.
     """
 
     default: Value
@@ -116,7 +116,7 @@ def in_words(name: str) -> str:
 
 
 def redeclare(base: type, name: str, **changes: Any) -> Any:
-    """The field of a parameter of `base` once more, for a class derived from it, with parts of its declaration changed.
+    """A copy of the field of a parameter of `base`, for a derived class, with parts of its declaration changed.
 
     changes: fields of `Parameter`, as in `time_step: float = redeclare(Base, "time_step", affects="start")`.
     Raises ValueError if `base` has no such parameter.

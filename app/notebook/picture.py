@@ -8,7 +8,7 @@ from sim.validation import argument_error, is_whole_number
 
 MAX_SIDE = 8000  # [pixels]
 PAGE_TIMEOUT = 20.0  # [s] for a page to connect
-DRAW_TIMEOUT = 20.0  # [s] for a browser to draw a picture; it draws none of a page that is scrolled out of sight
+DRAW_TIMEOUT = 20.0  # [s] for a browser to draw a picture; it draws none of a page scrolled out of view
 
 
 class Still:

@@ -59,7 +59,7 @@ class Panel:
     ) -> None:
         """settings: shown and changed by the panel. scenes: to choose from. workbook: the tasks of the lab.
 
-        session: of a student's folder. wake: has the recording looked at once more. make_replay: makes the page of a
+        session: of a student's folder. wake: has the recording checked again. make_replay: makes the page of a
         replay. beside: shows other set-ups beside this one; None if this one is beside another. changes: of the
         server.
         """

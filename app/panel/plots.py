@@ -39,14 +39,14 @@ Look: TypeAlias = tuple[str, tuple[ChartLine, ...], float | None, Scale | None]
 
 @dataclass
 class Dock:
-    """The dock that the charts stand in, beside the picture."""
+    """The dock of the charts, beside the picture."""
 
     panel: GuiHandle
     tab: GuiHandle
 
 
 class Plots:
-    """The charts of one scene: over time those of `SceneKind.plots`, and whole ones those of `SceneKind.curves`."""
+    """The charts of one scene: those of `SceneKind.plots` over time, and complete ones of `SceneKind.curves`."""
 
     def __init__(self, server: viser.ViserServer, kind: AnyKind) -> None:
         self.server, self.kind = server, kind
@@ -59,16 +59,16 @@ class Plots:
         self.dock: Dock | None = None
         self.open: frozenset[str] = frozenset()  # parameters of the open charts
         self.kept: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
-        self.curves: Mapping[str, Chart | Columns] = {}  # the whole charts as the scene made them last
+        self.curves: Mapping[str, Chart | Columns] = {}  # the last complete charts of the scene
         self.kept_curves: Mapping[str, Chart | Columns] = {}  # those of an earlier run
         self.has_begun = False  # parameters have been read: charts that open from now on were requested
         self.sent_at = 0.0
-        self.drawn = 0  # charts that were sent again
+        self.drawn = 0  # number of charts sent again
 
     def keep(self, on: bool) -> float | None:
-        """Keep the curves as they are, to be drawn beside those of the runs that follow, or drop them.
+        """Keep the present curves, to be drawn beside those of later runs, or drop them.
 
-        Returns the time [s] of the last that is kept; None if nothing is.
+        Returns the time [s] of the last kept row; None without any.
         """
         self.kept = tuple(self.rows) if on else ()
         self.kept_curves = self.curves if on else {}
@@ -76,7 +76,7 @@ class Plots:
         return self.kept[-1][0] if self.kept else max(map(float, ends), default=None)
 
     def plotted(self) -> Plotted:
-        """The rows that are kept, and the whole charts of now."""
+        """The kept rows, and the present complete charts."""
         return Plotted(tuple(self.rows), self.curves)
 
     def follow(self, run: RunIdentity) -> None:
@@ -107,7 +107,7 @@ class Plots:
             self.send_plots(wanted, moment)
 
     def show(self, wanted: frozenset[str]) -> None:
-        """Show these charts and hide the others, with the dock that they stand in."""
+        """Show these charts and hide the others, with their dock."""
         was_open, self.open = bool(self.open), wanted
         if self.dock is None:
             panel = self.server.gui.add_panel()
@@ -147,7 +147,7 @@ class Plots:
         return list(itertools.islice(self.rows, max(start, 0), max(start, 0) + SHOWN_ROWS))
 
     def send_plots(self, wanted: frozenset[str], moment: float | None) -> None:
-        """Send the open charts over time that show other rows than they are to."""
+        """Send the open charts over time whose rows are out of date."""
         shown, kept = self.rows_about(moment), self.kept
         ends = (shown[0], shown[-1], kept) if shown else (kept,)
         behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name, 0) != ends]
@@ -175,12 +175,12 @@ class Plots:
         scale = None if self.is_logarithmic(name) else self.scale_for(name, columns[1:])
         look = first, lines, end, scale
         handle = self.charts[name]
-        # Lines, scales and columns are handed over together: the browser must not see more of one than of the others.
+        # Lines, scales and columns are sent together, so that they match in the browser.
         if self.looks.get(name) != look:
             self.looks[name] = look
             handle.series = series_of(first, lines)
             time_scale = uplot.Scale(time=False, auto=end is None)
-            if end is not None:  # left to itself the scale would carry on from the lines before
+            if end is not None:  # otherwise the scale would keep that of the lines before
                 time_scale["range"] = (0.0, end)
             if scale is None:
                 handle.scales = {**(handle.scales or {}), "x": time_scale}
@@ -234,7 +234,7 @@ class Plots:
 
 
 def beside(shown: Sequence[PlotRow], kept: Sequence[PlotRow]) -> list[PlotRow]:
-    """The rows of an earlier run that belong into the chart of these: as many as a chart shows."""
+    """The rows of an earlier run for the chart of these rows: as many as a chart shows."""
     if not shown:
         return list(kept[:SHOWN_ROWS])
     found = [row for row in kept if row[0] >= shown[0][0]]

@@ -215,7 +215,7 @@ class DrawnWater:
 
 
 def raised(points: np.ndarray, shown: np.ndarray) -> np.ndarray:
-    """A surface of points (n, 3) [m] once more: just above itself where `shown`, (n,), is true, else below."""
+    """A copy of a surface of points (n, 3) [m]: just above it where `shown`, (n,), is true, else below."""
     surface = points.copy()
     surface[:, 2] += np.where(shown, PLAIN_MESH_HEIGHT, -PLAIN_MESH_DEPTH)
     return surface

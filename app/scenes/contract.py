@@ -85,7 +85,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def change_forces(self, params: P) -> None:
-        """Take parameters. At least one that affects the forces has changed; the motion goes on.
+        """Take parameters. At least one that affects the forces has changed; the motion continues.
 
         A change of the look only is assigned to `params`; a change of the start is assigned, and then `reset` is
         called.
@@ -93,7 +93,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def reset(self) -> None:
-        """Begin again with `params`; objects that a browser has moved return to their initial places."""
+        """Restart with `params`; objects that a browser has moved return to their initial places."""
         ...
 
     def handle(self, command: SceneCommand) -> None:

@@ -119,7 +119,7 @@ def missing_files(setup: Setup, present: object = None) -> str:
 def with_changes(params: BaseParams, setup: Setup) -> BaseParams:
     """The parameters with a set-up's changes of their file, if it is the one that the set-up names.
 
-    Raises ValueError where this file, of the same name, cannot have them.
+    Raises ValueError if this file, of the same name, cannot have them.
     """
     editing = scene_named(setup.scene).file_editing
     if editing is None or not setup.files or added_files(params) != setup.files:

@@ -1,8 +1,8 @@
 """A replay: one HTML file with frames of a scene, its parameters and plots, which opens offline in any browser.
 
 The frames are drawn by the scene's own view, on a server that nobody connects to, and recorded by viser's serialiser,
-which adds its client. Positions are rounded below what can be seen: rounded numbers take half the space. The
-parameters are in it as a set-up file, so that it can be loaded again.
+which adds its client. Positions are rounded below visibility, as rounded numbers take half the space. The parameters
+are in it as a set-up file, so that it can be loaded again.
 """
 
 import contextlib

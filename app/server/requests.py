@@ -12,12 +12,12 @@ class SceneRequest(NamedTuple):
     """A scene to open."""
 
     scene: str
-    params: BaseParams | None  # where a task or a link has them
+    params: BaseParams | None  # from a task or a link
     camera: ClientCamera | None  # of a link
 
 
 class SceneRequests:
-    """The queue of them; any thread may put."""
+    """The queue of requests; any thread may put."""
 
     def __init__(self) -> None:
         self.waiting: queue.SimpleQueue[SceneRequest] = queue.SimpleQueue()
@@ -25,7 +25,7 @@ class SceneRequests:
         self.number = 0  # of the last request
 
     def put(self, request: SceneRequest) -> None:
-        """Ask for a scene."""
+        """Add a request."""
         self.waiting.put(request)
         self.number = next(self.numbers)
 

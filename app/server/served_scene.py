@@ -151,7 +151,7 @@ class ServedScene:
                 if recorded is not self.recorded:
                     self.drawn += 1
                     self.attempt("picture", lambda: self.view.show(recorded.frame))
-                self.shown = 0  # the present is drawn anew after it
+                self.shown = 0  # the present is redrawn after it
             elif snapshot.serial != self.shown:
                 self.shown = snapshot.serial
                 self.drawn += 1
@@ -163,7 +163,7 @@ class ServedScene:
         recorder.note(snapshot, now)
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
-        """Run a drawing action; an exception halts the run once, and this thread goes on."""
+        """Run a drawing action; an exception halts the run once, and this thread continues."""
         try:
             action()
         except Exception as error:

@@ -90,7 +90,7 @@ class Track(NamedTuple):
     step: float  # [s]
     height: NDArray[np.float32]  # [m] above the fire
     radius: NDArray[np.float32]  # [m] of the plume
-    heat: NDArray[np.float32]  # temperature over the air's, as a share of that in the flame
+    heat: NDArray[np.float32]  # temperature over the air's, as a fraction of that in the flame
 
 
 def track(power: float, diameter: float, wind_speed: float, duration: float) -> Track:

@@ -393,7 +393,7 @@ def critical_stiffness(
             modes = modes_at(net.with_stiffness(scale * stiffest), state)
         found = largest_scale(modes, record, h)
         scale *= found
-        # Beside a contact, and between stiffness and damping, the vectors change with the links' stiffness: once more
+        # Beside a contact, and between stiffness and damping, the vectors change with the links' stiffness: repeat
         # from the new ones.
         alike = all(math.isclose(mode.links, mode.stiffness) and not mode.mixed for mode in modes)
         if scale == 0.0 or math.isinf(scale) or alike or math.isclose(found, 1.0, rel_tol=10.0 * NEARLY):

@@ -1,4 +1,4 @@
-"""What adding one thing costs: a copy of the sources has each of them, in one file or one folder.
+"""The cost of an addition: each is one file or one folder, added to a copy of the sources.
 
 The examples are those of docs/contributing.md, in its order. All are long: they compile kernels anew, in processes of
 their own.
@@ -89,7 +89,7 @@ def parameters_in(path) -> dict:
 
 @pytest.fixture(scope="module")
 def extended(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Path, set[str]]]:
-    """A function that adds an example to a copy of the sources, once, and returns the copy and the files it touches.
+    """A function that adds an example to a copy of the sources, once, and returns the copy and the touched files.
 
     Each test adds its own: before a law and an integrator are there, the kernels are those of the other tests.
     """
@@ -189,7 +189,7 @@ def test_an_integrator_and_a_law_of_a_link_are_one_file_each(extended, heading, 
 
 @pytest.mark.long
 def test_a_force_with_energy_and_tangent_is_one_file(extended):
-    """Nets are tried in plain Python: all of their kernels hold the forces, and would be compiled again."""
+    """Nets run in plain Python: all of their kernels hold the forces, and would be compiled again."""
     copy, touched = extended("Add a force")
     assert len(touched) == 1
     nets, lines = commands(section("Add a force"))

@@ -1,7 +1,7 @@
 """Hours of running, with the memory watched.
 
 `SPRINGTIDE_STRESS_SOAK=3600 pytest -m stress tests/stress/test_soak.py` serves each scene for a real hour; without it,
-an hour of simulated time is run as fast as it can be, and a served one lasts as long as it says below.
+an hour of simulated time runs as fast as possible, and a served one lasts as long as stated below.
 """
 
 import time

@@ -1,7 +1,7 @@
 """Processes that end together on Windows, which has no groups of processes: job objects.
 
 A process in a job, and all that it starts, is killed when the job is closed. The program that made the job holds it
-open, so that all end with that program too, however it ends and whatever they do meanwhile.
+open, so that all end with that program, however it ends and whatever they do.
 """
 
 import contextlib
@@ -64,7 +64,7 @@ if sys.platform == "win32":
             jobs[process] = job
 
     def kill_with_children(process: "subprocess.Popen[Any]") -> None:
-        """Kill a process, and all that it has started. Raises OSError if that is not possible."""
+        """Kill a process and its descendants. Raises OSError if that is impossible."""
         job = jobs.pop(process, None)
         if job is not None:
             close_job(job)
@@ -77,5 +77,5 @@ else:
         """Do nothing: elsewhere a process sees that it is an orphan."""
 
     def kill_with_children(process: "subprocess.Popen[Any]") -> None:
-        """Kill a process. Raises OSError if that is not possible."""
+        """Kill a process. Raises OSError if that is impossible."""
         process.kill()

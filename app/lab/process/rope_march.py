@@ -1,8 +1,8 @@
 """Advances a rope with a student's functions, in the process that runs them.
 
-What the student has not written yet, the reference solutions do. Floor, friction and the pull of the mouse, which are
-no task, are the program's laws (`sim/point_laws.py`). The forces that the net declares are the program's kernels. A
-parameter that acts otherwise than on the program's rope is named in the panel (`unlike` in `student_rope.py` and
+Reference solutions stand in for missing functions. Floor, friction and the pull of the mouse, which are no task, are
+the program's laws (`sim/point_laws.py`). The forces that the net declares are the program's kernels. A parameter that
+acts otherwise than on the program's rope is named in the panel (`unlike` in `student_rope.py` and
 `student_cloth.py`). numba is not imported here, so that the process starts fast.
 """
 
@@ -53,7 +53,7 @@ class Forces(NamedTuple):
     contact_b: float = 5.0  # [N s/m]
     friction: float = 0.0  # Coulomb coefficient
     stop_rate: float = 0.0  # 1/h of the segment: set by `Functions`
-    lab_contact: bool = False  # the lab's law of contact instead of the clipped one
+    lab_contact: bool = False  # the lab's contact law instead of the clipped one
     grabbed: int = -1  # point that the mouse pulls, -1: none
     grab_x: float = 0.0  # [m] place of the mouse
     grab_y: float = 0.0
@@ -107,7 +107,7 @@ class MarchResult(NamedTuple):
     steps: int  # taken in all
     seconds: float  # that they took
     effort: float  # [s] of processor time that they took
-    left: bool  # the rope left all bounds; the rest of the segments was not taken
+    left: bool  # the rope left all bounds; the remaining segments were not taken
 
     @property
     def step_time(self) -> float:
@@ -163,7 +163,7 @@ def fitting(name: str, value: Any, shape: tuple[int, ...], function: Callable[..
 
 
 class Functions:
-    """The functions that advance a rope: the student's, and the reference solutions in place of those not written."""
+    """The functions that advance a rope: the student's, with reference solutions for missing ones."""
 
     reference: Mapping[str, Callable[..., Any]] = REFERENCE
     roots = 1  # points at the start that only their path moves
@@ -341,8 +341,8 @@ class Functions:
     def advance(self, x: np.ndarray, v: np.ndarray, start: float) -> tuple[np.ndarray, np.ndarray]:
         """One step from time `start` [s] of the segment. Raises Unfit.
 
-        A step does not say at which time it asks for an acceleration. A root that moves tells: it is given to the step
-        as a clock, at x = 0 with 1 m/s, and is where it should be wherever a force is computed.
+        A step does not pass the time of an acceleration. A moving root shows it: the step gets the root as a clock, at
+        x = 0 with 1 m/s, and the root is in its right place whenever a force is computed.
         """
         h = self.segment.h
         self.start = start

@@ -1,10 +1,9 @@
-"""Processes forked from one that has imported all that a student's functions need: a fork takes a few milliseconds.
+"""Processes forked from one with all imports of a student's functions: a fork takes a few milliseconds.
 
 The template waits at a socket. A request with three files forks a process that has these as standard input, standard
 output and trace; another one reaps a process that has ended, which keeps its number until then. The template ends with
-the lab, and what it has forked notices that (`worker.end_with_parent`) and ends too. A process remembers the connection
-to its template: of an earlier template's processes the present one knows nothing. Linux only: elsewhere each process is
-started.
+the lab, and its forks notice that (`worker.end_with_parent`) and end too. A process remembers the connection to its
+template: a new template does not know the processes of an earlier one. Linux only: elsewhere each process is started.
 """
 
 import contextlib
@@ -30,7 +29,7 @@ FILES = 3  # of a process
 
 
 class Forked:
-    """A forked process, as the lab sees it; used as `subprocess.Popen`."""
+    """A forked process, seen from the lab; used like `subprocess.Popen`."""
 
     def __init__(
         self, template: "Template", connection: socket.socket, pid: int, watched: int, stdin: IO[bytes],
@@ -43,11 +42,11 @@ class Forked:
 
     @property
     def is_orphan(self) -> bool:
-        """True if its template is known to have ended: it ends too, whatever it runs."""
+        """True if its template is known to have ended: it then ends too."""
         return self.template.connection is not self.connection
 
     def has_ended(self, *, block: bool = False) -> bool:
-        """Return whether it has ended. block: wait until it has."""
+        """True if it has ended. block: wait for the end."""
         if self.returncode is None:
             ended = select.poll()
             ended.register(self.watched, select.POLLIN)
@@ -74,7 +73,7 @@ class Forked:
 
 
 class Template:
-    """The template of a lab, from the lab's side; started at the first fork, and again where it has ended."""
+    """The template of a lab, from the lab's side; started at the first fork, and again after its end."""
 
     def __init__(self) -> None:
         self.process: subprocess.Popen[bytes] | None = None
@@ -132,7 +131,7 @@ class Template:
             raise
 
     def start(self, command: Sequence[str], environment: dict[str, str]) -> None:
-        """Start a template in place of one that has ended; with the lock held. Raises OSError."""
+        """Replace a template that has ended; with the lock held. Raises OSError."""
         if self.process is not None:
             self.process.kill()
             self.process.wait()
@@ -150,7 +149,7 @@ class Template:
         self.connection = ours
 
     def disconnect(self) -> None:
-        """Leave a template that has ended, or is not waited for any longer."""
+        """Disconnect from a template that has ended or is given up."""
         self.connected.close()
         self.connection = None
 

@@ -28,7 +28,7 @@ REFERENCE_COLOUR, OWN_COLOUR = "#8a939c", "#1c6aa8"
 
 
 class RopePicture(NamedTuple):
-    """A fall of the rope. own: (poses, n, 3) [m] as far as it got. text: its state in words; "" if nothing is begun."""
+    """A fall of the rope. own: (poses, n, 3) [m], possibly fewer. text: its state in words; "" if nothing is begun."""
 
     own: NDArray[np.float64] = np.zeros((0, POINTS, 3))
     reference: NDArray[np.float64] = np.zeros((0, POINTS, 3))

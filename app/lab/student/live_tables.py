@@ -1,8 +1,8 @@
-"""Tables of a student's functions that a sea runs by: a thread that has them computed, in a separate process.
+"""Tables of a student's functions for a sea: a thread that has them computed in a separate process.
 
-A scene says which functions it has a use for, and at which arguments (`LiveTables.want`). What they return becomes a
-`Table`; a scene takes the tables that there are and never waits. Which version of a function computes one is up to
-`Versions`. The panel shows functions that move nothing at the numbers of a scene in the same way (`scene_values.py`).
+A scene requests functions at arguments (`LiveTables.want`). Their results become a `Table`; a scene takes the available
+tables and never waits. `Versions` decides which version of a function computes one. The panel shows functions without a
+use in the scene at its numbers in the same way (`scene_values.py`).
 """
 
 import math
@@ -20,7 +20,7 @@ from app.lab.student.saved import Saved
 from app.lab.student.service import Service
 from app.lab.student.versions import Use, Versions
 
-RETRY_INTERVAL = 0.5  # [s] until a call is made again for which the machine was too busy
+RETRY_INTERVAL = 0.5  # [s] until a call is repeated for which the machine was too busy
 
 
 class Call(NamedTuple):
@@ -28,7 +28,7 @@ class Call(NamedTuple):
 
     columns: tuple[NDArray[np.float64], ...]  # (n, ...) each: row i holds the arguments of call i
     allowed: Interval  # range of the function's values
-    shape: tuple[int, ...] | None = ()  # of what it returns; None: its number of entries counts
+    shape: tuple[int, ...] | None = ()  # of the result; None: the number of its entries
     program: float = math.nan  # the program's own result, if there is one call
 
     def same(self, other: "Call") -> bool:
@@ -52,7 +52,7 @@ class TableReport(NamedTuple):
     running: Mapping[str, str] = {}  # function -> what it moves
     idle: Mapping[str, str] = {}  # function -> reason why the scene does not use it at present
     differences: tuple[tuple[str, float, float, str], ...] = ()  # name, the student's, the program's, unit
-    off: bool = False  # the scene could run by them, and runs by the program's
+    off: bool = False  # the scene could use them, and uses the program's
 
 
 class TableUser:
@@ -60,7 +60,7 @@ class TableUser:
 
     def __init__(self, live: "LiveTables") -> None:
         self.live = live
-        self.taken: dict[str, Table] = {}  # that the sea runs by
+        self.taken: dict[str, Table] = {}  # used by the sea
 
     def ask(self, calls: Mapping[str, Call], idle: Mapping[str, str]) -> None:
         """Request these tables. idle: function -> reason why it is not used; its table is no longer taken."""
@@ -69,7 +69,7 @@ class TableUser:
         self.live.want(calls)
 
     def take(self) -> dict[str, tuple[Table | None, Table | None]]:
-        """Take the tables that there are: of each function for which this changes something, those before and now."""
+        """Take the available tables; returns, for each changed function, those before and now."""
         before, self.taken = self.taken, dict(self.live.tables) if self.live.shown else {}
         pairs = {name: (before.get(name), self.taken.get(name)) for name in {*before, *self.taken}}
         return {name: pair for name, pair in pairs.items() if pair[0] is not pair[1]}

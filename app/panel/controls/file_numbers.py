@@ -1,4 +1,4 @@
-"""Numbers of a file that the scene runs: changed in the panel, and the file with them sent to the browser."""
+"""Numbers of the scene's file: changed in the panel, and sent to the browser within the file."""
 
 import viser
 
@@ -13,7 +13,7 @@ APPLY, SAVE = "Apply", "Save file"
 
 
 class FileNumbers:
-    """The folder, in the container that is open; it is shown while a file is open."""
+    """The folder, in the open container; it is shown while a file is open."""
 
     def __init__(self, gui: viser.GuiApi, editing: FileEditing, settings: SceneSettings) -> None:
         self.editing, self.settings = editing, settings
@@ -49,7 +49,7 @@ class FileNumbers:
                 self.say(str(reason))
 
     def show(self) -> None:
-        """Show the numbers of the chosen thing, unless they are shown: some may be half typed."""
+        """Show the numbers of the chosen thing, unless they are already shown: some may be half typed."""
         if not self.fields:
             return
         now = self.chooser.value, dict(self.editing.numbers(self.settings.params)[self.chooser.value])
@@ -59,7 +59,7 @@ class FileNumbers:
                 self.fields[name].value = write_number(value)
 
     def apply(self) -> None:
-        """Begin again with the numbers in the fields. Raises ValueError or ConvergenceError for one that cannot be."""
+        """Restart with the numbers in the fields. Raises ValueError or ConvergenceError for an impossible one."""
         values = {name: read(name, field.value) for name, field in self.fields.items()}
         params = self.editing.changed(self.settings.params, self.chooser.value, values)
         self.say("")
@@ -67,12 +67,12 @@ class FileNumbers:
             self.settings.begin_with(params)
 
     def say(self, text: str) -> None:
-        """Say something below the buttons."""
+        """Show a sentence below the buttons."""
         self.line.content = note(fill('<div role="status">{}</div>', text)) if text else ""
 
 
 def read(name: str, text: str) -> float:
-    """The number above 0 that a text is, in the unit of the name, or with another. Raises ValueError."""
+    """The number above 0 in a text, in the unit of the name or with another unit. Raises ValueError."""
     title, _, unit = name.removesuffix("]").partition(" [")
     try:
         value = read_number(text, unit)

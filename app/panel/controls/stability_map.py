@@ -1,8 +1,8 @@
 """The map of the open scene over step and stiffness: measured on request, drawn in the panel, clickable.
 
-viser has no picture that answers a click. The map is SVG in an HTML element. Its click handler moves a hidden slider
-of two handles; from there on a click is a change like any other, which `app/server/web/guard.py` bounds.
-Of viser's inner names the handler uses `window.__viserMutable.sendMessage`;
+viser has no clickable picture. The map is SVG in an HTML element, whose click handler moves a hidden slider with two
+handles. From there on a click is a change like any other, which `app/server/web/guard.py` bounds.
+Of viser's private names the handler uses `window.__viserMutable.sendMessage`;
 `tests/browser/scenes/test_rope.py` clicks it.
 """
 
@@ -31,8 +31,8 @@ from sim.springs.automatic import AUTO, choose_for_step
 from sim.validation import ConvergenceError
 
 ROWS, COLS = 20, 28
-DECADES = 1.5  # of step and of stiffness to each side of where the parameters stand
-WORK = 200_000  # steps times points that a cell may take
+DECADES = 1.5  # of step and stiffness to each side of the parameters
+WORK = 200_000  # largest product of steps and points of a cell
 LEFT, TOP, WIDE, HIGH = 40.0, 24.0, 252.0, 168.0  # of the map within its picture
 PICTURE = (300.0, 234.0)
 
@@ -58,14 +58,14 @@ def shown(params: SpringParams) -> tuple[object, ...]:
 
 
 def span(parameter: Parameter, value: float, count: int) -> NDArray[np.float64]:
-    """Values (count,) about `value`, even in their logarithms, within the parameter's range."""
+    """Values (count,) about `value`, evenly spaced in the logarithm, within the parameter's range."""
     low = max(value / 10.0**DECADES, parameter.log_from)
     high = max(min(value * 10.0**DECADES, parameter.high), 1.01 * low)
     return low * (high / low) ** np.linspace(0.0, 1.0, count)
 
 
 def axes_of(params: SpringParams, parameter: str) -> Axes:
-    """The axes of a map about where the parameters stand."""
+    """The axes of a map about the present parameters."""
     known = parameters_of(params)
     return Axes(
         params,
@@ -76,7 +76,7 @@ def axes_of(params: SpringParams, parameter: str) -> Axes:
 
 
 def method_of(params: SpringParams, net: Net) -> Integrator:
-    """The method that runs."""
+    """The running method."""
     if params.integrator == AUTO:
         return choose_for_step(net, params.time_step).integrator
     return INTEGRATORS[params.integrator]
@@ -108,7 +108,7 @@ class StabilityMapPanel:
         self.click = gui.add_multi_slider(" ", 0.0, 1.0, step=1e-4, initial_value=(0.0, 0.0), visible=False)
         self.axes: Axes | None = None
         self.rows: list[MapRow] = []
-        self.problem = ""  # reason why there is no map, or no more of it
+        self.problem = ""  # reason why the map is missing or incomplete
         self.asked = 0  # number of requests: a thread that is no longer the latest stops
 
         @self.button.on_click
@@ -154,7 +154,7 @@ class StabilityMapPanel:
                 self.problem = f"The map could not be measured: {type(error).__name__}: {error}"
 
     def draw(self) -> None:
-        """Show the map as far as it is known, with a dot where the parameters stand; on the viewer thread."""
+        """Show the map as far as it is known, with a dot at the present parameters; on the viewer thread."""
         axes = self.axes
         found = picture(axes, self.rows, self.read(), uuid_of(self.click)) if axes is not None else ""
         problem = note(self.problem) if self.problem else ""

@@ -18,7 +18,7 @@ from app.scenes.charts import Chart, Column, Columns, chart_of, numbers_of, with
 from app.scenes.contract import AnyKind
 from app.scenes.setups import described
 
-TIME = "t [s]"  # label of the first column of what is plotted over simulated time
+TIME = "t [s]"  # label of the first column of plots over simulated time
 NOTHING = "nothing has been plotted yet: let the scene run first"
 MAX_ARRAYS = 300e6  # [bytes] of all arrays of a file, before they are compressed; of more, each second or third frame
 
@@ -67,7 +67,7 @@ def recording_npz(kind: AnyKind, frames: Sequence[RecordedFrame]) -> bytes:
 
 
 class Plotted(NamedTuple):
-    """Data of a scene's plots: rows over time, and the charts that the scene makes whole, by their parameter."""
+    """Data of a scene's plots: rows over time, and the complete charts of the scene by their parameter."""
 
     rows: Sequence[PlotRow]
     curves: Mapping[str, Chart | Columns]
@@ -88,7 +88,7 @@ def within(chart: Chart | Columns, start: float, end: float) -> Chart | Columns:
 
 
 def plots_csv(kind: AnyKind, plotted: Plotted) -> str:
-    """Plots as CSV with units, a column each; an empty cell: no value there. A column without any is left out.
+    """Plots as CSV with units, a column each; an empty cell means no value. A column without any is left out.
 
     Plots over the same first column share it. Others stand beside them, and the shorter ones end with empty cells.
     Raises ValueError if there is nothing.

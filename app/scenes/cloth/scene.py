@@ -148,7 +148,7 @@ class ClothScene(NetScene[ClothParams]):
             self.student.begin(self.student.rows_of(self.state.x), self.student.rows_of(self.state.v), self.state.t)
 
     def change_forces(self, params: ClothParams) -> None:
-        """Take new parameters. The motion goes on, interpolated where the grid changes."""
+        """Take new parameters. The motion continues, interpolated where the grid changes."""
         old, self.params = self.params, params
         self.tuner.restart()
         net = build(params, self.sphere_at(self.state.t))

@@ -46,7 +46,7 @@ class MooringScene(LineScene):
         return found or (overload_of(self.params) if failure else None)
 
     def change_forces(self, params: MooringParams) -> None:
-        """Take parameters; the motion goes on."""
+        """Take parameters; the motion continues."""
         old, self.params = self.params, params
         self.sea = sea_of(params)
         self.body = body_of(params, self.sea)
@@ -64,7 +64,7 @@ class MooringScene(LineScene):
         self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
-        """Go on with the mooring as it is arranged now."""
+        """Continue with the mooring as it is arranged now."""
         self.system = build(self.params, self.attached.places, self.body, self.sea)
 
     @property

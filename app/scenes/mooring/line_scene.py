@@ -110,7 +110,7 @@ class LineScene(abc.ABC):
 
     @abc.abstractmethod
     def change_forces(self, params: MooringParams) -> None:
-        """Take parameters; the motion goes on."""
+        """Take parameters; the motion continues."""
 
     @property
     @abc.abstractmethod

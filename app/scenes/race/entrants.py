@@ -2,7 +2,7 @@
 
 All ropes and the reference meet at the end of each tick, a multiple of the longest step; steps that do not divide the
 tick are shortened equally. A rope that diverges stops at its last good state and says why. A rope with a method that
-accepts no damping never starts on a damped net. The others go on.
+accepts no damping never starts on a damped net. The others continue.
 """
 
 import copy
@@ -134,7 +134,7 @@ class Entrant(NetMotion):
         self.assess_stability()
 
     def change_net(self, net: Net, *, still_pins: bool = False) -> None:
-        """Go on with another net; a rope whose method allows no damping stops if the net has some."""
+        """Continue with another net; a rope whose method allows no damping stops if the net has some."""
         super().change_net(net, still_pins=still_pins)
         self.check_damping()
         self.assess_stability()
@@ -205,7 +205,7 @@ class Race:
         return self.references[min(entrant.number, len(self.references)) - 1]
 
     def change_net(self, net: Net) -> None:
-        """Go on with other forces. net: of rope 1."""
+        """Continue with other forces. net: of rope 1."""
         for entrant in self.entrants:
             entrant.change_net(stiffened(net, self.ratio ** (entrant.number - 1)))
         for reference, entrant in zip(self.references, self.entrants, strict=False):

@@ -107,7 +107,7 @@ class RaceScene:
         self.handles.grab.clear()
 
     def change_forces(self, params: RaceParams) -> None:
-        """Take new parameters; the motion goes on."""
+        """Take new parameters; the motion continues."""
         self.params = params
         self.net = build_rope(params, self.handles.root.position)
         self.race.change_net(self.net)

@@ -99,7 +99,7 @@ class SurfaceReading(NamedTuple):
     extent: float  # [m] across, before it repeats
     height: float  # Hs [m] expected of its waves
     slope: float  # mean square slope of its waves
-    error: float  # of Hs, as a share of that of the whole spectrum on these fluids
+    error: float  # of Hs, as a fraction of that of the whole spectrum on these fluids
 
 
 class RadialReadings(NamedTuple):

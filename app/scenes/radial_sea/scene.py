@@ -216,7 +216,7 @@ class RadialSeaScene:
         other_fluids = column != self.column or exposure_of(params) != exposure_of(old)
         other_waves = choice != self.wave_choice
         self.column, self.wave_choice = column, choice
-        # Energy lost to oil stays lost; only a new age at the start, set by hand, begins anew.
+        # Energy lost to oil stays lost; only a new age at the start, set by hand, restarts.
         set_anew = params.spill != "none" and params.exposure != old.exposure
         if other_waves or other_fluids:
             waves = draw(choice) if other_waves else None

@@ -37,7 +37,7 @@ class RopeInstant(SceneInstant):
 
     @functools.cached_property
     def readings(self) -> RopeReadings:
-        """The readings, assessed anew: those of the scene are up to half a second old."""
+        """The readings, newly assessed: those of the scene are up to half a second old."""
         self.scene.assess_stability()
         return self.scene.readings()
 

@@ -147,7 +147,7 @@ class RopeScene(NetScene[RopeParams]):
             self.student.begin(rows_of(self.state.x), rows_of(self.state.v), self.state.t)
 
     def change_forces(self, params: RopeParams) -> None:
-        """Take new parameters. The motion goes on, interpolated where the number of points changes."""
+        """Take new parameters. The motion continues, interpolated where the number of points changes."""
         old, self.params = self.params, params
         self.take_net(build(params, self.handles.root.position, self.handles.sphere.position))
         self.max_speed = np.inf

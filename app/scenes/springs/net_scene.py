@@ -76,7 +76,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @abc.abstractmethod
     def reset(self) -> None:
-        """Begin again with `params`."""
+        """Restart with `params`."""
 
     @abc.abstractmethod
     def net_during(self, t: float, duration: float) -> Net:

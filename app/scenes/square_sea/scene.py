@@ -234,7 +234,7 @@ class SquareSeaScene:
             self.make_rainfall()
 
     def change_sea(self, transition: float, foam_cover: float, viscosity: float) -> None:
-        """Let the sea adapt to its conditions in this time [s]; a nonlinear one begins again with them.
+        """Let the sea adapt to its conditions in this time [s]; a nonlinear one restarts with them.
 
         foam_cover: present fraction of foam without damping. viscosity: [m2/s] until now.
         """

@@ -172,7 +172,7 @@ OTHER_FORCES = Activity("forces")  # the scene's parameters are the old or the n
 
 
 class CompileGate:
-    """Holds back parameters of one scene until their kernels are compiled; the scene goes on with the present ones.
+    """Holds back parameters of one scene until their kernels are compiled; the scene continues with the present ones.
 
     The simulation thread alone calls it and changes it; the viewer thread reads `notice`.
     """

@@ -228,7 +228,7 @@ class SceneRun:
     def guarded(self, action: Callable[[], None], activity: Activity = NOTHING) -> None:
         """Run scene code; an error pauses the run and is kept for the panel.
 
-        A cancelled beginning is repeated; after a cancelled change of forces the scene begins anew.
+        A cancelled beginning is repeated; after a cancelled change of forces the scene restarts.
         """
         self.activity, begins = activity, activity == BEGINNING
         try:

@@ -151,8 +151,8 @@ class SimLoop:
         """Handle controls during a solve, which calls this on its own thread.
 
         A command that needs another solve cancels this one; the next tick handles it, from the last good state. Other
-        commands, such as a look or a drag, are handled at once, and the solve goes on; a drag acts from the next steps
-        on. Resets, changes of forces and solves to be completed are cancelled only if the scene begins anew; otherwise
+        commands, such as a look or a drag, are handled at once, and the solve continues; a drag acts from the next step
+        on. Resets, changes of forces and solves to be completed are cancelled only if the scene restarts; otherwise
         parameters are answered with the last frame and taken by the next tick. Turns do not nest, as showing a frame
         may need a solve.
         """

@@ -1,7 +1,7 @@
 """Workers of a sweep: processes on all cores of this machine, or those of a Dask cluster.
 
 Either way a case is run again when its worker dies, and a case that kills its workers ends as failed: nothing is lost,
-and the other cases go on.
+and the other cases continue.
 """
 
 import contextlib

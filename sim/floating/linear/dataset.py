@@ -44,7 +44,7 @@ AXES = {  # after omega
 }
 WANTED = (*MATRICES, *FORCES, "omega", "wave_direction", "influenced_dof", "radiating_dof", "rho", "g")
 WIDEST_GAP = math.radians(31.0)  # between directions that are interpolated
-SYMMETRY = 1e-3  # share of the greatest force that a hull's own symmetry may miss
+SYMMETRY = 1e-3  # fraction of the greatest force that a hull's own symmetry may miss
 SAME_DEPTH = 1e-3  # largest difference of a requested depth from one of the dataset
 SAME_HEADING = 1e-3  # [rad] the same of a heading
 

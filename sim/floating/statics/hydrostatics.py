@@ -24,7 +24,7 @@ from sim.jit import kernel
 from sim.validation import argument_error, as_array, check_number
 from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
-AT_SURFACE = 1e-9  # share of the height of a hull within which a vertex lies in the surface
+AT_SURFACE = 1e-9  # fraction of the height of a hull within which a vertex lies in the surface
 
 
 @kernel(inline=True)

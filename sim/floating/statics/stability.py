@@ -23,12 +23,12 @@ from sim.validation import ConvergenceError, argument_error
 Quaternion = tuple[float, float, float, float]
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 MAX_TILT = math.radians(60.0)  # of a body at rest
-LEVEL = 1e-9  # share of the size of a hull: an arm below it counts as 0
-NEUTRAL = 1e-3  # share of the size of a hull: a GM nearer to 0 counts as 0, as that of a ball of 500 triangles
+LEVEL = 1e-9  # fraction of the size of a hull: an arm below it counts as 0
+NEUTRAL = 1e-3  # fraction of the size of a hull: a GM nearer to 0 counts as 0, as that of a ball of 500 triangles
 FIRST_LEAN = 0.05  # [rad] from an unstable rest, where the search for a stable one begins
 MAX_TURN = 0.2  # [rad] of one turn of the search for rest
 MAX_TURNS = 60  # of that search
-ROUND_OFF = 1e-15  # share of the height of a hull that counts as 0
+ROUND_OFF = 1e-15  # fraction of the height of a hull that counts as 0
 
 
 class Balance(NamedTuple):

@@ -96,7 +96,7 @@ class RadialSea(AnySea):
         self.expose(exposure or 0.0)
 
     def _set(self, waves: Waves, column: FluidColumn, phase: np.ndarray, loss: np.ndarray, t: float = 0.0) -> None:
-        """phase (n,) [rad] at time t [s]; loss (n,): -ln of the share of their amplitude that the waves have left."""
+        """phase (n,) [rad] at time t [s]; loss (n,): -ln of the fraction left of their amplitudes."""
         self.waves, self.column, self._lost = waves, column, loss
         k = waves.k
         rate, self.decay = column.roots(k)
@@ -269,7 +269,7 @@ def check_carried(waves: Waves, column: FluidColumn) -> None:
 
 
 def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:
-    """-ln of the share of the amplitude that waves of wavenumber k [rad/m] keep after the times [s] on these media."""
+    """-ln of the fraction of amplitude that waves of wavenumber k [rad/m] keep after the times [s] on these media."""
     return sum((column.roots(k)[1] * duration for column, duration in past.items()), np.zeros(k.shape))
 
 

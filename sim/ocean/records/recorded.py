@@ -8,7 +8,7 @@
     >>> bool(abs(sea.at([[0.0, 0.0]], t=33.0).height[0] - np.interp(33.0, t, eta)) < 1e-2)
     True
 
-The record is the sum of its Fourier components, and each becomes one wave. It begins again after its length, so
+The record is the sum of its Fourier components, and each becomes one wave. It restarts after its length, so
 that its ends meet there. Of linear waves this is the only sea whose crests are all at right angles to the direction.
 """
 

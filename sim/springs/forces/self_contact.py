@@ -124,7 +124,7 @@ def farthest(x, seen, n):
 
 @kernel(allocates=False)
 def refresh_pairs(x, p):
-    """Find the pairs anew where something has moved by half the skin; returns their number."""
+    """Find the pairs again if a point has moved by half the skin; returns their number."""
     half = 0.5 * SKIN * p.thickness
     last = p.pairs.shape[0] - 1
     if p.pairs[last, 0] < 0 or not farthest(x, p.seen, np.uint64(p.rows * p.cols)) < half * half:

@@ -69,7 +69,7 @@ def test_rows_keep_their_rate_where_no_step_meets_their_interval() -> None:
 
 @pytest.mark.parametrize("name", [name for name in SMALL if name != "race"])
 def test_a_long_run_holds_no_more_rows_than_a_short_one(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As `springtide run` does it: it takes no rows. Those of a race are thinned out as it goes on."""
+    """As `springtide run` does it: it takes no rows. Those of a race are thinned out as it continues."""
     monkeypatch.setattr(plot_rows, "MAX_WAITING_ROWS", 16)
     scene = small_scene(name, 1 / 60)
     for _ in range(240):

@@ -1,6 +1,6 @@
 """Each feature of the page in each browser: scenes, controls by mouse and by key, drags, files, failures, windows.
 
-All rows of a browser share one window, and all browsers one lab. Where a browser lacks something, the page says so.
+All rows of a browser share one window, and all browsers one lab. If a browser lacks something, the page says so.
 """
 
 import contextlib
@@ -34,7 +34,7 @@ from tests.browser.page.test_engines import BUTTON, FIELD, RUNS, TAB, named, unt
 from tests.browser.page.test_page import NO_WEBGL, REFUSED
 
 ENGINES = ["chromium", *(pytest.param(name, marks=pytest.mark.long) for name in ("firefox", "webkit"))]
-# Rows that hold in WebKitGTK. The others were not seen to hold there: on a busy machine it takes seconds for a frame.
+# Rows that pass in WebKitGTK. The others have not been seen to pass: on a busy machine it takes seconds for a frame.
 IN_WEBKIT = (
     "a_scene_runs_and_is_drawn_without_error", "the_camera_turns_moves_and_comes_back", "the_wheel_zooms",
     "a_point_of_the_rope_is_marked_and_pulled", "a_point_of_the_cloth_is_pulled", "the_arrows_move_the_root",
@@ -48,9 +48,9 @@ IN_WEBKIT = (
     "a_browser_that_hides_what_it_is", "a_touchpad_zooms", "a_window_of_another_size_or_zoom", "two_labs_side_by_side",
     "a_checkbox_and_a_folder", "tabs", "buttons_and_keys_of_the_lab",
 )  # fmt: skip
-DRAWN = ("rope", "race", "square_sea")  # scenes that are drawn in seconds; the others are drawn by the long tests
+DRAWN = ("rope", "race", "square_sea")  # scenes drawn within seconds; the long tests draw the others
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
-# What the page says of errors; also that viser's client has ended.
+# Error messages of the page, including the end of viser's client.
 HOOK = """window.noted = [];
 for (const kind of ["error", "warn"]) {
     const earlier = console[kind];
@@ -136,7 +136,7 @@ class Visit:
         until(self.page, condition, words)
 
     def show(self, tab: str) -> None:
-        """Choose one of the panel's tabs by the mouse; again where a slow page takes the press for a drag."""
+        """Choose one of the panel's tabs by the mouse; repeated if a slow page takes the press for a drag."""
         for _ in range(3):
             self.page.press_on(named(TAB, tab))
             for _ in range(30):
@@ -152,7 +152,7 @@ class Visit:
         return getattr(self.viewer.settings.params, name)
 
     def drag(self, point: Any, by: tuple[float, float], done: Callable[[], Any], kind: str = "mouse") -> None:
-        """Drag what is at a point of the scene [m] until something has happened; again where a slow page was late."""
+        """Drag the object at a point of the scene [m] until something has happened; repeated on a slow page."""
         for _ in range(4):
             x, y = self.pixel(point)
             if kind == "mouse":
@@ -170,7 +170,7 @@ class Visit:
 
 @pytest.fixture(scope="module")
 def first_scripts() -> Iterator[list[str]]:
-    """Scripts that the page of the lab runs before all others, in each browser."""
+    """Scripts that run before all others in the page of each browser."""
     scripts = [HOOK]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(served_page, "before_tags", lambda: f"<script>{';'.join(scripts)}</script>{before_tags()}")
@@ -181,7 +181,7 @@ def first_scripts() -> Iterator[list[str]]:
 
 @pytest.fixture
 def with_script(first_scripts: list[str]) -> Iterator[Callable[[str], None]]:
-    """Has the page run one more script before all others, until the test ends."""
+    """Makes the page run one more script before all others, until the test ends."""
 
     def add(script: str) -> None:
         first_scripts.append(script)
@@ -542,7 +542,7 @@ def test_a_link_is_copied_or_the_page_says_how(visit: Visit) -> None:
 
 
 def saved(visit: Visit, press: Callable[[], None], ending: str, begin: bytes) -> bytes:
-    """Press something, and wait for a file that the browser has saved."""
+    """Press something, and wait for the file that the browser saves."""
     folder = visit.page.downloads
     for earlier in folder.iterdir():
         earlier.unlink()
@@ -676,7 +676,7 @@ def test_two_labs_side_by_side(visit: Visit, another_lab: Callable[..., Viewer])
     cameras = lambda: [visit.page.run(f"return ({camera})({k});") for k in (0, 1)]  # noqa: E731
     visit.until(lambda: np.allclose(*cameras(), atol=1e-3), "the cameras differ")
     before = cameras()[0]
-    for _ in range(3):  # again where a slow page was not ready
+    for _ in range(3):  # repeated if a slow page was not ready
         visit.page.press_in_frame(1, (70, 300), (100, 310), (130, 320))
         with contextlib.suppress(AssertionError):
             visit.until(lambda: not np.allclose(cameras()[0], before, atol=0.05), "the other camera stands")
@@ -687,7 +687,7 @@ def test_two_labs_side_by_side(visit: Visit, another_lab: Callable[..., Viewer])
     visit.until(lambda: not viewer.loop.run.running and not second.loop.run.running, "both do not pause")
 
 
-# What is lost, and what is missing
+# Losses and missing features
 
 
 def test_a_lost_context_comes_back(visit: Visit) -> None:
@@ -820,7 +820,7 @@ def test_a_window_of_another_size_or_zoom(visit: Visit, width: int, height: int,
 
 
 def test_less_motion_where_the_user_asks_for_it(visit: Visit) -> None:
-    """No driver but Playwright can ask: the rules for those who do are made to hold for all."""
+    """Only Playwright can set the preference: for other drivers the rules are made to apply always."""
     moving = """const cover = document.getElementById("springtide-cover");
         cover.classList.remove("springtide-hidden");
         const times = getComputedStyle(cover, "::after").animationIterationCount;

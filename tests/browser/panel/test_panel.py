@@ -1,4 +1,4 @@
-"""Numbers typed key by key, and what the panel says of playing, in a real browser."""
+"""Numbers typed key by key, and the panel's state of playing, in a real browser."""
 
 import pytest
 

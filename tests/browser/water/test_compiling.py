@@ -1,6 +1,6 @@
 """A sea waits for its programs without stopping the page, and shows plain water or its last programs meanwhile.
 
-The browser of these tests compiles while the page waits; KHR_parallel_shader_compile is imitated.
+The browser of these tests blocks the page while it compiles; KHR_parallel_shader_compile is imitated.
 """
 
 import contextlib
@@ -88,7 +88,7 @@ def wait_for(page: Any, shaders: list[str]) -> None:
 def test_a_page_never_waits_for_a_program_of_the_sea(chromium: Any) -> None:
     with open_sea(chromium, BESIDE) as (lab, page):
         wait_for(page, ["springtide-water/sea plain"])
-        # The cover stays until the picture is whole, and the mean colour of the sky stands in below it.
+        # The cover stays until the picture is complete, with the mean colour of the sky below it.
         page.wait_for_function(f"({COVER})() === 'Preparing the picture …'", timeout=60_000)
         page.wait_for_timeout(1500)
         assert page.evaluate(COVER) == "Preparing the picture …"

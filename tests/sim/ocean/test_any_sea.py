@@ -1,4 +1,4 @@
-"""One table of tests over all seas: each is asked by `AnySea` alone, and gives one and the same wave."""
+"""One table of tests over all seas: through `AnySea` alone, each gives the same wave."""
 
 import ast
 import math
@@ -155,7 +155,7 @@ def test_a_hull_with_coefficients_of_one_depth_is_refused_in_another(kind: str, 
 
 @pytest.fixture(scope="module")
 def hull_of_20_m() -> Body:
-    """A box with a table of coefficients that counts as one of water 20 m deep."""
+    """A box with a table of coefficients that is taken for one of water 20 m deep."""
     import dataclasses
 
     from sim.floating.linear.hydrodynamics import table_length

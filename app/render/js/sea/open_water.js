@@ -1,6 +1,6 @@
-// Open water around what is seen through its surface, for a mesh of the surface with a child "<name>/open_water": sky, sea
-// to the horizon and deep water behind everything; the surface, which mirrors the sky the more the flatter one looks at
-// it, with foam around a body; and on the bed (underwater.js) the shadow of that body, and dark water at its ends.
+// Open water around a scene seen through its surface, for a mesh of the surface with a child "<name>/open_water": sky, sea to
+// the horizon and deep water behind everything; the surface, which mirrors more of the sky at grazing angles, with foam
+// around a body; and on the bed (underwater.js) the shadow of that body, and dark water at its ends.
 //
 // The child's vertices are the uniform below, but with the body in the frame of the nodes, z up. The colours are those of
 // the screen.
@@ -119,8 +119,8 @@ const OPEN_BED = `
   gl_FragColor.rgb = mix(gl_FragColor.rgb, DEEP, smoothstep(0.30, 0.94, off));
   gl_FragColor.rgb = seenThrough(gl_FragColor.rgb, normalize(vPlace - cameraPosition));`;
 
-// Their shaders without three's lights, which cost more than all of this: the surface mirrors and does not use them, and on
-// the bed, which is level, they are one factor.
+// Their shaders without three's lights, which would cost more than everything here: the mirroring surface does not use them, and
+// on the level bed they are one factor.
 export const OPEN_BASE = {
   surface: `
   #include <common>
@@ -196,6 +196,6 @@ export const openWater = {
       shader.vertexShader = `uniform float farDepth;\n${OPEN_VERTEX}`;
       shader.fragmentShader = OPEN_FRAGMENT;
     });
-    return null; // the surface has its colours by another child
+    return null; // the surface gets its colours from another child
   },
 };

@@ -57,7 +57,7 @@ class FileScene(LineScene):
         return dataclasses.replace(self.file.system, waves=self.sea, current=(x, y, 0.0))
 
     def change_forces(self, params: MooringParams) -> None:
-        """Take parameters; the motion goes on."""
+        """Take parameters; the motion continues."""
         self.params = params
         self.sea = sea_of(params)
         self.take_system()
@@ -65,7 +65,7 @@ class FileScene(LineScene):
         self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
-        """Go on with the water as it is now."""
+        """Continue with the water as it is now."""
         self.system = self.arranged()
 
     @property

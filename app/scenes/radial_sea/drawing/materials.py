@@ -17,13 +17,13 @@ from sim.floating.motion.rotation import heading_angle
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.particles.plume import flame_height, radiated_light
 
-LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"
+LAB_SPECULAR = 0.4  # fraction of oil's reflection that is drawn with optics "lab"
 RIPPLE_LENGTH = 0.9  # [m] of the wave that stands for all ripples of the material, in how they decay under oil
 CALM_SLOPE, MAX_SLOPE = 0.02, 0.24  # rms slope of the ripples without wind, and the greatest
 MIN_RIPPLE_SHARE = 0.12  # of the ripples' slope that oil leaves at least, so that the sea does not turn into a mirror
 MIXTURE_SCATTER: RGB = (0.80, 0.47, 0.22)  # light that an emulsion scatters
 MIXTURE_ROUGHNESS = 0.12
-MIXTURE_BASE_SHARE = 0.5  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
+MIXTURE_BASE_SHARE = 0.5  # fraction of oil's colours in a mixture with hardly any oil; it grows with the fraction
 MIXTURE_THICKNESS = 1e-3  # [m] of a film that shows as much of its colour as a mixture does: all
 FIRE_COLOUR = (1.0, 0.45, 0.12)  # of the light of flames, linear
 VISIBLE_SHARE = 0.02  # of what a flame radiates
@@ -83,7 +83,7 @@ def ripple_decay(column: FluidColumn) -> float:
 
 
 def mixture_share(column: FluidColumn) -> float:
-    """Share of oil's colours in those of a mixture."""
+    """Fraction of oil's colours in those of a mixture."""
     return min(1.0, MIXTURE_BASE_SHARE + column.fraction)
 
 

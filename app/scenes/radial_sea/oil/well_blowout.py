@@ -51,7 +51,7 @@ class OilBudget(NamedTuple):
     hits: int  # parcels that have
     radius: float  # [m] of the slick
     thickness: float  # [m] of the slick
-    # share of its height that a wave of `CROSSING_WAVE` keeps across the slick; NaN where none calms the sea
+    # fraction of its height that a wave of `CROSSING_WAVE` keeps across the slick; NaN where none calms the sea
     wave_left: float = math.nan
 
 
@@ -222,5 +222,5 @@ def crossing_loss(inside: FluidColumn, outside: FluidColumn) -> float:
 
 
 def wave_left(cover: SlickCover | None, outside: FluidColumn) -> float:
-    """Share of its height that a wave of `CROSSING_WAVE` keeps across a slick; NaN without one."""
+    """Fraction of its height that a wave of `CROSSING_WAVE` keeps across a slick; NaN without one."""
     return math.nan if cover is None else math.exp(-2.0 * cover.radius * crossing_loss(cover.column, outside))

@@ -1,4 +1,4 @@
-"""A student's folder while the lab is served: what is saved runs, what is wrong is named, and the lab goes on."""
+"""A student's folder while the lab is served: what is saved runs, what is wrong is named, and the lab continues."""
 
 import contextlib
 import dataclasses

@@ -1,4 +1,4 @@
-"""Undo across a preset, a reset or a new start: the run goes on as if nothing had happened."""
+"""Undo across a preset, a reset or a new start: the run continues as if nothing had happened."""
 
 from collections.abc import Callable
 

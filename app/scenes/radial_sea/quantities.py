@@ -172,8 +172,8 @@ def square_points(now: Any) -> float:
 
 QUANTITIES: Quantities = {name: quantity for kind in BODY_KINDS for name, quantity in of_kind(kind).items()} | {
     **{name: one._replace(value=of_spill(one.value)) for name, one in OF_SPILL.items()},
-    "oil_viscosity": Quantity("Pa·s", "Viscosity of the oil", of_column(lambda column: column.oil.viscosity)),
-    "oil_density": Quantity("kg/m³", "Density of the oil", of_column(lambda column: column.oil.density)),
+    "oil_viscosity": Quantity("Pa·s", "Viscosity of the chosen oil", of_column(lambda column: column.oil.viscosity)),
+    "oil_density": Quantity("kg/m³", "Density of the chosen oil", of_column(lambda column: column.oil.density)),
     "significant_height": Quantity("m", "Significant height of the waves", lambda now: now.readings.height),
     "clean_height": Quantity(
         "m", "Significant height of the waves without the oil", lambda now: now.readings.clean_height

@@ -60,6 +60,7 @@ def test_a_visit(chromium: Any, name: str) -> None:
             page.press_on(named(TAB, "View"))
             page.press_on(named(BUTTON, "Dark"))
             page.wait('return document.documentElement.classList.contains("springtide-dark");')
+            page.wait('return document.querySelector("#springtide-time input:enabled") !== null;')  # there are frames
             left, middle, width = page.run(
                 """const box = document.querySelector("#springtide-time input").getBoundingClientRect();
                    return [box.left, box.top + box.height / 2, box.width];"""

@@ -510,6 +510,7 @@ def test_undo(visit: Visit) -> None:
 @pytest.mark.long
 def test_the_time_line(visit: Visit) -> None:
     visit.until(lambda: visit.viewer.loop.scene.time > 2.0, "it does not run")
+    visit.page.wait('return document.querySelector("#springtide-time input:enabled")?.max > 1.0;')  # the page knows it
     left, middle, width = visit.page.run(
         """const box = document.querySelector("#springtide-time input").getBoundingClientRect();
         return [box.left, box.top + box.height / 2, box.width];"""

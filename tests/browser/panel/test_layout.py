@@ -10,6 +10,7 @@ from PIL import Image
 
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup
+from app.scenes.springs.methods import METHODS_AND_AUTO
 from app.server.viewer import Viewer
 from tests.browser.boxes import MEASURE, SIZES, faults, faults_after_change
 from tests.browser.conftest import NO_NOTES, Tab, new_page
@@ -25,6 +26,9 @@ LARGE_BOXES = """() => {
     return { panel: document.querySelector("[data-floating-window]").offsetWidth, list: list[2] ? right(list[2]) : 0,
         fields: fields.map((one) => [one.ariaLabel, right(one)]),
         gap: list[1] ? Number.parseFloat(getComputedStyle(list[1]).paddingRight) : 0 }; }"""
+# The words of lists that are shown cut off.
+CUT_OFF = """() => [...document.querySelectorAll(".mantine-Select-input")]
+    .filter((one) => one.offsetWidth > 20 && one.scrollWidth > one.clientWidth + 1).map((one) => one.value)"""
 # The buttons of the lab that a mouse can press where they are: a click of Playwright would scroll first.
 ICONS_ON_TOP = """() => [...document.querySelectorAll("[data-springtide-icon]")].filter((one) => {
     const box = one.getBoundingClientRect();
@@ -145,8 +149,8 @@ def test_the_buttons_of_the_lab_stay_while_a_small_panel_is_scrolled(
 
 @pytest.mark.long
 def test_large_text_fits_the_panel(resized: tuple[Viewer, Tab]) -> None:
-    """No field or button lies beyond the lists above and below it, and no chevron over the words of a list."""
-    _, tab = resized
+    """No field or button lies beyond the lists above and below it, and no list cuts its words off."""
+    lab, tab = resized
     tab.page.set_viewport_size({"width": 900, "height": 600})
     tab.page.evaluate("localStorage.setItem('springtide-large', 'yes')")
     try:
@@ -157,6 +161,11 @@ def test_large_text_fits_the_panel(resized: tuple[Viewer, Tab]) -> None:
         assert len(found["fields"]) > 4
         assert [name for name, right in found["fields"] if abs(right - found["list"]) > 1] == [], found
         assert found["gap"] >= 18, found  # [pixels] of a chevron
+        listed = "words => [...document.querySelectorAll('.mantine-Select-input')].some((one) => one.value === words)"
+        for method, title in METHODS_AND_AUTO.items():
+            lab.settings.set("integrator", method)
+            tab.wait(lambda title=title: tab.page.evaluate(listed, title), 20)
+            assert tab.page.evaluate(CUT_OFF) == []
     finally:
         tab.page.evaluate("localStorage.clear()")
         tab.page.reload()

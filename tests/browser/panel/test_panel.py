@@ -11,6 +11,10 @@ from sim.quantities import write_number
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
+# Whether the browser's history has an entry for what is shown, and is at it.
+TAKEN_IN = (
+    "() => history.state?.springtide === document.querySelector('[data-springtide-here]')?.dataset.springtideHere"
+)
 
 
 def field(lab: Viewer, tab: Tab, name: str):
@@ -206,7 +210,7 @@ def test_back_and_forward_go_through_scenes_and_presets(lab: Viewer, open_tab) -
     def at(scene: str, preset: str) -> None:
         tab.wait(lambda: shows(scene, preset), 30)
         tab.wait_for_panel(lab)
-        tab.page.wait_for_timeout(300)  # the page has taken it in
+        tab.wait(lambda: tab.page.evaluate(TAKEN_IN), 30)
 
     first = lab.settings.loaded
     at("rope", first)

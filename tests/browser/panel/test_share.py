@@ -41,6 +41,9 @@ def test_the_tab_has_three_groups_and_few_buttons(
              "Save plots", "Record clip", "Picture")  # fmt: skip
     for name in names:
         tab.wait(tab.page.get_by_role("button", name=name, exact=True).is_visible, 20)
+    buttons = [tab.page.get_by_role("button", name=name, exact=True) for name in names]
+    heights = [one.bounding_box()["height"] for one in (*buttons, tab.page.locator(".springtide-load"))]
+    assert max(heights) - min(heights) < 0.5, heights
     assert not tab.page.get_by_role("button", name="Remove preset").is_visible()
     tab.page.get_by_role("button", name="Keep curves").click()
     tab.wait(tab.page.get_by_role("button", name="Drop curves").is_visible, 20)

@@ -49,8 +49,8 @@ def test_one_drag_and_one_click_lead_20_s_back_and_on_from_there(shown: tuple[Vi
     lab.loop.commands.put(Play())
     tab.wait(lambda: recorder.span()[1] > 24.0, 60)
     lab.settings.set("speed", 1.0)
-    tab.page.wait_for_timeout(1000)  # the bar follows twice a second
     high = recorder.span()[1]
+    tab.wait(lambda: float(tab.page.locator("#springtide-time input").get_attribute("max") or 0) >= round(high, 3), 30)
     bar, line, scene = tab.page.evaluate(BOXES)
     # As wide as the scene, up to the panel.
     assert (bar["left"], bar["right"]) == pytest.approx((scene["left"], tab.page.evaluate(PANEL_EDGE)[0]), abs=1)

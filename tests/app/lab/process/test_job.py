@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.lab.process.child_processes import end_with_this_program, kill_with_children
+from tests.waiting import wait_for
 
 ROOT = Path(__file__).parents[4]
 pytestmark = pytest.mark.skipif(sys.platform != "win32", reason="elsewhere processes have groups, and see their parent")
@@ -19,11 +20,11 @@ while True:
         file.write(".")
     time.sleep(0.01)
 """
-# A lab that is killed in the middle.
-LAB = """import os, subprocess, sys, time
+# A lab that is killed in the middle, once it is told to.
+LAB = """import os, subprocess, sys
 from app.lab.process.child_processes import end_with_this_program
-end_with_this_program(subprocess.Popen(sys.argv[1:]))
-time.sleep(5.0)
+end_with_this_program(subprocess.Popen(sys.argv[1:], stdin=subprocess.DEVNULL))
+sys.stdin.readline()
 os._exit(9)
 """
 
@@ -53,14 +54,14 @@ def test_children_are_killed_with_their_process(tmp_path: Path) -> None:
     assert grows(path)
     kill_with_children(process)
     process.wait(10.0)
-    assert not grows(path)
+    wait_for(lambda: not grows(path))
 
 
 def test_all_end_with_the_lab(tmp_path: Path) -> None:
     path = tmp_path / "dots"
-    lab = subprocess.Popen([sys.executable, "-c", LAB, *command(path)], cwd=ROOT)
+    lab = subprocess.Popen([sys.executable, "-c", LAB, *command(path)], cwd=ROOT, stdin=subprocess.PIPE, text=True)
     assert begun(path)
     assert grows(path)
-    assert lab.wait(20.0) == 9
-    time.sleep(1.0)
-    assert not grows(path)
+    lab.communicate("now\n", 60.0)
+    assert lab.returncode == 9
+    wait_for(lambda: not grows(path))

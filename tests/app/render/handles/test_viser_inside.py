@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import viser
 
-from app.render.handles.viser_inside import input_of, set_arrays, uuid_of
+from app.render.handles.viser_inside import LOST, attempt, input_of, set_arrays, uuid_of
 
 TURNS = np.array([[1.0, 0.0, 0.0, 0.0]])
 
@@ -50,3 +50,14 @@ def test_a_removed_node_is_refused(server: viser.ViserServer) -> None:
     node.remove()
     with pytest.raises(RuntimeError, match="/a has been removed"):
         set_arrays(node, vertices=np.zeros((3, 3)))
+
+
+def test_a_name_that_viser_lacks_is_told_once_and_done_without(capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        for _ in range(2):
+            assert attempt(lambda: viser.no_such_name, 7, "a test of this") == 7
+        said = capsys.readouterr().err
+        assert said.count("a test of this") == 1
+        assert "has changed inside" in said
+    finally:
+        LOST.pop("a test of this", None)

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from app.render import scripts
+from app.render.injection import injector_of
 from app.server.viewer import Viewer
 from app.server.web.access import Access
 from app.server.web.page import covered
@@ -42,6 +43,26 @@ def test_the_cover_goes_with_the_first_scene_and_comes_back_with_the_end(chromiu
         viewer.shut()
     wait_for(page, lambda words: "The lab has stopped. Start it again" in words)
     page.close()
+
+
+def test_the_cover_stays_until_all_nodes_of_the_scene_are_there(chromium: Any) -> None:
+    """On a slow page the sky may be there long before the vertices of a sea."""
+    viewer = Viewer("127.0.0.1", 0)
+    page = new_page(chromium, 640, 400, drawn=False)
+    try:
+        viewer.open("race")
+        injector = injector_of(viewer.server)
+        assert injector is not None
+        injector.watch("/late")
+        page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2", wait_until="commit")
+        page.wait_for_function("window.__springtide?.showsWhole?.()")
+        page.wait_for_timeout(1000)  # longer than the things of a scene are waited for without the list
+        assert "Preparing the picture" in shown(page)
+        viewer.server.scene.add_frame("/late")
+        wait_for(page, lambda words: words == "", 20.0)
+    finally:
+        viewer.shut()
+        page.close()
 
 
 @pytest.mark.parametrize(

@@ -48,7 +48,7 @@ IN_WEBKIT = (
     "a_browser_that_hides_what_it_is", "a_touchpad_zooms", "a_window_of_another_size_or_zoom", "two_labs_side_by_side",
     "a_checkbox_and_a_folder", "tabs", "buttons_and_keys_of_the_lab",
 )  # fmt: skip
-DRAWN = ("rope", "race", "square_sea")  # scenes that are drawn in seconds; the others are drawn by the long tests
+DRAWN = ("rope", "square_sea")  # scenes that are drawn in seconds; the others are drawn by the long tests
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
 # What the page says of errors; also that viser's client has ended.
 HOOK = """window.noted = [];

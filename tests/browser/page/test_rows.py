@@ -48,7 +48,7 @@ IN_WEBKIT = (
     "a_browser_that_hides_what_it_is", "a_touchpad_zooms", "a_window_of_another_size_or_zoom", "two_labs_side_by_side",
     "a_checkbox_and_a_folder", "tabs", "buttons_and_keys_of_the_lab",
 )  # fmt: skip
-DRAWN = ("rope", "race", "square_sea")  # scenes drawn within seconds; the long tests draw the others
+DRAWN = ("rope", "square_sea")  # scenes drawn within seconds; the long tests draw the others
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
 # Error messages of the page, including the end of viser's client.
 HOOK = """window.noted = [];
@@ -386,6 +386,7 @@ def test_a_finger_pulls_the_rope(visit: Visit) -> None:
 # Controls, each by mouse and by key
 
 
+@pytest.mark.long
 def test_numbers(visit: Visit) -> None:
     """A click selects the old number, and Tab does."""
     visit.page.press_on(named(FIELD, "Stiffness"))
@@ -434,6 +435,7 @@ def test_a_checkbox_and_a_folder(visit: Visit) -> None:
     visit.page.wait(f"{is_open} === 'false';")
 
 
+@pytest.mark.long
 def test_a_list(visit: Visit) -> None:
     visit.page.press_on(PRESET)
     visit.page.press_on(named(OPTION, "Pendulum"))
@@ -495,6 +497,7 @@ def test_buttons_and_keys_of_the_lab(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_undo(visit: Visit) -> None:
     for press in (
         lambda: visit.page.type("u"),
@@ -561,9 +564,9 @@ def saved(visit: Visit, press: Callable[[], None], ending: str, begin: bytes) ->
     ("button", "ending", "begin"),
     [
         ("Data (.npz)", ".npz", b"PK"),
-        ("Replay (last 20 s)", ".html", b"<!"),
+        pytest.param("Replay (last 20 s)", ".html", b"<!", marks=pytest.mark.long),
         ("Picture", ".png", b"\x89PNG"),
-        ("Save set-up", ".json", b"{"),
+        pytest.param("Save set-up", ".json", b"{", marks=pytest.mark.long),
         ("Save plots", ".csv", b"t [s],"),
     ],
 )
@@ -593,6 +596,7 @@ def test_a_clip_is_recorded_or_the_page_says_that_it_cannot(visit: Visit) -> Non
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_a_set_up_is_chosen_from_a_file(visit: Visit, tmp_path: Path) -> None:
     path = tmp_path / "set-up.json"
     for points in (23, 24):
@@ -641,6 +645,7 @@ def test_a_task_of_the_workbook(visit: Visit, tmp_path: Path) -> None:
         visit.viewer.workbook = None
 
 
+@pytest.mark.long
 def test_the_teacher_s_page(visit: Visit, tmp_path: Path) -> None:
     tasks = load_tasks()
     folders = [tmp_path / name for name in ("ada", "bo")]
@@ -794,7 +799,7 @@ def test_without_float_targets_the_sea_has_a_sky(visit: Visit, with_script: Call
     ("width", "height", "ratio"),
     [
         pytest.param(800, 600, 1.0, marks=pytest.mark.long),
-        (390, 844, 1.0),
+        pytest.param(390, 844, 1.0, marks=pytest.mark.long),
         (667, 467, 1.5),
         pytest.param(1000, 700, 2.0, marks=pytest.mark.long),
     ],

@@ -224,6 +224,7 @@ def test_an_act_that_is_everybodys_shows_in_both_browsers(two: tuple[Viewer, Tab
     assert not other.errors
 
 
+@pytest.mark.long
 def test_a_reset_begins_the_run_of_all_and_leaves_each_camera_which_a_preset_places(
     two: tuple[Viewer, Tab, Tab],
 ) -> None:

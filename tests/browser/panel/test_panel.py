@@ -200,6 +200,7 @@ def test_a_press_on_a_picture_opens_its_scene(lab: Viewer, open_tab) -> None:
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_back_and_forward_go_through_scenes_and_presets(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port)
 
@@ -221,7 +222,8 @@ def test_back_and_forward_go_through_scenes_and_presets(lab: Viewer, open_tab) -
     at("cloth", "Curtain")
     assert tab.page.evaluate("history.length") >= 3
     for move, place in (
-        ("back", ("rope", "Pendulum")), ("forward", ("cloth", "Curtain")), ("back", ("rope", "Pendulum")),
+        ("back", ("rope", "Pendulum")), ("back", ("rope", first)), ("forward", ("rope", "Pendulum")),
+        ("forward", ("cloth", "Curtain")), ("back", ("rope", "Pendulum")),
     ):  # fmt: skip
         tab.page.evaluate(f"history.{move}()")
         at(*place)

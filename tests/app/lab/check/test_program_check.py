@@ -112,7 +112,11 @@ def test_a_wrong_solution_is_refused_and_its_mistake_named(desk: Desk, name: str
 
 
 @pytest.mark.parametrize(
-    ("name", "words", "body"), MISTAKES, ids=[f"{name}-{i}" for i, (name, *_) in enumerate(MISTAKES)]
+    ("name", "words", "body"),  # two of three in a plain run
+    [
+        pytest.param(*case, id=f"{case[0]}-{i}", marks=() if i % 3 else pytest.mark.long)
+        for i, case in enumerate(MISTAKES)
+    ],
 )
 def test_a_mistake_as_students_make_it_is_named(desk: Desk, name: str, words: str, body: str) -> None:
     verdict = verdict_of(desk, TASKS[name], "KEPT = {}\n\n" + with_body(TASKS[name], body))
@@ -202,7 +206,10 @@ TWICE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", TWICE)
+@pytest.mark.parametrize(
+    "case",  # a wrong function is explained, which takes seconds
+    [pytest.param(case, marks=pytest.mark.long if "wrong" in TWICE[case] else ()) for case in TWICE],
+)
 def test_the_last_definition_of_a_name_counts(desk: Desk, case: str) -> None:
     source, state, mark = TWICE[case]
     verdict = verdict_of(desk, TASKS["spring_force"], source)

@@ -373,6 +373,7 @@ def corrections_of(params: MooringParams) -> int:
         return len(done)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", [100, pytest.param(2000, marks=pytest.mark.stress)])
 def test_random_moorings_rest(count):
     rng = random.Random(4)

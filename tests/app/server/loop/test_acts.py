@@ -40,6 +40,7 @@ FORCES = {
 }  # fmt: skip
 STARTS = {"cloth": "gather", "race": "length", "square_sea": "length", "mooring": "length"}
 PRESETS = 3
+SLOW = ("mooring", "radial_sea")
 
 
 @dataclasses.dataclass
@@ -294,8 +295,14 @@ def play_sequence(name: str, seed: int, *, compiles: bool) -> None:
     lab.see()
 
 
-@pytest.mark.parametrize("compiles", [False, True], ids=["", "compiled"])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    ("name", "compiles"),
+    [
+        pytest.param(name, compiles, marks=pytest.mark.long if name in SLOW and not compiles else ())
+        for name in NAMES
+        for compiles in (False, True)
+    ],
+)
 def test_the_screen_after_acts_and_undos_is_that_of_the_act_before(name: str, compiles: bool) -> None:
     for seed in range(8):
         play_sequence(name, seed, compiles=compiles)

@@ -5,8 +5,9 @@
 
 import { page } from "./life.js";
 
-const STATUS = ".springtide-panel, [data-springtide-time]"; // rewritten in each frame
+const STATUS = ".springtide-panel, .springtide-figures, .springtide-readings, [data-springtide-time]"; // rewritten in each frame
 const CONTROL = "button, label, [role]"; // elements whose words are read
+const OWN = "springtide-"; // prefix of the identifiers of our own elements, some of which move in each frame
 const LOOK_INTERVAL = 200; // [ms] between two looks at where things are
 const REST_INTERVAL = 1000; // [ms] the same once nothing has changed for SETTLING
 const SETTLING = 2000; // [ms] after a change until everything that it moves stands still
@@ -36,11 +37,11 @@ function call(names, now = 0) {
 }
 
 const observer = new MutationObserver((changes) => {
-  const structural = changes.filter(({ type }) => type !== "attributes");
-  if (structural.some(isOfControls)) call(["any", "controls"]);
-  else if (structural.length) call(["any"]);
-  if (changes.length > structural.length) call(["values"]);
-  wake();
+  const structural = changes.filter(({ type }) => type !== "attributes"), isOfControl = structural.some(isOfControls);
+  const hasValues = changes.some(({ type, target }) => type === "attributes" && isElement(target) && !target.id.startsWith(OWN));
+  if (structural.length) call(isOfControl ? ["any", "controls"] : ["any"]);
+  if (hasValues) call(["values"]);
+  if (isOfControl || hasValues) wake(); // other words move nothing
 });
 observer.observe(document.documentElement, {
   childList: true, subtree: true, characterData: true, attributes: true,

@@ -8,15 +8,14 @@ import { beforeRender } from "../core/render_hook.js";
 import { startedViewer, viewer } from "../core/viewer.js";
 import { onLook } from "../core/watch.js";
 import { without } from "./free_part.js";
+import { PANEL } from "./marks.js";
 import { waterHeight } from "./water_height.js";
 
 const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor
 const WATER_CLEARANCE = 0.25; // [m] of the camera above the water
 const MAX_WAVE_HEIGHT = 40; // [m] above the mean water; higher cameras need no look at waves
 const MIN_ASPECT = 1.05; // least width over height of the field of view, enough for all presets
-const PANELS =
-  "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root), " +
-  ".mantine-Tabs-root:has(> [aria-label=\"Collapse panel Plots\"])";
+const OPEN_BAR = '[data-springtide-is-bar] > [aria-label="Collapse panel Plots"]'; // on a phone
 
 /** @type {(keyof Box)[]} */
 const SIDES = ["x", "y", "width", "height"];
@@ -29,7 +28,8 @@ function measure() {
   const canvas = drawn.getBoundingClientRect();
   let box = { x: canvas.left, y: canvas.top, width: canvas.width, height: canvas.height };
   const framed = document.documentElement.classList.contains("springtide-framed"); // beside.js
-  for (const panel of framed ? [] : document.querySelectorAll(PANELS)) box = without(box, panel.getBoundingClientRect());
+  const bar = document.querySelector(OPEN_BAR)?.parentElement, panels = [...document.querySelectorAll(PANEL), ...(bar ? [bar] : [])];
+  for (const panel of framed ? [] : panels) box = without(box, panel.getBoundingClientRect());
   const found = { x: box.x - canvas.left, y: box.y - canvas.top, width: box.width, height: box.height };
   const earlier = free;
   if (earlier && SIDES.every((key) => Math.abs(earlier[key] - found[key]) < 1)) return;

@@ -81,7 +81,7 @@ function frame(now) {
   const all = meshes();
   for (const mesh of all) remember(mesh, now);
   const at = pointer, near = at ? all.map((mesh) => nearest(mesh, at)).filter((one) => one !== null) : [];
-  ring.hidden = !near.length;
+  if (ring.hidden === near.length > 0) ring.hidden = !ring.hidden; // a write is a change, of the same value too
   if (near.length) {
     const { camera, canvas } = startedViewer(), box = canvas.getBoundingClientRect();
     const { place } = near.reduce((best, one) => (one.rank < best.rank ? one : best));

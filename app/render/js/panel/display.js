@@ -49,7 +49,7 @@ function tellServer() {
 
 page.listen(document, "click", (event) => {
   if (event.target instanceof Element && event.target.closest("[data-springtide-display]")) {
-    document.querySelector("button:has(.tabler-icon-adjustments)")?.click(); // viser's own settings
+    document.querySelector("[data-springtide-is-settings]")?.click(); // viser's own settings
     return;
   }
   const button = event.target instanceof Element && event.target.closest("[data-springtide-switch]");

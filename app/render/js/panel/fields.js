@@ -165,6 +165,7 @@ const sizes = new ResizeObserver(([{ target }]) => {
   const above = row ? row.getBoundingClientRect().top - target.getBoundingClientRect().top : 0;
   document.documentElement.style.setProperty("--springtide-above", `${Math.floor(above)}px`);
 });
+page.own(() => sizes.disconnect());
 function markLab() {
   const status = document.querySelector(".springtide-panel[data-state]"), lab = status?.closest(".mantine-Paper-root");
   if (!status || !lab) return;

@@ -57,7 +57,8 @@ function show() {
 
 // The state of the run in the picture, in the panel's words.
 function sayState() {
-  words.hidden = !(isIn(PROJECTING) || isIn(ENLARGED));
+  const isHidden = !(isIn(PROJECTING) || isIn(ENLARGED));
+  if (words.hidden !== isHidden) words.hidden = isHidden;
   const status = document.querySelector(".springtide-panel");
   if (words.hidden || !status) return;
   const said = /** @type {HTMLElement} */ (words.firstElementChild);

@@ -224,7 +224,7 @@ def test_the_panel_compares_crests_with_theory_and_says_what_broke() -> None:
     for _ in range(30):
         loop.tick(1 / 30)
     text = str(report.readout(loop.latest))
-    for words in ("crest over significant height", "skewness", "kurtosis", "Forristall", "Breaking has taken"):
+    for words in ("crest over significant height", "skewness", "kurtosis", "Forristall", "Breaking has dissipated"):
         assert words in text
     highest = loop.latest.frame.highest
     assert f"Highest crest: {number(highest.place[2])} m" in report.marks(loop.latest)["order"]

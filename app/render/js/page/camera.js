@@ -4,11 +4,11 @@
 // onBeforeRender runs before every frame), nodeRefFromName and requestRender; and the boxes of its panels.
 // three's world has y up; the frame of a node has z up.
 
+import { PANEL } from "../core/marks.js";
 import { beforeRender } from "../core/render_hook.js";
 import { startedViewer, viewer } from "../core/viewer.js";
 import { onLook } from "../core/watch.js";
 import { without } from "./free_part.js";
-import { PANEL } from "./marks.js";
 import { waterHeight } from "./water_height.js";
 
 const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor

@@ -1,4 +1,4 @@
-"""Checks of the files and folders that a command is to write, made before any work."""
+"""Checks of a command's output files and folders, made before any work."""
 
 import os
 from pathlib import Path
@@ -31,7 +31,7 @@ def check_out_file(option: str, path: Path, *names: str) -> None:
 
 
 def make_out_folder(option: str, path: Path | None) -> None:
-    """Make the folder that an option names, if it names one; raises ValueError where it cannot be made."""
+    """Make the folder that an option names, if it names one; raises ValueError if it cannot be made."""
     if path is None:
         return
     try:

@@ -41,7 +41,7 @@ def vector_of(x: NDArray[np.floating]) -> Vector:
 
 
 def finite_vector(values: Iterable[object], max_distance: float = MAX_DISTANCE) -> Vector | None:
-    """Three finite numbers, each bounded to `max_distance`; None where it is not three finite numbers."""
+    """Three finite numbers, each bounded to `max_distance`; None if it is not three finite numbers."""
     try:
         x, y, z = (float(c) for c in values)  # type: ignore[arg-type]
     except (TypeError, ValueError):
@@ -88,7 +88,7 @@ class StepOnce(NamedTuple):
 class RunOn(NamedTuple):
     """Run, and pause as soon as an event begins."""
 
-    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # True if it happens just now
+    reached: "Callable[[Snapshot[BaseParams, object, object]], bool]"  # True while it happens
 
 
 class Halt(NamedTuple):
@@ -100,33 +100,33 @@ class Halt(NamedTuple):
 class Reset(NamedTuple):
     """Back to the start of the scene; parameters and camera stay."""
 
-    act: int = 0  # number of the person's act that asks for it (`History`); 0: no person does
+    act: int = 0  # number of the person's act behind it (`History`); 0: none
 
 
 class Checkpoint(NamedTuple):
-    """A state from which a scene can go on."""
+    """A state from which a scene can continue."""
 
-    value: object  # as `Scene.keep` gave it
+    value: object  # from `Scene.keep`
     arrays: Mapping[int, int]  # identity -> bytes of each array in it; some are shared with the states before
-    run: int = 0  # number of the run that it is of
+    run: int = 0  # number of its run
 
 
 class Take(NamedTuple):
     """Take a whole record of parameters; of several the latest counts.
 
-    Parameters of another act than the one with which the present run began begin another run. Others go on with the
-    present one, as the effect of the change asks for.
+    Parameters of another act than that of the present run begin another run. Others continue the present one, depending
+    on the effect of the change.
     """
 
     params: BaseParams  # the scene's record
-    start: bool = False  # begin again and run, whatever has changed, as for a preset
-    state: Checkpoint | None = None  # go on from here and run; of a scene that had these parameters
-    act: int = 0  # number of the act with which the run of these parameters begins; 0: that of the present run
-    back: bool = False  # go back to the last run of that act, as it was when it was left; `start`: if it was not kept
+    start: bool = False  # restart and run, whatever has changed, as a preset does
+    state: Checkpoint | None = None  # resume from here and run; of a scene with these parameters
+    act: int = 0  # number of the act that begins the run of these parameters; 0: that of the present run
+    back: bool = False  # go back to the last run of that act as it was left; `start`: if it was not kept
 
     @property
     def changes_only(self) -> bool:
-        """True if the run goes on from where it is, unless it is of another act or affects the start."""
+        """True if the present run continues, unless the parameters are of another act or affect the start."""
         return not self.start and self.state is None and not self.back
 
 
@@ -159,11 +159,11 @@ class PointAlong(NamedTuple):
 
 
 class RestartStatistics(NamedTuple):
-    """Begin the statistics of the run again."""
+    """Restart the statistics of the run."""
 
 
 class StudentAnswer(NamedTuple):
-    """The process that runs a student's functions has come to a result, which the scene may take."""
+    """A result of the process that runs a student's functions, for the scene to take."""
 
 
 class Ask(NamedTuple):
@@ -174,10 +174,10 @@ class Ask(NamedTuple):
 
 
 class Advance(NamedTuple):
-    """Run for a simulated time, to a whole step, then go on or stand still as before; answer with the time then [s].
+    """Run for a simulated time, to a whole step, then continue or stand still as before; answer with the time then [s].
 
-    Where nobody looks it runs as fast as it can. The answer is a DivergenceError where the run halts before, and a
-    RuntimeError where it begins again.
+    If nobody watches it runs as fast as it can. The answer is a DivergenceError if the run halts before, and a
+    RuntimeError if it restarts.
     """
 
     seconds: float
@@ -191,16 +191,16 @@ Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | A
 
 
 class RunIdentity(NamedTuple):
-    """Identity of a run: the loop gives each run a number where it begins, and nothing else does."""
+    """Identity of a run: the loop alone gives each new run its number."""
 
     number: int = 1  # in the order in which the runs of a scene begin
-    act: int = 1  # number of the person's act with which it began (`History`)
+    act: int = 1  # number of the person's act that began it (`History`)
     before: int = 0  # number of the run that it resumed; 0: it began at the start of the scene
     since: float = 0.0  # [s] of simulated time at that moment
 
 
 class RunLine:
-    """The runs to which a record over time belongs: the present one, and those that it goes on from."""
+    """The runs to which a record over time belongs: the present one, and those that it continues from."""
 
     def __init__(self) -> None:
         self.runs: list[RunIdentity] = []
@@ -211,7 +211,7 @@ class RunLine:
         return self.runs[-1].number if self.runs else 0
 
     def follow(self, run: RunIdentity) -> float:
-        """Take a run for the present one, unless it is older than that.
+        """Make a run the present one, unless it is older.
 
         Returns the time [s] up to which the record belongs to it: infinity for the same run, minus infinity for one
         that has nothing in common with it.
@@ -226,7 +226,7 @@ class RunLine:
 
 
 PlotRow = tuple[float, ...]  # (t [s], one value for each name in the scene's SERIES)
-RunRow = tuple[RunIdentity, PlotRow]  # a plot row with the run that it is of
+RunRow = tuple[RunIdentity, PlotRow]  # a plot row with its run
 
 
 class Status(NamedTuple):
@@ -241,11 +241,11 @@ class Status(NamedTuple):
     frame_rate: float  # frames per second published
     halted: str  # reason why the run stopped by itself, or ""
     run: RunIdentity = RunIdentity()
-    # While the last moments of a run that diverged are shown again, and at their end: corners [m] of what they fill.
+    # During the replay of a divergence, and at its end: corners [m] of the box that its moments fill.
     replayed: tuple[Vector, Vector] | None = None
     unmade: bool = False  # the scene could not begin with its parameters
-    pace: float = 1.0  # factor on `speed` that the scene asks for: below 1 is slow motion
-    restarted: bool = False  # an undo has lately found that the run was not kept, so it began again
+    pace: float = 1.0  # factor on `speed` requested by the scene: below 1 is slow motion
+    restarted: bool = False  # a recent undo had to restart the run, which was not kept
     faster: str = ""  # advice that makes a capped run faster, or ""
 
 
@@ -268,9 +268,9 @@ class Snapshot(NamedTuple, Generic[P, F, R]):
     frame: F  # the scene's own record
     status: Status
     readings: R  # the scene's own record
-    params: P  # the parameters that this moment was made with
+    params: P  # the parameters of this moment
     curves: Mapping[str, object] | None = None  # parameter -> columns of its chart
-    state: Checkpoint | None = None  # of this moment, to go on from later; in some snapshots only
+    state: Checkpoint | None = None  # of this moment, to resume from later; in some snapshots only
 
 
 class LastFrame(NamedTuple):
@@ -278,5 +278,5 @@ class LastFrame(NamedTuple):
 
     time: float  # [s] simulated
     frame: object  # the scene's own record
-    low: Vector  # [m] corners of the box that what moves fills
+    low: Vector  # [m] corners of the box around the moving parts
     high: Vector  # [m]

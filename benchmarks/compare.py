@@ -48,7 +48,7 @@ def commit_of(root: Path, name: str) -> str:
 
 
 def check_clean(root: Path) -> None:
-    """Raises ValueError where tracked files differ from the last commit, as they would not be measured."""
+    """Raises ValueError if tracked files differ from the last commit, as they would not be measured."""
     changed = git(root, "status", "--porcelain", "--untracked-files=no").splitlines()
     if changed:
         raise ValueError(f"--compare: commit or stash changes first, they are not measured: {changed[0].strip()}")
@@ -70,7 +70,7 @@ def worktrees(root: Path, commits: list[str]) -> Iterator[list[Path]]:
 
 
 def measure(place: Path, names: list[str], quick: bool, out: Path) -> dict[str, list[dict[str, str]]]:
-    """The tables of a run in a worktree, by name; raises ValueError where it fails."""
+    """The tables of a run in a worktree, by name; raises ValueError if it fails."""
     command = [sys.executable, "-m", "app", "bench", *names, "--out", str(out), *(["--quick"] if quick else [])]
     paths = [str(place), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}

@@ -53,7 +53,7 @@ def shown(row: Compared) -> dict[str, str]:
 
 
 def compare() -> int:
-    """Set the shipped shapes beside Capytaine, live; returns 0 where all lie within their limits, else 1.
+    """Compare the shipped shapes with Capytaine, computed now; returns 0 if all are within their limits, else 1.
 
     Raises OSError without Capytaine.
     """
@@ -81,7 +81,7 @@ def compared(name: str, hull: Hull, known: Hull) -> list[Compared]:
     rows = []
     for axis, quantity in AXES:
         if C[axis, axis] <= 1e-3 * C[2, 2] * own.length**2 and axis > 2:
-            continue  # nothing rights it
+            continue  # no restoring moment
         inertia, restoring = mass[axis, axis] / SEA_DENSITY, C[axis, axis] / SEA_DENSITY / GRAVITY
         periods = [
             2 * math.pi / math.sqrt(GRAVITY) / natural_frequency(one, axis, inertia, restoring) for one in (own, live)
@@ -115,14 +115,14 @@ def stiffness_of(linear: LinearHull) -> np.ndarray:
 
 
 def heave_response(linear: LinearHull, mass: np.ndarray, stiffness: np.ndarray, w: float) -> float:
-    """Height of heave over that of a wave of w [rad/s] from ahead."""
+    """Amplitude of heave over that of a wave of w [rad/s] from ahead."""
     index, weights = lagrange(linear.frequency, w / math.sqrt(GRAVITY))
     X = np.tensordot(weights, linear.excitation[index, 0], 1)
     return float(abs(linear_response(linear, mass, stiffness, SEA_DENSITY * GRAVITY * X, w)[2]))
 
 
 def simulated_decay(hull: Hull, draft: float, axis: int) -> np.ndarray:
-    """Course of a free motion along or about an axis, let go at rest, as simulated."""
+    """Simulated free motion along or about an axis, released at rest."""
     rest, turn = -float(hull.extents[2, 0]) - draft, [1.0, 0.0, 0.0, 0.0]
     if axis > 2:
         turn[axis - 2] = NUDGE / 2

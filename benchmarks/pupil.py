@@ -144,7 +144,7 @@ class Pupil:
         await socket.send(msgspec.msgpack.encode(message))
 
     async def press(self, socket: ClientConnection) -> None:
-        """Pause the rope, and let it go on, or the other way round."""
+        """Pause the rope, and let it continue, or the other way round."""
         command = msgspec.msgpack.encode({"type": "CommandTriggerMessage", "uuid": self.controls["Play or pause"]})
         for _ in range(2):
             was = self.state

@@ -59,7 +59,7 @@ LEVELS = {
 
 
 def host_features() -> dict[str, bool]:
-    """Features of this processor, by LLVM's names; empty where LLVM cannot tell."""
+    """Features of this processor, by LLVM's names; empty if LLVM cannot tell."""
     try:
         return dict(llvm.get_host_cpu_features())
     except RuntimeError:
@@ -77,7 +77,7 @@ def host_levels() -> tuple[str, ...]:
 
 
 def level_environment(name: str) -> dict[str, str]:
-    """Environment in which numba compiles for a level. Raises ValueError where this processor does not have it."""
+    """Environment in which numba compiles for a level. Raises ValueError if this processor does not have it."""
     if name not in host_levels():
         raise argument_error("--processor", name, "what this processor has: " + (", ".join(host_levels()) or "none"))
     return {"NUMBA_CPU_NAME": LEVELS[name].cpu, "NUMBA_CPU_FEATURES": LEVELS[name].tuning}

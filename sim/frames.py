@@ -19,7 +19,7 @@ class Sampled(Protocol):
     """A motion that goes from frame to frame."""
 
     def advance(self, frame: int) -> None:
-        """Go on to a frame from the one before."""
+        """Continue to a frame from the one before."""
         ...
 
     @property

@@ -2,7 +2,7 @@
 
 Kernels that may take long read the numbers of `stop_request` now and then. The first cancels the solve. If the second
 is set, they also check for Python's signals, which only the main thread gets. If the third is set, they call a Python
-function and then go on: a solve of seconds yields to its thread in between.
+function and then continue: a solve of seconds yields to its thread in between.
 """
 
 import contextlib

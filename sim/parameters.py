@@ -33,8 +33,8 @@ class Parameter(NamedTuple):
     """The declaration of one parameter. `choices` is non-empty for named values only; low and high bound numbers.
 
     title: in the panel, "" for the name in words. choice_titles: in the panel, of each of `choices`.
-    affects: effect of a change. "look": only on the picture or the speed of the clock; "forces": the motion goes on
-    under other forces; "start": the scene begins again.
+    affects: effect of a change. "look": only on the picture or the speed of the clock; "forces": the motion continues
+    under other forces; "start": the scene restarts.
     """
 
     default: Value
@@ -116,10 +116,10 @@ def in_words(name: str) -> str:
 
 
 def redeclare(base: type, name: str, **changes: Any) -> Any:
-    """The field of a parameter of `base` once more, for a class derived from it, with parts of its declaration changed.
+    """A copy of the field of a parameter of `base`, for a derived class, with parts of its declaration changed.
 
     changes: fields of `Parameter`, as in `time_step: float = redeclare(Base, "time_step", affects="start")`.
-    Raises ValueError where `base` has no such parameter.
+    Raises ValueError if `base` has no such parameter.
     """
     known = parameters_of(base)
     if name not in known:
@@ -131,7 +131,7 @@ def redeclare(base: type, name: str, **changes: Any) -> Any:
 def with_parameters(declared: Mapping[str, Parameter], **changes: Any) -> Callable[[type[T]], type[T]]:
     """A decorator, below that of a dataclass, which adds parameters that are declared elsewhere at the end of a class.
 
-    changes: fields of `Parameter`, the same for all of them, as in `group="Weather"`. Raises ValueError where the class
+    changes: fields of `Parameter`, the same for all of them, as in `group="Weather"`. Raises ValueError if the class
     has such a name already.
     """
 
@@ -159,7 +159,7 @@ def changed_names(old: object, new: object) -> frozenset[str]:
 
 
 def effect_of_change(old: object, new: object) -> Effect | None:
-    """The greatest effect of the parameters in which two records differ; None where they are equal.
+    """The greatest effect of the parameters in which two records differ; None if they are equal.
 
     A field that is not declared as a parameter affects the start.
     """
@@ -185,7 +185,7 @@ def clamp_value(parameter: Parameter, value: object) -> Value:
 
 
 def check_value(name: str, parameter: Parameter, value: object) -> Any:
-    """`value` as the parameter's kind. Raises ValueError where `clamp_value` would have changed it."""
+    """`value` as the parameter's kind. Raises ValueError if `clamp_value` would have changed it."""
     if parameter.choices:
         if not isinstance(value, str) or value not in parameter.choices:
             raise choice_error(name, value, parameter.choices)

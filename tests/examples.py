@@ -11,7 +11,10 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "contributing.md"
+EXAMPLES = PAGE.parent / "examples"  # whole files, each at its path in the sources
 BLOCK = re.compile(r"^```(?P<language>\w+)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\(examples/(?P<path>[^)]+\.(?P<language>\w+))\)")
+LANGUAGES = {"py": "python", "toml": "toml"}
 COPIED = (
     ".ci",
     "sim",
@@ -28,20 +31,23 @@ SECONDS = 240  # [s] that one command may take, kernels compiled
 
 
 class Block(NamedTuple):
-    """One fenced block of a page."""
+    """A file that a section of the page links to, or one of its fenced blocks."""
 
     language: str
-    path: str  # of the file that it is or changes, relative to the root; "" where it is commands
+    path: str  # of the file that it is or changes, relative to the root; "" for commands
     text: str
 
 
 def section(heading: str) -> list[Block]:
-    """The blocks below a heading of the page. Raises KeyError where there is no such heading."""
+    """The linked files and the blocks below a heading of the page. Raises KeyError for an unknown heading."""
     parts = re.split(r"^## (.+)$", PAGE.read_text("utf-8"), flags=re.MULTILINE)
     body = dict(zip(parts[1::2], parts[2::2], strict=True))[heading]
-    blocks: list[Block] = []
+    blocks = [
+        Block(LANGUAGES[link["language"]], link["path"], (EXAMPLES / link["path"]).read_text("utf-8"))
+        for link in LINK.finditer(body)
+    ]
     for found in BLOCK.finditer(body):
-        named = re.search(r"^(?:File|Change) `([^`]+)`:\n\n\Z", body[: found.start()], re.MULTILINE)
+        named = re.search(r"^Change `([^`]+)`:\n\n\Z", body[: found.start()], re.MULTILINE)
         # A second change of one file follows the first block without another line.
         path = named[1] if named else blocks[-1].path if found["language"] == "diff" else ""
         blocks.append(Block(found["language"], path, found["text"]))

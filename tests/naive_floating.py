@@ -196,7 +196,7 @@ def naive_drift(hull: Hull, position, rotation, velocity, spin, h: float):
 
 
 def wet_share(depth: np.ndarray) -> float:
-    """Share of a triangle's area where the linear function of these corner values is positive."""
+    """Fraction of a triangle's area where the linear function of these corner values is positive."""
     low, middle, high = np.sort(depth)
     if low >= 0 or high <= 0:
         return float(high > 0)

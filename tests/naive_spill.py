@@ -92,8 +92,8 @@ OILS = {
 
 
 def spill(name: str, volume: float, wind: float, hours: float, step: float = 20.0) -> dict[str, float]:
-    """Shares evaporated and dispersed, share of water, area [m2] and kinematic viscosity [m2/s] so many hours later, at
-    15 C on water of 1025 kg/m3. step [s]; wind [m/s], above 4.43."""
+    """Fractions evaporated, dispersed and of water, area [m2] and kinematic viscosity [m2/s] some hours later, at 15 C
+    on water of 1025 kg/m3. step [s]; wind [m/s], above 4.43."""
     oil = OILS[name]
     share, boiling, molar, _ = (np.array(column) for column in zip(*oil.parts, strict=True))
     molar = molar / 1000.0

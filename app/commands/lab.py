@@ -23,7 +23,7 @@ def add_arguments(lab: argparse.ArgumentParser) -> None:
     live.add_argument("folders", type=Path, nargs="+", metavar="DIR", help=made)
     open_lab.add_arguments(live)
     live.set_defaults(run=run_live)
-    # The options of `springtide lab DIR` stand in the help of `springtide lab`: nobody asks for that of DIR.
+    # The options of `springtide lab DIR` stand in the help of `springtide lab`, where users look.
     lab.format_help = lambda: f"{argparse.ArgumentParser.format_help(lab)}\n{live.format_help()}"
     new = commands.add_parser("new", help="write a folder with the exercises")
     new.add_argument("folder", type=Path, metavar="DIR", help="a new or empty folder")
@@ -72,7 +72,7 @@ def run_live(arguments: argparse.Namespace) -> int:
 
 
 def choose_scene(arguments: argparse.Namespace, of_task: str) -> None:
-    """Have a student's lab begin where the work is, if nothing else is asked for. of_task: scene of the next task."""
+    """Open a student's lab at the next task, unless another scene is requested. of_task: scene of that task."""
     is_asked = arguments.scene or arguments.resume or arguments.preset is not None or arguments.set
     if not is_asked and all(getattr(arguments, option) is None for option in SCENE_OF_FILE):
         arguments.scene = of_task

@@ -64,7 +64,7 @@ class Server(ThreadingHTTPServer):
 
 
 def make_server(classroom: Classroom, key: str, port: int) -> ThreadingHTTPServer:
-    """A server of the page at /KEY/ and of its rows at /KEY/rows. Raises OSError where the port cannot be bound."""
+    """A server of the page at /KEY/ and of its rows at /KEY/rows. Raises OSError if the port cannot be bound."""
 
     class Handler(BaseHTTPRequestHandler):
         """Answers GET only."""

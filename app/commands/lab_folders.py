@@ -67,7 +67,7 @@ def check(
 
 
 def write_files(results: Sequence[FolderResult], out: dict[str, Path | None]) -> None:
-    """Write the files that are asked for, each whole or not at all."""
+    """Write the requested files, each completely or not at all."""
     for option, make in (("json", json_text), ("csv", csv_text), ("report", page_of)):
         path = out[option]
         if path is not None and str(path) != "-":

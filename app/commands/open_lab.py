@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `springtide` without a command."""
     scenes = ", ".join(NAMES) + " (default: rope, or that of the first file)"
     parser.add_argument("--scene", default="", metavar="SCENE", help=scenes)
-    resume = "begin with the last set-up of the previous lab with this option, if there was one"
+    resume = "continue with the last set-up of the previous lab with this option, if any"
     parser.add_argument("--resume", action="store_true", help=resume)
     add_address(parser)
     add_parameters(parser)

@@ -58,7 +58,7 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
     """Run a scene for `seconds` [s] of simulated time, and write `rate` frames a second [Hz] to `out`.
 
     Returns the exit status: 0; 1 for a run that diverged, which keeps the frames before that. Raises ValueError for
-    arguments that are not allowed, before any work, and OSError where the file cannot be written.
+    arguments that are not allowed, before any work, and OSError if the file cannot be written.
     """
     check_number("--seconds", seconds, "s", 0.0, MAX_DURATION, above=True)
     check_number("--rate", rate, "Hz", 0.0, MAX_RATE, above=True)
@@ -67,7 +67,7 @@ def run_to_file(name: str, scene: SceneKind[Any, Any, Any], params: Any, seconds
     check_out_file("--out", out)
     running: Scene[Any, Any, Any] = scene.make(params)
     if running.note:
-        # Nobody would notice in a file that another integrator ran than the one that was asked for.
+        # A file would not show that another integrator ran than the requested one.
         raise argument_error(
             "integrator", params.integrator, "a method with damping: this net is damped by links, drag, air or contact"
         )

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from app.server.viewer import Viewer
 
 LOOPBACK = "127.0.0.1"
-REASON_TIME = 3.0  # [s] for which the page still answers after a start that failed: a browser may be about to ask
-WAIT_INTERVAL = 0.5  # [s] between two looks for Ctrl-C, which on Windows does not interrupt a wait
+REASON_TIME = 3.0  # [s] for which the page still answers after a failed start: a browser may be about to connect
+WAIT_INTERVAL = 0.5  # [s] between two checks for Ctrl-C, which on Windows does not interrupt a wait
 
 
 def check_address(host: str, port: int) -> None:
@@ -36,7 +36,7 @@ def check_address(host: str, port: int) -> None:
     if not 0 <= port <= 65535:
         raise argument_error("--port", port, "0 to 65535")
     allowed = "an address of this machine, such as 127.0.0.1, or 0.0.0.0 for all of them"
-    if not host:  # which would mean all of them
+    if not host:  # an empty host would mean all addresses
         raise argument_error("--host", host, allowed)
     try:
         socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
@@ -49,9 +49,9 @@ def check_address(host: str, port: int) -> None:
 def reached_host(host: str, port: int) -> Generator[str]:
     """The host to print and to open for a server that is bound to `host` and `port`, as it stands in an address.
 
-    It is localhost for 127.0.0.1, which browsers look up as ::1 first. Inside, that port of ::1 is taken, so that
-    localhost leads here and to no other program. If another program has it already, or for other hosts, it is the
-    address that is bound.
+    It is localhost for 127.0.0.1. Browsers try ::1 first for that name, so the same port of ::1 is taken meanwhile, and
+    localhost leads to no other program. If another program already has it, or for other hosts, it is the bound
+    address.
     """
     if host not in (LOOPBACK, "0.0.0.0"):
         yield f"[{host}]" if ":" in host else host
@@ -88,16 +88,16 @@ def serve_lab(
 ) -> int:
     """Print the address that is bound, open the scene, and wait. Returns the exit status. session: a student's folder.
 
-    params: makes the parameters, on another thread; None for those that the scene opens with. others: set-ups to show
-    beside it. resumes: keep the set-up for the next start that does.
+    params: makes the parameters, on another thread; None for the scene's first view. others: set-ups to show beside it.
+    resumes: keep the set-up for the next start with this option.
 
-    The page is there before the scene is, and shows what is compiled. workbook: None for the guide of the course lab.
+    The page appears before the scene, and shows the compilation. workbook: None for the guide of the course lab.
     base_path, origins: of a proxy; see `app/server/web/access.py`. The key is taken from the environment.
 
-    Raises ValueError for what is no address, path or origin.
+    Raises ValueError for an invalid address, path or origin.
     """
     check_address(host, port)
-    host = LOOPBACK if host == "localhost" else host  # the one of its addresses that every system has
+    host = LOOPBACK if host == "localhost" else host  # the address of localhost that every system has
     key = read_key(os.environ.pop(KEY_VARIABLE, ""))
     access = Access(read_base_path(base_path), tuple(read_origin(origin) for origin in origins), key)
     try:
@@ -131,7 +131,7 @@ def show_until_ended(opening: "Opening", host: str, access: Access, *, browser: 
     before = signal.getsignal(signal.SIGINT)
 
     def end(*_: object) -> None:
-        """Raises nothing, as it may come in the middle of an import. A second Ctrl-C does."""
+        """End the lab without raising, as the signal may arrive during an import. A second Ctrl-C raises."""
         opening.stop()
         signal.signal(signal.SIGINT, before)
 
@@ -161,20 +161,20 @@ def show_until_ended(opening: "Opening", host: str, access: Access, *, browser: 
 
 
 class Opening:
-    """Makes a lab behind a server that listens, and opens its scene, on a thread: numba is imported for seconds."""
+    """Makes a lab behind a listening server, and opens its scene, on a thread: importing numba takes seconds."""
 
     def __init__(self, opened: Opened, make: "Callable[[], Viewer]", show: "Callable[[Viewer], None]") -> None:
         """make: the lab. show: opens its scene."""
         self.opened, self.make, self.show = opened, make, show
         self.viewer: Viewer | None = None
         self.error: BaseException | None = None  # reason why it failed
-        self.done = threading.Event()  # the lab is to end, or could not be opened
-        self.ended = threading.Event()  # the lab is to end
+        self.done = threading.Event()  # the lab should end, or could not be opened
+        self.ended = threading.Event()  # the lab should end
         self.thread = threading.Thread(target=self.run, name="opening", daemon=True)
         self.cover('<span class="springtide-progress">Loading the simulations …</span>')
 
     def cover(self, words: LiteralString, *values: object) -> None:
-        """A line of the page."""
+        """Line of the page."""
         self.opened.server.gui.add_html(note(fill(words, *values)))
 
     def start(self) -> None:
@@ -182,7 +182,7 @@ class Opening:
         self.thread.start()
 
     def run(self) -> None:
-        """Make the lab and open its scene. The page says why that failed."""
+        """Make the lab and open its scene. The page shows the reason for a failure."""
         try:
             viewer = self.make()
             self.viewer = viewer
@@ -191,20 +191,20 @@ class Opening:
             self.show(viewer)
         except BaseException as error:
             self.error = error
-            if self.viewer is None:  # otherwise it has said so
+            if self.viewer is None:  # otherwise its page shows the reason
                 self.opened.server.gui.reset()
                 reason = f"{type(error).__name__}: {error}"
                 self.cover('<b class="springtide-panel">Springtide could not be started.</b><br>{}', reason)
             self.done.set()
 
     def check(self) -> None:
-        """Raise the exception with which the start failed, once browsers could read it."""
+        """Raise the exception of a failed start, once browsers could read it."""
         if self.error is not None:
             self.ended.wait(REASON_TIME)
             raise self.error
 
     def stop(self) -> None:
-        """Open no more, as the lab ends; `shut` does the rest."""
+        """Stop opening, as the lab ends; `shut` does the rest."""
         self.ended.set()
         self.done.set()
         if self.viewer is not None:
@@ -221,7 +221,7 @@ class Opening:
 
 
 def say(text: str) -> None:
-    """Print a line at once. Where nothing can be printed (a full disk, a closed pipe), nothing more is tried."""
+    """Print a line at once. If printing fails (a full disk, a closed pipe), it is not tried again."""
     try:
         print(text, flush=True)
     except OSError:
@@ -243,7 +243,7 @@ class SetupSaver:
         self.kept: object = None
 
     def store(self) -> None:
-        """Keep the set-up, if it is another than before and can be written."""
+        """Store the set-up, if it has changed and can be written."""
         viewer = self.opening.viewer
         if viewer is None or viewer.current is None:
             return

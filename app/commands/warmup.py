@@ -52,7 +52,7 @@ def warm_up_into(folder: Path, level: str) -> int:
     level: of processors; "all" for each that this processor has, "" for this processor. Runs in separate processes, as
     numba reads folder and level at import.
 
-    Raises ValueError where this processor does not have the level, or the folder cannot be made.
+    Raises ValueError if this processor does not have the level, or the folder cannot be made.
     """
     levels = (host_levels() if level == "all" else ()) or (level,)
     processors = [level_environment(each) if each else {} for each in levels]

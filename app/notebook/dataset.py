@@ -32,7 +32,7 @@ def to_dataset(kind: AnyKind, scene: AnyScene, rows: Iterable[PlotRow], link: st
     for column, name in enumerate(kind.series, 1):
         found[as_name(name)] = (("t",), table[:, column], attributes(units.get(name, ""), name))
     for name, (array, unit) in scene.arrays().items():
-        # A name that a plot has too is that of the state.
+        # If a plot has the same name, the name is that of the state.
         own = f"state_{name}" if name in found else name
         dimensions = tuple(f"{own}_{axis}" for axis in range(array.ndim))
         found[own] = (dimensions, array, attributes(*split_unit(unit)))

@@ -1,4 +1,4 @@
-"""The handle of a lab that runs beside a notebook, and how one is opened."""
+"""The handle of a lab beside a notebook, and its opening."""
 
 import atexit
 import contextlib
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 HOST = "127.0.0.1"
 MAX_WAIT = 1e6  # [s] of simulated time
 MIN_HEIGHT, MAX_HEIGHT = 200, 4000  # [pixels] of the output
-POLL_INTERVAL = 0.05  # [s] between two looks at what is waited for: an interrupt of the kernel comes between
+POLL_INTERVAL = 0.05  # [s] between two checks of an awaited result, so that the kernel can be interrupted
 CALL_TIMEOUT = 20.0  # [s] for viser's event loop to answer
 LAST_TIMEOUT = 2.0  # [s] for the last picture; without it an earlier one stays
 T = TypeVar("T")
@@ -61,7 +61,7 @@ class Lab:
 
     @property
     def running(self) -> bool:
-        """True if the clock runs. It stands still where no browser looks."""
+        """True if the clock runs. It stands still while no browser watches."""
         return self._open.loop.run.running
 
     @property
@@ -72,11 +72,11 @@ class Lab:
 
     @property
     def address(self) -> str:
-        """Address of the page, for a browser on the kernel's machine. Who has it can drive the lab."""
+        """Address of the page, for a browser on the kernel's machine. Anyone who has it can control the lab."""
         return f"http://{HOST}:{self._open.port}/{self._key}/"
 
     def set(self, **values: float | str) -> None:
-        """Set parameters. Raises ValueError, and sets none of them, where one is not allowed."""
+        """Set parameters. Raises ValueError, and sets none, if one is not allowed."""
         known = parameters_of(self._params)
         for name in values:
             if name not in known:
@@ -89,9 +89,9 @@ class Lab:
     def wait(self, seconds: float) -> float:
         """Let the lab run for `seconds` [s] of simulated time, to a whole step; returns the time then [s].
 
-        After it the clock goes on, or stands still where it did before. With a browser on it the lab runs at its speed,
-        without one as fast as it can. Raises ValueError for what is not a time, DivergenceError where the run stops
-        before, and RuntimeError where it is reset or another scene is opened meanwhile.
+        Afterwards the clock continues or stands still as before. With a browser the lab runs at its speed, without
+        one as fast as it can. Raises ValueError for what is not a time, DivergenceError if the run stops
+        before, and RuntimeError if it is reset or another scene is opened meanwhile.
         """
         check_number("seconds", seconds, "s", 0.0, MAX_WAIT)
         answer: Future[float] = Future()
@@ -100,7 +100,7 @@ class Lab:
         return self._result_of(answer, served)
 
     def reset(self) -> None:
-        """Begin the run again, with the parameters as they are."""
+        """Restart the run with the present parameters."""
         self._on_event_loop(self._open.settings.reset)
 
     def play(self) -> None:
@@ -124,7 +124,7 @@ class Lab:
     def picture(self, width: int = 960, height: int = 540) -> Still:
         """A picture [pixels] of a browser's view, which stays in the notebook.
 
-        Raises RuntimeError where no browser shows the lab, and TimeoutError where one does not draw.
+        Raises RuntimeError if no browser shows the lab, and TimeoutError if one does not draw.
         """
         return take_still(self._open, width, height)
 
@@ -146,7 +146,7 @@ class Lab:
         self.stop()
 
     def __getattr__(self, name: str) -> Any:
-        # Names that IPython asks every object for begin with "_", and are no parameters.
+        # IPython reads names that begin with "_" from every object; they are no parameters.
         if not name.startswith("_") and name in parameters_of(self._params):
             return getattr(self._params, name)
         raise AttributeError(str(unknown_parameter(name, parameters_of(self._params))))
@@ -166,7 +166,7 @@ class Lab:
 
     @property
     def _open(self) -> Viewer:
-        """The viewer. Raises RuntimeError where the lab was stopped."""
+        """The viewer. Raises RuntimeError if the lab was stopped."""
         self._check_open()
         return self._viewer
 
@@ -191,7 +191,7 @@ class Lab:
         return self._result_of(answer, served)
 
     def _result_of(self, answer: "Future[T]", served: ServedScene) -> T:
-        """The answer of a scene. Raises RuntimeError where it is closed before it has answered."""
+        """The answer of a scene. Raises RuntimeError if it is closed before it has answered."""
         try:
             while True:
                 with contextlib.suppress(TimeoutError):
@@ -200,7 +200,7 @@ class Lab:
                 if not served.is_open:
                     raise RuntimeError("another scene was opened in the meantime")
         finally:
-            answer.cancel()  # where the kernel was interrupted: the lab is not to wait for it
+            answer.cancel()  # after an interrupt of the kernel the lab must not wait for it
 
     def _on_event_loop(self, action: Callable[[], None]) -> None:
         """Call a function on viser's event loop, and wait for it."""
@@ -273,7 +273,7 @@ def read_setup(scene: str, preset: str, parameters: Mapping[str, object]) -> tup
 
 
 def stop_former(cell: str, execution: str) -> None:
-    """End the labs that an earlier execution of this cell has opened, and forget those that have ended."""
+    """End the labs opened by an earlier execution of this cell, and forget those that have ended."""
     for name, (other, earlier, lab, viewer) in list(LABS.items()):
         if cell and other == cell and earlier != execution:
             lab.stop()

@@ -11,18 +11,18 @@ from typing import Any
 from app.notebook.picture import Still
 
 STILL_WIDTH = 640  # [pixels] of the picture that stays
-STILL_SHOWN_WIDTH = 240  # [pixels] of it below the page, as long as that is there
+STILL_SHOWN_WIDTH = 240  # [pixels] of it below the page, while that is open
 PAGE_WIDTH = 1000  # [pixels] about, of a notebook's outputs: for the shape of the picture
 
 
 def shell() -> Any:
-    """The IPython that this runs in, or None."""
+    """The running IPython, or None."""
     ipython = sys.modules.get("IPython")
     return None if ipython is None else ipython.get_ipython()
 
 
 def cell_of_now() -> tuple[str, str]:
-    """The cell that is executed and the number of its execution; "" where the notebook does not say."""
+    """The cell that is executed and the number of its execution; "" if the notebook does not say."""
     parent = getattr(shell(), "get_parent", dict)() or {}
     cell = (parent.get("metadata") or {}).get("cellId") or ""
     return str(cell), str((parent.get("header") or {}).get("msg_id") or "")
@@ -36,7 +36,7 @@ class Output:
         self.port, self.key, self.height = port, key, height
         self.still: Still | None = None
         self.page_id, self.still_id = uuid.uuid4().hex, uuid.uuid4().hex
-        self.context = contextvars.copy_context()  # which says what cell an output belongs to
+        self.context = contextvars.copy_context()  # which holds the cell of an output
 
     @property
     def still_size(self) -> tuple[int, int]:
@@ -59,7 +59,7 @@ class Output:
         return f'<div id="{name}"></div><script>{script.rstrip()}({given});</script>'
 
     def show_still(self, still: Still) -> None:
-        """Keep a picture in the notebook, small as long as the page is there."""
+        """Keep a picture in the notebook, small while the page is open."""
         self.still = still
         put(image(still), self.still_id, {"image/png": {"width": STILL_SHOWN_WIDTH}}, update=True)
 
@@ -73,7 +73,7 @@ class Output:
 
 
 def image(still: Still) -> dict[str, str]:
-    """A picture as notebooks keep it."""
+    """A picture in the format of notebooks."""
     return {"image/png": base64.b64encode(still.png).decode(), "text/plain": "A picture of the lab."}
 
 

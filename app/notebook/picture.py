@@ -8,7 +8,7 @@ from sim.validation import argument_error, is_whole_number
 
 MAX_SIDE = 8000  # [pixels]
 PAGE_TIMEOUT = 20.0  # [s] for a page to connect
-DRAW_TIMEOUT = 20.0  # [s] for a browser to draw a picture; it draws none of a page that is scrolled out of sight
+DRAW_TIMEOUT = 20.0  # [s] for a browser to draw a picture; it draws none of a page scrolled out of view
 
 
 class Still:
@@ -28,7 +28,7 @@ class Still:
 def take_still(viewer: Viewer, width: int, height: int, timeout: float = DRAW_TIMEOUT) -> Still:
     """View of the newest browser, drawn again at width x height [pixels]. timeout: [s] for drawing it.
 
-    Raises ValueError for what is not a size, RuntimeError where no browser shows the lab, and TimeoutError where it
+    Raises ValueError for what is not a size, RuntimeError if no browser shows the lab, and TimeoutError if it
     does not draw.
     """
     for name, side in (("width", width), ("height", height)):

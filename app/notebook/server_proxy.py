@@ -1,4 +1,4 @@
-"""The entry of jupyter-server-proxy: a lab of one's own behind Jupyter's login, at BASE_URL/springtide/."""
+"""The entry of jupyter-server-proxy: a lab for each user behind Jupyter's login, at BASE_URL/springtide/."""
 
 import os
 import sys
@@ -11,13 +11,13 @@ LAB_VARIABLE = "SPRINGTIDE_LAB"  # the student's folder
 
 
 def springtide() -> dict[str, object]:
-    """Settings for jupyter-server-proxy: how the lab is started, and the key that only the two of them know.
+    """Settings for jupyter-server-proxy: the command of the lab, and the key that only these two know.
 
-    Jupyter asks for its token and checks the origin before it passes a request on. What does not come through it has
-    no key and is refused: another page, or another user of the same machine.
+    Jupyter checks its token and the origin before it passes a request on. Other requests have no key and are refused:
+    those of another page, or another user of the same machine.
     """
     key = make_key()
-    # -P: a file of a student's that is called app.py is not the program.
+    # -P: a student's file named app.py must not replace the program.
     command = [sys.executable, "-P", "-m", "app", *lab_words(), "--no-open", "--resume"]
     return {
         "command": [*(word.replace("{", "{{").replace("}", "}}") for word in command), "--port", "{port}"],
@@ -31,9 +31,9 @@ def springtide() -> dict[str, object]:
 def lab_words() -> list[str]:
     """The words of a command line that runs the student's folder.
 
-    The exercises are made where it has no answers yet, whatever other files it holds.
+    The exercises are added if it has no answers yet, whatever other files it holds.
 
-    None where the environment names no folder, or one that cannot be made.
+    None if the environment names no folder, or one that cannot be made.
     """
     named = os.environ.get(LAB_VARIABLE)
     if not named:

@@ -13,16 +13,16 @@ BRAND_COLOUR = (28, 106, 168)
 
 
 def set_theme(gui: viser.GuiApi, *, dark: bool) -> None:
-    """The look of viser's panel: of every browser, or of one by its own `gui`."""
+    """Set the look of viser's panel, of every browser or of one by its own `gui`."""
     gui.configure_theme(
         dark_mode=dark, show_logo=False, show_share_button=False, control_width="medium", brand_color=BRAND_COLOUR
     )
 
 
 def add_theme_buttons(gui: viser.GuiApi, view: AnyView) -> None:
-    """Two hidden buttons, by which a browser says whether panel and floor are to be dark.
+    """Add two hidden buttons, by which a browser chooses a dark or light panel and floor.
 
-    They are buttons because two browsers may say the same: viser passes on only what changes the value of a checkbox.
+    They are buttons because two browsers may choose the same: viser passes on only changes of a checkbox.
     """
     dark_button: GuiHandle = gui.add_button("Dark", visible=False)
     light_button: GuiHandle = gui.add_button("Light", visible=False)
@@ -44,7 +44,7 @@ def add_theme_buttons(gui: viser.GuiApi, view: AnyView) -> None:
 
 
 def add_switches(gui: viser.GuiApi) -> None:
-    """The choices of each browser; the page does the rest (`js/panel/display.js`, `js/shading/quality.js`)."""
+    """Add the choices of each browser; the page does the rest (`js/panel/display.js`, `js/shading/quality.js`)."""
     gui.add_html(
         '<div class="springtide-switches"><button type="button" data-springtide-switch="dark">Dark</button>'
         '<button type="button" data-springtide-switch="large">Large text</button></div>'

@@ -1,4 +1,4 @@
-"""The block above the tabs, which stays in sight: scene, preset, buttons, state, and the figures that matter."""
+"""The block above the tabs, always visible: scene, preset, buttons, state, and the main figures."""
 
 from collections.abc import Callable
 
@@ -13,12 +13,12 @@ from app.scenes.contract import AnySnapshot, AnyView
 from app.scenes.setups import write_query
 from sim.parameters import in_words
 
-BUSY_SHOWN_FROM = 0.5  # [s] that a step has taken, from which the status line says so
+BUSY_SHOWN_FROM = 0.5  # [s] of a step, above which the status line reports it
 COMMANDS: dict[str, Command] = {"Play": Play(), "Pause": Pause(), "Step": StepOnce()}
 
 
 class Head:
-    """The block; `page.css` keeps it in sight while the rest is scrolled, and gives the buttons their icons."""
+    """The block; `page.css` keeps it visible while the rest scrolls, and gives the buttons their icons."""
 
     def __init__(
         self,
@@ -30,9 +30,9 @@ class Head:
     ) -> None:
         """scenes: to choose from. reset_view: puts the camera of a browser where a new one would be."""
         self.view, self.settings, self.scenes, self.reset_view = view, settings, scenes, reset_view
-        self.running = True  # as the buttons show it
-        self.told: tuple[object, ...] = ()  # shown at once when it changes
-        self.visited = ""  # preset that the page knows, for Back and Forward of the browser
+        self.running = True  # as shown by the buttons
+        self.told: tuple[object, ...] = ()  # a change of it is shown at once
+        self.visited = ""  # preset known to the page, for Back and Forward of the browser
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
             self.chooser: GuiHandle | None = None
@@ -51,7 +51,7 @@ class Head:
             self.here = gui.add_html("")
 
     async def on_preset(self, event: ViserEvent) -> None:
-        """A browser has chosen a preset; viser also calls this where `show_preset` assigns it, without a client."""
+        """Take the preset that a browser chose; viser also calls this after `show_preset`, without a client."""
         if event.client_id is not None and event.target.value in self.settings.presets:
             try:
                 self.settings.load(event.target.value)
@@ -75,9 +75,9 @@ class Head:
                 self.settings.post(COMMANDS[name])
 
     def show_preset(self) -> None:
-        """The list of presets, with a separate entry if a parameter that matters is not as the loaded one has it.
+        """Show the list of presets, with a separate entry if an effective parameter differs from the loaded one.
 
-        So the preset itself can be chosen again.
+        The preset itself can then be chosen again.
         """
         settings, other = self.settings, self.settings.other_name
         options = (*settings.presets, *((other,) if other else ()))
@@ -91,7 +91,7 @@ class Head:
             self.here.content = str(fill('<span data-springtide-here="{}"></span>', query))  # js/panel/visited.js
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
-        """True if the rarely changing parts of the head are not as shown."""
+        """True if the rarely changing parts of the head are out of date."""
         running = snapshot.status.running
         if running != self.running:
             self.running = running
@@ -134,7 +134,7 @@ def add_scene_chooser(
 
 
 def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:
-    """Running or not, the clock, the pace, and why the run stopped; how many browsers share the lab."""
+    """State of the run, clock, pace, reason for a stop, and number of browsers that share the lab."""
     s = snapshot.status
     state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
     if (s.replayed is not None and not s.halted) or (s.running and s.pace < 1.0):
@@ -151,7 +151,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         '<div class="springtide-panel" data-state="{}" data-snapshot="{}" title="{}">'
         "{} t = {:.2f} s{}{}{}{}{}{}{}</div>",
         "running" if s.running else "paused",
-        snapshot.serial,  # so that one sees that it is fresh, where its words repeat
+        snapshot.serial,  # so that a repeated text is seen to be new
         f"Simulated time over real time, at {s.frame_rate:.0f} pictures a second" if s.running else "",
         state,
         s.time,

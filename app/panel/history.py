@@ -1,4 +1,4 @@
-"""Earlier settings, which undo brings back, with the acts that began their runs."""
+"""Earlier settings, which undo restores, with the acts that began their runs."""
 
 import collections
 import itertools
@@ -9,38 +9,38 @@ from app.messages import BaseParams
 from app.render.cameras import ClientCamera
 
 MAX_SETTINGS = 100  # kept; beyond that the oldest are dropped
-SAME_CHANGE = 1.0  # [s] after a change of a number, or the release of its slider, within which it goes on
+SAME_CHANGE = 1.0  # [s] after a change of a number, or the release of its slider, within which it continues
 
 
 class EarlierSettings(NamedTuple):
-    """All parameters, the preset that they come from, and the state of the screen."""
+    """All parameters, their preset, and the state of the screen."""
 
     params: BaseParams
     preset: str
     act: int = 1  # number of the act that began their run, which `History.note` sets
     runs: bool = False  # that act has the lab run, as a preset does; set by `History.note` too
-    cameras: tuple[ClientCamera, ...] = ()  # of all browsers, before a change that places them
+    cameras: tuple[ClientCamera, ...] = ()  # of all browsers, before a change that moves them
 
 
 class History:
-    """The settings before each act of a person, the last one first to be taken, and the numbers of the acts.
+    """The settings before each act of a person, as a stack, and the numbers of the acts.
 
-    An act is what a person does at once, whatever it sets. Changes of one number are one act as long as a slider is
-    held, and where they follow each other soon.
+    An act is everything that a person changes at once. Changes of one number are one act while a slider is held, and if
+    they follow each other soon.
     """
 
     def __init__(self) -> None:
-        self.act, self.runs = 1, False  # that began the present run: at first the opening of the scene
+        self.act, self.runs = 1, False  # of the present run: at first the opening of the scene
         self.acts = itertools.count(2)  # numbers of those to come
         self.settings: collections.deque[EarlierSettings] = collections.deque(maxlen=MAX_SETTINGS)
-        self.number, self.changed_at = "", 0.0  # name of the number that was changed last, and when [s]
+        self.number, self.changed_at = "", 0.0  # name of the last number changed, and the time [s]
         self.hands: set[int] = set()  # browsers in which a slider is held
 
     def note(self, before: EarlierSettings, *, number: str = "", begins: bool = False, runs: bool = False) -> int:
         """Keep the settings before a change. number: name of the number that changes, alone.
 
-        begins: it begins another run. runs: and has the lab run. Returns the number of the act that begins the run
-        after it.
+        begins: it begins another run. runs: and starts the clock. Returns the number of the act that begins the next
+        run.
         """
         goes_on = number != "" and number == self.number
         goes_on = goes_on and (bool(self.hands) or time.monotonic() - self.changed_at <= SAME_CHANGE)
@@ -52,12 +52,12 @@ class History:
         return self.act
 
     def press(self, client: int) -> None:
-        """A browser holds a slider: later changes are another act."""
+        """Note that a browser holds a slider: later changes are another act."""
         self.hands.add(client)
         self.number = ""
 
     def release(self, client: int) -> None:
-        """Note that a browser holds no slider any more, or has left. Its last messages may still come."""
+        """Note that a browser has released its slider, or has left. Its last messages may still arrive."""
         if client in self.hands:
             self.hands.discard(client)
             self.changed_at = time.monotonic()

@@ -1,4 +1,4 @@
-"""The keys of the lab, which are in the command palette too."""
+"""The keys of the lab, which are also in the command palette."""
 
 from collections.abc import Callable
 from typing import Literal

@@ -41,7 +41,7 @@ CONTROLS, LAB, SHARE, VIEW = "Controls", "Lab", "Share", "View"  # the tabs
 
 
 class Panel:
-    """The panel of one scene: its parts, and when each is brought up to date."""
+    """The panel of one scene: its parts, and when each is updated."""
 
     def __init__(
         self,
@@ -59,8 +59,8 @@ class Panel:
     ) -> None:
         """settings: shown and changed by the panel. scenes: to choose from. workbook: the tasks of the lab.
 
-        session: of a student's folder. wake: has the recording looked at once more. make_replay: makes the page of a
-        replay. beside: shows other set-ups beside this one; None where this one is beside another. changes: of the
+        session: of a student's folder. wake: has the recording checked again. make_replay: makes the page of a
+        replay. beside: shows other set-ups beside this one; None if this one is beside another. changes: of the
         server.
         """
         kind, gui = settings.kind, server.gui
@@ -86,7 +86,7 @@ class Panel:
         add_keys(gui, settings, self.place_first_view)
 
     def fill_tabs(self, session: "Session | None") -> None:
-        """The tabs. Who works in a folder of exercises finds these first, others the controls."""
+        """Make the tabs: the exercises first for a student's folder, otherwise the controls."""
         gui, workbook = self.server.gui, self.workbook
         has_folder = workbook is not None and workbook.folder is not None
         names = (LAB, CONTROLS, SHARE, VIEW) if has_folder else (CONTROLS, LAB, SHARE, VIEW)
@@ -113,7 +113,7 @@ class Panel:
                 self.controls.add_group(name, is_open=True)
 
     def show_settings(self) -> None:
-        """Show the settings, and whether a parameter that matters is not as the preset has it."""
+        """Show the settings, and whether an effective parameter differs from the preset."""
         self.controls.show(self.kind.hidden(self.settings.params))
         self.controls_tab.show_settings()
         self.head.show_preset()

@@ -1,4 +1,4 @@
-"""Live plots in a dock of their own, made when first asked for. Rows are kept whether a plot is open or not."""
+"""Live plots in a dock, made on first use. Rows are kept whether or not a plot is open."""
 
 import bisect
 import collections
@@ -7,17 +7,17 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias, cast
+from typing import TypeAlias, cast
 
 import numpy as np
 import viser
 from numpy.typing import NDArray
 from viser import uplot
 
-from app.formats.round_step import round_step
 from app.messages import ChartLine, PlotRow, RunIdentity, RunLine, RunRow
 from app.panel.recording.recording_files import Plotted
 from app.render.handles.viser_types import GuiHandle
+from app.render.markup.axis import Scale, scale_of
 from app.scenes.charts import Chart, Columns, chart_of, lines_of, with_numbers
 from app.scenes.contract import AnyKind, AnySnapshot
 
@@ -29,66 +29,24 @@ PADDING = (8, 16, 0, 0)  # [pixels] above, right, below, left: room for half of 
 DIGIT_WIDTH, TICK_ROOM = 7.5, 16.0  # [pixels] of a digit of a tick, and beside the words
 LOGARITHMIC_TICK_WIDTH = 66.0  # [pixels] for the words at a logarithmic scale
 FIRST_AXIS_HEIGHT = 28  # [pixels] of its ticks and their words
-TICKS = 4  # approximate number of intervals on a scale
-MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
-MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
 KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a hexadecimal byte, [pixels]
 DOT_SIZE = 11  # [pixels] of a dot
 CROSS_CLASS = "springtide-cross"  # of lines that are crosses
 EMPTY = np.array([0.0, 1.0])  # the times of a chart without rows
 
-Look: TypeAlias = tuple[str, tuple[ChartLine, ...], float | None, "Scale | None"]
-
-
-class Scale(NamedTuple):
-    """A linear scale from one round number to another, with a tick every `step`."""
-
-    low: float
-    high: float
-    step: float
-
-    @property
-    def ticks(self) -> tuple[float, ...]:
-        """From end to end."""
-        return tuple(self.low + k * self.step for k in range(round((self.high - self.low) / self.step) + 1))
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """At the ticks, with the digits that tell them apart."""
-        if 1e-4 <= self.step < 1e5:
-            digits = max(0, -math.floor(math.log10(self.step) + 1e-9))
-            words = [f"{tick + 0.0:.{digits}f}" for tick in self.ticks]
-        else:
-            words = [f"{tick:.3g}" if abs(tick) > 1e-9 * self.step else "0" for tick in self.ticks]
-        return tuple(word.replace("-", "\N{MINUS SIGN}") for word in words)
-
-    def fits(self, low: float, high: float) -> bool:
-        """True if data from low to high lie within, and fill enough of it."""
-        return self.low <= low and high <= self.high and high - low >= MIN_FILLED * (self.high - self.low)
-
-
-def scale_of(low: float, high: float, least: float = 0.0) -> Scale:
-    """A scale for data from low to high; it spans at least `least`, about the middle of the data."""
-    size = max(abs(low), abs(high))
-    if high - low < least:
-        middle = 0.5 * (low + high)
-        low, high = middle - 0.5 * least, middle + 0.5 * least
-    rough = max(high - low, MIN_SPAN * size) / TICKS if size or least else 1.0 / TICKS
-    step = round_step(rough)
-    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
-    return Scale(first * step, max(last, first + 1) * step, step)
+Look: TypeAlias = tuple[str, tuple[ChartLine, ...], float | None, Scale | None]
 
 
 @dataclass
 class Dock:
-    """The dock that the charts stand in, beside the picture."""
+    """The dock of the charts, beside the picture."""
 
     panel: GuiHandle
     tab: GuiHandle
 
 
 class Plots:
-    """The charts of one scene: over time those of `SceneKind.plots`, and whole ones those of `SceneKind.curves`."""
+    """The charts of one scene: those of `SceneKind.plots` over time, and complete ones of `SceneKind.curves`."""
 
     def __init__(self, server: viser.ViserServer, kind: AnyKind) -> None:
         self.server, self.kind = server, kind
@@ -101,16 +59,16 @@ class Plots:
         self.dock: Dock | None = None
         self.open: frozenset[str] = frozenset()  # parameters of the open charts
         self.kept: tuple[PlotRow, ...] = ()  # rows of an earlier run, drawn beside those of this one
-        self.curves: Mapping[str, Chart | Columns] = {}  # the whole charts as the scene made them last
+        self.curves: Mapping[str, Chart | Columns] = {}  # the last complete charts of the scene
         self.kept_curves: Mapping[str, Chart | Columns] = {}  # those of an earlier run
-        self.has_begun = False  # parameters have been read: charts that open from now on were asked for
+        self.has_begun = False  # parameters have been read: charts that open from now on were requested
         self.sent_at = 0.0
-        self.drawn = 0  # charts that were sent again
+        self.drawn = 0  # number of charts sent again
 
     def keep(self, on: bool) -> float | None:
-        """Keep the curves as they are, to be drawn beside those of the runs that follow, or drop them.
+        """Keep the present curves, to be drawn beside those of later runs, or drop them.
 
-        Returns the time [s] of the last that is kept; None where nothing is.
+        Returns the time [s] of the last kept row; None without any.
         """
         self.kept = tuple(self.rows) if on else ()
         self.kept_curves = self.curves if on else {}
@@ -118,7 +76,7 @@ class Plots:
         return self.kept[-1][0] if self.kept else max(map(float, ends), default=None)
 
     def plotted(self) -> Plotted:
-        """The rows that are kept, and the whole charts of now."""
+        """The kept rows, and the present complete charts."""
         return Plotted(tuple(self.rows), self.curves)
 
     def follow(self, run: RunIdentity) -> None:
@@ -149,14 +107,14 @@ class Plots:
             self.send_plots(wanted, moment)
 
     def show(self, wanted: frozenset[str]) -> None:
-        """Show these charts and hide the others, with the dock that they stand in."""
+        """Show these charts and hide the others, with their dock."""
         was_open, self.open = bool(self.open), wanted
         if self.dock is None:
             panel = self.server.gui.add_panel()
             self.dock = Dock(panel, panel.add_tab("Plots"))
             panel.dock_left()
         self.dock.panel.visible = bool(wanted)
-        # A small screen folds it at first, so that the picture has more room. It is unfolded when a user asks for it.
+        # A small screen folds it at first, so that the picture has more space. Opening a plot unfolds it.
         if wanted and not was_open and self.has_begun:
             self.dock.panel.expand()
         for name in (*self.kind.plots, *self.kind.curves):
@@ -189,7 +147,7 @@ class Plots:
         return list(itertools.islice(self.rows, max(start, 0), max(start, 0) + SHOWN_ROWS))
 
     def send_plots(self, wanted: frozenset[str], moment: float | None) -> None:
-        """Send the open charts over time that show other rows than they are to."""
+        """Send the open charts over time whose rows are out of date."""
         shown, kept = self.rows_about(moment), self.kept
         ends = (shown[0], shown[-1], kept) if shown else (kept,)
         behind = [name for name in self.kind.plots if name in wanted and self.sent.get(name, 0) != ends]
@@ -217,12 +175,12 @@ class Plots:
         scale = None if self.is_logarithmic(name) else self.scale_for(name, columns[1:])
         look = first, lines, end, scale
         handle = self.charts[name]
-        # Lines, scales and columns are handed over together: the browser must not see more of one than of the others.
+        # Lines, scales and columns are sent together, so that they match in the browser.
         if self.looks.get(name) != look:
             self.looks[name] = look
             handle.series = series_of(first, lines)
             time_scale = uplot.Scale(time=False, auto=end is None)
-            if end is not None:  # left to itself the scale would carry on from the lines before
+            if end is not None:  # otherwise the scale would keep that of the lines before
                 time_scale["range"] = (0.0, end)
             if scale is None:
                 handle.scales = {**(handle.scales or {}), "x": time_scale}
@@ -276,7 +234,7 @@ class Plots:
 
 
 def beside(shown: Sequence[PlotRow], kept: Sequence[PlotRow]) -> list[PlotRow]:
-    """The rows of an earlier run that belong into the chart of these: as many as a chart shows."""
+    """The rows of an earlier run for the chart of these rows: as many as a chart shows."""
     if not shown:
         return list(kept[:SHOWN_ROWS])
     found = [row for row in kept if row[0] >= shown[0][0]]

@@ -1,4 +1,4 @@
-"""The settings of the open scene: its parameters, the preset that they come from, and the history for Undo."""
+"""The settings of the open scene: its parameters, their preset, and the history for Undo."""
 
 import dataclasses
 from collections.abc import Callable, Mapping
@@ -18,16 +18,16 @@ from sim.parameters import changed_names, clamp_value, effect_of_change, paramet
 
 OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
 
-# Takes a scene to show, its parameters if any, and a camera for one browser if any.
+# Takes a scene to show, optional parameters, and an optional camera for one browser.
 OpenScene: TypeAlias = Callable[[str, BaseParams | None, ClientCamera | None], None]
 
 
 class Placing(NamedTuple):
-    """Cameras that are to be placed once the first picture of a run is shown."""
+    """Cameras to place when the first picture of a run is shown."""
 
-    act: int  # with which the run begins
-    first_view: bool  # every camera as that of a new browser
-    cameras: tuple[ClientCamera, ...] = ()  # those of single browsers, after that
+    act: int  # that begins the run
+    first_view: bool  # place every camera like that of a new browser
+    cameras: tuple[ClientCamera, ...] = ()  # of single browsers, placed afterwards
 
 
 class SceneSettings:
@@ -46,14 +46,14 @@ class SceneSettings:
         post: PostCommand,
         open_scene: OpenScene = lambda name, params, camera: None,
     ) -> None:
-        """post: takes commands for the simulation. open_scene: takes a scene to show instead. Both return at once."""
+        """post: takes commands for the simulation. open_scene: takes another scene to show. Both return at once."""
         self.server, self.kind, self.post, self.open_scene = server, kind, post, open_scene
         self.params = params
-        self.own = own_presets(kind)  # name in the list -> set-up of the user
-        # Name of the preset that was loaded last; at first the one that the parameters differ from the least.
+        self.own = own_presets(kind)  # name in the list -> the user's set-up
+        # Name of the last preset loaded; at first the one nearest to the parameters.
         self.loaded = self.nearest_preset(params)
         self.history = History()
-        self.is_open = True  # False once another scene takes its place
+        self.is_open = True  # False once another scene replaces it
         self.placing: Placing | None = None  # for the viewer; the last one counts
         self.watchers: list[Callable[[], None]] = []  # called after each change, to show it
 
@@ -71,7 +71,7 @@ class SceneSettings:
         return with_changes(with_fields_of(self.params, setup.params), setup)
 
     def nearest_preset(self, params: BaseParams) -> str:
-        """Name of the preset that parameters differ from the least."""
+        """Name of the preset nearest to the parameters."""
         return min(self.kind.presets, key=lambda name: len(changed_names(self.params_of(name), params)))
 
     def setup_of(self, preset: str) -> Setup:
@@ -80,7 +80,7 @@ class SceneSettings:
 
     @property
     def other_name(self) -> str:
-        """Name in place of that of the loaded preset if a parameter that matters is not as it has it; otherwise ""."""
+        """Name shown instead of the loaded preset's if an effective parameter differs from it; otherwise ""."""
         look = {name for name, parameter in parameters_of(self.params).items() if parameter.affects == "look"}
         if not changed_names(self.params_of(self.loaded), self.params) - look:
             return ""
@@ -94,7 +94,7 @@ class SceneSettings:
         self.set_all({name: value})
 
     def set_all(self, values: Mapping[str, object], *, restarts: bool = False) -> None:
-        """Set parameters, each bounded to its range: one change. restarts: and start again, whatever they affect."""
+        """Set parameters, each bounded to its range: one change. restarts: restart the scene in any case."""
         known = parameters_of(self.params)
         good = {name: clamp_value(known[name], value) for name, value in values.items()}
         changed = [name for name, value in good.items() if value != getattr(self.params, name)]
@@ -116,11 +116,11 @@ class SceneSettings:
         self.set_all({advice.name: advice.value}, restarts=True)
 
     def load(self, preset: str) -> None:
-        """Every parameter as the preset has it, and the scene from its start."""
+        """Load all parameters of the preset, and restart the scene."""
         self.load_params(self.params_of(preset), preset)
 
     def load_params(self, params: BaseParams, preset: str, cameras: tuple[ClientCamera, ...] = ()) -> None:
-        """Take parameters, and the scene from its start. preset: that they come from. cameras: of single browsers."""
+        """Take parameters, and restart the scene. preset: their source. cameras: of single browsers."""
         before = self.now(cameras=client_cameras(self.server))
         act = self.history.note(before, begins=True, runs=True)
         self.placing = Placing(act, first_view=True, cameras=cameras)
@@ -144,25 +144,25 @@ class SceneSettings:
         self.open_scene(scene, None, None)
 
     def resume(self, params: BaseParams, state: Checkpoint) -> None:
-        """Have the scene go on from a state, with the parameters that it had then."""
+        """Resume the scene from a checkpoint, with its parameters."""
         act = self.history.note(self.now(), begins=True, runs=True)
         self.take(Take(params, state=state, act=act), self.loaded)
 
     def begin_with(self, params: BaseParams) -> None:
-        """Begin the scene again with other parameters, with every camera in its place."""
+        """Restart the scene with other parameters, leaving the cameras in place."""
         act = self.history.note(self.now(), begins=True, runs=True)
         self.take(Take(params, start=True, act=act), self.loaded)
 
     def reset(self) -> None:
-        """Begin the scene again."""
+        """Restart the scene."""
         self.post(Reset(self.history.note(self.now(), begins=True)))
 
     def undo(self) -> None:
-        """The settings before the last act, and the run that had them if that act has begun another."""
+        """Restore the settings before the last act, and their run if that act began another."""
         act, settings = self.history.act, self.history.take_last()
         if settings is None:
             return
-        known = settings.preset in self.presets  # a set-up of the user may be gone
+        known = settings.preset in self.presets  # a set-up of the user may have been removed
         back = settings.act != act
         if settings.cameras:
             self.placing = Placing(settings.act, first_view=False, cameras=settings.cameras)
@@ -170,7 +170,7 @@ class SceneSettings:
         self.take(take, settings.preset if known else next(iter(self.kind.presets)))
 
     def read_own(self, chosen: str = "") -> None:
-        """Read the user's own set-ups again. chosen: the one that the parameters are those of, if any."""
+        """Read the user's own set-ups again. chosen: the one with the present parameters, if any."""
         self.own = own_presets(self.kind)
         if chosen:
             self.loaded = OWN.format(chosen)
@@ -179,11 +179,11 @@ class SceneSettings:
         self.tell()
 
     def now(self, cameras: tuple[ClientCamera, ...] = ()) -> EarlierSettings:
-        """The settings as they are, for the history. cameras: of all browsers, if they are about to be placed."""
+        """The present settings, for the history. cameras: of all browsers, if they are about to be placed."""
         return EarlierSettings(self.params, self.loaded, cameras=cameras)
 
     def take(self, command: Take, preset: str) -> None:
-        """Take parameters, and have the simulation take them too. preset: that they come from."""
+        """Take parameters, and pass them to the simulation. preset: their source."""
         self.params, self.loaded = command.params, preset
         self.post(command)
         self.tell()

@@ -39,7 +39,7 @@ def all_cameras(server: viser.ViserServer) -> Iterator[Camera]:
 
 
 def lowest_camera(server: viser.ViserServer) -> float | None:
-    """Height [m] of the lowest camera of a browser; None where there is no browser."""
+    """Height [m] of the lowest camera of a browser; None if there is no browser."""
     heights = [float(client.camera.position[2]) for client in server.get_clients().values()]
     return min((height for height in heights if math.isfinite(height)), default=None)
 
@@ -78,6 +78,45 @@ def fit_cameras(
     x, y, z = (c + scale * d for c, d in zip(target, offset, strict=True))
     for client in server.get_clients().values():
         place_camera(client.camera, (x, y, z), target)
+
+
+def framing_view(
+    points: NDArray[np.float64], bearing: float, pitch: float, field_of_view: float, frame: tuple[float, float, float]
+) -> tuple[Vector, Vector]:
+    """Position and target [m] of the nearest camera that shows all points (n, 3) [m] within a part of its picture.
+
+    bearing: [rad] of the camera as seen from the points, from +x towards +y. pitch: [rad] by which it looks down.
+    field_of_view: vertical [rad]. frame: half width, lower and upper edge of the part, in halves of the picture's
+    height from its middle. The lowest point is always on the lower edge. The target is as far away as the points are.
+    """
+    c, s = math.cos(bearing), math.sin(bearing)
+    ahead = np.array([-math.cos(pitch) * c, -math.cos(pitch) * s, -math.sin(pitch)])
+    right = np.array([-s, c, 0.0])
+    up = np.cross(right, ahead)
+    x, y, z = points @ right, points @ up, points @ ahead
+    half_width, low, high = math.tan(0.5 * field_of_view) * np.array(frame)
+    # Each point keeps the camera behind four planes, one for each edge.
+    from_left, from_right = (half_width * z + x).min(), (half_width * z - x).min()
+    from_below, from_above = (y - low * z).min(), (high * z - y).min()
+    forward = min((from_left + from_right) / (2.0 * half_width), (from_below + from_above) / (high - low))
+    position = 0.5 * (from_left - from_right) * right + (from_below + low * forward) * up + forward * ahead
+    return vector_of(position), vector_of(position + (z.mean() - forward) * ahead)
+
+
+def point_in_view(
+    view: tuple[Vector, Vector], field_of_view: float, place: tuple[float, float], height: float
+) -> Vector:
+    """The point at a height [m] that a camera sees at a place of its picture.
+
+    view: position and target [m], one not above the other. field_of_view: vertical [rad]. place: to the right and up,
+    in halves of the picture's height from its middle.
+    """
+    position, target = np.array(view)
+    ahead = (target - position) / np.linalg.norm(target - position)
+    right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
+    across, upwards = math.tan(0.5 * field_of_view) * np.array(place)
+    ray = ahead + across * right + upwards * np.cross(right, ahead)
+    return vector_of(position + (height - position[2]) / ray[2] * ray)
 
 
 def set_camera(camera: Camera, position: Vector, target: Vector, field_of_view: float | None = None) -> None:

@@ -55,7 +55,7 @@ def set_tube_colours(tension, samples, full, anchors, sides, rgb):
 def lifted(colours: NDArray[np.floating], lift: float = DARK_LIFT) -> NDArray[np.float64]:
     """sRGB colours (n, 3) in 0..255 as they are drawn on a dark floor: brighter, the more the darker they are.
 
-    lift: share of white that black gets. `js/shading/dark.js` does the same to colours of vertices.
+    lift: fraction of white that black gets. `js/shading/dark.js` does the same to colours of vertices.
     """
     dark = 1.0 - colours @ np.array(LUMA) / 255.0
     return colours + lift * dark[:, None] * (255.0 - colours)

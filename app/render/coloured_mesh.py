@@ -25,7 +25,7 @@ class ColouredMesh:
     vertices: (n, 3) [m]. faces: (m, 3). colors: (n, 3), sRGB in 0..1. columns: number of vertices in a row of
     neighbours. step [m]: to which browsers with the shader round the vertices. color: the only colour in browsers
     without it. Further arguments go to viser's `add_mesh_simple`.
-    Raises ValueError where there is not one colour a vertex.
+    Raises ValueError if there is not one colour a vertex.
     """
 
     def __init__(

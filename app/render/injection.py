@@ -51,12 +51,24 @@ class ShaderInjector:
         self._watched.clear()
         self._drawn.clear()
         inbox: GuiHandle = server.gui.add_text("Shaders", "", multiline=True, visible=False)
-        server.gui.add_html(str(fill('<span data-springtide-shaders="{}"></span>', uuid_of(inbox))), order=LAST)
+        self._inbox = uuid_of(inbox)
+        self._field: GuiHandle = server.gui.add_html(self._words(), order=LAST)
 
         @inbox.on_update
         async def _(event: ViserEvent) -> None:
             _, *names = inbox.value.split("\n")  # the page's own word comes first: two pages may report the same
             self._drawn[event.client_id] = frozenset(names)
+
+    def _words(self) -> str:
+        """The field of the page: where it reports to, and the nodes of a whole picture (`js/page/cover.js`)."""
+        names = "\n".join(self._watched)
+        return str(fill('<span data-springtide-shaders="{}" data-springtide-nodes="{}"></span>', self._inbox, names))
+
+    def _tell(self) -> None:
+        """Show the page another list of nodes."""
+        words = self._words()
+        if self._field.content != words:
+            self._field.content = words
 
     async def _forget(self, client: viser.ClientHandle) -> None:
         """A browser has left."""
@@ -66,10 +78,12 @@ class ShaderInjector:
     def watch(self, name: str) -> None:
         """Expect every browser to draw this node with its shader from now on."""
         self._watched[name] = time.monotonic()
+        self._tell()
 
     def unwatch(self, name: str) -> None:
         """A node is removed."""
-        self._watched.pop(name, None)
+        if self._watched.pop(name, None) is not None:
+            self._tell()
 
     def is_active(self, name: str) -> bool | None:
         """True if every connected browser draws the node with its shader, False if one does not, None while unknown."""
@@ -102,7 +116,7 @@ def record_shaders(server: viser.ViserServer) -> None:
 
 
 def injector_of(server: viser.ViserServer) -> ShaderInjector | None:
-    """The shader injector of a server, made on the first call; None where shaders are disabled."""
+    """The shader injector of a server, made on the first call; None if shaders are disabled."""
     if server in _disabled:
         return None
     if server not in _injectors:

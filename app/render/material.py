@@ -92,17 +92,17 @@ class Material:
     sun_direction: tuple[float, float, float] = (0.6, 0.3, 0.5)  # towards the sun, of any length
     sun_color: RGB = (1.0, 0.9, 0.75)
     sun_strength: float = 6.0  # irradiance, in units of the sky photograph's radiance
-    sun_disc: float = 1.0  # share of the sun's disc and glitter that is visible, 0 to 1
+    sun_disc: float = 1.0  # fraction of the sun's disc and glitter that is visible, 0 to 1
     clouds: float = 0.4  # cloud cover, 0 to 1
     cloud_size: float = 2.2  # horizontal size of a cloud, in heights of the cloud layer
-    cloud_darkness: float = 0.3  # share of its light that thick cloud takes away, 0 to 1
+    cloud_darkness: float = 0.3  # fraction of its light that thick cloud takes away, 0 to 1
 
     haze_distance: float = HAZE_DISTANCE  # [m] at which a share 1 - 1/e of the sea is lost in the sky
     exposure: float = 1.0  # factor on all light
     # Of the sky photograph, which was taken on land: the height [rad] of the land towards the sun and away from it,
     # and the slope at the horizon of the photograph's elevation over the drawn elevation.
     skyline: tuple[float, float, float] = (0.06, 0.2, 0.6)
-    # Share of the photograph's azimuths that is used, blur of the haze's colour (0 to 1), and the radiance that is
+    # Fraction of the photograph's azimuths that is used, blur of the haze's colour (0 to 1), and the radiance that is
     # reduced to its half, so that no place of the photograph is too bright.
     sky_fold: tuple[float, float, float] = (1.0, 0.3, 12.0)
     sky_tint: RGB = (1.0, 1.0, 1.0)  # colour filter on the photograph, linear, any value from 0
@@ -118,7 +118,7 @@ class Material:
 
     fire_place: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m] of a fire that lights the sea
     fire_light: RGB = (0.0, 0.0, 0.0)  # its radiant intensity, linear, in units of the sun's irradiance times m2
-    # x, y [m] around which the waves drawn are those of the tile, and 1, or 0 where there is no such place.
+    # x, y [m] around which the waves drawn are those of the tile, and 1, or 0 if there is no such place.
     gauge_place: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     wireframe: bool = False  # draw the simulated grid

@@ -22,7 +22,7 @@ class Photograph:
     land_near: float  # [deg] height of the land below the sun
     land_far: float  # [deg] height of the land opposite to the sun
     stretch: float  # slope at the horizon of the photograph's elevation over the drawn elevation
-    fold: float  # share of the photograph's azimuths that is used
+    fold: float  # fraction of the photograph's azimuths that is used
     # Mean radiance, linear, at the horizon and overhead, more towards the sun; between them the share of the second is
     # the square root of the sine of the elevation.
     low: RGB

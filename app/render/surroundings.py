@@ -76,7 +76,7 @@ class Surroundings:
         scene.configure_fog(*NO_FOG, enabled=False)
         set_clipping(server, near)
         for client in server.get_clients().values():
-            _dark.drop(client)  # the floor begins light: js/panel/display.js asks for a dark one
+            _dark.drop(client)  # the floor begins light: js/panel/display.js requests a dark one
         self.shown: tuple[bool, bool] | None = None
         self.staff = Staff(server)
         self.floor = scene.add_grid(

@@ -23,7 +23,7 @@ from sim.ocean.radial.radial_grid import RadialGrid
 
 RIPPLE_PERIOD = 1024.0  # [s] after which ripples start again: their phases are single precision in the browser
 MIN_STEP, MAX_STEP = 2.5e-4, 4e-3  # [m] to which displacements are rounded before they are sent
-RECORDED_STEP = 2e-3  # [m] the same where there is no camera: in a replay
+RECORDED_STEP = 2e-3  # [m] the same if there is no camera: in a replay
 STEP_ANGLE = 7e-4  # the step over the height of the lowest camera: half a pixel at 1080 rows and 75 degrees
 SEA_STATE, GRID_MIDDLE = map(WATER_UNIFORMS.index, ("seaState", "gridMiddle"))  # rows that change in each frame
 PLAIN_FOAM_COLOUR = (235, 240, 242)
@@ -102,7 +102,7 @@ class DrawnWater:
     ) -> np.ndarray | None:
         """Draw this surface; call it where a picture is handed over as one. Arrays are copied.
 
-        Returns what `pack_fields` made of it for the browsers, to be read only; None where none of them has shaders.
+        Returns what `pack_fields` made of it for the browsers, to be read only; None if none of them has shaders.
 
         vertices: (rows, cols, 3) [m]. slopes: (rows, cols, 2), dz/dx and dz/dy of the displaced surface. foam:
         (rows, cols), 0..1. time [s] moves ripples and clouds. middle: x, y [m] of the middle of a radial grid.
@@ -215,7 +215,7 @@ class DrawnWater:
 
 
 def raised(points: np.ndarray, shown: np.ndarray) -> np.ndarray:
-    """A surface of points (n, 3) [m] once more: just above itself where `shown`, (n,), is true, else below."""
+    """A copy of a surface of points (n, 3) [m]: just above it where `shown`, (n,), is true, else below."""
     surface = points.copy()
     surface[:, 2] += np.where(shown, PLAIN_MESH_HEIGHT, -PLAIN_MESH_DEPTH)
     return surface

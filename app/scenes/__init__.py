@@ -20,7 +20,7 @@ FORMER_NAMES = {"phillips": "square_sea", "radial": "radial_sea"}
 
 
 def check_name(name: str) -> str:
-    """The name of a scene. Raises ValueError with the names there are; a former name is told its new one."""
+    """The name of a scene. Raises ValueError with the names there are; for a former name, with its new one."""
     if name in FORMER_NAMES:
         raise argument_error("scene", name, f"{FORMER_NAMES[name]}, its new name")
     if name not in NAMES:

@@ -1,4 +1,4 @@
-"""Checkpoints: copies of the state of a scene, from which it can go on later.
+"""Checkpoints: copies of the state of a scene, from which it can continue later.
 
 `copy.deepcopy` makes them. Classes of `sim` that hold much that never changes in place share it with their copies.
 """

@@ -59,7 +59,7 @@ def comparison_named(name: str) -> tuple[Setup, ...]:
 
 
 def check_count(setups: Sequence[object]) -> None:
-    """Raises ValueError where that many set-ups cannot be shown side by side."""
+    """Raises ValueError if that many set-ups cannot be shown side by side."""
     if not 2 <= len(setups) <= MAX_PANES:
         raise argument_error("set-ups side by side", len(setups), f"2 to {MAX_PANES}")
 

@@ -4,13 +4,13 @@ To add a scene, add one folder here, named as the scene is on the command line:
 
 1. `parameters.py`: a frozen dataclass of parameters (`sim/parameters.py`), such as `RopeParams`, with at least `speed`
    and `grid`, each declaring what its change affects, and `PRESETS`, name -> the values that differ from the defaults;
-   the first preset is the defaults. `ABOUT` holds a sentence on each: what it shows and what to try.
+   the first preset is the defaults. `ABOUT` holds a sentence on each: its subject and something to try.
 2. `scene.py`: the simulation, a class that satisfies `Scene`. It imports no viewer.
 3. `view.py`: the drawing, a class derived from `SceneView`, and `VIEW`, that class. Only it and `*_view.py` beside it
    import viser.
 4. `__init__.py`: `SCENE = SceneKind(...)`, the table of all these. It imports no viewer either.
 
-The folder is found by being here: command line, panel, sweeps, benchmarks and tests take it up from there.
+The folder is discovered here: command line, panel, sweeps, benchmarks and tests then have the scene.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -38,11 +38,11 @@ F_co = TypeVar("F_co", covariant=True)
 R_co = TypeVar("R_co", covariant=True)
 
 
-Pieces: TypeAlias = Mapping[str, Callable[[], object]]  # name of what is compiled -> compiles it, by running it
+Pieces: TypeAlias = Mapping[str, Callable[[], object]]  # name of a piece -> compiles it, by running it
 
 
 class Advice(NamedTuple):
-    """A value of a parameter that mends a fault."""
+    """A value of a parameter that removes a fault."""
 
     name: str  # of the parameter
     value: float
@@ -66,17 +66,17 @@ class Scene(Protocol[P, F_co, R_co]):
 
     @property
     def frame_interval(self) -> float:
-        """Time [s] between two frames that the scene asks for just now."""
+        """Time [s] between two frames that the scene requests at present."""
         ...
 
     @property
     def pace(self) -> float:
-        """Factor on the speed of the parameters that the scene asks for just now, up to 1: below it is slow motion."""
+        """Factor on the speed of the parameters that the scene requests at present, up to 1: less is slow motion."""
         ...
 
     @property
     def note(self) -> str:
-        """Reason why something else runs than the parameters ask for, or ""."""
+        """Reason why the scene departs from the parameters, or ""."""
         ...
 
     @property
@@ -85,15 +85,15 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def change_forces(self, params: P) -> None:
-        """Take parameters. At least one that affects the forces has changed; the motion goes on.
+        """Take parameters. At least one that affects the forces has changed; the motion continues.
 
-        A change that affects only the look is assigned to `params`; one that affects the start is assigned, and then
-        `reset` is called.
+        A change of the look only is assigned to `params`; a change of the start is assigned, and then `reset` is
+        called.
         """
         ...
 
     def reset(self) -> None:
-        """Begin again with `params`; objects that a browser has moved go back to their initial places."""
+        """Restart with `params`; objects that a browser has moved return to their initial places."""
         ...
 
     def handle(self, command: SceneCommand) -> None:
@@ -101,10 +101,10 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def advance(self, steps: int) -> None:
-        """Take steps. Raises DivergenceError where the state leaves its bounds, and then keeps the last good one.
+        """Take steps. Raises DivergenceError if the state leaves its bounds, and then keeps the last good one.
 
-        A long solve may give others a turn on this thread (`sim/interruption.py`). What the scene shows in it is then
-        that of a whole step, and what is done to it counts from the next call on.
+        A long solve may yield to others on this thread (`sim/interruption.py`). The scene then shows the last whole
+        step, and changes take effect at the next call.
         """
         ...
 
@@ -117,7 +117,7 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
-        """The plot rows since the last call; of those that nobody takes a scene keeps the newest only."""
+        """The plot rows since the last call; if nobody takes them, a scene keeps only the newest."""
         ...
 
     def curves(self) -> Mapping[str, Chart | Columns] | None:
@@ -133,9 +133,9 @@ class Scene(Protocol[P, F_co, R_co]):
         ...
 
     def resume(self, kept: object) -> None:
-        """Go on from a checkpoint of `keep`, with the `params` of that time; `kept` can be used again.
+        """Resume from a checkpoint of `keep`, with the `params` of that time; `kept` can be used again.
 
-        Nobody holds what was held then.
+        Objects that were held then are released.
         """
         ...
 
@@ -143,7 +143,7 @@ class Scene(Protocol[P, F_co, R_co]):
 class SceneView(Protocol[P, F, R]):
     """The drawing of a scene, used on the viewer's thread only.
 
-    FIELD_OF_VIEW: of a new camera, vertical [rad]. CAMERA: position and target [m] of a camera that has not been moved.
+    FIELD_OF_VIEW: vertical, of a new camera [rad]. CAMERA: position and target [m] of a camera that nobody has moved.
     WARM_UP: everything to compile that the drawing may call. BUTTONS: heading of a note -> label and command of each
     button below its text.
     """
@@ -154,14 +154,14 @@ class SceneView(Protocol[P, F, R]):
     CAMERA: tuple[Vector, Vector]
 
     def __init__(self, server: "ViserServer", post: "PostCommand") -> None:
-        """Make the nodes that are always there. post: takes commands."""
+        """Make the permanent nodes. post: takes commands."""
 
     def first_view(self, params: P) -> tuple[Vector, Vector]:
-        """Position and target [m] of a camera that has not been moved, with these parameters."""
+        """Position and target [m] of a camera that nobody has moved, with these parameters."""
         return self.CAMERA
 
     def show(self, frame: F) -> None:
-        """Assign a frame to the handles; called where a picture is handed over as one."""
+        """Assign a frame to the handles; called where all updates of a picture are sent together."""
         ...
 
     def figures(self, snapshot: Snapshot[P, F, R]) -> str:
@@ -169,7 +169,7 @@ class SceneView(Protocol[P, F, R]):
         ...
 
     def readout(self, snapshot: Snapshot[P, F, R]) -> str:
-        """HTML under the first controls: short, as the key of the colours."""
+        """HTML under the first controls: short, such as a colour key."""
         return ""
 
     def marks(self, snapshot: Snapshot[P, F, R]) -> dict[str, str]:
@@ -218,12 +218,12 @@ class StabilityMap(NamedTuple):
 
 
 class Awaited(NamedTuple):
-    """An event that a button of the panel runs on to."""
+    """An event up to which a button of the panel runs."""
 
     label: str  # of the button
     hint: str
-    offered: Callable[..., bool]  # params -> whether it can happen
-    reached: Callable[..., bool]  # snapshot -> whether it happens just now
+    offered: Callable[..., bool]  # params -> true if it can happen
+    reached: Callable[..., bool]  # snapshot -> true while it happens
 
 
 class FramePacking(NamedTuple):
@@ -234,15 +234,15 @@ class FramePacking(NamedTuple):
 
 
 class FileFacts(NamedTuple):
-    """Facts of a file that a scene runs."""
+    """Facts of a file behind a scene."""
 
     name: str  # of the event
     facts: Mapping[str, object]  # as JSON holds them, in SI units
-    unused: frozenset[str]  # names of the parameters that mean nothing with it
+    unused: frozenset[str]  # names of the parameters without effect beside it
 
 
 class FileEditing(NamedTuple):
-    """Numbers of a file that a scene runs, which the panel changes."""
+    """Numbers of a file behind a scene, which the panel can change."""
 
     title: str  # of their folder
     thing: str  # label of the list of its things, such as "Line"
@@ -254,17 +254,17 @@ class FileEditing(NamedTuple):
 
 @dataclass(frozen=True)
 class SceneKind(Generic[P, F, R]):
-    """All there is to know of a scene without making one."""
+    """All facts of a scene that are known without making it."""
 
     name: str  # of its folder
     title: str
-    help: str  # one line on what the mouse does, as HTML
+    help: str  # one line on the use of the mouse, as HTML
     params: type[P]
     presets: Mapping[str, Mapping[str, Value]]  # name -> the values that differ from the defaults
     make: Callable[[P], Scene[P, F, R]]
     series: tuple[str, ...]  # names of the columns of a plot row after its time
-    plots: Mapping[str, PlotAxes]  # parameter that opens the plot -> what it shows
-    # The parameters that mean nothing with the others as they are.
+    plots: Mapping[str, PlotAxes]  # parameter that opens the plot -> its axes
+    # The parameters without effect beside the present others.
     hidden: Callable[[P], set[str]] = lambda params: set()
     warm_up: Callable[[], Pieces] = dict[str, Callable[[], object]]  # everything to compile that the scene may call
     curves: Mapping[str, CurveAxes] = field(
@@ -272,35 +272,35 @@ class SceneKind(Generic[P, F, R]):
     )  # parameter that opens the chart -> its axes
     # The numbers that sweeps, tasks, notebooks and `run --list` read; without a table a sweep records the plot rows.
     quantities: Quantities = field(default_factory=dict[str, Quantity])
-    instant: Callable[..., object] = SceneInstant  # of a scene, what the recorded quantities are read from
+    instant: Callable[..., object] = SceneInstant  # of a scene, source of the recorded quantities
     # Unit of each array of a frame that goes into a file of the recording; arrays of a record in it: "record_array".
-    # The first one in metres is what moves.
+    # The first one in metres moves.
     frame_units: Mapping[str, str] = field(default_factory=dict[str, str])
     packing: FramePacking | None = None  # None: a recording keeps frames as they are
     stability_map: StabilityMap | None = None
     # Names of the pieces to run with these parameters, of `warm_up` and `warm_up_on_use`; None: all of `warm_up`.
     needs: Callable[[P], tuple[str, ...]] | None = None
     warm_up_on_use: Callable[[], Pieces] = dict[str, Callable[[], object]]  # pieces compiled only when they are needed
-    # Makes the simulation with a student's functions running beside it; None: this scene has no use for them.
+    # Makes the simulation with a student's functions beside it; None: the scene does not use them.
     make_with_student: Callable[[P, "LiveCode"], Scene[P, F, R]] | None = None
-    # Where [m] a view of these parameters and one of others have the same in sight; None: at the origin.
+    # Place [m] that views of different parameters have in common; None: the origin.
     middle: Callable[[P], tuple[float, float]] | None = None
     about: Mapping[str, str] = field(
         default_factory=dict[str, str]
-    )  # preset -> a sentence: what it shows and what to try
-    # Of a snapshot of a run that diverged: a value that would hold, None for none; None: a run does not diverge.
+    )  # preset -> a sentence: its subject and something to try
+    # Of a snapshot of a run that diverged: a stable value, or None; None: runs do not diverge.
     remedy: Callable[..., Advice | None] | None = None
-    # Of a snapshot: a value that mends the state that the scene starts with, offered under its control.
+    # Of a snapshot: a value that repairs the initial state, offered under its control.
     advice: Callable[..., Advice | None] | None = None
-    # Of parameters: lines on the files that they name, on what was read and what was left out. The command line prints
-    # them, the page shows them under "Files", and files of runs and recordings keep them.
+    # Of parameters: lines on the files that they name, on data read and left out. The command line prints them, the
+    # page shows them under "Files", and files of runs and recordings keep them.
     notes: Callable[[P], Sequence[str]] = lambda params: ()
-    # Content of a file that takes the place of parameters, or None.
+    # Content of a file that replaces parameters, or None.
     file_facts: Callable[[P], FileFacts | None] = lambda params: None
-    file_editing: FileEditing | None = None  # of such a file; None: the panel changes none
-    warnings: Callable[..., Sequence[str]] | None = None  # of a scene that begins: sentences on its start
-    awaited: Awaited | None = None  # event that the panel offers to run on to
-    opening: str = ""  # preset that is shown first where none is asked for: what moves; "" for the defaults
+    file_editing: FileEditing | None = None  # of such a file; None: the panel cannot change it
+    warnings: Callable[..., Sequence[str]] | None = None  # of a new scene: sentences on its start
+    awaited: Awaited | None = None  # event up to which the panel offers to run
+    opening: str = ""  # preset shown first by default: one that moves; "" for the defaults
 
 
 PostCommand: TypeAlias = Callable[[Command], None]  # takes a command for the simulation

@@ -13,7 +13,7 @@ def last_path() -> Path:
 
 
 def keep_last(query: str) -> None:
-    """Keep a link, "?scene=...". Raises OSError where it cannot be written."""
+    """Keep a link, "?scene=...". Raises OSError if it cannot be written."""
     path = last_path()
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as draft:

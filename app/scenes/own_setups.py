@@ -48,7 +48,7 @@ def own_files(kind: AnyKind) -> dict[str, tuple[Path, Setup]]:
 def keep_own(kind: AnyKind, name: str, text: str) -> None:
     """Keep the text of a file under the name that is in it; one of the same name is replaced.
 
-    Raises ValueError where there is no name or there are too many, and OSError where it cannot be written.
+    Raises ValueError if there is no name or there are too many, and OSError if it cannot be written.
     """
     if not name:
         raise argument_error("name", name, "a name, for the list of presets")

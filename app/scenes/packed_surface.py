@@ -13,7 +13,7 @@ MAX_SENT_STEP = 2e-3  # [m] up to which a recording keeps what browsers were sen
 class SentSurface:
     """Packed surface of a frame as sent: set by the view, read by the recording, both on the viewer's thread."""
 
-    numbers: NDArray[np.float32] | None = None  # as `app/formats/packing.py` packs; None where it was not sent packed
+    numbers: NDArray[np.float32] | None = None  # as `app/formats/packing.py` packs; None if it was not sent packed
 
 
 def pack_surface(

@@ -24,12 +24,12 @@ class PlotRows:
         self.restart()
 
     def restart(self) -> None:
-        """Begin again, with the row of the start."""
+        """Restart, with the row of the start."""
         self.waiting.clear()
         self.number = -1  # of the last row; the first is that of the start
 
     def resume(self) -> None:
-        """Take the next row at once: the run goes on from another moment."""
+        """Take the next row at once: the run continues from another moment."""
         self.number = -1
 
     def is_due(self, t: float) -> bool:

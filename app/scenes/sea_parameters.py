@@ -41,7 +41,7 @@ def spectrum_in_file(path: str, time: str) -> Spectrum[Any]:
 
 
 def chosen_spectrum(params: Any) -> Spectrum[Any]:
-    """The spectrum of a sea's parameters: that of a file, where there is one."""
+    """The spectrum of a sea's parameters: that of a file, if there is one."""
     if params.spectrum_file:
         return spectrum_in_file(params.spectrum_file, params.spectrum_time)
     return SPECTRA[params.spectrum]

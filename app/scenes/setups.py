@@ -4,11 +4,11 @@ The address `/?scene=rope&preset=...&stiffness=2000` and the file
 
     {"version": 1, "scene": "rope", "preset": "...", "parameters": {"stiffness": 2000}, "name": "...", "note": "..."}
 
-say the same: the values of a preset (by default the scene's defaults), and those that differ from it. A number is
-written so that reading it gives the very same number. A hull, a mooring or a spectrum from a file is no parameter: a
-set-up file has its name, `"hull": "boat.stl"`, and what was changed of it in the panel; its reader is told to add it.
+are equivalent: a preset (by default the scene's defaults), and the values that differ from it. A number is written so
+that reading returns exactly the same number. A hull, a mooring or a spectrum from a file is no parameter: a set-up file
+has its name, `"hull": "boat.stl"`, and the changes made to it in the panel; its reader is asked to add the file.
 
-A replay (HTML) holds such a file in a block of its own, and a recording (.npz) all parameters: both open as it does.
+A replay (HTML) holds such a file in a block, and a recording (.npz) all parameters: both open like one.
 """
 
 import dataclasses
@@ -42,14 +42,14 @@ from sim.parameters import (
 from sim.quantities import read_number, write_number
 from sim.validation import Refusals, argument_error, unreadable
 
-VERSION = 2  # of a file with the name of another file; others are of version 1, so that older programs can read them
+VERSION = 2  # of a file that names another file; others are of version 1, so that older programs can read them
 MAX_LENGTH = 5000  # characters of a query or a file
 MAX_NAME, MAX_NOTE, MAX_FILE_NAME = 60, 1000, 255  # characters
 MAX_CAMERA_DISTANCE = 1e4  # [m] from the origin
 CAMERA_DECIMALS = 3  # of the camera's coordinates [m]
 OWN_KEYS = ("scene", "preset", "camera")  # of a query; all others are parameters
-MAX_REPLAY = 200_000_000  # [bytes] of a replay that is read; one of 20 s has 25 MB
-MAX_ABOUT = 100_000  # [bytes] of what a recording says of itself
+MAX_REPLAY = 200_000_000  # [bytes] of a replay; one of 20 s has 25 MB
+MAX_ABOUT = 100_000  # [bytes] of a recording's description
 BLOCK, BLOCK_END = '<script type="application/json" id="springtide-setup">', "</script>"
 UNREADABLE = (ValueError, KeyError, EOFError, RuntimeError, struct.error, zipfile.BadZipFile, zlib.error)
 FORMS = "a set-up file (.json), a replay (.html) or a recording (.npz) of Springtide"
@@ -70,29 +70,29 @@ class Setup(NamedTuple):
 
     scene: str
     params: BaseParams  # the scene's own record
-    values: Mapping[str, Value]  # the parameters that were named, by the preset or one by one
-    preset: str = ""  # that they differ from; "" for the defaults
+    values: Mapping[str, Value]  # the parameters named, by the preset or one by one
+    preset: str = ""  # from which they differ; "" for the defaults
     camera: Camera | None = None
     name: str = ""
     note: str = ""
-    files: Mapping[str, str] = {}  # of FILES: the name of the file that was added; its content is in no set-up
+    files: Mapping[str, str] = {}  # of FILES: the name of the added file, whose content is in no set-up
     changes: Changes = ()  # of that file
     task: str = ""  # of the lab, that a link opens too
 
 
 def file_name(path: str) -> str:
-    """The last part of a path of any system: no other part of it goes into a file that may be shared."""
+    """The last part of a path of any system: only this goes into a file that may be shared."""
     return PureWindowsPath(path).name
 
 
 def shared_values(params: BaseParams) -> dict[str, Value]:
-    """All fields of a record by name, as a file may hold them: of a path its file name only."""
+    """All fields of a record by name, for a shared file: of a path only its file name."""
     paths = FILES.values()
     return {name: file_name(value) if name in paths else value for name, value in vars(params).items()}
 
 
 def described(kind: AnyKind, params: BaseParams) -> dict[str, Any]:
-    """Entries on a run for its file: the scene, its parameters, and the facts of a file that they name."""
+    """Entries for the file of a run: the scene, its parameters, and the facts of a file that they name."""
     values, file = shared_values(params), kind.file_facts(params)
     if file is None:
         return {"scene": kind.name, "parameters": values}
@@ -101,7 +101,7 @@ def described(kind: AnyKind, params: BaseParams) -> dict[str, Any]:
 
 
 def added_files(params: object) -> dict[str, str]:
-    """Names of the files that were added to these parameters, by their options."""
+    """Names of the files added to these parameters, by their options."""
     paths = {option: file_name(getattr(params, field, "")) for option, field in FILES.items()}
     return {option: name for option, name in paths.items() if name}
 
@@ -119,7 +119,7 @@ def missing_files(setup: Setup, present: object = None) -> str:
 def with_changes(params: BaseParams, setup: Setup) -> BaseParams:
     """The parameters with a set-up's changes of their file, if it is the one that the set-up names.
 
-    Raises ValueError where this file, of the same name, cannot have them.
+    Raises ValueError if this file, of the same name, cannot have them.
     """
     editing = scene_named(setup.scene).file_editing
     if editing is None or not setup.files or added_files(params) != setup.files:
@@ -153,7 +153,7 @@ def make_setup(
 def with_values(setup: Setup, values: Mapping[str, object]) -> Setup:
     """A set-up with other values of some parameters. Raises ValueError if one is not allowed.
 
-    All records that are made of presets, files, links and values are made here.
+    All records from presets, files, links and values are made here.
     """
     named = {**setup.values, **values}
     params = check_record(scene_named(setup.scene).params, named)
@@ -175,7 +175,7 @@ def write_value(value: Value) -> str:
 
 
 def write_query(kind: AnyKind, params: BaseParams, preset: str = "", camera: Camera | None = None) -> str:
-    """The shortest query, "?scene=...", that says a set-up. preset: that the parameters were made from."""
+    """The shortest query, "?scene=...", of a set-up. preset: source of the parameters."""
     base = nearest_preset(kind, params, preset)
     said = {"scene": kind.name}
     if base:
@@ -189,9 +189,9 @@ def write_query(kind: AnyKind, params: BaseParams, preset: str = "", camera: Cam
 
 
 def read_query(query: str) -> Setup:
-    """The set-up of a query, with or without its "?"; of a scene alone, the one that is shown first.
+    """The set-up of a query, with or without its "?"; of a scene alone, its first view.
 
-    Raises ValueError with everything in it that is not allowed.
+    Raises ValueError with all its errors.
     """
     given = entries(query)
     scene, wrong = given.get("scene", ""), Refusals()
@@ -225,7 +225,7 @@ def split_task(query: str) -> tuple[str, str]:
 
 
 def entries(query: str) -> dict[str, str]:
-    """The values of a query by name. Raises ValueError where it is too long or names one twice."""
+    """The values of a query by name. Raises ValueError if it is too long or names one twice."""
     check_length("address", query)
     pairs = parse_qsl(query.removeprefix("?"), keep_blank_values=True)
     given = dict(pairs)
@@ -236,9 +236,9 @@ def entries(query: str) -> dict[str, str]:
 
 
 def read_setup(text: str) -> Setup:
-    """The set-up that a word of a command line says: SCENE, SCENE:PRESET, a link or its query, or a set-up file.
+    """The set-up of a word of a command line: SCENE, SCENE:PRESET, a link or its query, or a set-up file.
 
-    A scene alone is as it opens where nothing is asked for. Raises ValueError for what is not allowed.
+    A scene alone opens in its first view. Raises ValueError for an invalid word.
     """
     if "?" in text:
         return read_query(text[text.index("?") :])
@@ -288,7 +288,7 @@ def read_camera(numbers: object) -> Camera:
 def write_file(
     kind: AnyKind, params: BaseParams, preset: str = "", camera: Camera | None = None, *, name: str = "", note: str = ""
 ) -> str:
-    """The text of a file that says a set-up. Raises ValueError for a name or note that is not allowed."""
+    """The text of a set-up file. Raises ValueError for a name or note that is not allowed."""
     base = nearest_preset(kind, params, preset)
     files = added_files(params)
     content: dict[str, Any] = {"version": VERSION if files else 1, "scene": kind.name}
@@ -308,7 +308,7 @@ def write_file(
 
 
 def read_file(text: str, where: str = "set-up", scene: str | None = None) -> Setup:
-    """The set-up that the text of a file says. where: names the file in errors. scene: that it has to be of, if any.
+    """The set-up in the text of a file. where: names the file in errors. scene: the required one, if any.
 
     A file without a version is of version 1, and one without a scene is of `scene`. Raises ValueError for what is not
     allowed.
@@ -370,7 +370,7 @@ def read_changes(what: str, given: object) -> Changes:
 
 
 def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    """An object of JSON. Raises ValueError where a key appears twice: which value counts would be unclear."""
+    """A JSON object. Raises ValueError for a repeated key, whose value would be ambiguous."""
     found = dict(pairs)
     if len(found) < len(pairs):
         raise ValueError("a key appears twice")
@@ -378,7 +378,7 @@ def unique_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
 
 
 def check_length(what: str, text: str) -> None:
-    """Raises ValueError for a text that no set-up is as long as."""
+    """Raises ValueError for a text longer than any set-up."""
     if len(text) > MAX_LENGTH:
         raise argument_error(what, f"{len(text)} characters", f"at most {MAX_LENGTH}")
 
@@ -403,7 +403,7 @@ def kind_named(name: object) -> AnyKind:
 
 
 def preset_named(what: str, preset: object, kind: SceneKind[Any, Any, Any]) -> Mapping[str, Value]:
-    """The values of a scene's preset. Raises ValueError where it has none of that name."""
+    """The values of a scene's preset. Raises ValueError for an unknown name."""
     if not isinstance(preset, str) or preset not in kind.presets:
         raise choice_error(what, preset, kind.presets)
     return kind.presets[preset]
@@ -412,7 +412,7 @@ def preset_named(what: str, preset: object, kind: SceneKind[Any, Any, Any]) -> M
 def preset_setup(option: str, preset: str, kind: SceneKind[Any, Any, Any], folder: Path | None = None) -> Setup:
     """The set-up that a preset names. preset: a name, or the path of a file, relative to `folder`.
 
-    Raises ValueError, naming the option, where there is no such preset of this scene or a value is not allowed.
+    Raises ValueError, naming the option, if there is no such preset of this scene or a value is not allowed.
     """
     if preset in kind.presets:
         return make_setup(kind, preset)
@@ -423,14 +423,14 @@ def preset_setup(option: str, preset: str, kind: SceneKind[Any, Any, Any], folde
 
 
 def setup_block(kind: AnyKind, params: BaseParams) -> str:
-    """A set-up file as a part of a page, which reads nothing else in it and runs nothing."""
+    """A set-up file as an inert block of a page."""
     return BLOCK + write_file(kind, params).replace("<", "\\u003c") + BLOCK_END
 
 
 def read_setup_text(what: str, path: Path) -> str:
     """The text of a set-up file, or of the set-up that a replay or a recording holds.
 
-    what: that the file was given as. Raises ValueError where it cannot be read or holds none.
+    what: name of the file in errors. Raises ValueError if it cannot be read or holds no set-up.
     """
     try:
         with path.open("rb") as file:
@@ -449,7 +449,7 @@ def read_setup_text(what: str, path: Path) -> str:
 
 
 def replayed_setup(page: str) -> str:
-    """The text of the set-up file that a replay holds. Raises ValueError where it holds none."""
+    """The text of the set-up file in a replay. Raises ValueError without one."""
     start = page.rindex(BLOCK) + len(BLOCK)
     return page[start : page.index(BLOCK_END, start)]
 

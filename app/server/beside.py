@@ -1,5 +1,6 @@
-"""Two or three labs side by side: the first one, and panes with a lab each, on one clock and under one sky."""
+"""Two or three labs side by side: the first one, and a lab in each further pane, on one clock and under one sky."""
 
+import contextlib
 import threading
 import traceback
 from collections.abc import Callable, Mapping, Sequence
@@ -18,7 +19,7 @@ from app.server.loop.sim_loop import SimLoop
 from app.server.loop.snapshots import kept_state
 from app.server.requests import SceneRequests
 
-KEEP_TIMEOUT = 5.0  # [s] for the first lab to hand over its state, to go on from when it is alone again
+FIRST_TIMEOUT = 5.0  # [s] for the first lab to hand over its state or its parameters
 
 
 class PaneLab(Protocol):
@@ -52,11 +53,11 @@ class PaneLab(Protocol):
         paused: bool = False,
         given_up: Callable[[], bool] = lambda: False,
     ) -> bool:
-        """Show a scene. Returns False where it was given up before it was there."""
+        """Show a scene. Returns False if the request was cancelled before the scene was ready."""
         ...
 
     def is_given_up(self, asked: int) -> bool:
-        """True if the lab ended, or another scene was asked for after the request `asked`."""
+        """True if the lab has ended, or another scene was requested after the request `asked`."""
         ...
 
     def visitors(self) -> int:
@@ -79,19 +80,19 @@ class PaneLab(Protocol):
 class SharedRecord:
     """The parameters that labs side by side have in common; each lab sends to it and shows it.
 
-    What is done to a lab is done on its own event loop, so that a lab never sees half of a change.
+    Every change of a lab runs on its own event loop, so that the lab never sees half of a change.
     """
 
     def __init__(self, labs: Callable[[], Sequence[PaneLab]]) -> None:
         """labs: those that are side by side now."""
         self.labs = labs
         self.writing = threading.Lock()
-        self.values: dict[str, tuple[object, BaseParams]] = {}  # as set last, with the record in which it was set
-        self.seen: dict[PaneLab, BaseParams] = {}  # the parameters of each lab when they were looked at last
-        self.told: set[PaneLab] = set()  # labs that are showing the record just now
+        self.values: dict[str, tuple[object, BaseParams]] = {}  # the last value of each, with the record that set it
+        self.seen: dict[PaneLab, BaseParams] = {}  # the last known parameters of each lab
+        self.told: set[PaneLab] = set()  # labs that are showing the record at present
 
     def join(self, viewer: PaneLab) -> None:
-        """A lab shows another scene: the first one brings its parameters, another one shows the record."""
+        """Take in a lab that shows a new scene: the first lab brings its parameters, another one shows the record."""
         viewer.call(lambda: self.enter(viewer))
 
     def enter(self, viewer: PaneLab) -> None:
@@ -105,13 +106,13 @@ class SharedRecord:
             self.show(viewer)
 
     def take(self, source: PaneLab, params: BaseParams) -> None:
-        """Parameters of a lab have changed: write the changes of a person there, and none that it was told."""
+        """Record the changes that a person made in a lab, and not those that the record itself caused."""
         before, self.seen[source] = vars(self.seen.get(source, params)), params
         if source not in self.told:
             self.write(source, {name: value for name, value in vars(params).items() if before.get(name) != value})
 
     def write(self, source: PaneLab, values: Mapping[str, object]) -> None:
-        """Take values of a lab that others have in common with it, and have these show them."""
+        """Take a lab's values of common parameters, and show them in the other labs."""
         params = source.settings.params
         for viewer in self.labs():
             if viewer is source or not viewer.is_open:
@@ -151,9 +152,9 @@ class ComparedLabs:
         self.shared = SharedRecord(lambda: self.viewers)
 
     def begin(self, others: Sequence[Setup], *, resume: bool) -> None:
-        """Open the others, then let all begin together. Whatever fails leaves the first lab alone, and is raised.
+        """Open the others, then start all together. An error leaves the first lab as it was, and is raised.
 
-        resume: the run of the first lab is to go on from here when the comparison ends.
+        resume: the run of the first lab continues from here when the comparison ends.
         """
         first, asked = self.first, self.first.requests.number
         self.left = self.kept() if resume else None
@@ -172,22 +173,26 @@ class ComparedLabs:
             raise
         first.comparison = self
         self.seat(first)
+        shared: Future[None] = Future()  # until the record has the parameters of the first lab, before a change
+        first.call(lambda: shared.set_result(None))
+        with contextlib.suppress(TimeoutError):
+            shared.result(FIRST_TIMEOUT)
 
     def kept(self) -> tuple[SimLoop, BaseParams, Checkpoint] | None:
-        """The run of the first lab, to go on from later; None where it does not answer."""
+        """The run of the first lab, to be resumed later; None if it does not answer."""
         loop = self.first.loop
         answer: Future[object] = Future()
         loop.commands.put(Ask(lambda: kept_state(loop.run), answer))
         try:
-            state = answer.result(KEEP_TIMEOUT)
+            state = answer.result(FIRST_TIMEOUT)
         except Exception:
             return None
         return (loop, self.first.settings.params, state) if isinstance(state, Checkpoint) else None
 
     def seat(self, viewer: PaneLab) -> None:
-        """Give the lab's loop a place at the clock, in place of that of an earlier loop of it; all begin again.
+        """Give the lab's loop a seat at the clock, in place of its earlier loop's; all labs start again.
 
-        What is the same in all labs is set in this one too.
+        The common parameters are set in this lab too.
         """
         loop, seat = viewer.loop, Seat(self.clock)
         with self.changing:
@@ -200,7 +205,7 @@ class ComparedLabs:
             self.shared.join(viewer)
 
     def leave(self, viewer: PaneLab) -> None:
-        """The lab's loop is gone, or stands still for good: the others do not wait for it."""
+        """Remove the seat of a lab whose loop has ended or halted: the others no longer wait for it."""
         with self.changing:
             self.seats.pop(viewer, None)
             self.place()
@@ -210,7 +215,7 @@ class ComparedLabs:
         self.clock.seats = tuple(self.seats[viewer] for viewer in self.viewers if viewer in self.seats)
 
     def audience(self) -> int:
-        """Number of browsers that see all panes: the clock stands still until each one is there."""
+        """Number of browsers that see all panes: the clock stands still until all panes are connected."""
         return min(viewer.visitors() for viewer in self.viewers)
 
     def words(self) -> tuple[PaneWords, ...]:
@@ -224,7 +229,7 @@ class ComparedLabs:
         return tuple(PaneWords(*pane) for pane in zip(headings(panes), middles, connected, strict=True))
 
     def end(self) -> None:
-        """End the other labs; the first one goes on from where it was before, if it is still the same run."""
+        """End the other labs; the first one resumes from its earlier state, if it is still the same run."""
         first, others = self.first, self.viewers[1:]
         self.viewers = (first,)
         first.comparison = None
@@ -247,12 +252,12 @@ class Comparisons:
     def __init__(self, first: PaneLab, make_pane: Callable[[int], PaneLab]) -> None:
         self.first, self.make_pane = first, make_pane
         self.lock = threading.Lock()
-        self.latest: ComparedLabs | None = None  # the one that was made last, also while it is being opened
+        self.latest: ComparedLabs | None = None  # the last one made, even while it is being opened
 
     def begin(self, setups: Sequence[Setup], with_first: bool) -> None:
         """Show set-ups beside the first lab; with_first: the first of them in the first lab.
 
-        Raises ValueError where there are too few or too many of them.
+        Raises ValueError for too few or too many of them.
         """
         check_count(setups if with_first else [*setups, *setups[:1]])
         with self.lock:
@@ -261,12 +266,12 @@ class Comparisons:
             if self.first.comparison is not None:
                 self.first.comparison.end()
             if with_first and not self.first.open(setups[0].scene, setups[0].params):
-                return  # another scene was asked for
+                return  # another scene was requested
             self.latest = ComparedLabs(self.first, self.make_pane)
             self.latest.begin(setups[1:] if with_first else setups, resume=not with_first)
 
     def want(self, setups: Sequence[Setup], with_first: bool) -> None:
-        """The same at once, on a separate thread."""
+        """Begin on a separate thread; returns at once."""
         threading.Thread(target=self.try_to, args=(lambda: self.begin(setups, with_first),), daemon=True).start()
 
     def end(self) -> None:
@@ -274,7 +279,7 @@ class Comparisons:
         threading.Thread(target=self.try_to, args=(self.end_now,), daemon=True).start()
 
     def end_now(self, timeout: float = -1.0) -> None:
-        """Show the first lab alone. timeout: [s] to wait for one that is being opened; -1: as long as it takes."""
+        """Show the first lab alone. timeout: [s] to wait for one that is being opened; -1: no limit."""
         if not self.lock.acquire(timeout=timeout):
             return
         try:

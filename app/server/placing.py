@@ -17,14 +17,14 @@ class CameraPlacing:
     def __init__(self, server: "viser.ViserServer", view: AnyView, params: BaseParams) -> None:
         """Place all cameras for the first view of these parameters."""
         self.server, self.view = server, view
-        self.run = 0  # number of the run that is shown
-        self.placed: Placing | None = None  # the last that was carried out
+        self.run = 0  # number of the shown run
+        self.placed: Placing | None = None  # the last one carried out
         self.before: dict[int, ClientCamera] = {}  # cameras before they were fitted
         self.fitted: tuple[ClientCamera, ...] = ()  # and after that
         place_cameras(server, *view.first_view(params), view.FIELD_OF_VIEW)
 
     def update(self, snapshot: AnySnapshot, placing: Placing | None) -> None:
-        """Place the cameras as a picture asks for. placing: as the settings ask for, once its run is shown."""
+        """Place the cameras for a picture. placing: requested by the settings, once its run is shown."""
         status = snapshot.status
         if status.replayed is not None and not status.halted:
             self.fit(snapshot.params, status.replayed)
@@ -46,7 +46,7 @@ class CameraPlacing:
         self.fitted = client_cameras(self.server)
 
     def end_fitting(self) -> None:
-        """Put the cameras back that nobody has moved since they were fitted."""
+        """Restore the fitted cameras that nobody has moved since."""
         for camera in set(self.fitted) & set(client_cameras(self.server)):
             place_client_camera(self.server, self.before.get(camera.client))
         self.before, self.fitted = {}, ()

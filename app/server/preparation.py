@@ -12,7 +12,7 @@ from app.render.markup.html import fill, note
 from app.scenes.ahead.compiling import Compiling
 from app.scenes.contract import AnyKind
 
-PROGRESS_INTERVAL = 0.25  # [s] between two updates of what is being compiled
+PROGRESS_INTERVAL = 0.25  # [s] between two updates of the progress
 
 
 def progress_line(words: str) -> str:
@@ -33,12 +33,12 @@ class Preparation:
     ) -> None:
         """say: prints a line. ahead: compile for later too (`go_on`)."""
         self.server, self.compiling, self.say, self.ahead = server, compiling, say, ahead
-        self.notice = ""  # on the compilation that the next scene waits for
+        self.notice = ""  # on the compilation for the next scene
 
     def compile(self, kind: AnyKind, params: BaseParams, *, covers: bool, given_up: Callable[[], bool]) -> bool:
-        """Compile the kernels of a scene. Returns False if it was given up before they were all there.
+        """Compile the kernels of a scene. Returns False if cancelled before all were ready.
 
-        covers: show the progress in place of the page. An open scene shows `notice`, and goes on meanwhile.
+        covers: show the progress in place of the page. An open scene shows `notice`, and continues meanwhile.
         """
         jobs = self.compiling.missing(kind.name, params)
         if not jobs:
@@ -67,7 +67,7 @@ class Preparation:
         return True
 
     def go_on(self, kind: AnyKind) -> None:
-        """Compile kernels that the open scene, of this kind, and the others may call later, on a separate thread."""
+        """Compile kernels that the open scene (of this kind) and others may call later, on a separate thread."""
         if self.ahead:
             action = self.compiling.go_on_with
             threading.Thread(target=action, args=(kind.name,), name="compile ahead", daemon=True).start()

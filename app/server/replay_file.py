@@ -1,8 +1,8 @@
 """A replay: one HTML file with frames of a scene, its parameters and plots, which opens offline in any browser.
 
 The frames are drawn by the scene's own view, on a server that nobody connects to, and recorded by viser's serialiser,
-which adds its client. Positions are rounded below what can be seen: rounded numbers take half the space. The
-parameters are in it as a set-up file, so that it can be loaded again.
+which adds its client. Positions are rounded below visibility, as rounded numbers take half the space. The parameters
+are in it as a set-up file, so that it can be loaded again.
 """
 
 import contextlib
@@ -74,7 +74,7 @@ def thinned(frames: Sequence[RecordedFrame]) -> list[RecordedFrame]:
 def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted) -> str:
     """The page of a replay of the last of these frames. plotted: the data of the plots.
 
-    Raises ValueError where there is no frame.
+    Raises ValueError if there is no frame.
     """
     if not frames:
         raise ValueError("nothing has been recorded yet: let the scene run first")

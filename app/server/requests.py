@@ -1,4 +1,4 @@
-"""Scenes that browsers ask for: of several that wait only the last counts."""
+"""Scenes that browsers request: of several waiting only the last counts."""
 
 import itertools
 import queue
@@ -12,12 +12,12 @@ class SceneRequest(NamedTuple):
     """A scene to open."""
 
     scene: str
-    params: BaseParams | None  # where a task or a link has them
+    params: BaseParams | None  # from a task or a link
     camera: ClientCamera | None  # of a link
 
 
 class SceneRequests:
-    """The queue of them; any thread may put."""
+    """The queue of requests; any thread may put."""
 
     def __init__(self) -> None:
         self.waiting: queue.SimpleQueue[SceneRequest] = queue.SimpleQueue()
@@ -25,7 +25,7 @@ class SceneRequests:
         self.number = 0  # of the last request
 
     def put(self, request: SceneRequest) -> None:
-        """Ask for a scene."""
+        """Add a request."""
         self.waiting.put(request)
         self.number = next(self.numbers)
 
@@ -37,5 +37,5 @@ class SceneRequests:
         return request
 
     def is_newer(self, number: int) -> bool:
-        """True if a scene was asked for after the request of this number; it may have been taken out already."""
+        """True if a scene was requested after the request of this number; it may already have been taken out."""
         return self.number != number or not self.waiting.empty()

@@ -32,10 +32,10 @@ from app.server.web.transport import Transport
 if TYPE_CHECKING:
     from app.lab.student.session import Session
 
-PLAYED_INTERVAL = 1 / 30  # [s] between two frames of a recording that is played
-HEARTBEAT = 0.1  # [s] between two updates of the panel where no snapshot comes
+PLAYED_INTERVAL = 1 / 30  # [s] between two frames of a played recording
+HEARTBEAT = 0.1  # [s] between two updates of the panel without a new snapshot
 ALONE_HEARTBEAT = 1.0  # [s] the same while nobody looks
-MAX_JOIN_TIME = 1.0  # [s] for which leaving a scene waits for its last solve, and the end of the lab for a picture
+MAX_JOIN_TIME = 1.0  # [s] to wait for the last solve of a scene that is left, and for a picture when the lab ends
 
 
 class SceneHost(Protocol):
@@ -51,15 +51,15 @@ class SceneHost(Protocol):
 
     @property
     def beside(self) -> ComparisonCalls | None:
-        """Shows other set-ups beside this lab; None where this one is beside another."""
+        """Shows other set-ups beside this lab; None if this one is beside another."""
         ...
 
     def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
-        """Ask for a scene."""
+        """Request a scene."""
         ...
 
     def audience(self) -> int:
-        """The number of browsers that look."""
+        """The number of watching browsers."""
         ...
 
     def share_parameters(self, params: BaseParams) -> None:
@@ -86,11 +86,11 @@ class ServedScene:
     ) -> None:
         """viewer: the server and the parts common to all scenes. `start` runs the threads.
 
-        scene: has the parameters that are wanted, or others where it cannot begin with those. commands: for it.
+        scene: has the wanted parameters, or others if it cannot begin with those. commands: for it.
         """
         self.viewer, self.server, self.transport = viewer, viewer.server, viewer.transport
-        self.recorded: RecordedFrame | None = None  # the frame of the recording that is shown
-        self.shown = self.drawn = 0  # serial of the snapshot that is shown; how many were
+        self.recorded: RecordedFrame | None = None  # the shown frame of the recording
+        self.shown = self.drawn = 0  # serial of the shown snapshot; number of shown snapshots
         self.stop = threading.Event()
         self.is_open = True
         self.threads: list[threading.Thread] = []
@@ -108,7 +108,7 @@ class ServedScene:
         self.loop = SimLoop(self.scene, self.commands, viewer.audience, paused=paused)
         self.gate = CompileGate(viewer.compiling, kind, self.loop.record, self.loop.runs.keep_dropped)
         self.loop.admit = self.gate.admit
-        if params != wanted:  # the loop finds out once more, and says why; the panel has the controls to put it right
+        if params != wanted:  # the loop fails again and gives the reason; the panel has the controls to correct it
             self.settings.load_params(wanted, self.settings.nearest_preset(wanted))
 
     def start(self) -> None:
@@ -121,7 +121,7 @@ class ServedScene:
             thread.start()
 
     def show_snapshots(self) -> None:
-        """Show each new snapshot once, as soon as it is there, and keep the panel's status up to date."""
+        """Show each new snapshot once, as soon as it arrives, and keep the panel's status up to date."""
         fresh, clock, recorder = self.loop.run.snapshots.fresh, self.loop.clock, self.panel.recorder
         shown_at = clock.now()
         while not self.stop.is_set():
@@ -140,7 +140,7 @@ class ServedScene:
         """Hand the latest snapshot over; without a new one only the panel."""
         snapshot, busy = self.loop.latest, self.loop.clock.busy_time
         rows = self.loop.run.snapshots.pop_rows()
-        # All of it in one message: each wakes a thread of viser's, which costs as much as drawing the rope.
+        # One message for all: each message wakes a thread of viser's, which costs as much as drawing the rope.
         recorder = self.panel.recorder
         now = time.monotonic()
         recorder.follow(snapshot)
@@ -151,7 +151,7 @@ class ServedScene:
                 if recorded is not self.recorded:
                     self.drawn += 1
                     self.attempt("picture", lambda: self.view.show(recorded.frame))
-                self.shown = 0  # the present is drawn anew after it
+                self.shown = 0  # the present is redrawn after it
             elif snapshot.serial != self.shown:
                 self.shown = snapshot.serial
                 self.drawn += 1
@@ -163,7 +163,7 @@ class ServedScene:
         recorder.note(snapshot, now)
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
-        """Run a drawing action; an exception halts the run once, and this thread goes on."""
+        """Run a drawing action; an exception halts the run once, and this thread continues."""
         try:
             action()
         except Exception as error:
@@ -179,7 +179,7 @@ class ServedScene:
             self.compile_line.content = note(text) if text else ""
 
     def stop_threads(self, picture_time: float | None = None) -> None:
-        """Stop the threads; a solve that runs is ended early, and not waited for if it takes long.
+        """Stop the threads; a running solve is cancelled, and not waited for if it takes long.
 
         picture_time: [s] to wait for a picture that is being drawn. None: as long as it takes, because a view makes
         nodes while it draws, and those of the next scene may have the same names.

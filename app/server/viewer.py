@@ -1,4 +1,4 @@
-"""Owns the server: opens and closes scenes, one after the other."""
+"""The lab in a browser: owns the server, and opens and closes scenes one after the other."""
 
 # pyright: reportPrivateUsage=false
 
@@ -69,7 +69,7 @@ class Viewer:
         one is a pane of, and its number from 2: it is reached through the other's port. opened: the server, if it
         listens already. With either of them `host`, `port` and `access` say nothing.
 
-        Raises OSError where the port cannot be bound.
+        Raises OSError if the port cannot be bound.
         """
         self.compiling = Compiling() if beside is None else beside[0].compiling
         self.workbook, self.session = workbook, session
@@ -89,9 +89,9 @@ class Viewer:
         self.port = self.server.get_port()
         self.changes = SceneSwitches()
         self.ended = False
-        self.came = threading.Event()  # a browser is connected, or the lab has ended
-        self.current: ServedScene | None = None  # the scene that was opened last; it may be closed
-        self.first_params: dict[str, BaseParams] = {}  # scene -> the parameters that it was first given
+        self.came = threading.Event()  # set when a browser connects, or the lab ends
+        self.current: ServedScene | None = None  # the last scene opened; it may be closed
+        self.first_params: dict[str, BaseParams] = {}  # scene -> its first parameters
         self.changing = threading.Lock()
         self.requests = SceneRequests()
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
@@ -111,7 +111,7 @@ class Viewer:
         first_look: bool = False,
         given_up: Callable[[], bool] = lambda: False,
     ) -> bool:
-        """Show a scene, in place of the one that is open. Returns False where it was given up before it was there.
+        """Show a scene in place of the open one. Returns False if the request was cancelled before the scene was ready.
 
         params: None for those that the scene was first given. Without any: with `first_look` those of a preset
         that keeps moving, otherwise the defaults. first_look: a browser asked for it; parameters of a task of the lab
@@ -141,7 +141,7 @@ class Viewer:
                 raise
 
     def is_given_up(self, asked: int) -> bool:
-        """True if the lab ended, or another scene was asked for after the request `asked`, while one is open."""
+        """True if the lab has ended, or another scene was requested after the request `asked`, while one is open."""
         return self.ended or (self.is_open and self.requests.is_newer(asked))
 
     def make(self, kind: AnyKind, params: BaseParams, paused: bool) -> None:
@@ -162,9 +162,9 @@ class Viewer:
         self.preparation.go_on(kind)
 
     def make_scene(self, kind: AnyKind, params: BaseParams, post: PostCommand) -> AnyScene:
-        """The simulation; with the parameters of its first view where it cannot begin with these.
+        """The simulation; with the parameters of its first view if it cannot begin with these.
 
-        Raises what the scene raises where it cannot begin with those either.
+        Raises the error of the scene if it cannot begin with those either.
         """
         try:
             return self.begun_scene(kind, params, post)
@@ -175,7 +175,7 @@ class Viewer:
             return self.begun_scene(kind, first, post)
 
     def begun_scene(self, kind: AnyKind, params: BaseParams, post: PostCommand) -> AnyScene:
-        """The simulation, with a student's functions beside it where there are any that it has a use for."""
+        """The simulation, with a student's functions beside it if it uses any of them."""
         if self.session is None:
             return kind.make(params)
         live = self.session.live
@@ -186,7 +186,7 @@ class Viewer:
         return kind.make_with_student(params, live)
 
     def show_failure(self, name: str, error: BaseException) -> None:
-        """A page that says why a scene could not be opened, and offers the scenes."""
+        """Show a page with the reason why a scene could not be opened, and the list of scenes."""
         comparison = self.comparison
         if comparison is not None:
             comparison.leave(self)
@@ -199,11 +199,11 @@ class Viewer:
         )
 
     def want(self, name: str, params: BaseParams | None = None, camera: ClientCamera | None = None) -> None:
-        """Ask for a scene; it is opened on a separate thread."""
+        """Request a scene; it is opened on a separate thread."""
         self.requests.put(SceneRequest(name, params, camera))
 
     def open_wanted(self) -> None:
-        """Open the scenes that browsers ask for; of several waiting only the last."""
+        """Open the scenes that browsers request; of several waiting only the last."""
         while not self.ended:
             name, params, camera = self.requests.pop()
             try:
@@ -221,7 +221,7 @@ class Viewer:
 
     @property
     def served(self) -> ServedScene:
-        """The scene that was opened last. Raises RuntimeError where none was."""
+        """The last scene opened. Raises RuntimeError without one."""
         if self.current is None:
             raise RuntimeError("no scene has been opened")
         return self.current
@@ -261,13 +261,13 @@ class Viewer:
         return len(self.server.get_clients())
 
     def newest_visitor(self, timeout: float) -> viser.ClientHandle | None:
-        """The browser that connected last; waits at most `timeout` [s] for one, and not for a lab that has ended."""
+        """The browser that connected last; waits at most `timeout` [s] for one, unless the lab has ended."""
         self.came.wait(timeout)
         clients = self.server.get_clients()
         return clients[max(clients)] if clients else None
 
     def audience(self) -> int:
-        """Number of browsers that look, of all labs if several are side by side."""
+        """Number of watching browsers, of all labs if several are side by side."""
         comparison = self.comparison
         return self.visitors() if comparison is None else comparison.audience()
 
@@ -277,7 +277,7 @@ class Viewer:
 
     @property
     def beside(self) -> ComparisonCalls | None:
-        """Shows other set-ups beside this lab; None where this one is beside another."""
+        """Shows other set-ups beside this lab; None if this one is beside another."""
         return None if self.pane_of else ComparisonCalls(self.comparing.want, self.comparing.end, self.pane_words)
 
     def pane_words(self) -> tuple[PaneWords, ...]:
@@ -304,7 +304,7 @@ class Viewer:
             self.current.settings.history.release(client.client_id)
 
     def close(self, picture_time: float | None = None) -> None:
-        """Close the open scene. picture_time: [s] to wait for its last picture; None: as long as it takes."""
+        """Close the open scene. picture_time: [s] to wait for its last picture; None: no limit."""
         if self.current is not None:
             self.current.close(picture_time)
 
@@ -314,7 +314,7 @@ class Viewer:
         self.comparing.stop_opening()
 
     def shut(self) -> None:
-        """End: stop the threads and the server. A scene that is being opened is not waited for."""
+        """End the lab: stop the threads and the server, without waiting for a scene that is being opened."""
         self.ended = True
         self.came.set()
         if self.current is not None:

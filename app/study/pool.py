@@ -49,7 +49,7 @@ def progress_bar() -> Progress:
 def spread(work: Callable[..., R], tasks: Sequence[Arguments], title: str, workers: int = 0) -> list[R]:
     """[work(*task) for task in tasks] on `workers` processes, with a progress bar.
 
-    workers: 0 for one on each core; 1 for this process. Raises what `work` raises, and OSError where a task kills its
+    workers: 0 for one on each core; 1 for this process. Raises what `work` raises, and OSError if a task kills its
     process.
     """
     with progress_bar() as progress:

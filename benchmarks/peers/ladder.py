@@ -139,7 +139,7 @@ def tables(
 ) -> Rows:
     """The ladders of all installed peers in the task of each size, and a row with the reason for each that is left out.
 
-    make_task: takes the size and the damping model. words: where there are any, only ladders with one of them in the
+    make_task: takes the size and the damping model. words: if any, only ladders with one of them in the
     names of their task and peer, as "R(16) scipy DOP853". quick: without words the last size is left out.
     """
     table: Rows = []

@@ -50,7 +50,7 @@ class OwnRuns:
         return self.results[key]
 
     def quickest(self, limits: tuple[float, ...]) -> OwnRun | None:
-        """Our quickest run with errors of at most `limits` [m]; None where no run on the ladders is so exact."""
+        """Our quickest run with errors of at most `limits` [m]; None if no run on the ladders is so exact."""
         found: list[tuple[float, OwnRun]] = []
         for ladder in self.ladders:
             for run in ladder:

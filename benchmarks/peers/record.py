@@ -15,7 +15,7 @@ class Peer(NamedTuple):
     """A program, and how it is given the task.
 
     make: for ropes and cloths, takes the net and a time step [s] or a relative tolerance, and gives a `Run`; for seas,
-    takes the sea and a precision, and gives frame(t), height and displacements (3, N, N) [m], or None where it draws
+    takes the sea and a precision, and gives frame(t), height and displacements (3, N, N) [m], or None if it draws
     another sea. What has to be compiled is compiled by the first call, which is timed apart.
     """
 

@@ -1,6 +1,6 @@
 """The square sea as a user of another program would write it: height and two displacements at a new time.
 
-A peer's `make(sea, precision)` gives frame(t) -> (3, N, N) [m], or None where it draws another sea and can only be
+A peer's `make(sea, precision)` gives frame(t) -> (3, N, N) [m], or None if it draws another sea and can only be
 timed.
 """
 

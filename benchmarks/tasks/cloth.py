@@ -19,7 +19,7 @@ from benchmarks.peers.ladder import Task, tables
 from benchmarks.peers.own_runs import OwnRun, OwnRuns
 from sim.springs import Net
 
-# Methods that may be quickest at the error of a peer.
+# Methods that may be the quickest at a peer's error.
 QUICK_METHODS = ("leapfrog_lagged", "leapfrog", "rk4", "dopri5", "dop853", "symplectic_euler")
 
 
@@ -49,6 +49,6 @@ def peer_task(n: int, damping: str) -> Task:
 
 
 def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
-    """The ladders of peers, and programs that cannot be given the task; quick: two sizes, every second rung."""
+    """The ladders of peers, and programs that cannot do the task; quick: two sizes, every second rung."""
     table = tables("C", (32, 64, 128), SCRIPTS + ENGINES, peer_task, words, quick)
     return table + [{"task": "another", "peer": name, "note": why} for name, why in OTHER_TASKS.items() if not words]

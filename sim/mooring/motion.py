@@ -27,10 +27,10 @@ from sim.springs.state import State, advance, check_state, velocities
 from sim.validation import argument_error, check_positive, check_vector
 
 SAFETY = 0.5  # of the critical step at the start
-PIECE = 0.05  # [s] of a moved point's path that is one cubic
+PIECE = 0.05  # [s] of a moved point's path in one cubic
 DIFFERENCE = 1e-4  # [s] either side, of a motion without a velocity of its own
 MOST_STEPS = 1e9
-FARTHEST = 1e6  # [m]: a node that is farther has diverged
+FARTHEST = 1e6  # [m], beyond which a node has diverged
 
 Array = NDArray[np.float64]
 Motion = Callable[[float], Any]
@@ -65,7 +65,7 @@ def cubic(x0: Array, v0: Array, x1: Array, v1: Array, t: float, duration: float)
 
 
 def paths_of(system: System, state: State, motion: Mapping[int, Motion], duration: float) -> Array:
-    """Paths (coupled points, 5, 3) of motions on for `duration` [s] from a state's time; other points stay there."""
+    """Paths (coupled points, 5, 3) of motions for `duration` [s] from a state's time; other points stay in place."""
     coupled = system.coupled_nodes
     paths = np.zeros((len(coupled), 5, 3))
     for q, (one, node) in enumerate(coupled.items()):
@@ -78,7 +78,7 @@ def paths_of(system: System, state: State, motion: Mapping[int, Motion], duratio
 
 
 def paths_to(system: System, state: State, ends: Mapping[int, tuple[ArrayLike, ArrayLike]], duration: float) -> Array:
-    """Paths (coupled points, 5, 3) on for `duration` [s] from where the coupled points of a state are.
+    """Paths (coupled points, 5, 3) for `duration` [s] from the coupled points of a state.
 
     ends: by the id of a coupled point, its place [m] and velocity [m/s] at the end; the others stop where they are.
     `advance` takes the paths as `driven`; without any, coupled points are at their positions in `System.points`.
@@ -96,7 +96,7 @@ def paths_to(system: System, state: State, ends: Mapping[int, tuple[ArrayLike, A
     >>> round(state.t, 6), force.shape
     (1.0, (3,))
 
-    Raises ValueError for a point that is not coupled, for a place or velocity that none has, and for a duration.
+    Raises ValueError for a point that is not coupled, and for an invalid place, velocity or duration.
     """
     check_state(system, state)
     check_positive("duration", duration, "s")
@@ -134,7 +134,7 @@ def is_held(point: Point) -> bool:
 
 
 class MooringFrames:
-    """A mooring on its way from frame to frame, with the results of each."""
+    """Advances a mooring from frame to frame, and collects the results."""
 
     def __init__(
         self,
@@ -146,7 +146,7 @@ class MooringFrames:
         start: State,
         with_account: bool,
     ) -> None:
-        """step: [s] the longest that may be taken."""
+        """step: [s] the longest allowed."""
         self.system, self.motion, self.record, self.t, self.with_account = system, motion, record, t, with_account
         self.state, interval = State(start.x.copy(), start.v.copy(), lag=start.lag), float(t[1])
         for i, point in enumerate(system.points):
@@ -164,7 +164,7 @@ class MooringFrames:
         self.ledger = np.full((len(t), 6), np.nan)
 
     def advance(self, frame: int) -> None:
-        """Go on to a frame from the one before, along the paths of the coupled points."""
+        """Advance from the previous frame to this one, along the paths of the coupled points."""
         for piece in range(self.pieces):
             self.state.t = float(self.t[frame - 1]) + piece * self.piece
             paths = paths_of(self.system, self.state, self.motion, self.piece)
@@ -175,11 +175,11 @@ class MooringFrames:
 
     @property
     def is_bounded(self) -> bool:
-        """False once anything is not finite or is out of any sane bound."""
+        """False once a value is not finite or out of all sane bounds."""
         return bool(np.abs(self.state.x).max() < FARTHEST)
 
     def sample(self, frame: int) -> None:
-        """Keep the state as that of a frame."""
+        """Store the state as a frame."""
         state = self.state
         x, v = state.x.reshape(-1), velocities(self.system, state).reshape(-1)
         self.x[frame], self.v[frame] = state.x, v.reshape(state.x.shape)

@@ -1,7 +1,7 @@
 """`System`: lines between fixed, moved, free and floating points, in water above a bed.
 
-z is up from still water [m]; node 0 of a line is at its start. What a System holds does not change; kernels see it as
-`LineArrays`, with one link a segment and half a segment's mass at each end.
+z is up from still water [m]; node 0 of a line is at its start. A System is immutable; kernels see it as `LineArrays`,
+with one link a segment and half a segment's mass at each end.
 """
 
 import dataclasses
@@ -72,10 +72,10 @@ class System(MooringParts):
     slack_damping: bool = False  # internal damping acts in slack links that lengthen, too; in MoorDyn in all
     current: Vector = (0.0, 0.0, 0.0)  # [m/s]; it pushes lines and points, but no body
     waves: Waves | None = None  # on the same water; None: still water
-    forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces that have any, one of each
+    forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces, at most one of each
 
     def __post_init__(self) -> None:
-        """Raises ValueError with the name of the value that cannot be: kernels check no index."""
+        """Raises ValueError with the name of an invalid value, as kernels check no index."""
         for name in ("lines", "points", "bodies"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         for name in ("lines", "points", "bodies"):
@@ -186,11 +186,11 @@ class System(MooringParts):
 
     @property
     def evaluation_cost(self) -> float:
-        """Time that one evaluation of the forces on all points takes, over that of one point of a rope."""
+        """Cost of one evaluation of the forces on all points, over that of one point of a rope."""
         return LINE_COST * self.node_count
 
     def check_integrator(self, integrator: Integrator) -> None:
-        """Raises ValueError for a method that knows no water, bed or bodies, or no damping."""
+        """Raises ValueError for a method without water, bed or bodies, or without damping."""
         if integrator.implicit or integrator.undamped_only:
             usable = [one.name for one in discover().values() if not (one.implicit or one.undamped_only)]
             allowed = f"one of {', '.join(usable)}: implicit methods know no water, bed or bodies, and pefrl no damping"

@@ -17,7 +17,7 @@ def narrowed(
     above right of it, at x like `low`; with has_slope the pair of this and its derivative. Neither end is evaluated, so
     a value of one sign alone leads to an end.
 
-    Newton's method, with the secant where there is no slope. A step that leaves the bracket, or is longer than half the
+    Newton's method, with the secant if there is no slope. A step that leaves the bracket, or is longer than half the
     one before, is replaced by halving (Press et al. 2007, Numerical Recipes, section 9.4), so that a function that
     jumps, has no slope, or tells only the sign is searched too. The last step leads to just beyond the root, so that
     both ends of the bracket are known.

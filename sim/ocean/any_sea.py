@@ -24,7 +24,7 @@ class RadialSurface(NamedTuple):
 
 
 class SurfaceAt(NamedTuple):
-    """The sea above n points at one moment, and the interface below it (where there is one, of mean height 0)."""
+    """The sea above n points at one moment, and the interface below it (if there is one, of mean height 0)."""
 
     height: np.ndarray  # (n,) [m]
     slope: np.ndarray  # (n, 2)
@@ -45,7 +45,7 @@ class AnySea(Protocol):
 
     @property
     def time(self) -> float:
-        """Time [s] that the sea was last asked for, or of its last change if that is later."""
+        """Time [s] of the last evaluation, or of the last change if that is later."""
         ...
 
     @property

@@ -98,7 +98,7 @@ def two_layer(
     """(surface, interface) angular frequencies [rad/s] of a layer of fluid on another.
 
     upper_density, lower_density [kg/m3]; thickness [m] of the upper layer; depth [m] of the lower one, or inf;
-    tensions [N/m]. Raises ValueError where a value is not allowed or the upper fluid is the heavier.
+    tensions [N/m]. Raises ValueError if a value is not allowed or the upper fluid is the heavier.
     Reduces to Lamb, Art. 231, without tension.
     """
     k, X_surface, X_interface, _ = _two_layer_roots(
@@ -175,7 +175,7 @@ def viscous_two_layer(
     densities [kg/m3]; dynamic viscosities [Pa s], above 0; thickness [m]; tensions [N/m]; film: the upper surface
     cannot be stretched. The exact linear problem, see `sim.ocean.fluids.viscous_layers`; the root is the one that
     grows out of the surface mode of `two_layer` with the viscosities. omega is 0 where the motion creeps without
-    oscillating. Raises ValueError where a value is not allowed or the upper fluid is the heavier.
+    oscillating. Raises ValueError if a value is not allowed or the upper fluid is the heavier.
     """
     k, X_surface, X_interface, G1 = _two_layer_roots(
         k, upper_density, thickness, lower_density, gravity, INF, surface_tension, interface_tension

@@ -1,4 +1,4 @@
-"""Gravity from mass: the lab asks for planets of 1/100, 1 and 100 Earth masses, which needs a rule for the radius."""
+"""Gravity from mass: the lab's planets of 1/100, 1 and 100 Earth masses need a rule for the radius."""
 
 from typing import NamedTuple
 

@@ -46,7 +46,7 @@ TRACK_POINTS = 512
 def flame_height(power: float, diameter: float) -> float:
     """L [m] = 0.235 Q^(2/5) - 1.02 D, Q in kW (Heskestad 1983, Fire Saf. J. 5:103); at least the radius.
 
-    power [W], diameter [m] of the fire. Raises ValueError where either is not above 0.
+    power [W], diameter [m] of the fire. Raises ValueError if either is not above 0.
     """
     check_positive("power", power, "W")
     check_positive("diameter", diameter, "m")
@@ -56,7 +56,7 @@ def flame_height(power: float, diameter: float) -> float:
 def centreline(height: ArrayLike, power: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """(speed [m/s], temperature over the air's [K]) at heights > 0 [m] above a fire of this power [W], in still air.
 
-    Raises ValueError where the power is not above 0.
+    Raises ValueError if the power is not above 0.
     """
     kilowatts = check_positive("power", power, "W") / 1e3
     z = np.asarray(height, float) / kilowatts**0.4
@@ -67,7 +67,7 @@ def centreline(height: ArrayLike, power: float) -> tuple[NDArray[np.float64], ND
 
 
 def buoyancy_flux(power: float) -> float:
-    """F [m4/s3] of a fire of this power [W]. Raises ValueError where it is not above 0."""
+    """F [m4/s3] of a fire of this power [W]. Raises ValueError if it is not above 0."""
     heat = (1.0 - RADIATED_SHARE) * check_positive("power", power, "W")
     return EARTH_GRAVITY * heat / (math.pi * AIR_DENSITY * AIR_HEAT * AIR_TEMPERATURE)
 
@@ -90,7 +90,7 @@ class Track(NamedTuple):
     step: float  # [s]
     height: NDArray[np.float32]  # [m] above the fire
     radius: NDArray[np.float32]  # [m] of the plume
-    heat: NDArray[np.float32]  # temperature over the air's, as a share of that in the flame
+    heat: NDArray[np.float32]  # temperature over the air's, as a fraction of that in the flame
 
 
 def track(power: float, diameter: float, wind_speed: float, duration: float) -> Track:

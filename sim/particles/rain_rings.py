@@ -25,7 +25,7 @@ class RingWave(NamedTuple):
 def ring_wave(gravity: float, tension: float = 0.0728, density: float = SEA_DENSITY) -> RingWave:
     """The slowest wave on deep fluid; gravity [m/s2], tension [N/m], density [kg/m3], that of sea water.
 
-    Raises ValueError where one is not above 0.
+    Raises ValueError if one is not above 0.
     """
     check_positive("gravity", gravity, "m/s2")
     check_positive("tension", tension, "N/m")
@@ -38,7 +38,7 @@ def ring_wave(gravity: float, tension: float = 0.0728, density: float = SEA_DENS
 def ring_flux(rate: float, gravity: float = EARTH_GRAVITY) -> float:
     """Drops that make a ring, of SMALLEST_RING_DROP and above, for each square metre and second [1/(m2 s)].
 
-    rate [mm/h]; gravity [m/s2]. Raises ValueError where one is not above 0.
+    rate [mm/h]; gravity [m/s2]. Raises ValueError if one is not above 0.
     """
     check_positive("rate", rate, "mm/h")
     check_positive("gravity", gravity, "m/s2")

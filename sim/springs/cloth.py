@@ -123,7 +123,7 @@ def cloth(
 
 
 def cells_around(rows: int, cols: int) -> NDArray[np.float64]:
-    """(rows, cols) cells of cloth that each particle stands for: 1, on an edge 1/2, at a corner 1/4."""
+    """(rows, cols) cells of cloth that belong to each particle: 1, on an edge 1/2, at a corner 1/4."""
     across, down = np.ones(cols), np.ones(rows)
     across[[0, -1]] = down[[0, -1]] = 0.5
     return np.outer(down, across)

@@ -1,7 +1,7 @@
 """`Net`: particles on a structured grid, joined by springs. A rope is a net one particle wide.
 
 Links are families of neighbour offsets, never index lists: every particle of the grid is linked to the one
-(di, dj) further, where there is one. In this package k is a stiffness, h a time step.
+(di, dj) further, if there is one. In this package k is a stiffness, h a time step.
 """
 
 import dataclasses
@@ -39,9 +39,9 @@ CONTACT_LAWS = ("clipped", "lab")
 CLOTH = [(0, 1), (1, 0), (1, 1), (1, -1), (0, 2), (2, 0)]  # structural, shear, bend: a kernel of their own
 GRID_COST = 4.0  # of a point with links in several directions, over that of a rope's
 CONTACT_COST = 300.0  # of a point of a net that touches itself
-LEAST_BAND = 8  # rows that are worth a thread
-PAIRS = 24  # most pairs within reach, for each particle, on average; what is beyond them is not pushed
-FARTHEST = 1e9  # [m] from the origin: a net that is farther counts as diverged
+LEAST_BAND = 8  # least rows for a thread
+PAIRS = 24  # most pairs within reach for each particle, on average; further pairs are not pushed
+FARTHEST = 1e9  # [m] from the origin, beyond which a net has diverged
 
 
 class Family(NamedTuple):
@@ -126,14 +126,14 @@ class Net(PointSystem[Run]):
     mass_ratios: NDArray[np.float64] | None = None  # (rows, cols), each point's mass over `mass`; None: 1
     side_ratio: float = 1.0  # stiffness and damping of links along a side of the net, over their family's
     forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces that have any, one of each
-    threads: int = 1  # that a cloth's forces are worked out on
+    threads: int = 1  # for the forces of a cloth
 
     def __deepcopy__(self, memo: object) -> "Net":
-        """The net itself: nothing changes it."""
+        """The net itself, as it is immutable."""
         return self
 
     def __post_init__(self) -> None:
-        """Raises ValueError with the field's name for values that kernels cannot take: they check no index."""
+        """Raises ValueError with the field's name for invalid values, as kernels check no index."""
         object.__setattr__(self, "x0", start_positions(self.x0))
         rows, cols = self.shape
         object.__setattr__(self, "law", check_law(self.law))
@@ -213,11 +213,11 @@ class Net(PointSystem[Run]):
 
     @property
     def evaluation_cost(self) -> float:
-        """Time that one evaluation of the forces on all points takes, over that of one point of a rope."""
+        """Cost of one evaluation of the forces on all points, over that of one point of a rope."""
         return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_rope else GRID_COST)
 
     def check_integrator(self, integrator: Integrator) -> None:
-        """Raises ValueError where a damped net is given to a method that takes none."""
+        """Raises ValueError for a damped net and a method that allows no damping."""
         if integrator.undamped_only and self.is_damped:
             allowed = "a method with damping: this net is damped by links, drag or contact"
             raise argument_error("integrator", integrator.name, allowed)
@@ -245,7 +245,7 @@ class Net(PointSystem[Run]):
     def with_stiffness(self, stiffness: float) -> "Net":
         """The same net with all links scaled together, so that the stiffest have `stiffness` [N/m].
 
-        Where no link has any stiffness, all get this one.
+        If no link has any stiffness, all get this one.
         """
         stiffest = max((f.stiffness for f in self.families), default=0.0)
         ratios = (f.stiffness / stiffest if stiffest > 0.0 else 1.0 for f in self.families)
@@ -266,7 +266,7 @@ class Net(PointSystem[Run]):
 
     @functools.cached_property
     def _unit_step_view(self) -> Any:
-        """`kernel_view` for a step of 1 s: a scene asks for it every frame, and a net does not change."""
+        """`kernel_view` for a step of 1 s, cached: a scene needs it every frame, and a net does not change."""
         rows, cols = self.shape
         paths = np.zeros((len(self.pin_paths), 5, 3))
         for p, (_, path) in enumerate(self.pin_paths):
@@ -364,7 +364,7 @@ def link_table(
 def start_positions(x0: Any) -> NDArray[np.float64]:
     """`x0` as a contiguous float64 array (3, rows, cols); raises ValueError for another shape or a point too far away.
 
-    A NaN passes: a run of it diverges with its first step.
+    A NaN passes: its run diverges at the first step.
     """
     allowed = f"real numbers of shape (3, rows, cols), nearer to the origin than {FARTHEST:g} m"
     if not isinstance(x0, np.ndarray) or x0.dtype.kind not in "iuf":
@@ -379,7 +379,7 @@ def start_positions(x0: Any) -> NDArray[np.float64]:
 
 
 def check_mass_ratios(ratios: Any, shape: tuple[int, int]) -> None:
-    """Raises ValueError if it is not an array of numbers above 0, one for each point."""
+    """Raises ValueError unless it is an array of numbers above 0, one for each point."""
     array = as_array("mass_ratios", ratios, f"numbers of shape {shape}")
     if array.shape != shape:
         raise argument_error("mass_ratios", array.shape, f"numbers of shape {shape}")

@@ -1,4 +1,4 @@
-"""A net's state on another number of points, so that a motion goes on when the grid changes."""
+"""A net's state on another number of points, so that a motion continues when the grid changes."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -17,7 +17,7 @@ class Run(NamedTuple):
     energy: EnergyHistory  # by name, (frames,) each [J]
     force_evals: int
     diverged_at: float | None  # [s]
-    step: float | None  # [s] that was taken; None where the method chose its own
+    step: float | None  # [s] that was taken; None if the method chose its own
     integrator: str  # that ran: what "auto" took
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
     unsettled: int = 0  # steps of implicit methods that were taken before Newton's method had settled

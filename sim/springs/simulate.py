@@ -27,19 +27,19 @@ CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of
 STEP = 1 / 1200  # [s], or SAFETY of the critical step where that is shorter
 SAFETY = 0.5
 RTOL, ATOL = 1e-6, 1e-9  # of adaptive methods
-LEAST_RTOL, LEAST_ATOL = 1e-14, 1e-18  # below, round-off asks for shorter and shorter steps
+LEAST_RTOL, LEAST_ATOL = 1e-14, 1e-18  # below, round-off would demand shorter and shorter steps
 MOST_STEPS = 1e10  # of a run: hours of a rope
 FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
 
 
 class Simulated(NamedTuple):
-    """Way in which `simulate` runs the systems of one class."""
+    """The way in which `simulate` runs the systems of one class."""
 
     run: Callable[..., Any]  # (system, t, step, integrator, with_account, progress, **options) -> record of the run
     duration: float  # [s] by default
     frames: int
     integrator: str
-    options: tuple[str, ...]  # names of the arguments that only these systems have
+    options: tuple[str, ...]  # names of arguments for these systems only
 
 
 SIMULATED: dict[type[PointSystem[Any]], Simulated] = {}  # each class of systems adds its own
@@ -66,30 +66,30 @@ def simulate(
     Returns a `Run` of a net, a `MooringRun` of a mooring.
 
     duration, frames: 2 s and 61 of a net by default, 10 s and 101 of a mooring.
-    step: [s], half the critical step at the start by default, of a net at most 1/1200; shortened equally where it does
-    not divide a frame interval, and `step` of the run is the one taken. A step that is given is taken, however long:
-    see `sim.springs.critical_step`.
+    step: [s], by default half the critical step at the start, for a net at most 1/1200; shortened if it does not divide
+    a frame interval (`step` of the run is the one used). A given step is used, however long: see
+    `sim.springs.critical_step`.
     integrator: a name in `INTEGRATORS`, "rk4" of a net and "leapfrog" of a mooring by default. For a net also "auto",
-    which takes an adaptive method by the net's damping and the tolerance, or by the step (sim/springs/automatic.py);
-    `integrator` of the run says which.
-    with_account: also integrate what damping takes and what moved points and water put in; the stored energies are
-    always there.
+    which chooses an adaptive method by the net's damping and the tolerance, or by the step (sim/springs/automatic.py);
+    `integrator` of the run names it.
+    with_account: also integrate the energy dissipated by damping and put in by moved points and water; stored energies
+    are always computed.
     progress: called with (frames done, frames).
 
     Of a net only:
     x, v: positions [m] and velocities [m/s] at the start, (points, 3) of a rope, (rows, cols, 3) of another net, as a
-    run has them; None: as the net was built, at rest. Pinned points are where x has them, and do not move.
+    run has them; None: as the net was built, at rest. Pinned points stay at their places in x.
     rtol, atol: adaptive methods choose steps with an error within atol + rtol |value| of each position [m] and velocity
-    [m/s], 1e-6 and 1e-9 by default; given a step instead they take that.
+    [m/s], 1e-6 and 1e-9 by default; with `step` they use that instead.
 
     Of a mooring only:
     motion: by the id of a coupled point, a function of the time [s] that gives its place (3,) [m]; its velocity is that
-    of `function.velocity(t)` where there is one, else by differences. Points without one stay where they are.
-    start: a state to begin with, None: at rest, with the moved points where they begin. The run's time begins at 0.
+    from `function.velocity(t)` if it exists, else from differences. Other points stay in place.
+    start: initial state; None: at rest, with moved points at their first places. The run's time begins at 0.
 
     A run that diverges ends there: `diverged_at` is the time of the first step of a net, or the first frame of a
-    mooring, that left any sane bound, or at which an adaptive method found no step short enough. Later frames are NaN,
-    and a RuntimeWarning says so.
+    mooring, outside all sane bounds, or at which an adaptive method found no step short enough. Later frames are NaN,
+    with a RuntimeWarning.
 
     Raises ValueError, naming the argument, its value and what is allowed, and ConvergenceError for a mooring without a
     state of rest.
@@ -189,7 +189,7 @@ def begun(net: Net, x: ArrayLike | None, v: ArrayLike | None) -> tuple[Net, NDAr
 
 
 def default_step(net: Net, record: Integrator) -> float:
-    """STEP [s], or shorter where the net asks for it."""
+    """STEP [s], or shorter if the net needs it."""
     fastest, strongest = gershgorin(net)
     # The bounds are quick, and enough for most nets: a method that holds undamped holds in such short steps.
     if record.limit(0.0) > 0.0 and STEP * max(fastest, strongest) < 0.1:
@@ -199,12 +199,12 @@ def default_step(net: Net, record: Integrator) -> float:
 
 
 class NetFrames:
-    """A net on its way from frame to frame, with the results of each."""
+    """Advances a net from frame to frame, and collects the results."""
 
     def __init__(
         self, net: Net, start: State, record: Integrator, t: NDArray[np.float64], step: float, with_account: bool
     ) -> None:
-        """step: [s] the longest that may be taken."""
+        """step: [s] the longest allowed."""
         self.net, self.state, self.record, self.t, self.with_account = net, start, record, t, with_account
         interval = float(t[-1]) / (len(t) - 1)
         self.steps = steps_for(interval, step)
@@ -215,18 +215,18 @@ class NetFrames:
         self.ledger = np.full((len(t), 6), np.nan)
 
     def advance(self, frame: int) -> None:
-        """Go on to a frame from the one before."""
+        """Advance from the previous frame to this one."""
         if np.abs(self.state.x).max() < CALM:
             self.calm, self.calm_frame = self.state.copy(), frame - 1
         advance(self.net, self.state, self.record, self.h, self.steps, with_account=self.with_account)
 
     @property
     def is_bounded(self) -> bool:
-        """False once anything is not finite or is out of any sane bound."""
+        """False once a value is not finite or out of all sane bounds."""
         return self.state.is_bounded
 
     def sample(self, frame: int) -> None:
-        """Keep the state as that of a frame."""
+        """Store the state as a frame."""
         self.x[frame], self.v[frame] = self.state.x, velocities(self.net, self.state)
         self.ledger[frame] = *energy(self.net, self.state), self.state.dissipated, self.state.work
 
@@ -234,7 +234,7 @@ class NetFrames:
         """The time [s] of the first bad step before a frame; all results from then on become NaN."""
         steps = self.steps * (frame - self.calm_frame)
         diverged_at = first_insane_time(self.net, self.calm, self.record, self.h, steps)
-        # A run that diverges may have passed the bound between frames, and come back for one.
+        # A diverging run may have left the bounds between frames and returned for one.
         for rows in (self.x, self.v, self.ledger):
             rows[self.t >= diverged_at] = np.nan
         return diverged_at
@@ -301,7 +301,7 @@ def marched(
 
 
 def is_closed(net: Net) -> bool:
-    """True if nothing takes energy out of the net or puts any in."""
+    """True if no energy leaves or enters the net."""
     moved = net.pin_paths or net.grab is not None or any(net.sphere_velocity)
     return not (net.is_damped or moved)
 

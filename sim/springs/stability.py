@@ -1,18 +1,18 @@
-"""Largest step that a net allows: its extreme modes, and each integrator's limit at their damping.
+"""Largest stable step of a net: its extreme modes, and each integrator's limit at their damping.
 
 Explicit integrators blow up from the top of the spectrum, a sawtooth along the links. An integrator declares the
 largest stable step of an oscillator of any frequency and damping rate, so a net's largest stable step is the least of
-these over the modes that can be the first to leave: the stiffest, the most damped, and one across the links. With
+these over the modes that can become unstable first: the stiffest, the most damped, and one across the links. With
 isotropic damping that is the most damped transverse mode. It is damped as strongly as a longitudinal one, but less
 stiff, so that in a soft rope it is the more overdamped. With axial damping it is the stiffest transverse mode. Each
 mode's damping is its Rayleigh quotient, exact where D is a combination of K and M, as along a straight rope. Where D is
 no such combination, as in a cloth, two more modes lie between the stiffest and the most damped one, and the step is
-right to 1 % (`springtide stability`). Explicit Euler's limit, which hangs on the least damped of all modes, is a guide
-only.
+right to 1 % (`springtide stability`). Explicit Euler's limit depends on the least damped of all modes and is only a
+guide.
 
 Each link is given the stiffness it would have at the largest strain now present in the net: a slack line is about to be
-taut, and a wave carries the strain of one link of a stiffening rope to the others. What stretches further later needs a
-shorter step then.
+taut, and a wave carries the strain of one link of a stiffening rope to the others. Larger strains later need a shorter
+step.
 """
 
 import functools
@@ -43,7 +43,7 @@ TOUCHING = 12  # equal spheres that can touch one of them
 LEAST_SLIDING = 1e-6  # below, friction does not count
 SAME = 1.0 - 1e-6  # product of two unit vectors that are one
 ROUNDS = 2  # of the fastest overdamped mode, which is then right to 0.1 %
-STIFF = 0.4  # omega^2 over the largest one, above which a less damped mode may be the first to leave
+STIFF = 0.4  # omega^2 over the largest one, above which a less damped mode may become unstable first
 DAMPED = 0.2  # damping ratio of the stiffest mode of a net, below which it is the first
 SECANTS = 8  # most of them, to 1e-4 of a step
 NEARLY = 1e-7  # relative width at which the search for a stiffness ends
@@ -51,7 +51,7 @@ FURTHER, LARGEST_RATIO = 4.0, 3.0  # ratio of the ends of its steps, and the log
 
 
 class Mode(NamedTuple):
-    """A vibration that may be the first to leave an integrator's limit."""
+    """A vibration that may exceed an integrator's limit first."""
 
     stiffness: float  # u K u / u M u = omega^2 [1/s^2]
     links: float  # the links' part of it [1/s^2]
@@ -85,7 +85,7 @@ class Gauge(NamedTuple):
     limit: float  # largest stable h omega at this zeta
     critical_step: float  # [s]
     step: float  # h [s]
-    highest: float  # highest frequency of the net [rad/s], which another method may be nearest to its limit at
+    highest: float  # highest frequency of the net [rad/s], at which another method may be nearest to its limit
 
     @property
     def share(self) -> float:
@@ -94,7 +94,7 @@ class Gauge(NamedTuple):
 
 
 def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
-    """Most others that one particle touches at x (3, rows, cols) [m]; None: as many as equal spheres can touch."""
+    """Largest number of others that a particle touches at x (3, rows, cols) [m]; None: as many as equal spheres can."""
     if x is None:
         return TOUCHING
     touching = np.zeros(x[0].size, np.int64)
@@ -144,8 +144,8 @@ def gershgorin(net: Net, x: NDArray[np.float64] | None = None) -> tuple[float, f
 def sawtooth(x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
     """A unit vector (3 rows cols,) near the stiffest mode: neighbours move against each other along their links.
 
-    A rope's top mode is one almost exactly, so that Lanczos starts where it is to end. The fixed noise keeps anything
-    else that is stiff, such as a point in contact, from being orthogonal to the start.
+    A rope's top mode is almost exactly a sawtooth, so that Lanczos starts close to its result. The fixed noise keeps
+    other stiff parts, such as a point in contact, from being orthogonal to the start.
     """
     u = 0.1 * np.random.default_rng(0).standard_normal(x.shape)
     u += against_along_lines(x, p) if isinstance(p, LineArrays) else against_along_rows(x)
@@ -184,7 +184,7 @@ def across(x: NDArray[np.float64], p: Any) -> NDArray[np.float64]:
     rows, cols = x.shape[1:]
     along = np.gradient(x, axis=2) if cols > 1 else np.gradient(x, axis=1)
     other = np.gradient(x, axis=1) if min(rows, cols) > 1 else np.zeros_like(x)
-    # A rope has no second direction: any will do that it does not run along.
+    # A rope has no second direction: any other direction will do.
     least = np.zeros(3)
     least[int(np.abs(along).sum(axis=(1, 2)).argmin())] = 1.0
     normal = np.cross(along, other if other.any() else least[:, None, None], axis=0)
@@ -260,9 +260,9 @@ def mixed_vectors(
 
 
 def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float, p: Any) -> NDArray[np.float64] | None:
-    """The unit vector (3 rows cols,) of the stiffest mode that slides on floor or sphere; None where none does.
+    """The unit vector (3 rows cols,) of the stiffest mode that slides on floor or sphere; None if none does.
 
-    The stiffest of all may stand upright on the surface, where friction does not reach it.
+    The stiffest mode of all may be normal to the surface, where friction does not act.
     """
     begin = np.empty_like(x)
     set_tangent(x, start, t, p, FRICTION, 0.0, begin)
@@ -280,7 +280,7 @@ def sliding_vector(x: NDArray[np.float64], start: NDArray[np.float64], t: float,
 
 
 def is_damped_anywhere(system: PointSystem, p: Any) -> bool:
-    """True if any damping counts: of links, contacts, the grab, or declared forces."""
+    """True if anything is damped: links, contacts, the grab, or declared forces."""
     if not isinstance(system, Net):
         return True
     touched = p.has_floor or p.has_sphere or p.grabbed >= 0 or system.thickness > 0.0
@@ -293,9 +293,9 @@ def top_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: floa
     last one is the stiffest that slides.
 
     x: (3, rows, cols) of a net, (3, n) of lines.
-    Points that touch floor, sphere or each other, and the grab, count; how much of each mode slides is its `sliding`.
+    Points that touch floor, sphere or each other, and the grab, count; `sliding` is the sliding fraction of each mode.
     Air, drag in water and friction on the bed do not count.
-    Empty where nothing is free to move.
+    Empty if nothing is free to move.
     """
     x = system.start() if x is None else x
     if not np.isfinite(x).all():
@@ -318,7 +318,7 @@ def top_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: floa
         if slides is not None:
             vectors.append(slides)
     found = [quotients(flat, u, t, p) for u in vectors + mixed]
-    # Slack links are not stiff across by more than round-off: no frequency is better than a wrong one.
+    # Across slack links the stiffness is only round-off: no frequency is better than a wrong one.
     floor = 1e-12 * abs(found[0][0])
     return [
         Mode(stiffness if stiffness > floor else 0.0, links, rate, sliding, i >= len(vectors))
@@ -327,7 +327,7 @@ def top_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: floa
 
 
 def step_limit(mode: Mode, integrator: Integrator) -> float:
-    """Largest stable step [s] of one mode; inf where nothing moves it."""
+    """Largest stable step [s] of one mode; inf if nothing drives it."""
     free = integrator.stable_step(mode.omega, mode.rate)
     if mode.sliding < LEAST_SLIDING or free == 0.0 or math.isinf(free):
         return free
@@ -362,7 +362,7 @@ def critical_step(system: PointSystem, integrator: str | Integrator, state: Stat
     """The largest step [s] at which small disturbances of `state` do not grow.
 
     system: a net or mooring lines. state: None: a net as it was built, or lines in their state of rest.
-    0 where every step is unstable (undamped explicit Euler), inf where none is. Raises ValueError for an unknown
+    0 if every step is unstable (undamped explicit Euler), inf if none is. Raises ValueError for an unknown
     integrator, and ConvergenceError for lines without a state of rest.
 
     >>> from sim.springs import critical_step, rope
@@ -378,8 +378,8 @@ def critical_stiffness(
 ) -> float:
     """The largest stiffness [N/m] of the stiffest links that is stable at step h [s], all families scaled together.
 
-    0 where none is (h too long for the damping or the contacts), inf where all are; positions are taken as they are.
-    modes: the `top_modes` of the state, where they are known.
+    0 if none is (h too long for the damping or the contacts), inf if all are; positions stay as they are.
+    modes: the `top_modes` of the state, if known.
     Raises ValueError for an unknown integrator or a step that is not above 0.
     """
     record = integrator_named(integrator)
@@ -393,7 +393,7 @@ def critical_stiffness(
             modes = modes_at(net.with_stiffness(scale * stiffest), state)
         found = largest_scale(modes, record, h)
         scale *= found
-        # Beside a contact, and between stiffness and damping, the vectors change with the links' stiffness: once more
+        # Beside a contact, and between stiffness and damping, the vectors change with the links' stiffness: repeat
         # from the new ones.
         alike = all(math.isclose(mode.links, mode.stiffness) and not mode.mixed for mode in modes)
         if scale == 0.0 or math.isinf(scale) or alike or math.isclose(found, 1.0, rel_tol=10.0 * NEARLY):
@@ -452,7 +452,7 @@ def last_stable(margin: Callable[[float], float], start: float) -> float:
 def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes: list[Mode] | None = None) -> Gauge:
     """h omega of the mode nearest to its limit at step h [s], and that limit.
 
-    modes: the `top_modes` of the state, where they are known.
+    modes: the `top_modes` of the state, if known.
     """
     return gauge_of(modes_at(net, state) if modes is None else modes, integrator_named(integrator), h)
 

@@ -166,7 +166,7 @@ def advance(
     check_kind("with_account", with_account, bool, "True or False")
     p = view_of(system, h, driven)
     set_lag(system, state, integrator.lag * h, driven)
-    # The sums go on from where they are, so that they do not depend on how the steps are shared out among the calls.
+    # The sums continue from where they are, so that they do not depend on how the steps are shared out among the calls.
     ledger = np.array([state.dissipated, state.work, state.unsettled])
     if isinstance(system, Net) and system.bands > 1:
         set_threads(system.bands)

@@ -24,7 +24,7 @@ def hanging_chain(net: Net) -> Equilibrium:
     """The rope `net` hanging from its pinned point 0, away from floor and sphere: link i of n carries the points
     below it, and is as long as its law says at their weight.
 
-    Raises ValueError where the net is no rope, is pinned elsewhere too, or has links without stiffness.
+    Raises ValueError if the net is no rope, is pinned elsewhere too, or has links without stiffness.
 
     >>> from sim.springs import rope
     >>> hanging_chain(rope(points=10, mass=1.0, gravity=10.0)).tension[[0, -1]].tolist()  # [N] first and last link
@@ -152,7 +152,7 @@ def minimise(value: Any, gap_and_jacobian: Any, force: Any, small: float) -> tup
 def equilibrium(net: Net) -> Equilibrium:
     """Rest state of the rope `net`, hanging from point 0 or from both its ends; without floor and sphere.
 
-    Raises ValueError and ConvergenceError as `hanging_chain` and `catenary` do, and ValueError where gravity is not
+    Raises ValueError and ConvergenceError as `hanging_chain` and `catenary` do, and ValueError if gravity is not
     along z.
     """
     family = single_family(net)

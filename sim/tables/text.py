@@ -13,7 +13,7 @@ MAX_BYTES = 100_000_000  # of a text file, unpacked
 def read_text(path: Path, forms: str) -> str:
     """The text of a file, also of one that gzip has packed; forms: the formats that are read, for messages.
 
-    Raises ValueError where it cannot be read, is too large, or is no text.
+    Raises ValueError if it cannot be read, is too large, or is no text.
     """
     try:
         if path.exists() and not path.is_file() and not path.is_dir():

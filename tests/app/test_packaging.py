@@ -33,6 +33,13 @@ def names_of(requirements: list[str]) -> set[str]:
     return {re.split(r"[<>=!~;\[ ]", requirement)[0].lower() for requirement in requirements}
 
 
+@functools.cache
+def parsed() -> dict[Path, ast.Module]:
+    """The sources of what ships, and of the benchmarks."""
+    paths = (path for top in ("app", "benchmarks", "sim") for path in ROOT.glob(f"{top}/**/*.py"))
+    return {path: ast.parse(path.read_text("utf-8")) for path in paths}
+
+
 def imported(tree: ast.Module, *, at_top: bool) -> set[str]:
     """The packages that a module imports when it is loaded, or in all."""
     found = set()
@@ -48,8 +55,8 @@ def undeclared(declared: set[str], *, at_top: bool) -> dict[str, set[str]]:
     """File -> its imports of distributions that are not among the declared."""
     distributions = installed()
     wrong = {}
-    for path in (path for top in ("app", "benchmarks", "sim") for path in ROOT.glob(f"{top}/**/*.py")):
-        others = imported(ast.parse(path.read_text("utf-8")), at_top=at_top) - OWN - BY_HAND - sys.stdlib_module_names
+    for path, tree in parsed().items():
+        others = imported(tree, at_top=at_top) - OWN - BY_HAND - sys.stdlib_module_names
         named = {
             DISTRIBUTIONS.get(name, distributions.get(name, [name])[0]).lower().replace("_", "-") for name in others
         }

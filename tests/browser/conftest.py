@@ -1,4 +1,4 @@
-"""A real Chromium for the tests that look, rendering in software: slow, and the same everywhere."""
+"""A real Chromium for the browser tests, rendering in software: slow, but the same everywhere."""
 
 import base64
 import contextlib
@@ -32,10 +32,10 @@ FLAGS = [
     "--disable-gpu-compositing",  # the page around the picture is put together without it: a third less
 ]
 PIXEL_RATIO = 0.2  # drawn pixels per pixel of the page, in each direction
-# A software renderer takes most of the processor. Where a test reads no pixel, shaders are trivial, as those of a sea
-# take seconds to compile, and nothing is drawn. The rest of the page works as ever. Where it reads the pixels of one
-# kind of thing, only fragment shaders with a word of this kind are what they are: all others give one colour; or those
-# with a word that is of no interest give one colour. A page that nothing is drawn in draws once it sets `drawsPixels`.
+# A software renderer takes most of the processor. If a test reads no pixel, shaders are trivial, as those of a sea take
+# seconds to compile, and nothing is drawn; the rest of the page works as usual. If it reads the pixels of one kind of
+# object, only fragment shaders with a word of this kind are real, and all others return one colour; or only those
+# with a word of no interest do. A page without drawing draws once it sets `drawsPixels`.
 FLAT_SHADERS = """const put = WebGL2RenderingContext.prototype.shaderSource;
 WebGL2RenderingContext.prototype.shaderSource = function (shader, source) {
     const fragment = this.getShaderParameter(shader, this.SHADER_TYPE) === this.FRAGMENT_SHADER;
@@ -47,8 +47,8 @@ for (const call of ["clear", "drawElements", "drawArrays", "drawElementsInstance
     const draw = WebGL2RenderingContext.prototype[call];
     WebGL2RenderingContext.prototype[call] = function (...all) { if (window.drawsPixels) draw.apply(this, all); };
 }"""
-# The drawn vertices of a mesh, as the bytes of single-precision numbers in base 64: a list of 50,000 numbers takes
-# seconds to come through.
+# The drawn vertices of a mesh, as the bytes of single-precision numbers in base 64: a list of 50,000 numbers would take
+# seconds to arrive.
 VERTICES = """name => { const ref = window.__viserMutable?.nodeRefFromName?.[name]; let found = null;
     if (ref) ref.traverse(o => { if (o.isMesh && !found) found = o; });
     if (!found) return "";
@@ -70,16 +70,16 @@ CHOOSE = """quality => { localStorage.setItem("springtide-quality", quality);
 WITH_CARD = """const get = WebGL2RenderingContext.prototype.getParameter;
 WebGL2RenderingContext.prototype.getParameter = function (name) {
     return name === 0x9246 ? "A graphics card" : get.call(this, name); };"""
-# The notes of viser and of the lab on slow drawing, and the time line, which lie over the picture.
+# The notes of viser and of the lab on slow drawing, and the time line, which cover the picture.
 NO_NOTES = "[class*=Notif], #springtide-slow, #springtide-time { display: none !important }"
-STALLED = 60.0  # [s] after which a page that gets nothing any more is loaded again, with a warning
-# What viser itself logs without harm: its drag layer at each drag of a node.
+STALLED = 60.0  # [s] without data after which a page is reloaded, with a warning
+# Harmless logs of viser itself: its drag layer at each drag of a node.
 HARMLESS_ERRORS = ("preventDefault inside passive",)
 # The same when one scene or preset follows another: viser 1.1's client collects the updates of a frame and applies them
 # after its removals, if a slow page takes both in one frame (MessageHandler.tsx). The server sends no update after a
 # removal.
 LATE_UPDATE = "Tried to update non-existent component"
-# Takes away what a browser needs to draw into floats. viser's client still tries, once with each photograph.
+# Removes float targets from a browser. viser's client still tries to draw into them, once with each photograph.
 NO_FLOATS = """for (const name of ["getExtension", "getSupportedExtensions"]) {
     const get = WebGL2RenderingContext.prototype[name], isFloat = (one) => /color_buffer|texture_float/.test(one);
     WebGL2RenderingContext.prototype[name] = function (...all) {
@@ -87,13 +87,13 @@ NO_FLOATS = """for (const name of ["getExtension", "getSupportedExtensions"]) {
         return Array.isArray(found) ? found.filter((one) => !isFloat(one)) : found; };
 }"""
 LOADING_ERRORS = "renderTarget is not in UnsignedByteType"
-HOLD_TIME = 5.0  # [s] after which a drag that holds nothing is tried again
+HOLD_TIME = 5.0  # [s] after which a drag that grabs nothing is repeated
 STUCK = 0.6  # of the time of a test, after which its browser is ended
 
 
 def new_page(chromium: Any, width: int, height: int, drawn: bool | str, flat: str = "") -> Any:
-    """drawn: whether there are pixels, or a word in the fragment shaders that are not replaced. flat: with `drawn`
-    True, a word in those that are."""
+    """drawn: True with pixels, or a word in the fragment shaders that are kept. flat: with `drawn` True, a word in
+    those that are replaced."""
     page = chromium.new_page(viewport={"width": width, "height": height})
     if drawn is not True or flat:
         word = flat or drawn or "no shader has this"
@@ -111,7 +111,7 @@ def surroundings() -> dict[str, str]:
 
 @pytest.fixture(autouse=True)
 def released_where_it_waits(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Print where a test waits for its browser, and end the browser, so that the test fails and is tried again.
+    """Print where a test waits for its browser, and end the browser, so that the test fails and is repeated.
 
     A call of Playwright that waits for a page has no limit, and no traceback of threads shows greenlets.
     """
@@ -155,9 +155,9 @@ class Chromium:
 
 @pytest.fixture(scope="package")
 def chromium() -> Iterator[Any]:
-    """A running Chromium; the test is skipped where there is none.
+    """A running Chromium; the test is skipped without one.
 
-    It ends with the tests of this folder, as Playwright's event loop would be in the way of others.
+    It ends with the tests of this folder, as Playwright's event loop would disturb others.
     """
     playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
     if CHROMIUM is None:
@@ -169,7 +169,7 @@ def chromium() -> Iterator[Any]:
 
 
 def vertices_of(page: Any, node: str) -> np.ndarray:
-    """The drawn vertices (n, 3) that a page holds of a mesh; empty where it has none."""
+    """The drawn vertices (n, 3) of a mesh in a page; empty without them."""
     numbers = base64.b64decode(page.evaluate(VERTICES, node))
     return np.frombuffer(numbers, np.float32).astype(float).reshape(-1, 3)
 
@@ -209,7 +209,7 @@ class Tab:
             self.errors.append(message.text)
 
     def wait(self, condition: Callable[[], Any], seconds: float = 120.0) -> Any:
-        """Run the page until the condition holds, and return its value; fail where it does not in time."""
+        """Run the page until the condition holds, and return its value; fail if it does not in time."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             value = condition()
@@ -250,11 +250,11 @@ class Tab:
         name_of_tab.click()
 
     def vertices(self, node: str) -> np.ndarray:
-        """The drawn vertices (n, 3) that the page holds of a mesh; empty where it has none."""
+        """The drawn vertices (n, 3) of a mesh in the page; empty without them."""
         return vertices_of(self.page, node)
 
     def pixel(self, point: Any) -> tuple[float, float]:
-        """Where a point [m] is on the page."""
+        """Position of a point [m] on the page."""
         x, y = self.page.evaluate(PIXEL, [float(c) for c in point])
         return x, y
 
@@ -277,7 +277,7 @@ class Tab:
     ) -> None:
         """Drag from a pixel by some pixels until something is held; `release` lets it go.
 
-        Once more, from where it is then, if a slow page had not yet noticed what the mouse was over.
+        Repeated from the new position, if a slow page had not yet noticed the object under the mouse.
         """
 
         def is_held() -> bool:

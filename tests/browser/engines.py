@@ -1,7 +1,7 @@
 """Chromium, Firefox and WebKitGTK (Safari's engine) with one interface, all of them drawing in software.
 
-Playwright drives Chromium; Firefox speaks WebDriver BiDi, and WebKitGTK WebDriver. Each browser has a folder and, but
-for Chromium, an X server of its own, and ends with all its processes. On Debian they are the packages `firefox-esr`,
+Playwright drives Chromium; Firefox speaks WebDriver BiDi, and WebKitGTK WebDriver. Each browser has its own folder and,
+except Chromium, its own X server, and ends with all its processes. On Debian they are the packages `firefox-esr`,
 `webkit2gtk-driver` and `xvfb`.
 """
 
@@ -62,7 +62,7 @@ def moves(points: Sequence[Point]) -> list[dict[str, Any]]:
 
 
 class Engine(abc.ABC):
-    """What the browsers have in common: a page, which takes actions of WebDriver and runs JavaScript."""
+    """The common part of browsers: a page, which takes actions of WebDriver and runs JavaScript."""
 
     releases_right = True  # whether the driver can release the right button of the mouse
 
@@ -90,7 +90,7 @@ class Engine(abc.ABC):
 
     @abc.abstractmethod
     def run(self, body: str) -> Any:
-        """The result of the body of an async function in the page. Raises RuntimeError where it throws."""
+        """The result of the body of an async function in the page. Raises RuntimeError if it throws."""
 
     @abc.abstractmethod
     def act(self, actions: list[dict[str, Any]]) -> None:
@@ -108,7 +108,7 @@ class Engine(abc.ABC):
 
     @abc.abstractmethod
     def resize(self, width: int, height: int, ratio: float = 1.0) -> None:
-        """Give the page a size [pixels of the page], and so many pixels of the screen for each of them."""
+        """Give the page a size [pixels of the page], and a number of screen pixels for each of them."""
 
     @abc.abstractmethod
     def choose_file(self, selector: str, path: Path) -> None:
@@ -151,7 +151,7 @@ class Engine(abc.ABC):
         self.act([{"type": "wheel", "id": "wheel", "actions": [step | {"origin": "viewport"}]}])
 
     def press_on(self, expression: str) -> None:
-        """Press the mouse on the middle of an element, once it is there and stands still; again where it moved away."""
+        """Press the mouse on the middle of an element, once it exists and stands still; repeated if it moved away."""
         place = f"""const find = () => {expression}, places = [];
             for (let k = 0; k < 2; k++) {{
                 find()?.scrollIntoView({{ block: "nearest" }});
@@ -429,7 +429,7 @@ class Chromium(Engine):
 
 
 def missing(name: str) -> str:
-    """What this machine lacks for a browser; "" where it lacks nothing."""
+    """What this machine lacks for a browser; "" if it lacks nothing."""
     needed = {
         "firefox": ("firefox-esr", "Xvfb"),
         "webkit": ("WebKitWebDriver", "Xvfb", "dbus-run-session"),
@@ -439,7 +439,7 @@ def missing(name: str) -> str:
 
 
 def make(name: str, chromium: Any) -> Engine:
-    """Start a browser by its name; the test is skipped where it is not installed."""
+    """Start a browser by its name; the test is skipped if it is not installed."""
     if lacks := missing(name):
         pytest.skip(f"no {lacks} on the search path")
     return Chromium(chromium) if name == "chromium" else {"firefox": Firefox, "webkit": WebKit}[name]()

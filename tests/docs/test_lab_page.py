@@ -1,4 +1,4 @@
-"""The page on the course lab: its table is that of the tasks, and the teacher's example works as it stands."""
+"""The page on the course lab: it lists the sections of the tasks, and the teacher's example works."""
 
 import re
 import shlex
@@ -16,21 +16,14 @@ from sim.parameters import parameters_of
 from tests.docs.pages import ROOT, text_of
 
 PAGE = text_of(ROOT / "docs" / "lab.md")
-FILES = dict(re.findall(r"^File `([^`]+)`:\n\n```\w+\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL))
+EXAMPLES = ROOT / "docs" / "examples"
+FILES = {path: text_of(EXAMPLES / path) for path in re.findall(r"\]\(examples/(my_tasks/[^)]+)\)", PAGE)}
 COMMANDS = re.findall(r"^```sh\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 
 
-def test_the_table_names_scene_preset_and_functions_of_each_item() -> None:
-    rows = re.findall(r"^\| (\d\.\d-\d) \| .* \| `(\w+)` \| (.+?) \| (.*) \|$", PAGE, re.MULTILINE)
-    expected = []
-    tasks = load_tasks()
-    for item in dict.fromkeys(task.item for task in tasks):
-        own = [task for task in tasks if task.item == item]
-        setup = next(task.setup for task in own if task.setup)
-        functions = ", ".join(f"`{task.name}`" for task in own if task.file)
-        expected.append((item, setup.scene, setup.preset, functions))
-    assert [(item, scene, preset, functions.strip()) for item, scene, preset, functions in rows] == expected
-    assert len(rows) == 23
+def test_the_page_lists_every_section_of_the_lab() -> None:
+    sections = re.findall(r"^- \*\*(\d\.\d) ", PAGE, re.MULTILINE)
+    assert sections == list(dict.fromkeys(task.item.partition("-")[0] for task in load_tasks()))
 
 
 @pytest.fixture
@@ -67,7 +60,8 @@ def test_the_teacher_s_example_works(teacher: Path) -> None:
     [
         ("2 * np.pi * np.sqrt(gravity / length)", "ratio upside down"),
         ("2 * np.pi * length / gravity", "root forgotten"),
-        ("np.sqrt(length / gravity)", "constant factor"), ("2 * np.pi * np.sqrt(length / 9.81)", "gravity not used"),
+        ("np.sqrt(length / gravity)", "constant factor"),
+        pytest.param("2 * np.pi * np.sqrt(length / 9.81)", "gravity not used", marks=pytest.mark.long),
     ],
 )  # fmt: skip
 def test_the_mistakes_of_the_example_are_named(teacher: Path, capsys, body: str, said: str) -> None:

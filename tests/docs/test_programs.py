@@ -13,9 +13,16 @@ PROGRAMS = re.findall(r"^## ([^\n]+)\n\n```python\n(.*?)^```$", text_of(ROOT / "
 MAX_LINES = 12
 OPTIONAL = {"with_dataset": "netCDF4", "import capytaine": "capytaine"}
 WARNS = "A step that is too long"
+COMPILES = "A heavy bob on a light string"  # a kernel that takes half a minute and that no other test runs
 
 
-@pytest.mark.parametrize(("title", "code"), PROGRAMS, ids=[title for title, _ in PROGRAMS])
+@pytest.mark.parametrize(
+    ("title", "code"),
+    [
+        pytest.param(title, code, id=title, marks=pytest.mark.long if title == COMPILES else ())
+        for title, code in PROGRAMS
+    ],
+)
 def test_a_program_runs_and_is_short(
     title: str, code: str, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

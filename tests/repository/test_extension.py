@@ -1,7 +1,7 @@
-"""What adding one thing costs: a copy of the sources has each of them, in one file or one folder.
+"""The cost of an addition: each is one file or one folder, added to a copy of the sources.
 
-The examples are those of docs/contributing.md, in its order. All but one are long: they compile kernels anew, in
-processes of their own.
+The examples are those of docs/contributing.md, in its order. All are long: they compile kernels anew, in processes of
+their own.
 """
 
 import functools
@@ -89,7 +89,7 @@ def parameters_in(path) -> dict:
 
 @pytest.fixture(scope="module")
 def extended(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Path, set[str]]]:
-    """A function that adds an example to a copy of the sources, once, and returns the copy and the files it touches.
+    """A function that adds an example to a copy of the sources, once, and returns the copy and the touched files.
 
     Each test adds its own: before a law and an integrator are there, the kernels are those of the other tests.
     """
@@ -118,6 +118,7 @@ def test_a_parameter_is_one_line_in_one_file(extended):
         assert file["x"][-1, -1, 2] - file["x"][0, -1, 2] < fall < 0.0
 
 
+@pytest.mark.long
 def test_a_body_shape_is_one_file(extended):
     copy, touched = extended("Add a body shape")
     assert len(touched) == 1
@@ -133,7 +134,7 @@ def test_a_body_shape_is_one_file(extended):
 @pytest.mark.long
 def test_a_task_is_two_files_and_its_solutions(extended):
     copy, touched = extended("Add a task")
-    assert len(touched) == 5
+    assert len(touched) == 4
     new, check, test = commands(section("Add a task"))
     run_command(copy, new)
     assert "def phase_speed(k, gravity):" in (copy / "solved" / "square_sea.py").read_text("utf-8")
@@ -188,7 +189,7 @@ def test_an_integrator_and_a_law_of_a_link_are_one_file_each(extended, heading, 
 
 @pytest.mark.long
 def test_a_force_with_energy_and_tangent_is_one_file(extended):
-    """Nets are tried in plain Python: all of their kernels hold the forces, and would be compiled again."""
+    """Nets run in plain Python: all of their kernels hold the forces, and would be compiled again."""
     copy, touched = extended("Add a force")
     assert len(touched) == 1
     nets, lines = commands(section("Add a force"))

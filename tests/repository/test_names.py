@@ -18,6 +18,8 @@ FORMER = {
     "Look": "FileWatch",
     "Pace": "RateLimit",
     "Runs": "RunSequence",
+    "pacer": "fixed_step",
+    "WavePace": "WaveSlope",
     "writeHalves": "writeHalfFloats",
 }
 FORMER_FILES = {"job", "moments", "pace", "pacer", "left_runs", "runs", "access.js", "half", "halve"}

@@ -1,6 +1,7 @@
-"""A function fits a screen or two, a class has one job, a name means one class, and a folder is seen at a glance."""
+"""Limits of size: a function fits a screen or two, a class has one job, a name means one class, a folder is small."""
 
 import ast
+import functools
 import importlib
 from collections import Counter
 from pathlib import Path
@@ -15,6 +16,7 @@ MAX_FILES = 16  # of code in a folder
 CODE = {".css", ".html", ".js", ".mjs", ".py", ".ts"}
 
 
+@functools.cache
 def classes_below(*tops: str) -> list[tuple[Path, ast.ClassDef]]:
     """All classes, with their files."""
     paths = (path for top in tops for path in sorted((ROOT / top).rglob("*.py")))
@@ -74,7 +76,7 @@ def test_no_function_or_class_is_longer_but_the_one_that_is_known() -> None:
 
 
 def test_no_object_is_larger() -> None:
-    """An object is cut by holding others; cut into bases it is as large as before."""
+    """An object becomes smaller by holding others; split into bases it is as large as before."""
     classes = {node.name: node for _, node in classes_below("app", "sim")}
 
     def with_bases(name: str) -> set[str]:
@@ -88,7 +90,7 @@ def test_no_object_is_larger() -> None:
 
 
 def test_no_folder_holds_more_files_of_code() -> None:
-    """One sees at a glance what is in a folder."""
+    """A folder can be read at a glance."""
     tops = ("app", "assets", "benchmarks", "sim", "tests")
     files = [path for top in tops for path in (ROOT / top).rglob("*") if path.suffix in CODE]
     counts = Counter(path.parent.relative_to(ROOT).as_posix() for path in files)

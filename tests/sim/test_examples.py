@@ -1,4 +1,4 @@
-"""Worked examples in docstrings: each gives what it says, and the functions that a user meets first have one."""
+"""Worked examples in docstrings: each gives its stated result, and the main functions have one."""
 
 import doctest
 import importlib

@@ -73,7 +73,7 @@ def test_a_kernels_folder_is_named_by_what_the_kernel_can_reach(tmp_path):
 
 
 def test_the_hash_of_a_kernel_follows_its_imports_and_nothing_else(tmp_path, monkeypatch):
-    """An edit in a module that is imported indirectly makes a new folder; one in a module that is not does not."""
+    """An edit in an indirectly imported module makes a new folder; one in another module does not."""
     monkeypatch.setattr(jit, "ROOT", tmp_path)
     sources = {
         "kernel": "from sim.near import (\n    a,\n)\n",
@@ -245,7 +245,7 @@ def test_other_libraries_caches_stay_where_they_were():
 
 
 def test_a_nan_stays_visible():
-    """The flags of fast arithmetic leave out those that let a compiler assume there is none."""
+    """The flags of fast arithmetic exclude the assumption that there is no NaN."""
     x = np.array([1.0, np.nan, np.inf, -np.inf])
     add(x, np.ones(4))
     assert np.isnan(x[1])
@@ -333,7 +333,7 @@ def test_a_kernel_from_the_cache_starts_the_threads_its_callees_need(tmp_path):
     (tmp_path / "callers.py").write_text(CALLERS, "utf-8")
     call = "import callers, numpy as np; x = np.zeros(4); callers.{}(x); print(x.sum())"
     folders = {"SPRINGTIDE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
-    # The second compiles its caller on what the first kept, the third only loads what the second did.
+    # The second process compiles its caller with the kernel saved by the first; the third only loads.
     assert [python(call.format(name), **folders) for name in ("add_two", "add_four", "add_four")] == [
         "8.0",
         "16.0",

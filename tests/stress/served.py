@@ -83,7 +83,7 @@ class Served:
         self.process, self.port = process, port
 
     def end(self) -> float:
-        """Signal the end; the time [s] that it took. Raises TimeoutExpired where it does not end."""
+        """Signal the end; the time [s] that it took. Raises TimeoutExpired if it does not end."""
         start = time.monotonic()
         self.process.send_signal(signal.SIGTERM)
         self.process.wait(4.0 * MAX_END_TIME)

@@ -20,7 +20,7 @@ SECONDS = 10.0
 MAX_FLOOD_SILENCE, MAX_KEY_SILENCE = 1.0, 0.5  # [s] without a status line for another browser
 RECOVERY = 1.0  # [s] after the end of a flood, from when all is as before
 USUAL_SILENCE = 0.6  # [s] between two status lines as before, on a busy machine
-# Methods that hold at any step, so that the run goes on and its status line keeps changing.
+# Methods that hold at any step, so that the run continues and its status line keeps changing.
 ROPE = ("--scene", "rope", "--set", "integrator=implicit_euler")
 CLOTH = ("--scene", "cloth", "--set", "rows=128", "cols=128", "integrator=implicit_euler")
 RACE = ("--scene", "race", "--preset", "Implicit methods on a very stiff rope")

@@ -1,7 +1,7 @@
 """Hours of running, with the memory watched.
 
 `SPRINGTIDE_STRESS_SOAK=3600 pytest -m stress tests/stress/test_soak.py` serves each scene for a real hour; without it,
-an hour of simulated time is run as fast as it can be, and a served one lasts as long as it says below.
+an hour of simulated time runs as fast as possible, and a served one lasts as long as stated below.
 """
 
 import time
@@ -30,7 +30,7 @@ def test_an_hour_of_simulated_time(hammer: Hammer, tally: Tally) -> None:
     speed = hammer.parameters["speed"].high
     hammer.set("speed", speed)
     hammer.loop.clock.effort = lambda: 0.0  # as on a machine that always keeps up
-    hammer.loop.run.pacer.cost_unknown = True
+    hammer.loop.run.fixed_step.cost_unknown = True
     frames = round(HOUR / (speed * MAX_CATCH_UP))
     start = hammer.loop.scene.time
     hammer.frame(frames // 5, wall=MAX_CATCH_UP)

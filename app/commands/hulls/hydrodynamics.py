@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def require_capytaine() -> None:
-    """Raises OSError where Capytaine is not installed."""
+    """Raises OSError if Capytaine is not installed."""
     if importlib.util.find_spec("capytaine") is None:
         raise OSError("Capytaine is not installed; install it with: pip install '.[bem]'")
 

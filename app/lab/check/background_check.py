@@ -1,4 +1,4 @@
-"""Checks of a student's saved files in a process of low priority, as by `springtide lab check`, while the scenes run.
+"""Checks of a student's saved files as in `springtide lab check`, in a low-priority process beside the scenes.
 
 The process takes a folder and a function as a line of JSON, and answers with its verdict as another.
 """
@@ -23,25 +23,25 @@ from app.lab.student.saved import Saved
 from app.lab.student.service import Service
 from app.lab.student.versions import Versions
 
-RETRY_INTERVAL = 2.0  # [s] until functions are checked again that could not be checked
+RETRY_INTERVAL = 2.0  # [s] until a failed check is repeated
 START = "import sys; sys.path.insert(0, sys.argv[1]); from app.lab.check.background_check import main; main()"
 ENDED = Verdict("not checked", "The check ended twice without a result. Save the file again.")
 
 
 class BackgroundCheck(Service):
-    """The process, as the lab sees it. It checks functions on which `Versions` has no verdict."""
+    """The process, seen from the lab. It checks the functions without a verdict in `Versions`."""
 
     def __init__(self, versions: Versions, folders: Iterable[Path] = ()) -> None:
         """folders: with a teacher's own tasks."""
         self.versions, self.folders = versions, tuple(folders)
         self.process: subprocess.Popen[str] | None = None
         self.closed = threading.Event()
-        self.starting = threading.Lock()  # held by the one that starts the process or ends it
+        self.starting = threading.Lock()  # held while the process is started or ended
         super().__init__("student's checks")
 
     @property
     def waiting(self) -> frozenset[str]:
-        """Functions that are being checked."""
+        """Functions under check."""
         return frozenset(task.name for task, saved in self.versions.unchecked() if task.name in saved.begun)
 
     def look(self) -> None:
@@ -49,8 +49,8 @@ class BackgroundCheck(Service):
         self.do(self.check)
 
     def check(self) -> None:
-        """Check functions until each has a verdict. One that cannot be checked is checked again."""
-        open_names: set[str] = set()  # that could not be checked in this round
+        """Check functions until each has a verdict, repeating failed checks."""
+        open_names: set[str] = set()  # unchecked in this round
         while not self.closed.is_set():
             found = [(task, saved) for task, saved in self.versions.unchecked() if task.name not in open_names]
             if found:
@@ -79,7 +79,7 @@ class BackgroundCheck(Service):
         return dataclasses.replace(verdict, text=f"{verdict.text}; trying again"), False
 
     def ask(self, folder: Path, name: str) -> Verdict | None:
-        """The verdict of the process on a function; None where it ends before."""
+        """The verdict of the process on a function; None if it ends before."""
         with self.starting:
             if self.closed.is_set():
                 return None
@@ -113,7 +113,7 @@ class BackgroundCheck(Service):
         return process
 
     def close(self) -> None:
-        """End the process, for good; it ends its children."""
+        """End the process permanently; it ends its children."""
         with self.starting:
             self.closed.set()
             if self.process is not None:

@@ -18,13 +18,13 @@ class TaskResult:
     """One task of one student."""
 
     task: Task
-    program: Verdict | None  # None where nothing is to be programmed
+    program: Verdict | None  # None without a function to write
     answers: tuple[AnswerVerdict, ...]
-    points: Points | None = None  # a curve of the function, where it was asked for
+    points: Points | None = None  # a curve of the function, if requested
 
     @property
     def state(self) -> str:
-        """The first of these states that a part of the task has, or their sum.
+        """The first of these states among the parts of the task.
 
         "failed", "wrong", "not checked", "not begun", "incomplete", "right".
         """
@@ -48,7 +48,7 @@ class TaskResult:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """The parts of a task that is begun which are still to do: its function, its questions."""
+        """The open parts of a task under way: its function, its questions."""
         if self.state == "not begun":
             return ()
         program = self.program is not None and self.program.state == "not begun"
@@ -71,7 +71,7 @@ class FolderResult:
         return all(result.state == "right" for result in self.tasks if not result.task.optional)
 
     def count(self, *, optional: bool) -> tuple[int, int]:
-        """The numbers of mandatory or optional tasks that are right, and of all of them."""
+        """Numbers of right tasks and of all tasks, mandatory or optional."""
         chosen = [result for result in self.tasks if result.task.optional == optional]
         return sum(result.state == "right" for result in chosen), len(chosen)
 
@@ -79,7 +79,7 @@ class FolderResult:
 def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool, runners: Runners) -> FolderResult:
     """Check all tasks of a student's folder; with the report's curves, if `curves`. runners: those that may be aborted.
 
-    Raises ValueError where it is no folder.
+    Raises ValueError if it is no folder.
     """
     check_is_folder(folder)
     began = time.monotonic()

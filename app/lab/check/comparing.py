@@ -1,4 +1,4 @@
-"""Results of a student's function: their form, and whether they are those of another one."""
+"""Results of a student's function: their form, and their comparison with another function's."""
 
 import copy
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from app.lab.process.rope_march import entries
 from app.lab.process.wire import Foreign
 
 TOLERANCE = 1e-4  # of the largest value of a result: single precision is right too
-FORM_TOLERANCE = 1e-7  # of the largest value of a student's result, within which a form of it is the same
+FORM_TOLERANCE = 1e-7  # of the largest value of a student's result, within which a form agrees
 SINGLE_TOLERANCE = 2e-5  # the same, of results in single precision
 
 
@@ -90,7 +90,7 @@ def has(is_such: Callable[[np.ndarray], np.ndarray], value: Any) -> bool:
 
 
 def reproduces(form: Any, found: Any, right: Any) -> bool:
-    """True if a student's result is that of a form, relative to the result, however small. right: for rounding."""
+    """True if a form gives a student's result, relative to it, however small. right: for rounding."""
     if not same_shape(form, found):
         return False
     for a, b, c in zip(parts(form), parts(found), parts(right), strict=True):

@@ -1,9 +1,9 @@
 """Names the mistake of a function that differs from the reference.
 
 A sentence about the function states a form of it: a typical mistake of the task, terms of a sum, the equations of a
-step, an edit of the reference. It is said only if that form has the student's results, also at inputs that were not
-used to find it. An edit of the student's own function is said if it has the right results there. Where nothing passes,
-it is said where the function differs, with the values at one input.
+step, an edit of the reference. It is shown only if that form reproduces the student's results, also at fresh inputs. An
+edit of the student's own function is shown if it has the right results there. If nothing passes, the text names the
+inputs or parts at which the function differs, with the values at one input.
 """
 
 import contextlib
@@ -26,11 +26,11 @@ from app.lab.process.runner import RunError
 
 SEED = 20150130
 FRESH_SEED = 20261127
-FRESH = 24  # inputs that are not used to find an explanation
+FRESH = 24  # fresh inputs, not used to find an explanation
 TERM_SAMPLES = 16  # random inputs at which terms are compared
 MAX_DRAWS = 200  # of inputs, to find enough
-MAX_REPAIRS = 20  # that are right at one input, and are tried at the others
-UNFIT = ("NaN", "infinite", "wrong shape", "wrong type", "returns nothing")  # results that no behaviour is tested with
+MAX_REPAIRS = 20  # that are right at one input and are tried at the others
+UNFIT = ("NaN", "infinite", "wrong shape", "wrong type", "returns nothing")  # results without a test of behaviour
 OTHER_SHAPE = "for other numbers of points its results have the wrong shape"
 STEP_PARTS = ("new position", "new velocity")
 UNIT = re.compile(r"\[([A-Za-z]+)\]")  # the first in a docstring is that of the result
@@ -73,7 +73,7 @@ def diagnosed(student: StudentFunction, trials: Sequence[Trial]) -> Wrong:
 
 
 def rounds_down(student: StudentFunction) -> bool:
-    """True if the student's file divides by //, which looks like the division that is meant."""
+    """True if the student's file uses //, which is easily mistaken for division."""
     try:
         return b"//" in (student.runner.folder / student.task.file).read_bytes()
     except OSError:
@@ -81,7 +81,7 @@ def rounds_down(student: StudentFunction) -> bool:
 
 
 def in_units(student: StudentFunction, why: Explanation, trials: Sequence[Trial]) -> Explanation:
-    """An explanation by a constant factor, with its meaning in this task."""
+    """Explain a constant factor by the units of this task."""
     if why.mistake == "another constant" and (said := getattr(student.task.check, "CONSTANT", "")):
         return why._replace(text=f"{why.text} {said}")
     unit = UNIT.search(student.task.function.__doc__ or "")
@@ -95,7 +95,7 @@ def in_units(student: StudentFunction, why: Explanation, trials: Sequence[Trial]
 
 
 def wrong_of(why: Explanation) -> Wrong:
-    """An explanation as a judgement."""
+    """An explanation as an exception."""
     return Wrong(why.text, why.mistake, why.equations, why.form, why.line)
 
 
@@ -103,13 +103,13 @@ def has_form(student: StudentFunction, form: Callable[..., Any], trial: Trial) -
     """True if the student's result at an input is that of a form."""
     try:
         value = student.normalised(conform(call(form, trial.sample), student.reference(*trial.sample)))
-    except Exception:  # a form that an edit has broken
+    except Exception:  # an edit has broken the form
         return False
     return reproduces(value, trial.found, trial.right)
 
 
 def explain(student: StudentFunction) -> Explanation | None:
-    """The difference of a function from the reference by its structure; None where that does not tell."""
+    """The difference of a function from the reference by its structure; None if that is inconclusive."""
     check = student.task.check
     try:
         if (method := getattr(check, "METHOD", None)) is not None:
@@ -139,7 +139,7 @@ def repair(student: StudentFunction, trials: Sequence[Trial], of: str = "") -> E
     try:
         return first_repair(student, first, others, of)
     finally:
-        student.effort += runner.effort - before  # the student's function is not slow for this
+        student.effort += runner.effort - before  # the student's function is not charged for this
 
 
 def first_repair(student: StudentFunction, first: Trial, others: Sequence[Trial], of: str) -> Explanation | None:
@@ -158,7 +158,7 @@ def first_repair(student: StudentFunction, first: Trial, others: Sequence[Trial]
     for far in (False,) if of else (False, True):
         try:
             edits = runner.edits(task.file, task.name, *first.sample, far=far)
-        except RunError:  # one does not end
+        except RunError:  # an edit that does not end
             continue
         near = [e for e in edits if (not of or (of in e[1] and of not in e[2])) and is_right(e[-1], first)]
         for number, *edit, _ in sorted(near, key=length_of_change)[:MAX_REPAIRS]:
@@ -169,7 +169,7 @@ def first_repair(student: StudentFunction, first: Trial, others: Sequence[Trial]
 
 
 def length_of_change(edit: Sequence[Any]) -> tuple[int, int]:
-    """Order of edits: those that change the length of an expression least."""
+    """Sort key of edits: the change in length of an expression."""
     number, before, after, *_ = edit
     return abs(len(after) - len(before)), number
 
@@ -205,7 +205,7 @@ def ignores(student: StudentFunction, trials: Sequence[Trial], i: int) -> bool:
 
 
 def in_special_case(student: StudentFunction, trials: Sequence[Trial]) -> Explanation | None:
-    """The special case of the task in which alone a function differs, or None."""
+    """The only special case of the task in which a function differs, or None."""
     cases = getattr(student.task.check, "CASES", ())
     compared = compared_parts(trials)
     if compared is None or not where.case_of(compared, cases):
@@ -237,7 +237,7 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
 
 
 def compared_parts(trials: Sequence[Trial]) -> list[where.Difference] | None:
-    """The trials with their differences; None where results have other shapes."""
+    """The trials with their differences; None if results have other shapes."""
     if not all(same_shape(trial.found, trial.right) for trial in trials):
         return None
     return [where.compared(trial.sample, parts(trial.found), parts(trial.right)) for trial in trials]
@@ -250,7 +250,7 @@ def part_names(student: StudentFunction, trials: Sequence[Trial]) -> tuple[str, 
 
 
 def behave(student: StudentFunction) -> None:
-    """Check the behaviour, where the task has such a check. Raises RunError or Wrong."""
+    """Check the behaviour, if the task has such a check. Raises RunError or Wrong."""
     behaviour = getattr(student.task.check, "behaviour", None)
     if behaviour is None:
         return

@@ -1,4 +1,4 @@
-"""The mistakes of a class, and how far each student is, for the teacher's page and the terminal."""
+"""The mistakes of a class, and the progress of each student, for the teacher's page and the terminal."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -62,7 +62,7 @@ def standing(results: Sequence[TaskResult]) -> str:
 
 
 def present_task(results: Sequence[TaskResult], at: str = "") -> TaskResult | None:
-    """The task that a student is at: that of the name `at`, or else the last that is begun and not right."""
+    """A student's current task: the one named `at`, otherwise the last that is begun and not right."""
     open_tasks = [result for result in results if result.state not in ("right", "not begun")]
     return next((result for result in results if result.task.name == at), open_tasks[-1] if open_tasks else None)
 

@@ -1,4 +1,4 @@
-"""Motions that the checks of integration methods use: a random law of acceleration, and an oscillator."""
+"""Motions for the checks of integration methods: a random law of acceleration, and an oscillator."""
 
 from collections.abc import Callable
 from typing import Any
@@ -11,7 +11,7 @@ import numpy as np
 def random_acceleration(rng: "np.random.Generator", *, with_velocity: bool) -> Callable[[Any, Any], np.ndarray]:
     """A law acceleration(x, v) [m/s2] for positions and velocities of shape (n, 3), neither linear nor symmetric.
 
-    with_velocity: whether it depends on the velocity.
+    with_velocity: it depends on the velocity.
     """
     stiffness, cubic, drag = rng.uniform(2.0, 6.0), rng.uniform(0.5, 1.5), rng.uniform(0.5, 2.0)
 

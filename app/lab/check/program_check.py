@@ -1,6 +1,6 @@
 """Judges a student's function: against the reference at random inputs, then by its behaviour.
 
-A wrong function is compared with the typical mistakes of its task, then looked at by its structure
+A wrong function is compared with the typical mistakes of its task, then analysed by its structure
 (`diagnosis/`): the tableau of a step, the terms of a sum. Any function can leave an argument unused.
 """
 
@@ -32,8 +32,8 @@ class Verdict:
 
     state: "not begun", "right", "wrong", "failed" (no result), or "not checked" (the machine is too busy). mistake: the
     name of a recognised mistake, or "". place: file and line of a mistake, as an editor takes it: "rope.py:17"; "" if
-    it is unknown. file: the file that does not run, whatever function of it is asked for, or "". equations: what a
-    wrong function does, beside the right ones.
+    it is unknown. file: the file that does not run, or "". equations: of a wrong function, beside the
+    right ones.
     """
 
     state: str
@@ -61,7 +61,7 @@ class Verdict:
 
 @dataclasses.dataclass(frozen=True)
 class Points:
-    """A curve of the student's function beside the reference. student: None where it has no result."""
+    """A curve of the student's function beside the reference. student: None if it has no result."""
 
     x_label: str
     y_label: str
@@ -88,12 +88,12 @@ def check_program(folder: Path, runner: Runner, task: Task) -> Verdict:
 
 
 def not_checked(why: str) -> Verdict:
-    """The verdict on a function that could not be run for a reason outside it."""
+    """The verdict on a function that could not be run for an external reason."""
     return Verdict("not checked", f"could not be checked ({why})")
 
 
 def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
-    """As `check_program`, of a function that is begun, once. line: on which it begins."""
+    """As `check_program`, once, for a function under way. line: its first one."""
     student = StudentFunction(runner, task)
     try:
         compare(student)
@@ -118,7 +118,7 @@ def place_of(file: str, line: int | None) -> str:
 
 
 def draw(runner: Runner, task: Task) -> Points | None:
-    """The curve of a task for the report; None where the task has none."""
+    """The curve of a task for the report; None if the task has none."""
     curve = getattr(task.check, "CURVE", None)
     if curve is None:
         return None

@@ -1,4 +1,4 @@
-"""A student's function as a check calls it."""
+"""A student's function for checks."""
 
 import itertools
 import time
@@ -34,7 +34,7 @@ class StudentFunction:
     """A student's function, called with the types of the reference solution."""
 
     def __init__(self, runner: Runner, task: Task, *, is_watched: bool = True) -> None:
-        """is_watched: a call fails where the function has a side effect."""
+        """is_watched: a call fails if the function has a side effect."""
         self.runner = runner
         self.task = task
         self.is_watched = is_watched
@@ -78,7 +78,7 @@ class StudentFunction:
 
 
 def special_case(names: Sequence[str], arguments: Sequence[Any]) -> str:
-    """The case in which a function was called, in words: arguments that are equal, or else 0; "" for any other."""
+    """The special case of a call, in words: equal arguments, otherwise zeros; "" for any other."""
     arrays = [(name, a) for name, a in zip(names, arguments, strict=True) if isinstance(a, np.ndarray | float | int)]
     pairs = itertools.combinations([(name, a) for name, a in arrays if np.ndim(a)], 2)
     found = [f"{one} = {other}" for (one, a), (other, b) in pairs if np.array_equal(a, b)]

@@ -12,7 +12,7 @@ MIN_WORDS = 3  # of a text that counts as an answer
 class AnswerVerdict:
     """Result of the check of one answer.
 
-    state: "not begun", "right", "wrong", or "given" for what is neither. text: what to tell the student.
+    state: "not begun", "right", "wrong", or "given" for neither. text: for the student.
     """
 
     question: Question

@@ -1,4 +1,4 @@
-"""`answers.toml`: the student's name and answers. It is read leniently and written whole or not at all."""
+"""`answers.toml`: the student's name and answers. It is read leniently and written completely or not at all."""
 
 import json
 import math
@@ -18,8 +18,8 @@ LINE = 100  # characters of a comment's line
 NAME = re.compile(r"(?m)\Aname *=.*?(?=\r?$)|(?<=\n)name *=.*?(?=\r?$)")  # the line with the student's name
 QUOTES = ('"""', "'''")  # around a text of several lines
 
-DONE = "done"  # key of the steps that were seen to be done
-SHOWN = "answer_shown"  # key of whether the answer was looked at: from then on the prediction stays as it is
+DONE = "done"  # key of the completed steps
+SHOWN = "answer_shown"  # key of a viewed answer, after which the prediction is fixed
 
 Value = str | float
 
@@ -32,7 +32,7 @@ class Answers(NamedTuple):
     error: str = ""
 
     def of(self, task: Task, question: Question) -> Value | None:
-        """The answer, or None; a number as a number, also if it was written as text."""
+        """The answer, or None; a number as a number, even if written as text."""
         value = self.values.get((task.name, question.key))
         if isinstance(value, str):
             value = value.strip()
@@ -43,17 +43,17 @@ class Answers(NamedTuple):
         return value
 
     def done(self, task: Task) -> frozenset[int]:
-        """Numbers of the steps, from 1, that were seen to be done."""
+        """Numbers of the completed steps, from 1."""
         text = str(self.values.get((task.name, DONE), ""))
         return frozenset(int(word) for word in text.split() if word.isdecimal() and len(word) < 3)
 
     def is_shown(self, task: Task) -> bool:
-        """True if the answer was looked at in the panel."""
+        """True if the answer was viewed in the panel."""
         return self.values.get((task.name, SHOWN)) == "yes"
 
 
 def number_in(text: str) -> Value:
-    """The number that a text holds, with a point or a comma; the text where it holds none."""
+    """The number in a text, with a point or a comma; the text itself without one."""
     try:
         return float(text.replace(",", "."))
     except ValueError:
@@ -82,7 +82,7 @@ def read_answers(folder: Path) -> Answers:
 
 
 def as_number(value: int | float) -> float:
-    """A number of a TOML file as a float; infinite where it is too large for one."""
+    """A number of a TOML file as a float; infinite if it is too large for one."""
     try:
         return float(value)
     except OverflowError:
@@ -90,10 +90,10 @@ def as_number(value: int | float) -> float:
 
 
 def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: str, key: str, value: Value) -> None:
-    """Change one value of answers.toml. answers: those in the file. Raises OSError where that cannot be done.
+    """Change one value of answers.toml. answers: those in the file. Raises OSError if that cannot be done.
 
     The file is whole at every moment. All the rest stays as it is, comments too, unless the file is written in a way
-    that leaves no place for the value; then it is written anew.
+    that leaves no place for the value; then it is rewritten.
     """
     path = folder / FILE
     # As bytes, so that lines end as they did.
@@ -106,7 +106,7 @@ def change_answer(folder: Path, tasks: Sequence[Task], answers: Answers, task: s
 
 
 def change_name(folder: Path, tasks: Sequence[Task], answers: Answers, name: str) -> None:
-    """Change the student's name, as `change_answer` does a value. Raises OSError where that cannot be done."""
+    """Change the student's name, as `change_answer` does a value. Raises OSError if that cannot be done."""
     path = folder / FILE
     text = path.read_bytes().decode(ENCODING) if path.exists() else ""
     changed = NAME.sub(lambda _: f"name = {quoted(name)}", text, count=1)
@@ -117,7 +117,7 @@ def change_name(folder: Path, tasks: Sequence[Task], answers: Answers, name: str
 
 
 def with_value(text: str, task: str, key: str, value: Value) -> str | None:
-    """The text of answers.toml with one value changed and no other line; None where there is no plain place for it."""
+    """The text of answers.toml with one value changed and no other line; None if there is no plain place for it."""
     lines = text.split("\n")
     heads = [i for i, line in enumerate(lines) if line.strip() == f"[{task}]"]
     if not heads:  # a task without questions has no heading at first
@@ -165,7 +165,7 @@ def is_toml(text: str) -> bool:
 
 
 def answers_text(tasks: Sequence[Task], answers: Answers) -> str:
-    """The text of answers.toml, with the questions as comments. Answers that no task asks for are kept."""
+    """The text of answers.toml, with the questions as comments. Answers of unknown questions are kept."""
     left = dict(answers.values)
     lines = [
         "# Your answers. Write between the quotation marks; a number needs none.",
@@ -202,7 +202,7 @@ def quoted(value: Value) -> str:
 
 
 def wrapped(text: str) -> list[str]:
-    """A text in lines of at most `LINE` characters, as far as its words allow."""
+    """A text in lines of at most `LINE` characters, if its words allow."""
     lines = [""]
     for word in text.split():
         if lines[-1] and len(lines[-1]) + 1 + len(word) > LINE:

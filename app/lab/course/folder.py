@@ -23,7 +23,7 @@ def check_is_folder(folder: Path) -> None:
 
 
 def folder_names(folders: Iterable[Path]) -> dict[Path, str]:
-    """A name for each folder: the last part of its path, and as many before it as it takes to tell it from the others.
+    """A unique name for each folder: the last part of its path, with as many parts before it as necessary.
 
     Two paths of one folder have the same name.
     """
@@ -40,7 +40,7 @@ def folder_names(folders: Iterable[Path]) -> dict[Path, str]:
 def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
     """Write the exercises into a new or empty folder; returns the files. solutions: with the reference solutions.
 
-    Raises ValueError where the folder holds something, OSError where it cannot be written.
+    Raises ValueError if the folder holds something, OSError if it cannot be written.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise argument_error("DIR", str(folder), "a new or empty folder")
@@ -48,9 +48,9 @@ def make_folder(folder: Path, tasks: Sequence[Task], *, solutions: bool = False)
 
 
 def add_exercises(folder: Path, tasks: Sequence[Task], *, solutions: bool = False) -> list[Path]:
-    """Write the exercises into a folder, and leave files that are there as they are; returns the files written.
+    """Write the exercises into a folder without touching existing files; returns the files written.
 
-    The answers come last: with them a folder is complete. Raises OSError where the folder cannot be written.
+    The answers come last: with them a folder is complete. Raises OSError if the folder cannot be written.
     """
     texts = {name: file_text(name, tasks, solutions=solutions) for name in files_of(tasks)}
     texts["README.md"] = readme_text(folder.absolute().name, tasks)
@@ -68,7 +68,7 @@ def files_of(tasks: Sequence[Task]) -> list[str]:
 
 
 def file_text(name: str, tasks: Sequence[Task], *, solutions: bool) -> str:
-    """A Python file with the functions that belong there: to be written, or as the reference has them."""
+    """A Python file with its functions, as stubs or as in the reference."""
     own = [task for task in tasks if task.file == name]
     head = (
         '"""Your functions. Write each body in place of the three dots; `springtide lab check` tests it."""'

@@ -1,4 +1,4 @@
-"""Values of a running scene, as tasks use them: in answers, conditions and readings."""
+"""Values of a running scene for tasks: in answers, conditions and readings."""
 
 import math
 import operator
@@ -13,7 +13,7 @@ UNKNOWN = "…"  # where the scene has no such value
 
 
 class LiveNumber(NamedTuple):
-    """A number that a scene has now."""
+    """A present number of a scene."""
 
     value: float
     unit: str = ""
@@ -57,7 +57,7 @@ class Condition(NamedTuple):
     value: bool | str | float
 
     def holds(self, values: LiveValues) -> bool:
-        """True if it holds; a value that the scene does not have fulfils no condition."""
+        """True if it holds; a missing value fulfils no condition."""
         found = values.get(self.name)
         if isinstance(found, LiveNumber) and isinstance(self.value, float):
             if self.relation == "=":

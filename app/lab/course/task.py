@@ -1,6 +1,6 @@
 """The tasks of the lab: each is a TOML file in a folder; a programming task also has a Python file of that name.
 
-A task is found by being there. The TOML file holds its words and questions; the Python file holds the reference
+Tasks are discovered in their folder. The TOML file holds the words and questions; the Python file holds the reference
 solution, a function named as the file, and what its check needs (`checking.py`). docs/lab.md shows a whole example.
 """
 
@@ -23,7 +23,7 @@ NAME = re.compile(r"[a-z][a-z0-9_]*")
 QUESTION_KINDS = ("choice", "number", "text")
 CONDITIONS = ("when", "needs")  # keys of tables of conditions
 LISTS = ("law", "show", "hide")  # keys of lists, which may be one text
-PREDICTION = "predict"  # key of the question that is answered before
+PREDICTION = "predict"  # key of the question answered before the task
 
 
 class TomlTable(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -47,7 +47,7 @@ class Question(TomlTable, frozen=True):
     unit: str = ""
     right: str | float | None = None  # None: any answer counts
     tolerance: float = 0.05  # of a number, relative to the right one
-    why: str = ""  # the explanation that the check gives
+    why: str = ""  # the explanation of the check
     read_off: str = ""  # name of the live value that answers it, or ""
     typical_errors: tuple[TypicalError, ...] = msgspec.field(name="typical_error", default=())
 
@@ -81,23 +81,23 @@ class TaskSetup(TomlTable, frozen=True):
     """Set-up of Springtide that shows the task."""
 
     scene: str
-    look: str  # advice on things to do and to look at
+    look: str  # advice on actions and observations
     preset: str = ""
     parameters: dict[str, Any] = {}  # beside the preset
-    show: tuple[str, ...] = ()  # names of the live values to keep in sight
+    show: tuple[str, ...] = ()  # names of the live values to keep visible
     # Parameters and headings whose lines answer a question: in a workbook they are shown once it is answered.
     hide: tuple[str, ...] = ()
 
 
 class Step(TomlTable, frozen=True):
-    """Something to do in the scene. The workbook ticks it off once all conditions hold at the same moment."""
+    """An action in the scene. The workbook ticks it off once all conditions hold at the same moment."""
 
     text: str
     when: Annotated[tuple[Condition, ...], msgspec.Meta(min_length=1)]
 
 
 class Guide(TomlTable, frozen=True):
-    """An item of the course lab for those who look only: its question and its answer."""
+    """An item of the course lab for visitors without a folder: its question and its answer."""
 
     question: str  # in our own words
     answer: str  # with the names of live values in braces
@@ -141,7 +141,7 @@ class Task(TaskFile, frozen=True, kw_only=True):
     """One task of the lab."""
 
     name: str
-    check: Any = None  # the Python file of a programming task; None where checks were not asked for
+    check: Any = None  # the Python file of a programming task; None if checks were not requested
 
     @property
     def function(self) -> Any:
@@ -211,7 +211,7 @@ def prepared(key: str, value: Any) -> Any:
 
 
 def load_check(path: Path) -> ModuleType:
-    """The Python file of a programming task. Raises ValueError where it lacks a part."""
+    """The Python file of a programming task. Raises ValueError if it lacks a part."""
     spec = importlib.util.spec_from_file_location(f"springtide_task_{path.stem}", path)
     assert spec is not None
     assert spec.loader is not None

@@ -1,8 +1,8 @@
-"""The workbook: which task is shown, and the answers of a student's folder, if there is one.
+"""The workbook: the shown task, and the answers of a student's folder, if there is one.
 
-Browsers' callbacks write answers on one thread, what is seen to be done is ticked off on another. Each change reads
-answers.toml, changes one value and writes the whole file; a lock keeps two changes apart, and a change from a look at
-the file that began before it. What the student wrote with an editor meanwhile is kept.
+Browsers' callbacks write answers on one thread, completed steps are ticked off on another. Each change reads
+answers.toml, changes one value and writes the whole file; a lock separates changes from each other and from earlier
+reads of the file. Meanwhile edits of the student with an editor are kept.
 """
 
 import itertools
@@ -41,7 +41,7 @@ class Workbook:
 
         programs: function -> state of its latest check.
 
-        Raises ValueError where there is nothing to show, or a law is no formula.
+        Raises ValueError if there is nothing to show, or a law is no formula.
         """
         self.all_tasks, self.folder, self.programs = tuple(tasks), folder, programs
         self.tasks = tuple(task for task in tasks if folder is not None or task.guide is not None)
@@ -53,19 +53,19 @@ class Workbook:
         self.answers = Answers("", {})
         self.file = None if folder is None else FileWatch(folder, FILE, 0.0)
         self.revision: int = 0  # number of changes of the answers
-        self.looked_at: set[str] = set()  # names of the tasks that show their answer, where there is no folder
+        self.looked_at: set[str] = set()  # without a folder: names of the tasks that show their answer
         self.refresh()
         self.index = 0 if folder is None else self.first_open()
 
-    # ----- which task is shown
+    # ----- the shown task
 
     @property
     def task(self) -> Task:
-        """The task that is shown."""
+        """The shown task."""
         return self.tasks[self.index]
 
     def first_open(self) -> int:
-        """Next task: the first one that is not complete, from the last one on that was begun."""
+        """Next task: the first incomplete one, from the last one begun on."""
         begun = {name for (name, _), value in self.answers.values.items() if value != ""}
         last = max((i for i, task in enumerate(self.tasks) if task.name in begun), default=0)
         is_open = [i for i, task in enumerate(self.tasks) if not self.is_complete(task)]
@@ -98,7 +98,7 @@ class Workbook:
     # ----- answers
 
     def refresh(self) -> None:
-        """Read answers.toml where it may have changed since it was read."""
+        """Read answers.toml if it may have changed since the last read."""
         if self.folder is None or self.file is None:
             return
         with self.lock:
@@ -133,16 +133,16 @@ class Workbook:
         return frozenset(self.set_up_of(task).hide)
 
     def answer(self, task: Task, question: Question, text: str) -> None:
-        """Keep an answer as it was typed or chosen; an empty one takes it back.
+        """Save an answer as typed or chosen; an empty one removes it.
 
-        Raises ValueError for one that is not allowed, OSError where the file cannot be written.
+        Raises ValueError for one that is not allowed, OSError if the file cannot be written.
         """
         if question.key == PREDICTION and self.is_shown(task):
             raise ValueError("You have seen the answer, so the prediction can no longer be changed.")
         self.store(task.name, question.key, answer_of(question, text))
 
     def rename(self, text: str) -> None:
-        """Keep the student's name. Raises ValueError for one that is not allowed, OSError as `answer` does."""
+        """Save the student's name. Raises ValueError for one that is not allowed, OSError as `answer` does."""
         name = " ".join(text.split())
         if len(name) > MAX_NAME or not name.isprintable():
             raise ValueError(f"A name has at most {MAX_NAME} characters, and no control characters.")
@@ -153,14 +153,14 @@ class Workbook:
             self.refresh()
 
     def read_whole(self, folder: Path) -> Answers:
-        """The answers as they are in the file. Raises ValueError where it cannot be read."""
+        """The answers as they are in the file. Raises ValueError if it cannot be read."""
         found = read_answers(folder)
         if found.error and (folder / FILE).exists():
             raise ValueError(f"{found.error}. Nothing is saved until you repair this.")
         return found
 
     def store(self, task: str, key: str, value: Value) -> None:
-        """Change one value of answers.toml. Raises ValueError where the file cannot be read, OSError for writing."""
+        """Change one value of answers.toml. Raises ValueError if the file cannot be read, OSError for writing."""
         if self.folder is None:
             return
         with self.lock:
@@ -168,11 +168,11 @@ class Workbook:
             self.refresh()
 
     def add_picture(self, task: Task, words: str, picture: bytes) -> str:
-        """Keep a picture that was taken for a task; returns its name.
+        """Save a picture of a task; returns its name.
 
         words: its subject, as a part of the name, without spaces and dots.
 
-        Raises ValueError where there are as many as the report shows, OSError where it cannot be written.
+        Raises ValueError if there are as many as the report shows, OSError if it cannot be written.
         """
         assert self.folder is not None
         folder = self.folder / PICTURES
@@ -186,14 +186,14 @@ class Workbook:
             draft.write_bytes(picture)
         return path.name
 
-    # ----- what was done, and whether the answer was shown
+    # ----- completed steps, and the shown answer
 
     def done(self, task: Task) -> frozenset[int]:
-        """Numbers of the steps, from 1, that were seen to be done."""
+        """Numbers of the completed steps, from 1."""
         return self.answers.done(task)
 
     def watch(self, task: Task, values: LiveValues) -> None:
-        """Tick off the next step if it is seen to be done now. Raises the errors of `keep`."""
+        """Tick off the next step if it is completed now. Raises the errors of `keep`."""
         done = self.done(task)
         number = next((i for i in range(1, len(task.steps) + 1) if i not in done), None)
         if self.folder is None or number is None:
@@ -220,7 +220,7 @@ class Workbook:
 
 
 def check_laws(task: Task) -> None:
-    """Raises ValueError where a law of the task's guide is no formula."""
+    """Raises ValueError if a law of the task's guide is no formula."""
     for law in task.guide.law if task.guide is not None else ():
         try:
             formula(law)
@@ -249,6 +249,6 @@ def answer_of(question: Question, text: str) -> Value:
 
 
 def read_off(question: Question, values: LiveValues) -> str:
-    """The live value that answers a question, as it would be typed; "" where the scene has none now."""
+    """The live value that answers a question, as it would be typed; "" if the scene has none now."""
     found = values.get(question.read_off)
     return f"{found.value:.6g}" if isinstance(found, LiveNumber) and abs(found.value) < 1e300 else ""

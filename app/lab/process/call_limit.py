@@ -1,6 +1,6 @@
 """The limit of a call: the processor time of its process, so that it is the same on a busy machine.
 
-On Linux the system tells that time. Elsewhere the process tells it again and again while a call lasts (`worker.py`).
+On Linux the system gives that time. Elsewhere the process reports it repeatedly during a call (`worker.py`).
 """
 
 import os
@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 MAX_WAIT = 10.0  # ratio of the longest wait to the limit, on a machine that is busy with other processes
-LOOKS = 10  # at a process within the time of the limit
+LOOKS = 10  # at a process within the limit
 SLEEP_SHARE = 0.1  # of the time between two looks, below which a process that has computed counts as asleep
 COMPUTING, ENDLESS, ASLEEP, BUSY = "computing", "endless", "asleep", "busy"  # states of a call
 
@@ -21,13 +21,13 @@ class CallLimit:
         """seconds: limit of processor time [s]. wall: of time on the clock [s], `MAX_WAIT` times that by default."""
         self.pid, self.seconds = pid, seconds
         self.wall = MAX_WAIT * seconds if wall is None else wall
-        self.start = self.looked = self.awake = time.monotonic()  # [s]; when it was looked at, and last computed
+        self.start = self.looked = self.awake = time.monotonic()  # [s] of looks, and when it last computed
         self.before = self.used = processor_time(pid)[1]  # [s]
-        self.looks = 0  # in a row at which it was asleep
+        self.looks = 0  # in a row that found it asleep
 
     @property
     def taken(self) -> float:
-        """Processor time [s] that the call has taken, as far as is known."""
+        """Processor time [s] of the call, as far as known."""
         return self.used - self.before
 
     @property
@@ -37,7 +37,7 @@ class CallLimit:
         return max(min(self.seconds / LOOKS, left), 0.0)
 
     def look(self) -> str:
-        """State of the call now: `COMPUTING`, or why it is over."""
+        """Present state of the call: `COMPUTING`, or the reason for its end."""
         if sys.platform == "linux":
             sleeps, used = processor_time(self.pid)
             self.note(used, sleeps=sleeps)
@@ -59,7 +59,7 @@ class CallLimit:
 
 
 def processor_time(pid: int) -> tuple[bool, float]:
-    """Return whether a process sleeps, and the processor time [s] that it has taken.
+    """Return (True if it sleeps, processor time [s]) of a process.
 
     (False, 0.0) on all systems but Linux, and of a process that has ended.
     """

@@ -1,7 +1,7 @@
 """Processes that end together on Windows, which has no groups of processes: job objects.
 
 A process in a job, and all that it starts, is killed when the job is closed. The program that made the job holds it
-open, so that all end with that program too, however it ends and whatever they do meanwhile.
+open, so that all end with that program, however it ends and whatever they do.
 """
 
 import contextlib
@@ -37,7 +37,7 @@ if sys.platform == "win32":
     kernel32.AssignProcessToJobObject.argtypes = (wintypes.HANDLE, wintypes.HANDLE)
 
     def make_job(pid: int, background: bool) -> int | None:
-        """The handle of a new job with this process in it; None where the system refuses."""
+        """The handle of a new job with this process in it; None if the system refuses."""
         job = kernel32.CreateJobObjectW(None, None)
         process = kernel32.OpenProcess(SET_QUOTA_AND_TERMINATE, False, pid)
         limits = Limits(flags=KILL_ON_CLOSE)
@@ -64,7 +64,7 @@ if sys.platform == "win32":
             jobs[process] = job
 
     def kill_with_children(process: "subprocess.Popen[Any]") -> None:
-        """Kill a process, and all that it has started. Raises OSError where that is not possible."""
+        """Kill a process and its descendants. Raises OSError if that is impossible."""
         job = jobs.pop(process, None)
         if job is not None:
             close_job(job)
@@ -77,5 +77,5 @@ else:
         """Do nothing: elsewhere a process sees that it is an orphan."""
 
     def kill_with_children(process: "subprocess.Popen[Any]") -> None:
-        """Kill a process. Raises OSError where that is not possible."""
+        """Kill a process. Raises OSError if that is impossible."""
         process.kill()

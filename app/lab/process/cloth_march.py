@@ -1,6 +1,6 @@
 """Advances a cloth with a student's functions, in the process that runs them; see `rope_march.py`.
 
-The student's `cloth_links` says which points are joined, and `cloth_forces` what the links do. Air, floor, sphere and
+The student's `cloth_links` joins points, and `cloth_forces` computes the forces of the links. Air, floor, sphere and
 the pull of the mouse are the program's laws; points do not collide with each other.
 """
 
@@ -18,12 +18,12 @@ from app.lab.course.tasks.springs.step_rk4 import step_rk4
 from app.lab.process.rope_march import ClothData, Functions, Unfit, fitting, not_a_number
 
 FILE = "cloth.py"  # where the tasks have these functions
-# Fractions of a step at which each method asks for the acceleration.
+# Fractions of a step at which each method evaluates the acceleration.
 MOMENTS = {"step_euler": (0.0,), "step_symplectic": (0.0,), "step_rk4": (0.0, 0.5, 0.5, 1.0)}
 
 
 def step_symplectic(x: Any, v: Any, h: float, acceleration: Callable[..., Any]) -> tuple[Any, Any]:
-    """One step of symplectic Euler: one acceleration a step, and stable at the longest steps."""
+    """One step of symplectic Euler: one acceleration a step, stable at the longest steps."""
     v = v + h * acceleration(x, v)
     return x + h * v, v
 
@@ -38,19 +38,19 @@ class ClothFunctions(Functions):
     roots = 0
 
     def __init__(self, module: ModuleType, own: Collection[str], step: str, sheet: ClothData) -> None:
-        """own, step: as of `Functions`. Raises Unfit for links that no cloth of this size has."""
+        """own, step: as of `Functions`. Raises Unfit for links impossible in a cloth of this size."""
         super().__init__(module, own, step, {})
         self.sheet, self.pins = sheet, np.array(sheet.pins, int)
         links = checked_links(self.get("cloth_links"), sheet.rows, sheet.cols)
         across, down = np.ones(sheet.cols), np.ones(sheet.rows)
         across[[0, -1]] = down[[0, -1]] = 0.5
-        self.cells = np.outer(down, across).ravel()  # (n,) cells that each point stands for: 1, 1/2 or 1/4
+        self.cells = np.outer(down, across).ravel()  # (n,) cells of each point: 1, 1/2 or 1/4
         (i, j), (k, m) = (np.divmod(links[:, end], sheet.cols) for end in (0, 1))
         down, along = np.abs(k - i), np.abs(m - j)
         self.rest = np.hypot(along * sheet.spacing[0], down * sheet.spacing[1])
         self.links, self.kind = links, np.where(down * along > 0, 1, np.where(down + along > 1, 2, 0))
         side = ((down == 0) & np.isin(i, (0, sheet.rows - 1))) | ((along == 0) & np.isin(j, (0, sheet.cols - 1)))
-        self.strip = np.where(side, 0.5, 1.0)  # of cloth that each link stands for
+        self.strip = np.where(side, 0.5, 1.0)  # of cloth for each link
 
     def mass_of(self, i: int | np.intp) -> float:
         """The mass of point i [kg]: of a cell, of half of one on an edge, of a quarter at a corner."""
@@ -75,7 +75,7 @@ class ClothFunctions(Functions):
         return a
 
     def start_clock(self, x: np.ndarray, v: np.ndarray) -> None:
-        """Start a step. The steps of a cloth are the program's: when they ask for the acceleration is known."""
+        """Start a step. The steps of a cloth are the program's, with known times of the accelerations."""
         self.moments = iter(MOMENTS[self.step])
 
     def time_in_step(self, x: np.ndarray) -> float:
@@ -83,7 +83,7 @@ class ClothFunctions(Functions):
         return next(self.moments) * self.segment.h
 
     def acceleration(self, x: Any, v: Any) -> np.ndarray:
-        """The accelerations [m/s2], shape (n, 3), that a step asks for."""
+        """The accelerations [m/s2], shape (n, 3), for a step."""
         a = super().acceleration(x, v)
         a[self.pins] = 0.0
         return a
@@ -104,7 +104,7 @@ class ClothFunctions(Functions):
             return force.reshape(x.shape)
         a, b, c, d = corners(x.reshape(shape))
         area = 0.5 * np.cross(d - a, c - b)
-        u = np.array(f.wind) - 0.25 * sum(corners(v.reshape(shape)))
+        u = np.array((f.wind_x, f.wind_y, f.wind_z)) - 0.25 * sum(corners(v.reshape(shape)))
         flow = (u * area).sum(axis=-1, keepdims=True)
         size, speed = (np.maximum(np.linalg.norm(y, axis=-1, keepdims=True), 1e-150) for y in (area, u))
         along = np.abs(flow) * (f.air_drag - f.air_lift * np.abs(flow) / size / speed)
@@ -114,7 +114,7 @@ class ClothFunctions(Functions):
         return force.reshape(x.shape)
 
     def name_nan(self, x: np.ndarray, v: np.ndarray) -> None:
-        """Raises Unfit for cloth_forces, where that returns NaN at this state."""
+        """Raises Unfit for cloth_forces, if that returns NaN at this state."""
         f = self.forces
         if (
             "cloth_forces" in self.own

@@ -1,8 +1,8 @@
 """Compiles a student's functions with numba, in the process that runs them; only that process imports this.
 
-Not by `sim.jit.kernel`: these functions change with each save, so nothing is kept, and an index out of range has to be
-an error. Each function that can be compiled, and then agrees with itself in plain Python, replaces that. A method of
-integration is not compiled: it is handed a Python function, the acceleration.
+Not by `sim.jit.kernel`: these functions change with each save, so nothing is cached, and an index out of range must be
+an error. A compiled function replaces the plain one if both agree. A method of integration is not compiled: its
+argument, the acceleration, is a Python function.
 """
 
 import importlib.util
@@ -39,7 +39,7 @@ def links(x, v, mass, stiffness, damping, drag, rest_length, gravity, spring_for
 
 
 def compile_functions(path: Path, own: Collection[str]) -> tuple[dict[str, Callable[..., Any]], str]:
-    """Compiled functions of a student by name, and why one could not be compiled, or ""."""
+    """Compiled functions of a student by name, and the reason why one failed, or ""."""
     plain, compiled = load(path, "plain"), load(path, "compiled")
     for name, value in vars(compiled).copy().items():
         if isinstance(value, types.FunctionType) and value.__module__ == compiled.__name__:
@@ -70,7 +70,7 @@ def compile_functions(path: Path, own: Collection[str]) -> tuple[dict[str, Calla
 
 
 def load(path: Path, name: str) -> types.ModuleType:
-    """The student's module, run once more."""
+    """The student's module, run again."""
     spec = importlib.util.spec_from_file_location(f"{path.stem}_{name}", path)
     assert spec is not None
     assert spec.loader is not None

@@ -1,9 +1,9 @@
 """Advances a rope with a student's functions, in the process that runs them.
 
-What the student has not written yet, the reference solutions do. Floor, friction and the pull of the mouse, which are
-no task, are the program's laws (`sim/springs/forces`), in numpy. The forces that the net declares are the program's
-kernels. A parameter that acts otherwise than on the program's rope is named in the panel (`unlike` in `student_rope.py`
-and `student_cloth.py`). Only numpy is imported here, so that the process starts fast.
+Reference solutions stand in for missing functions. Floor, friction and the pull of the mouse, which are no task, are
+the program's laws (`sim/point_laws.py`). The forces that the net declares are the program's kernels. A parameter that
+acts otherwise than on the program's rope is named in the panel (`unlike` in `student_rope.py` and
+`student_cloth.py`). numba is not imported here, so that the process starts fast.
 """
 
 import time
@@ -19,6 +19,7 @@ from app.lab.course.tasks.springs.spring_force import spring_force
 from app.lab.course.tasks.springs.step_euler import step_euler
 from app.lab.course.tasks.springs.step_leapfrog import step_leapfrog
 from app.lab.course.tasks.springs.step_rk4 import step_rk4
+from sim.point_laws import contact_force, secant, touching
 
 FILE = "rope.py"  # where the tasks have these functions
 REFERENCE: dict[str, Callable[..., Any]] = {
@@ -38,20 +39,31 @@ class Forces(NamedTuple):
     drag: float  # [N s/m]
     rest_length: float  # [m]
     gravity: float  # [m/s2], downwards
+    # From here on with the names of the kernels' record, at times t [s] of the segment.
     floor: float = -np.inf  # [m] where points meet it; -inf: none
-    radius: float = 0.0  # [m] at which points meet the sphere; 0: none
-    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m] of the sphere at time 0 of the segment
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s] of the sphere
-    contact_stiffness: float = 800.0  # [N/m]
-    contact_damping: float = 5.0  # [N s/m]
+    sr: float = 0.0  # radius [m] at which points meet the sphere; 0: none
+    sx: float = 0.0  # [m] centre of the sphere at `epoch`
+    sy: float = 0.0
+    sz: float = 0.0
+    svx: float = 0.0  # [m/s] its velocity
+    svy: float = 0.0
+    svz: float = 0.0
+    epoch: float = 0.0
+    contact_k: float = 800.0  # [N/m]
+    contact_b: float = 5.0  # [N s/m]
     friction: float = 0.0  # Coulomb coefficient
-    lab_contact: bool = False  # the lab's law of contact instead of the clipped one
+    stop_rate: float = 0.0  # 1/h of the segment: set by `Functions`
+    lab_contact: bool = False  # the lab's contact law instead of the clipped one
     grabbed: int = -1  # point that the mouse pulls, -1: none
-    hand: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m]
-    grab_stiffness: float = 0.0  # [N/m]
-    grab_damping: float = 0.0  # [N s/m]
-    max_pull: float = 1.0  # [N]
-    wind: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m/s] at a cloth
+    grab_x: float = 0.0  # [m] place of the mouse
+    grab_y: float = 0.0
+    grab_z: float = 0.0
+    grab_k: float = 0.0  # [N/m]
+    grab_b: float = 0.0  # [N s/m]
+    grab_max: float = 1.0  # [N]
+    wind_x: float = 0.0  # [m/s] at a cloth
+    wind_y: float = 0.0
+    wind_z: float = 0.0
     air_drag: float = 0.0  # [kg/m3] half the density of the air times the coefficient of drag
     air_lift: float = 0.0  # [kg/m3] the same of lift
     declared: tuple[tuple[str, tuple[float, ...]], ...] = ()  # name and numbers of each force of `Net.forces`
@@ -73,7 +85,7 @@ class ClothData(NamedTuple):
 
 
 class Segment(NamedTuple):
-    """Some steps during which the forces stay the same; its last two fields are for the scene that asks for them."""
+    """Some steps during which the forces stay the same; its last two fields are for the calling scene."""
 
     steps: int
     h: float  # [s]
@@ -95,7 +107,7 @@ class MarchResult(NamedTuple):
     steps: int  # taken in all
     seconds: float  # that they took
     effort: float  # [s] of processor time that they took
-    left: bool  # the rope left all bounds; the rest of the segments was not taken
+    left: bool  # the rope left all bounds; the remaining segments were not taken
 
     @property
     def step_time(self) -> float:
@@ -151,7 +163,7 @@ def fitting(name: str, value: Any, shape: tuple[int, ...], function: Callable[..
 
 
 class Functions:
-    """The functions that advance a rope: the student's, and the reference solutions in place of those not written."""
+    """The functions that advance a rope: the student's, with reference solutions for missing ones."""
 
     reference: Mapping[str, Callable[..., Any]] = REFERENCE
     roots = 1  # points at the start that only their path moves
@@ -182,7 +194,7 @@ class Functions:
         return fitting(name, value, shape, self.get(name))
 
     def acceleration(self, x: Any, v: Any) -> np.ndarray:
-        """The accelerations [m/s2], shape (n, 3), that a step asks for."""
+        """The accelerations [m/s2], shape (n, 3), for a step."""
         x, v = np.asarray(x, np.float64), np.asarray(v, np.float64)
         if x.ndim != 2 or x.shape[1] != 3 or x.shape != v.shape:
             text = f"{self.step} calls acceleration(x, v) with shapes {x.shape} and {v.shape}; both must be (n, 3)"
@@ -197,7 +209,7 @@ class Functions:
         return a
 
     def time_in_step(self, x: np.ndarray) -> float:
-        """Time [s] since the start of the step at which it asks for the acceleration at x.
+        """Time [s] since the start of the step for which it needs the acceleration at x.
 
         A root that moves is the clock, see `advance`. Otherwise it is not known; then the sphere is taken at the start
         by Euler's method, and else in the middle.
@@ -248,20 +260,16 @@ class Functions:
         """Add floor, sphere, the pull of the mouse and the forces that the net declares, on all points but the root."""
         f, first = self.forces, self.roots
         for i in np.flatnonzero(x[first:, 2] < f.floor) + first if x[:, 2].min() < f.floor else ():
-            up = np.array([0.0, 0.0, 1.0])
-            a[i] += self.contact(f.floor - x[i, 2], up, v[i], 1.0, self.mass_of(i)) / self.mass_of(i)
-        if f.radius > 0.0:
+            a[i] += self.contact(x[i], v[i], i, on_sphere=False) / self.mass_of(i)
+        if f.sr > 0.0:
             centre, velocity = self.sphere_now()
-            distance = np.linalg.norm(x - centre, axis=1)
-            near = np.flatnonzero(distance[first:] < f.radius) + first
+            near = np.flatnonzero(np.linalg.norm(x[first:] - centre, axis=1) < f.sr) + first
             for i in range(first, len(x)) if "sphere_force" in self.own else near:
-                mass = self.mass_of(i)
-                a[i] += self.sphere(x[i], v[i] - velocity, centre, float(distance[i]), mass) / mass
+                a[i] += self.sphere(x[i], v[i] - velocity, i) / self.mass_of(i)
         if f.grabbed >= first:
-            gap = np.array(f.hand) - x[f.grabbed]
-            distance = float(np.linalg.norm(gap))
-            k = f.max_pull / distance if f.grab_stiffness * distance > f.max_pull else f.grab_stiffness
-            a[f.grabbed] += (k * gap - f.grab_damping * v[f.grabbed]) / self.mass_of(f.grabbed)
+            gap = np.array((f.grab_x, f.grab_y, f.grab_z)) - x[f.grabbed]
+            pull = secant(*gap.tolist(), stiffness=f.grab_k, most=f.grab_max) * gap - f.grab_b * v[f.grabbed]
+            a[f.grabbed] += pull / self.mass_of(f.grabbed)
         if f.declared:
             from app.lab.process.declared_forces import accelerations, record  # numba, which takes a second to import
 
@@ -279,41 +287,39 @@ class Functions:
 
     def sphere_now(self) -> tuple[np.ndarray, np.ndarray]:
         """Centre [m] and velocity [m/s] of the sphere."""
-        velocity = np.array(self.forces.velocity)
-        return np.array(self.forces.centre) + self.now * velocity, velocity
-
-    def sphere(self, x: np.ndarray, v: np.ndarray, centre: np.ndarray, distance: float, mass: float) -> np.ndarray:
-        """The force [N], shape (3,), of the sphere on a point; the program's friction acts by the student's push."""
         f = self.forces
-        normal = (x - centre) / distance if distance else np.array([0.0, 0.0, 1.0])
-        if "sphere_force" not in self.own:
-            return self.contact(f.radius - distance, normal, v, f.radius - distance, mass)
-        numbers = f.radius, f.contact_stiffness, f.contact_damping
-        value = self.own["sphere_force"](x.copy(), v.copy(), centre.copy(), *numbers)
-        force = self.fit("sphere_force", value, (3,))
-        push = float(force @ normal)
-        return force if f.lab_contact or not push > 0.0 else force - self.grip(push, normal, v, mass)
+        velocity = np.array((f.svx, f.svy, f.svz))
+        return np.array((f.sx, f.sy, f.sz)) + (self.now - f.epoch) * velocity, velocity
 
-    def contact(self, depth: float, normal: np.ndarray, v: np.ndarray, lab_scale: float, mass: float) -> np.ndarray:
-        """The program's law of contact (`sim/springs/forces/contact.py`): force [N], shape (3,), on a point of `mass`.
+    def sphere(self, x: np.ndarray, v: np.ndarray, i: int | np.intp) -> np.ndarray:
+        """The force [N], shape (3,), of the sphere on point i at x, at v against it.
 
-        lab_scale: what the lab's law multiplies the damping by.
+        The program's friction acts by the student's push.
         """
         f = self.forces
-        if f.lab_contact:
-            return f.contact_stiffness * depth * normal - f.contact_damping * lab_scale * v
-        push = max(0.0, f.contact_stiffness * depth - f.contact_damping * float(v @ normal))
-        return push * normal - self.grip(push, normal, v, mass)
+        if "sphere_force" not in self.own:
+            return self.contact(x, v, i, on_sphere=True)
+        centre, _ = self.sphere_now()
+        value = self.own["sphere_force"](x.copy(), v.copy(), centre, f.sr, f.contact_k, f.contact_b)
+        force = self.fit("sphere_force", value, (3,))
+        if f.lab_contact or not f.friction > 0.0:
+            return force
+        _, *normal = touching(*x.tolist(), t=self.now, p=f, on_sphere=True)
+        push = float(force @ normal)
+        if not push > 0.0:
+            return force
+        pressed = f._replace(contact_k=push, contact_b=0.0, stop_rate=1.0 / self.segment.h)
+        gripped = contact_force(
+            1.0, *normal, *v.tolist(), mass=self.mass_of(i), p=pressed, on_sphere=True, with_damping=True
+        )
+        return force + gripped - np.multiply(push, normal)
 
-    def grip(self, push: float, normal: np.ndarray, v: np.ndarray, mass: float) -> np.ndarray:
-        """Coulomb friction [N], shape (3,), against the motion of a point that is pushed [N] along the normal."""
-        f = self.forces
-        sliding = v - float(v @ normal) * normal
-        speed = float(np.linalg.norm(sliding))
-        grip = mass / self.segment.h
-        if f.friction * push < grip * speed:
-            grip = f.friction * push / speed
-        return (grip if f.friction else 0.0) * sliding
+    def contact(self, x: np.ndarray, v: np.ndarray, i: int | np.intp, *, on_sphere: bool) -> np.ndarray:
+        """The program's force [N], shape (3,), of floor or sphere on point i at x, at v against it."""
+        p = self.forces._replace(stop_rate=1.0 / self.segment.h)
+        at = touching(*x.tolist(), t=self.now, p=p, on_sphere=on_sphere)
+        force = contact_force(*at, *v.tolist(), mass=self.mass_of(i), p=p, on_sphere=on_sphere, with_damping=True)
+        return np.array(force)
 
     def name_nan(self, x: np.ndarray, v: np.ndarray) -> None:
         """Raises Unfit for the function that returns NaN at this state."""
@@ -327,19 +333,16 @@ class Functions:
             elif name == "spring_force":
                 values = [self.link(x, v, i) for i in range(len(x) - 1)]
             else:
-                centre, velocity = self.sphere_now()
-                distance = np.linalg.norm(x - centre, axis=1)
-                values = [
-                    self.sphere(x[i], v[i] - velocity, centre, float(distance[i]), f.mass) for i in range(1, len(x))
-                ]
+                _, velocity = self.sphere_now()
+                values = [self.sphere(x[i], v[i] - velocity, i) for i in range(1, len(x))]
             if any(np.isnan(value).any() for value in values):
                 raise not_a_number(name, self.own[name])
 
     def advance(self, x: np.ndarray, v: np.ndarray, start: float) -> tuple[np.ndarray, np.ndarray]:
         """One step from time `start` [s] of the segment. Raises Unfit.
 
-        A step does not say at which time it asks for an acceleration. A root that moves tells: it is given to the step
-        as a clock, at x = 0 with 1 m/s, and is where it should be wherever a force is computed.
+        A step does not pass the time of an acceleration. A moving root shows it: the step gets the root as a clock, at
+        x = 0 with 1 m/s, and the root is in its right place whenever a force is computed.
         """
         h = self.segment.h
         self.start = start

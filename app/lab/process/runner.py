@@ -1,9 +1,9 @@
-"""Runs a student's functions in a separate process: nothing that they do harms the lab.
+"""Runs a student's functions in a separate process, so that they cannot harm the lab.
 
-A call that takes more than 2 s of processor time is ended with its process, and the next call gets a new one. What went
-wrong is a `RunError`, which says what and where in words for the student. A process that does not get the processor
-(`call_limit.py`), that cannot be started, or that ends because the one that forked it has ended, is no fault of the
-functions: the error has the kind `BUSY`, for a lost process after some tries.
+A call that takes more than 2 s of processor time is ended with its process, and the next call gets a new one. A failure
+is a `RunError`, with its reason and place in words for the student. If a process does not get the processor
+(`call_limit.py`), cannot be started, or ends because the one that forked it has ended, the functions are not to blame:
+the error has the kind `BUSY`, for a lost process after some tries.
 """
 
 import ast
@@ -39,12 +39,12 @@ from app.lab.student.source import decoded
 TIME_LIMIT = 2.0  # [s] of one call
 LOAD_LIMIT = 10.0  # [s] until a new process is ready, which imports numpy; longer at each further try
 MAX_LOAD_LIMIT = 90.0  # [s]
-MAX_TRIES = 3  # of a call whose process is lost
-BUSY = "busy"  # kind of an error that is no fault of the student's functions
+MAX_TRIES = 3  # of a call that loses its process
+BUSY = "busy"  # kind of an error that the student's functions did not cause
 EDITS_LIMIT = 2.0  # [s] for the edits of a function
 COMPILE_LIMIT = 60.0  # [s] for compiling
 TABLE_ROWS = 512  # of a table that are computed in one call
-TRACE_TIME = 0.2  # [s] for which a process that does not answer may take to say where it is
+TRACE_TIME = 0.2  # [s] for a process without an answer to report its place
 MAX_TRACE = 2**16  # [bytes] of what it says
 FRAME = re.compile(r'File "(.+)", line (\d+) in (.+)')  # as faulthandler writes it
 ESCAPED = re.compile(r"\\x[0-9a-f]{2}|\\u[0-9a-f]{4}|\\U[0-9a-f]{8}")  # its characters beyond ASCII
@@ -56,11 +56,11 @@ Process: TypeAlias = subprocess.Popen[bytes] | Forked
 
 
 class RunError(Exception):
-    """A student's function did not come to a result.
+    """Failure of a student's function to return a result.
 
     kind: "missing", "syntax", "raised", "endless", "ended", "memory", "printed", `BUSY`, or of a march those of
-    `rope_march.Unfit`. file, line: in the student's folder. loading: the file itself does not run, so that each of its
-    functions fails.
+    `rope_march.Unfit`. file, line: in the student's folder. loading: the file itself does not run, so that all of its
+    functions fail.
     """
 
     def __init__(self, kind: str, text: str, file: str, line: int | None = None, *, loading: bool = False) -> None:
@@ -89,15 +89,15 @@ class Runner:
         self.compiles = compiles
         self.starts = 0  # processes started
         self.effort = 0.0  # [s] of processor time that calls have taken
-        self.is_fresh = False  # its process runs, and does not know the folder yet: another may be set
-        self._parsed: set[str] = set()  # files without an error of syntax
+        self.is_fresh = False  # its process runs without a folder yet, which can still be set
+        self._parsed: set[str] = set()  # files without a syntax error
         self._loaded: set[str] = set()  # files that the process has run
-        self._broken: dict[str, RunError] = {}  # file -> why it does not run: it is not tried for each function
+        self._broken: dict[str, RunError] = {}  # file -> reason why it does not run: it is not tried for each function
         self._load_limit = LOAD_LIMIT
         self._process: Process | None = None
         self._aborted = False
-        self._trace: IO[bytes] | None = None  # where the process writes, when it is asked, where it is
-        self._place: tuple[str, int, str] | None = None  # file, line and function, of a process that tells it unasked
+        self._trace: IO[bytes] | None = None  # file in which the process reports its place on request
+        self._place: tuple[str, int, str] | None = None  # file, line and function, reported unasked
         self._answers: queue.SimpleQueue[list[Any] | None] = queue.SimpleQueue()
 
     def __enter__(self) -> "Runner":
@@ -109,7 +109,7 @@ class Runner:
     def call(self, file: str, function: str, *arguments: Any) -> Any:
         """Result of a function: None, numbers, texts, arrays, lists and tuples of these, or `Foreign`.
 
-        Functions among the arguments are computed here when the student's function calls them. Raises RunError.
+        Functions among the arguments run here when the student's function calls them. Raises RunError.
         """
         return self._ask("call", file, function, list(arguments))
 
@@ -169,7 +169,7 @@ class Runner:
         return np.concatenate(parts)
 
     def compile(self, own: Collection[str]) -> tuple[list[str], str]:
-        """Compile the functions that move a rope, for later marches; which could be, and why others could not.
+        """Compile the functions that move a rope, for later marches; returns the compiled ones, and why others failed.
 
         Raises RunError.
         """
@@ -177,7 +177,7 @@ class Runner:
         return names, why
 
     def abort(self) -> None:
-        """End the process from another thread: a call that is under way fails at once, and so does each later one."""
+        """End the process from another thread: a call under way fails at once, and so do later ones."""
         self._aborted = True
         process = self._process
         if process is not None:
@@ -185,11 +185,11 @@ class Runner:
                 process.kill()
 
     def enter(self, folder: Path) -> None:
-        """Work in another folder; possible as long as nothing was called."""
+        """Change to another folder; possible until the first call."""
         self.folder = folder.resolve()
 
     def start(self) -> None:
-        """Start the process, so that the next call does not wait for that. Raises RunError where it does not start."""
+        """Start the process, so that the next call need not wait for it. Raises RunError if it does not start."""
         self._ready()
 
     def _ask(self, kind: str, file: str, function: str, arguments: list[Any], time_limit: float | None = None) -> Any:
@@ -208,7 +208,7 @@ class Runner:
                 functions: list[Callable[..., Any]] = []
                 with contextlib.suppress(LostError):
                     return self._answer(kind, file, function, arguments, time_limit or self.time_limit, functions)
-                if functions:  # they may have been called, and are not to be called twice for one call
+                if functions:  # they may have been called, and must not run twice for one call
                     break
         except RunError as error:
             if error.loading:
@@ -266,7 +266,7 @@ class Runner:
         self._process, self._trace, self.is_fresh, self._loaded = None, None, False, set()
         if process is None:
             return
-        if process.returncode is None:  # else its number, and its group's, may be another process's by now
+        if process.returncode is None:  # otherwise its number, and its group's, may now be another process's
             with contextlib.suppress(OSError):
                 kill_group(process)
         if has_ended(process):
@@ -275,7 +275,7 @@ class Runner:
             threading.Thread(target=dispose, args=(process, trace), daemon=True).start()
 
     def _ready(self) -> Process:
-        """The process, started unless it runs already. Raises RunError where it does not start."""
+        """The process, started unless it runs already. Raises RunError if it does not start."""
         if self._process is not None and not has_ended(self._process):
             return self._process
         self.close()
@@ -328,7 +328,7 @@ class Runner:
         return process
 
     def _where(self) -> tuple[str, int, str] | None:
-        """File, line and function of the student's at which the process is; None where that cannot be found out."""
+        """File, line and function of the student's code that the process is running; None if unknown."""
         if self._process is None or self._trace is None or TRACE_SIGNAL is None:
             return self._place
         return traced(self._process, self._trace, self.folder)
@@ -338,15 +338,15 @@ class Runner:
         return file not in self._loaded and (self.folder / file).is_file()
 
     def _say(self, process: Process, message: list[Any]) -> None:
-        """Send a message; a process that has ended is noticed at the next answer."""
+        """Send a message; the end of a process is noticed at the next answer."""
         assert process.stdin is not None
         with contextlib.suppress(OSError):
             send(process.stdin, message)
 
     def _next(self, limit: CallLimit, file: str, function: str) -> list[Any]:
-        """The next message of the process. Raises RunError where none comes in time, or the process has ended.
+        """The next message of the process. Raises RunError if none comes in time, or the process has ended.
 
-        Raises LostError where it has ended with its template.
+        Raises LostError if it has ended with its template.
         """
         while (state := limit.look()) == COMPUTING:
             with contextlib.suppress(queue.Empty):
@@ -404,7 +404,7 @@ def check_syntax(path: Path) -> None:
     except SyntaxError as error:
         text = f"{type(error).__name__}: {error.msg}"
         raise RunError("syntax", text, path.name, error.lineno, loading=True) from None
-    except (OSError, ValueError, RecursionError, MemoryError):  # which the process meets as well
+    except (OSError, ValueError, RecursionError, MemoryError):  # the process raises these too
         pass
 
 
@@ -422,9 +422,9 @@ def read_answers(process: Process, answers: "queue.SimpleQueue[list[Any] | None]
 
 
 def kill_group(process: Process) -> None:
-    """Kill a process and all that it has started. Raises OSError where that is not possible."""
+    """Kill a process and its descendants. Raises OSError if that is impossible."""
     if isinstance(process, Forked) and process.is_orphan and process.has_ended():
-        return  # it has done so itself, and its number may be another's by now
+        return  # it has ended by itself, and its number may now be another's
     with contextlib.suppress(ProcessLookupError):  # just forked: it has no group yet, and has started nothing
         if os.name == "posix":
             os.killpg(process.pid, signal.SIGKILL)
@@ -446,9 +446,9 @@ def dispose(process: Process, trace: IO[bytes] | None) -> None:
 
 
 def has_ended(process: Process, *, block: bool = False) -> bool:
-    """Return whether a process has ended, and leave it unreaped where the system can: its group keeps its number.
+    """True if a process has ended. It stays unreaped if the system allows it, so that its group keeps its number.
 
-    block: wait until it has.
+    block: wait for the end.
     """
     if isinstance(process, Forked):
         return process.has_ended(block=block)
@@ -461,7 +461,7 @@ def has_ended(process: Process, *, block: bool = False) -> bool:
 
 
 def unexpected(error: Exception, file: str) -> RunError:
-    """An error of the lab's own as one for the panel; its traceback goes to the terminal."""
+    """An error of the lab itself, as one for the panel; its traceback goes to the terminal."""
     traceback.print_exception(error)
     return RunError("ended", f"the lab could not run your functions: {type(error).__name__}: {error}", file)
 
@@ -478,7 +478,7 @@ def is_march(answer: Any, shape: tuple[int, ...]) -> bool:
 
 
 def compute(functions: list[Callable[..., Any]], answer: list[Any]) -> list[Any]:
-    """The reply to a callback: the value, or why these arguments are refused."""
+    """The reply to a callback: the value, or the reason why its arguments are refused."""
     function, arguments = functions[answer[1]], unpack(answer[2], lambda _: None)
     try:
         return ["value", pack(function(*arguments), lambda _: 0)]

@@ -7,11 +7,11 @@ from pathlib import Path
 
 COMPILES = "compiles"  # argument of a process that compiles, too
 FORKS = "forks"  # argument of a process that forks others (`template.py`)
-ON_HUB = "JUPYTERHUB_USER" in os.environ  # labs of others run on this machine, and their controls go first
+ON_HUB = "JUPYTERHUB_USER" in os.environ  # other labs run on this machine, and their controls have priority
 ROPE_NICENESS = 19 if ON_HUB else 0  # of a process that moves a student's rope, once it has been tried
 BACKGROUND_NICENESS = 19 if ON_HUB else 10  # of processes that check or compile
 GROUP_TRIES, GROUP_INTERVAL = 20, 0.1  # [s]: Linux allows one such change in 0.1 s to all users together
-TRACE_SIGNAL = getattr(signal, "SIGUSR1", None)  # asks a process where it is; None on Windows, which has no such signal
+TRACE_SIGNAL = getattr(signal, "SIGUSR1", None)  # asks a process for its place; None on Windows, which lacks it
 
 
 def lower_priority(niceness: int) -> None:

@@ -1,4 +1,4 @@
-"""Calls a student's function at many arguments, in the process that runs it: a table that a scene then runs by.
+"""Calls a student's function at many arguments, in the process that runs it: a table for a scene.
 
 Only numpy is imported here, so that the process starts fast.
 """

@@ -1,10 +1,9 @@
-"""Processes forked from one that has imported all that a student's functions need: a fork takes a few milliseconds.
+"""Processes forked from one with all imports of a student's functions: a fork takes a few milliseconds.
 
 The template waits at a socket. A request with three files forks a process that has these as standard input, standard
 output and trace; another one reaps a process that has ended, which keeps its number until then. The template ends with
-the lab, and what it has forked notices that (`worker.end_with_parent`) and ends too. A process remembers the connection
-to its template: of an earlier template's processes the present one knows nothing. Linux only: elsewhere each process is
-started.
+the lab, and its forks notice that (`worker.end_with_parent`) and end too. A process remembers the connection to its
+template: a new template does not know the processes of an earlier one. Linux only: elsewhere each process is started.
 """
 
 import contextlib
@@ -30,7 +29,7 @@ FILES = 3  # of a process
 
 
 class Forked:
-    """A forked process, as the lab sees it; used as `subprocess.Popen`."""
+    """A forked process, seen from the lab; used like `subprocess.Popen`."""
 
     def __init__(
         self, template: "Template", connection: socket.socket, pid: int, watched: int, stdin: IO[bytes],
@@ -43,11 +42,11 @@ class Forked:
 
     @property
     def is_orphan(self) -> bool:
-        """True if its template is known to have ended: it ends too, whatever it runs."""
+        """True if its template is known to have ended: it then ends too."""
         return self.template.connection is not self.connection
 
     def has_ended(self, *, block: bool = False) -> bool:
-        """Return whether it has ended. block: wait until it has."""
+        """True if it has ended. block: wait for the end."""
         if self.returncode is None:
             ended = select.poll()
             ended.register(self.watched, select.POLLIN)
@@ -55,7 +54,7 @@ class Forked:
         return True
 
     def send_signal(self, number: int) -> None:
-        """Send a signal. Raises OSError where that is not possible."""
+        """Send a signal. Raises OSError if that is not possible."""
         if self.returncode is None:
             os.kill(self.pid, number)
 
@@ -74,7 +73,7 @@ class Forked:
 
 
 class Template:
-    """The template of a lab, from the lab's side; started at the first fork, and again where it has ended."""
+    """The template of a lab, from the lab's side; started at the first fork, and again after its end."""
 
     def __init__(self) -> None:
         self.process: subprocess.Popen[bytes] | None = None
@@ -84,7 +83,7 @@ class Template:
     def fork(self, command: Sequence[str], environment: dict[str, str], trace: int, *, compiles: bool) -> Forked:
         """Fork a process. command, environment: that start the template. trace: a file of the new process.
 
-        Raises OSError where there can be no more processes.
+        Raises OSError if there can be no more processes.
         """
         theirs_in, ours_in = os.pipe()
         ours_out, theirs_out = os.pipe()
@@ -132,7 +131,7 @@ class Template:
             raise
 
     def start(self, command: Sequence[str], environment: dict[str, str]) -> None:
-        """Start a template in place of one that has ended; with the lock held. Raises OSError."""
+        """Replace a template that has ended; with the lock held. Raises OSError."""
         if self.process is not None:
             self.process.kill()
             self.process.wait()
@@ -150,14 +149,14 @@ class Template:
         self.connection = ours
 
     def disconnect(self) -> None:
-        """Leave a template that has ended, or is not waited for any longer."""
+        """Disconnect from a template that has ended or is given up."""
         self.connected.close()
         self.connection = None
 
     def ask(self, request: int, pid: int, files: Sequence[int] = ()) -> int:
         """The answer to a request; with the lock held.
 
-        Raises ConnectionError where no template runs, TimeoutError where it does not answer, another OSError of a fork.
+        Raises ConnectionError if no template runs, TimeoutError if it does not answer, another OSError of a fork.
         """
         if self.connection is None:
             raise ConnectionError("the fork server has not started yet")
@@ -179,7 +178,7 @@ class Template:
 
 
 def can_fork() -> bool:
-    """True where processes can be forked, and watched while they are another's children."""
+    """True if processes can be forked, and watched while they are another's children."""
     if sys.platform != "linux":
         return False
     try:

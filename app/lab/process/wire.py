@@ -63,7 +63,7 @@ def unpack(value: Any, function: Callable[[int], Any]) -> Any:
 
 
 def send(stream: IO[bytes], message: list[Any]) -> None:
-    """Write one message. Raises ValueError where it is too long, OSError where nobody reads."""
+    """Write one message. Raises ValueError if it is too long, OSError if nobody reads."""
     data = msgspec.msgpack.encode(message)
     if len(data) > MAX_BYTES:
         raise ValueError(f"{len(data) / 2**20:.0f} MiB of numbers, more than {MAX_BYTES // 2**20} MiB")

@@ -1,16 +1,16 @@
 """The process that runs a student's functions. `runner.py` starts it and speaks to it by pipes.
 
-It says `["ready"]` once, and gets `["folder", path]` once. It takes `["call", file, function, arguments]` and answers
+It sends `["ready"]` once, and gets `["folder", path]` once. It takes `["call", file, function, arguments]` and answers
 with `["result", value, processor time]`, `["callback", number, arguments]` (a function among the arguments is called:
 the other side computes it), or `["failed", kind, text, file, line, loading]` (loading: the file itself does not run).
-It says `["loaded", file]` once it has run a file. With `["march", file, function, arguments]` it advances a rope or
+It sends `["loaded", file]` once it has run a file. With `["march", file, function, arguments]` it advances a rope or
 a cloth by the student's functions (`rope_march.py`, `cloth_march.py`), with `["compile", file, "", [names]]` it
 compiles those of a rope for that, and with `["table", file, function, [columns, shape, allowed]]` it calls one function
 at many arguments (`tabulate.py`). `["watch", file, function, [twice, arguments]]` is a call that fails where the
 function has a side effect (`diagnosis/effects.py`). `["edits", file, function, [far, arguments]]` calls
 its edits, and `["edited", file, function, [number, arguments]]` one of them (`diagnosis/edits.py`). During a long call
-it says `["at", file, line, function, processor time]` again and again on systems that do not tell the lab
-(`call_limit.py`). What a student prints is counted and dropped: the pipes are the lab's own.
+it sends `["at", file, line, function, processor time]` repeatedly on systems that do not tell the lab
+(`call_limit.py`). Printed lines are counted and dropped: the pipes belong to the lab.
 """
 
 import contextlib
@@ -39,14 +39,14 @@ from app.lab.process.template import fork_on_request
 from app.lab.process.wire import pack, receive, send, unpack
 
 MAX_LINES = 10_000  # printed in one call or march
-MEMORY = 768 * 2**20  # [bytes] that a call may ask for, where the system can limit it
+MEMORY = 768 * 2**20  # [bytes] that a call may allocate, if the system can limit it
 EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
-LOOK_AT_PARENT = 1.0  # [s] between two looks whether the lab still runs
-PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on where it is, and the time that it has taken
+LOOK_AT_PARENT = 1.0  # [s] between two checks that the lab still runs
+PLACE_INTERVAL = 0.1  # [s] between two messages of a long call on its place and processor time
 
 
 class PrintedTooMuchError(BaseException):
-    """Not an `Exception`, so that a student's `except Exception` lets it through."""
+    """Raised for too many printed lines; no `Exception`, so that a student's `except Exception` lets it pass."""
 
 
 class CountedOutput(io.TextIOBase):
@@ -73,7 +73,7 @@ class Worker:
     def __init__(self, *, was_tried: bool) -> None:
         """was_tried: another process has tried the functions, for which the student waits."""
         self.output = CountedOutput()
-        # The pipes get numbers of their own; 0, 1 and 2, which the student's code sees, lead nowhere.
+        # The pipes get other numbers; 0, 1 and 2, which the student's code sees, lead nowhere.
         self.incoming = os.fdopen(os.dup(0), "rb")
         self.outgoing = os.fdopen(os.dup(1), "wb")
         nowhere = os.open(os.devnull, os.O_RDWR)
@@ -83,7 +83,7 @@ class Worker:
         sys.stdout = sys.stderr = self.output
         self.modules: dict[str, ModuleType] = {}
         self.states: dict[str, Any] = {}  # of the modules, before any watched call
-        self.edits: list[Edit] = []  # of the last function that was asked for
+        self.edits: list[Edit] = []  # of the last requested function
         self.compiled: dict[str, Callable[..., Any]] = {}
         self.was_tried = was_tried
         self.in_call = threading.Event()
@@ -97,7 +97,7 @@ class Worker:
         sys.path.insert(0, str(folder))
 
     def serve(self) -> None:
-        """Say that the process is ready, then answer until the lab closes the pipe."""
+        """Report that the process is ready, then answer until the lab closes the pipe."""
         send(self.outgoing, ["ready"])
         told = receive(self.incoming)
         if told is None:
@@ -136,8 +136,8 @@ class Worker:
             frames = traceback.walk_stack(sys._current_frames()[main or 0])
             codes = [(frame.f_code, line) for frame, line in frames]
             own = [(code, line) for code, line in codes if Path(code.co_filename).parent == self.folder]
-            with self.sending, contextlib.suppress(OSError):  # the lab has gone
-                if self.in_call.is_set():  # no place comes after the result
+            with self.sending, contextlib.suppress(OSError):  # the lab has ended
+                if self.in_call.is_set():  # no place is sent after the result
                     at = [(Path(code.co_filename).name, line, code.co_name) for code, line in own] or [("", 0, "")]
                     send(self.outgoing, ["at", *at[0], time.process_time() - self.began])
 
@@ -267,7 +267,7 @@ class Worker:
             self.say(["callback", number, pack(list(arguments), lambda _: 0)])
             message = receive(self.incoming)
             if message is None:
-                os._exit(0)  # the lab has gone
+                os._exit(0)  # the lab has ended
             if message[0] == "refused":
                 raise ValueError(message[1])
             return unpack(message[1], self.remote)
@@ -276,7 +276,7 @@ class Worker:
 
 
 def modules_below(module: ModuleType, folder: Path) -> list[ModuleType]:
-    """The modules of a folder that a module of it uses, directly or by others."""
+    """The modules of a folder that one of its modules uses, directly or indirectly."""
     found = [module]
     for user in found:
         for value in vars(user).values():
@@ -290,14 +290,14 @@ def modules_below(module: ModuleType, folder: Path) -> list[ModuleType]:
 
 
 def limit_memory() -> None:
-    """Let this process ask for `MEMORY` more than it has, where the system can limit that (Linux)."""
+    """Limit this process to `MEMORY` more than it has, if the system can (Linux)."""
     if sys.platform != "linux":
         return
     import resource
 
     pages = int(Path("/proc/self/statm").read_text("utf-8").split()[0])
     bound = pages * resource.getpagesize() + MEMORY
-    with contextlib.suppress(ValueError, OSError):  # where a lower limit is set already
+    with contextlib.suppress(ValueError, OSError):  # if a lower limit is already set
         resource.setrlimit(resource.RLIMIT_AS, (bound, bound))
 
 

@@ -1,7 +1,7 @@
-"""The teacher's page: a row for each student, and the mistakes that several have. Whatever a student wrote is escaped.
+"""The teacher's page: a row for each student, and common mistakes. All texts of students are escaped.
 
-Students are named as their folders are, with the names that they typed below. The page fetches nothing but its own
-rows, and runs no other script.
+Students have the names of their folders, with the typed names below. The page fetches only its own rows, and runs no
+other script.
 """
 
 from collections.abc import Mapping, Sequence
@@ -60,7 +60,7 @@ follow();
 
 
 def page(students: Sequence[Student], revision: int, nonce: str) -> str:
-    """The whole page, which asks for `rows` again as they change. nonce: that the policy allows scripts with."""
+    """The whole page, which requests `rows` after each change. nonce: of the policy for scripts."""
     return fill(
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'
@@ -112,7 +112,7 @@ def mistakes_table(students: Sequence[Student], names: Mapping[Path, str]) -> Ht
 
 
 def student_row(student: Student, name: str) -> Html:
-    """One student: the task with its mistake, or the first of any, how many are right, all tasks, the rope.
+    """One student: the task and its mistake, or the first mistake of any; number of right tasks, all tasks, the rope.
 
     name: of the folder.
     """

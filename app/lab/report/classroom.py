@@ -1,7 +1,7 @@
-"""The folders of a class while a teacher looks on: each is checked again as its files are saved.
+"""The folders of a class on a teacher's page: each is checked again as its files are saved.
 
-Functions run from copies, so that nothing is written into a folder. `Versions` says what is to be checked.
-One thread has a folder until it is done with it; what was saved meanwhile is found when the folder is looked at again.
+Functions run from copies, so that nothing is written into a folder. `Versions` decides what to check. One thread holds
+a folder until it has finished; files saved meanwhile are found at the next look.
 """
 
 import threading
@@ -35,7 +35,7 @@ class Student(NamedTuple):
     programs: Mapping[str, Verdict] = {}  # by task
     results: tuple[TaskResult, ...] = ()
     rope: RopePicture = RopePicture()
-    at: str = ""  # name of the task whose result changed last; at first of the last that is begun
+    at: str = ""  # name of the task whose result changed last; at first of the last one begun
     changed_at: str = ""  # clock time of that
     error: str = ""  # reason why the folder could not be checked, or its answers not be read
     name: str = ""  # as the student typed it
@@ -48,10 +48,10 @@ class Desk:
         self.tasks, self.versions, self.answers = tasks, Versions(folder, tasks), FileWatch(folder, FILE)
         self.student = Student(folder)
         self.drawn: Saved | None = None  # the version whose rope is drawn
-        self.is_open = True  # something is to be looked at once more
+        self.is_open = True  # something is to be looked at again
 
     def checked(self) -> Student:
-        """The state of the folder as it is now; the same object if nothing has changed.
+        """The present state of the folder; the same object if nothing has changed.
 
         Raises OSError if the files cannot be copied.
         """
@@ -87,7 +87,7 @@ class Desk:
 
 
 class Classroom:
-    """All folders, and threads that look at them and check. Use it in a `with` block."""
+    """All folders, and the threads that check them. Use it in a `with` block."""
 
     def __init__(self, folders: Sequence[Path], tasks: Sequence[Task]) -> None:
         """Raises ValueError for a path that is no folder."""
@@ -121,17 +121,17 @@ class Classroom:
             desk.versions.close()
 
     def wait(self, revision: int, timeout: float) -> int:
-        """Wait until there is something newer than a revision, at most `timeout` [s]; returns the present one."""
+        """Wait for a newer revision, at most `timeout` [s]; returns the present one."""
         with self.news:
             self.news.wait_for(lambda: self.is_closed.is_set() or self.revision != revision, timeout)
             return self.revision
 
     def work(self) -> None:
-        """Look at folder after folder; one that is checked is looked at again after that, and by no other thread."""
+        """Check folder after folder, each in one thread at a time."""
         while (desk := self.next()) is not None:
             try:
                 after = desk.checked()
-            except Exception as error:  # a full disk, no more processes: the page lives, and it is tried again
+            except Exception as error:  # a full disk, no more processes: the page survives, and the check is repeated
                 after = desk.student._replace(error=f"The folder could not be checked: {error}")
                 if after.error != desk.student.error:
                     traceback.print_exception(error)
@@ -162,7 +162,7 @@ def result_of(task: Task, program: Verdict | None, answers: Answers) -> TaskResu
 
 
 def turned(before: Student, after: Student) -> Student:
-    """The state with the task that the student is at."""
+    """The state with the student's current task."""
     pairs = zip(before.results, after.results, strict=True) if before.results else ()
     new = [result.task.name for old, result in pairs if old != result]
     if before.results and not new:

@@ -1,4 +1,4 @@
-"""The page to hand in: one HTML file that needs no network. Everything that a student wrote is escaped."""
+"""The page to hand in: one HTML file that needs no network. All texts of a student are escaped."""
 
 import ast
 import base64
@@ -20,7 +20,7 @@ from app.lab.student.source import is_empty
 from app.render.markup.formula import formula
 from app.render.markup.html import Html, fill, join
 
-MAX_CODE = 20_000  # characters of a student's file that are shown
+MAX_CODE = 20_000  # characters of a student's file, shown at most
 MAX_PICTURE = 4 * 2**20  # [bytes]
 # The first bytes of a picture -> its type; other files are left out, whatever their names.
 SIGNATURES = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
@@ -116,7 +116,7 @@ def not_begun(result: FolderResult) -> Html:
 
 
 def overview(result: FolderResult, number: int) -> Html:
-    """The state of every task that is begun, with a link to its section."""
+    """The state of each task under way, with a link to its section."""
     rows = join(
         fill(
             '<tr><td>{}</td><td><a href="#student-{}-{}">{}</a>{}</td><td class="{}">{}</td></tr>',
@@ -149,7 +149,7 @@ def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Ht
 
 
 def steps(answers: Answers, task: Task) -> Html:
-    """Steps to do in the scene, and those that the workbook has seen."""
+    """Steps to do in the scene, with those completed in the workbook."""
     done = answers.done(task)
     rows = join(
         fill(
@@ -182,7 +182,7 @@ def program_text(entry: TaskResult) -> Html:
 
 
 def is_answered(entry: TaskResult) -> bool:
-    """True if the questions of a task have answers: the text on its check may give one away."""
+    """True if the questions of a task have answers: the text of its check may reveal one."""
     return all(answer.state != "not begun" for answer in entry.answers)
 
 
@@ -226,7 +226,7 @@ def value_text(answer: Value | None, unit: str) -> str:
 
 
 def pictures(result: FolderResult) -> list[tuple[str, Html]]:
-    """The pictures that the student took, as parts of the page, each with the task that its name begins with, or ""."""
+    """The student's pictures as parts of the page, each with the task at the start of its name, or ""."""
     names = {entry.task.name for entry in result.tasks}
     found: list[tuple[str, Html]] = []
     for path in sorted((result.folder / PICTURES).glob("*"))[:MAX_PICTURES]:
@@ -248,7 +248,7 @@ def of_task(found: Sequence[tuple[str, Html]], task: str) -> Html:
 
 
 def code(result: FolderResult) -> Html:
-    """The student's files as they were checked, without the functions that are not begun."""
+    """The student's files as checked, without empty functions."""
     names = dict.fromkeys(
         entry.task.file for entry in result.tasks if entry.program and entry.program.state != "not begun"
     )

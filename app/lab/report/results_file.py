@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from app.lab.check.check import FolderResult, TaskResult
 from app.lab.course.folder import folder_names
 
-FORMULA_SIGNS = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet would run a cell that begins so
+FORMULA_SIGNS = ("=", "+", "-", "@", "\t", "\r")  # first characters of a cell that a spreadsheet would run
 
 
 def json_text(results: Sequence[FolderResult]) -> str:
@@ -62,5 +62,5 @@ def csv_text(results: Sequence[FolderResult]) -> str:
 
 
 def cell(text: str) -> str:
-    """A student's text as a cell that no spreadsheet takes for a formula."""
+    """A student's text as a cell that no spreadsheet reads as a formula."""
     return "'" + text if text.startswith(FORMULA_SIGNS) else text

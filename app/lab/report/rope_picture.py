@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from app.formats.formatting import metres
 from app.lab.process.rope_march import FILE, Forces, Functions, Segment, march
 from app.lab.process.runner import BUSY, RunError, Runner
 from app.lab.student.live_net import ROPE
@@ -27,7 +28,7 @@ REFERENCE_COLOUR, OWN_COLOUR = "#8a939c", "#1c6aa8"
 
 
 class RopePicture(NamedTuple):
-    """A fall of the rope. own: (poses, n, 3) [m] as far as it got. text: its state in words; "" if nothing is begun."""
+    """A fall of the rope. own: (poses, n, 3) [m], possibly fewer. text: its state in words; "" if nothing is begun."""
 
     own: NDArray[np.float64] = np.zeros((0, POINTS, 3))
     reference: NDArray[np.float64] = np.zeros((0, POINTS, 3))
@@ -59,7 +60,7 @@ def rope_picture(runner: Runner, saved: Saved) -> RopePicture:
         return RopePicture(found.x[:inside], reference, f"Flies apart within {(inside + 1) * POSE_STEPS * STEP:.1f} s.")
     apart = float(np.linalg.norm(found.x - reference, axis=2).max())
     return RopePicture(
-        found.x, reference, "Matches the reference." if apart < SAME else f"{apart:.2g} m from the reference."
+        found.x, reference, "Matches the reference." if apart < SAME else f"{metres(apart, 2)} from the reference."
     )
 
 

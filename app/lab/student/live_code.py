@@ -15,7 +15,7 @@ class LiveCode(NamedTuple):
     tables: LiveTables
 
     def connect(self, scene: str, wake: Callable[[], None], begin_again: Callable[[], None]) -> None:
-        """Serve another scene. wake: called when there is an answer. begin_again: when another version moves it."""
+        """Serve another scene. wake: called with each answer. begin_again: called when another version takes over."""
         for name, net in (("rope", self.rope), ("cloth", self.cloth)):
             if name == scene:
                 net.connect(wake, begin_again)

@@ -1,7 +1,6 @@
-"""The rope or cloth that a student's functions move: a thread that has it computed, in a separate process.
+"""The rope or cloth of a student's functions: a thread that has it computed in a separate process.
 
-A scene asks for steps and takes their result; it never waits. Which version of the functions moves it is up to
-`Versions`.
+A scene requests steps and takes their result; it never waits. `Versions` decides which version of the functions runs.
 """
 
 import functools
@@ -23,12 +22,12 @@ from app.lab.student.saved import Saved
 from app.lab.student.service import Service
 from app.lab.student.versions import Done, Use, Versions
 
-COMPILE_AFTER = 3.0  # [s] of processor time in plain Python: about what compiling takes
+COMPILE_AFTER = 3.0  # [s] of processor time in plain Python, about as long as compiling
 # On a hub: ratio of a rest after a march to the time for which other labs kept it from the processor, and the longest.
 # Containers get equal parts of a busy processor, and a lab that always wants more than its part answers late.
 REST_RATIO, MAX_REST = 16.0, 0.5  # [s]
-TRIAL_STEPS = 3, 1 / 480  # that a new version is tried with, and their length [s]
-Marched: TypeAlias = Done[MarchResult] | None  # None: no version works, and nothing was computed
+TRIAL_STEPS = 3, 1 / 480  # for the trial of a new version, and their length [s]
+Marched: TypeAlias = Done[MarchResult] | None  # None: without a working version
 
 
 class StudentReport(NamedTuple):
@@ -39,14 +38,14 @@ class StudentReport(NamedTuple):
     compiled: tuple[str, ...] = ()  # functions that run compiled
     method: str = ""
     sphere: bool = False
-    seconds: float = 0.0  # for each step, lately
+    seconds: float = 0.0  # recent time of a step
     step: float = 0.0  # h [s]
     behind: float = 0.0  # [s] of simulated time
     restarts: int = 0  # number of restarts from the program's rope, after it was too late
     left_at: float = math.nan  # [s] when it left its bounds
-    difference: float = math.nan  # [m] largest distance between the same points of both; NaN where they have others
+    difference: float = math.nan  # [m] largest distance between the same points of both; NaN if the points differ
     unlike: tuple[str, ...] = ()  # reasons why a right solution differs from the program's, with the parameter first
-    grid: tuple[int, int] = (0, 0)  # rows and columns of the student's cloth, where it is coarser than the program's
+    grid: tuple[int, int] = (0, 0)  # rows and columns of the student's cloth, if coarser than the program's
     times: NDArray[np.float64] = np.zeros(0)  # (rows,) [s]
     differences: NDArray[np.float64] = np.zeros(0)  # (rows,) [m]
 
@@ -87,7 +86,7 @@ def bent_rope(sphere: bool) -> tuple[np.ndarray, np.ndarray, Segment]:
     x[:, 0], x[:, 2] = -0.2 * np.arange(n), 3.0 - 0.02 * np.arange(n) ** 2
     v = np.linspace(0.0, 1.0, n)[:, None] * np.array([0.3, 0.2, -0.5])
     radius = 0.4 if sphere else 0.0
-    forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, floor=0.0, radius=radius, centre=(-0.6, 0.0, 2.5), friction=0.3)
+    forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, floor=0.0, sr=radius, sx=-0.6, sz=2.5, friction=0.3)
     return x, v, Segment(*TRIAL_STEPS, forces, np.zeros((0, 4, 3)))
 
 
@@ -132,7 +131,7 @@ class LiveNet(Service):
         """compile_it: called once the newest version has taken `COMPILE_AFTER` in plain Python."""
         self.material, self.versions, self.compile_it = material, versions, compile_it
         self.connect(lambda: None, lambda: None)
-        self.method, self.sphere = "rk4", False  # of the last steps: what a new version is tried with
+        self.method, self.sphere = "rk4", False  # of the last steps, for the trial of a new version
         self.moved_by: Saved | None = None  # the newest version, once it has taken steps in plain Python
         self.effort = 0.0  # [s] of processor time that it has taken
         super().__init__(f"student's {material.use.name}")
@@ -153,7 +152,7 @@ class LiveNet(Service):
         self.do(functools.partial(self.answer, method, x, v, segments, answers))
 
     def attempt(self) -> None:
-        """Try the newest version in a few steps as the last ones were; if it works, the scene begins again with it."""
+        """Try the newest version in a few steps like the last ones; if it works, the scene restarts with it."""
         method, sphere = self.method, self.sphere
 
         def job(runner: Runner, own: frozenset[str]) -> MarchResult:
@@ -168,8 +167,8 @@ class LiveNet(Service):
         self, method: str, x: np.ndarray, v: np.ndarray, segments: Sequence[Segment],
         answers: "queue.SimpleQueue[Marched]",
     ) -> None:  # fmt: skip
-        """Take steps, and answer whatever happens: a scene waits for it."""
-        self.method, self.sphere = method, any(segment.forces.radius > 0.0 for segment in segments)
+        """Take steps, and answer in any case: a scene waits for it."""
+        self.method, self.sphere = method, any(segment.forces.sr > 0.0 for segment in segments)
         own = functools.partial(self.material.own_of, method=method, sphere=self.sphere)
 
         def job(runner: Runner, own: frozenset[str]) -> MarchResult:
@@ -179,7 +178,7 @@ class LiveNet(Service):
         try:
             done = self.versions.run(self.material.use, own, job)
             waited = max(0.0, done.value.seconds - done.value.effort) if ON_HUB and done is not None else 0.0
-        except RunError:  # the machine is too busy; the scene asks again
+        except RunError:  # the machine is too busy; the scene repeats the request
             pass
         finally:
             answers.put(done)

@@ -1,8 +1,8 @@
-"""Tables of a student's functions that a sea runs by: a thread that has them computed, in a separate process.
+"""Tables of a student's functions for a sea: a thread that has them computed in a separate process.
 
-A scene says which functions it has a use for, and at which arguments (`LiveTables.want`). What they return becomes a
-`Table`; a scene takes the tables that there are and never waits. Which version of a function computes one is up to
-`Versions`. The panel shows functions that move nothing at the numbers of a scene in the same way (`scene_values.py`).
+A scene requests functions at arguments (`LiveTables.want`). Their results become a `Table`; a scene takes the available
+tables and never waits. `Versions` decides which version of a function computes one. The panel shows functions without a
+use in the scene at its numbers in the same way (`scene_values.py`).
 """
 
 import math
@@ -20,7 +20,7 @@ from app.lab.student.saved import Saved
 from app.lab.student.service import Service
 from app.lab.student.versions import Use, Versions
 
-RETRY_INTERVAL = 0.5  # [s] until a call is made again for which the machine was too busy
+RETRY_INTERVAL = 0.5  # [s] until a call is repeated for which the machine was too busy
 
 
 class Call(NamedTuple):
@@ -28,11 +28,11 @@ class Call(NamedTuple):
 
     columns: tuple[NDArray[np.float64], ...]  # (n, ...) each: row i holds the arguments of call i
     allowed: Interval  # range of the function's values
-    shape: tuple[int, ...] | None = ()  # of what it returns; None: its number of entries counts
-    program: float = math.nan  # the program's own result, where there is one call
+    shape: tuple[int, ...] | None = ()  # of the result; None: the number of its entries
+    program: float = math.nan  # the program's own result, if there is one call
 
     def same(self, other: "Call") -> bool:
-        """True if both ask for the same."""
+        """True if both are the same request."""
         return len(self.columns) == len(other.columns) and all(
             np.array_equal(a, b) for a, b in zip(self.columns, other.columns, strict=True)
         )
@@ -50,9 +50,9 @@ class TableReport(NamedTuple):
     """A scene's report on the functions that move it, for the panel. It is replaced, never changed."""
 
     running: Mapping[str, str] = {}  # function -> what it moves
-    idle: Mapping[str, str] = {}  # function -> why the scene has no use for it just now
+    idle: Mapping[str, str] = {}  # function -> reason why the scene does not use it at present
     differences: tuple[tuple[str, float, float, str], ...] = ()  # name, the student's, the program's, unit
-    off: bool = False  # the scene could run by them, and runs by the program's
+    off: bool = False  # the scene could use them, and uses the program's
 
 
 class TableUser:
@@ -60,16 +60,16 @@ class TableUser:
 
     def __init__(self, live: "LiveTables") -> None:
         self.live = live
-        self.taken: dict[str, Table] = {}  # that the sea runs by
+        self.taken: dict[str, Table] = {}  # used by the sea
 
     def ask(self, calls: Mapping[str, Call], idle: Mapping[str, str]) -> None:
-        """Ask for these tables. idle: function -> why it has no use just now; its table is not taken any more."""
+        """Request these tables. idle: function -> reason why it is not used; its table is no longer taken."""
         self.taken = {name: table for name, table in self.taken.items() if name in calls}
         self.live.report = self.live.report._replace(idle=idle)
         self.live.want(calls)
 
     def take(self) -> dict[str, tuple[Table | None, Table | None]]:
-        """Take the tables that there are: of each function for which this changes something, those before and now."""
+        """Take the available tables; returns, for each changed function, those before and now."""
         before, self.taken = self.taken, dict(self.live.tables) if self.live.shown else {}
         pairs = {name: (before.get(name), self.taken.get(name)) for name in {*before, *self.taken}}
         return {name: pair for name, pair in pairs.items() if pair[0] is not pair[1]}
@@ -92,7 +92,7 @@ class LiveTables(Service):
 
     @property
     def errors(self) -> dict[str, RunError]:
-        """Errors of the newest version of the functions that are asked for."""
+        """Errors of the newest version of the requested functions."""
         errors = {name: self.versions.errors.get(self.uses[name]) for name in self.calls}
         return {name: error for name, error in errors.items() if error is not None}
 
@@ -117,7 +117,7 @@ class LiveTables(Service):
         self.wake()
 
     def compute(self) -> None:
-        """Compute the tables that are out of date, unless this is asked for once more."""
+        """Compute the tables that are out of date, unless a newer request arrives."""
         if not self.inbox.empty():
             return
         before, calls, found, is_busy = self.tables, self.calls, {}, False

@@ -1,4 +1,4 @@
-"""A student's functions at the numbers that a scene has just now, beside the number that the program has for it.
+"""A student's functions at the present numbers of a scene, beside the program's results.
 
 For the functions of the seas and the cloth, which do not move anything: what a scene offers as live values goes in.
 `LiveTables` calls them, with a table of one row for each.
@@ -22,7 +22,7 @@ ANY = Interval(-math.inf, math.inf, "")
 HEAVY = 100.0  # [Earth masses]
 
 Argument = float | tuple[float, ...]  # a number or a vector
-Number = Callable[[str], float]  # the live value of this name; raises LookupError where the scene has none
+Number = Callable[[str], float]  # the live value of this name; raises LookupError if the scene has none
 
 
 class SceneValue(NamedTuple):
@@ -123,7 +123,7 @@ def calls_here(scene: str, begun: Collection[str], live: LiveValues) -> dict[str
             continue
         try:
             given, program = value.arguments(number), value.program(number)
-        except (LookupError, ZeroDivisionError, ValueError):  # the scene has no such thing just now
+        except (LookupError, ZeroDivisionError, ValueError):  # the scene has no such thing at present
             continue
         columns = tuple(np.array([argument], int if value.counts else float) for argument in given)
         calls[task] = Call(columns, ANY, None if value.counts else (), program)

@@ -31,7 +31,7 @@ class CodeState(NamedTuple):
 
 
 class Session:
-    """The student's folder while the lab is served. Raises ValueError where it is no folder."""
+    """The student's folder while the lab is served. Raises ValueError if it is no folder."""
 
     def __init__(
         self, folder: Path, tasks: Sequence[Task], own_tasks: Sequence[Path] = (), time_limit: float = TIME_LIMIT
@@ -90,7 +90,7 @@ class Session:
                 return
 
     def look(self) -> None:
-        """Look at the files once; raises OSError where they cannot be copied."""
+        """Look at the files once; raises OSError if they cannot be copied."""
         if self.versions.look() is not None:
             self.trouble, self.saved_at = None, time.strftime("%H:%M:%S")
             for service in (self.tables, self.values, self.check):

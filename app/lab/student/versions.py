@@ -3,8 +3,8 @@
 The only place that decides which version runs: rope, cloth, seas, checks and the teacher's page ask it. A save is a new
 version only of those files whose functions it may have changed.
 
-Files are found by their stamps, which costs little, works on network drives, and goes on where a folder is removed and
-made again. After a change the files are read for some seconds whatever their stamps are: a clock of files can be as
+Files are found by their time stamps, which costs little, works on network drives, and survives a folder that is removed
+and made again. After a change the files are read for some seconds whatever their stamps: a clock of files can be as
 coarse as 2 s, and a second save within it changes no stamp.
 """
 
@@ -91,7 +91,7 @@ class Use(NamedTuple):
     lane: str  # who asks: makes one call at a time, in processes of its own
     name: str
     file: str
-    # Each call goes on from the result of the one before: a version is tried before it takes over, and a failure holds
+    # Each call continues from the result of the last one: a version is tried before it takes over, and a failure holds
     # for all later calls. Otherwise a failure holds for its arguments, unless it is costly.
     goes_on: bool = False
 

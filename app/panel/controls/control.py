@@ -41,13 +41,13 @@ class SliderScale:
             self.step = max(1.0, round(step)) if p.kind is int else step
 
     def position(self, value: Value) -> float:
-        """Slider position of a number."""
+        """Position of the slider for a number."""
         number = float(value)
         at = math.log10(max(number, self.parameter.log_from)) if self.parameter.log_from else number
         return min(max(at, self.low), self.high)
 
     def value(self, position: float) -> Value:
-        """The number that a position means: three digits by decades, whole steps otherwise.
+        """The number at a position: three digits by decades, whole steps otherwise.
 
         Both ends mean the bounds; the left end of a logarithmic slider is the least value, which may be 0.
         """
@@ -65,7 +65,7 @@ class SliderScale:
 class Control:
     """One parameter's widgets. Its callbacks run on viser's event loop.
 
-    A number has a text field, which takes what is typed as it is or refuses it, and a slider beside it.
+    A number has a text field, which takes the typed value exactly or refuses it, and a slider beside it.
     """
 
     def __init__(
@@ -122,7 +122,7 @@ class Control:
         return value if self.slider is None else write_number(float_or_int(value))
 
     async def on_field(self, event: ViserEvent) -> None:
-        """A browser has set the field; viser also calls this for values that `show_value` assigns, without a client."""
+        """Take a browser's value of the field; viser also calls this after `show_value`, without a client."""
         if event.client_id is None:
             return
         sent: object = event.target.value
@@ -140,27 +140,27 @@ class Control:
             self.set(value)
 
     async def on_slider(self, event: ViserEvent) -> None:
-        """A browser has moved the slider."""
+        """Take a browser's position of the slider."""
         if event.client_id is None:
             return
         position = float(event.target.value[0])
-        # Where the slider says the value that is set, rounded to its step, the value stays as it is.
+        # If the slider shows the present value, rounded to its step, the value stays exact.
         if abs(self.scale.position(self.value) - position) > 0.5 * self.scale.step:
             self.set(self.scale.value(position))
 
     def set(self, value: object) -> None:
-        """Give a value to the settings, and show the one that they took."""
+        """Pass a value to the settings, and show the accepted one."""
         self.settings.set(self.name, value)
         self.show_value()
 
     def refuse(self, reason: str) -> None:
-        """Say why a text was not taken, and show the value that is set, as before."""
+        """Show why a text was refused, and the present value."""
         self.refusal = reason
         self.field.value = self.shown
         self.show_lines()
 
     def show_value(self) -> None:
-        """Show the value that is set."""
+        """Show the present value."""
         if self.refusal:
             self.refusal = ""
             self.show_lines()
@@ -197,7 +197,7 @@ class Control:
             self.show_lines()
 
     def show_lines(self) -> None:
-        """The scene's line under the control, and above it why the last text was not taken."""
+        """Write the scene's line under the control, below the reason for which the last text was refused."""
         with self.line_lock:  # the viewer thread writes, the event loop refuses
             if self.line is None:
                 if not self.text and not self.refusal:

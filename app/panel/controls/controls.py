@@ -11,15 +11,15 @@ from sim.parameters import parameters_of
 
 
 class Controls(Mapping[str, Control]):
-    """All controls of a panel, one a parameter under its name, in the folders of their groups."""
+    """All controls of a panel, by the names of their parameters, in the folders of their groups."""
 
     def __init__(self, gui: viser.GuiApi, settings: SceneSettings) -> None:
         """settings: shown and set by the controls."""
         self.gui, self.settings = gui, settings
         self.parameters = parameters_of(settings.params)
         self.own: dict[str, Control] = {}
-        self.again: list[Control] = []  # controls of parameters that are shown a second time, as in a task
-        self.hidden: set[str] = set()  # names of parameters that mean nothing just now
+        self.again: list[Control] = []  # controls of parameters shown a second time, as in a task
+        self.hidden: set[str] = set()  # names of parameters without effect at present
         self.lock = threading.Lock()  # the viewer thread shows others again, the event loop sets them
         self.folders: dict[str, viser.GuiFolderHandle] = {}
 
@@ -33,7 +33,7 @@ class Controls(Mapping[str, Control]):
         return len(self.own)
 
     def add_group(self, group: str, *, is_open: bool) -> None:
-        """The folder of a group of parameters, where there are any, in the container that is open."""
+        """Add the folder of a group of parameters, if any, in the open container."""
         names = [name for name, parameter in self.parameters.items() if parameter.group == group]
         if not names:
             return
@@ -43,7 +43,7 @@ class Controls(Mapping[str, Control]):
                 self.own[name] = self.make(folder, name)
 
     def show_again(self, names: Sequence[str], folder: viser.GuiFolderHandle) -> None:
-        """Show these parameters a second time, in a folder, in place of those shown there before."""
+        """Show these parameters a second time, in a folder, replacing those shown there before."""
         with folder:
             made = [self.make(folder, name) for name in names]
         with self.lock:
@@ -53,11 +53,11 @@ class Controls(Mapping[str, Control]):
         self.show(self.hidden)
 
     def make(self, folder: viser.GuiFolderHandle | viser.GuiTabHandle, name: str) -> Control:
-        """A control of a parameter, in the container that is open."""
+        """Make a control of a parameter, in the open container."""
         return Control(self.gui, folder, name, self.settings)
 
     def show(self, hidden: set[str]) -> None:
-        """Show the record; hide the controls that mean nothing just now, and the folders in which nothing is left."""
+        """Show the record; hide the controls without effect at present, and the folders left empty."""
         self.hidden = hidden
         with self.lock:
             for control in (*self.own.values(), *self.again):

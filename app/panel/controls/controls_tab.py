@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from app.panel.controls.stability_map import StabilityMapPanel
 
 OPEN_GROUP = "Main"  # the group of parameters that starts open
-VIEW_GROUPS = ("Look", "Plots")  # the groups that stand in the tab of the view
+VIEW_GROUPS = ("Look", "Plots")  # the groups in the tab of the view
 
 
 class ControlsTab:
-    """Content of the tab, which is the container that is open where this is made."""
+    """Content of the tab, made in the open container."""
 
     def __init__(
         self, gui: viser.GuiApi, view: AnyView, settings: SceneSettings, controls: Controls, tab: viser.GuiTabHandle
@@ -50,7 +50,7 @@ class ControlsTab:
             self.help = gui.add_html("")
 
     def add_run_on(self, event: Awaited) -> viser.GuiButtonHandle:
-        """The button that runs on to an event."""
+        """Add the button that runs up to an event."""
         button = self.gui.add_button(event.label, visible=event.offered(self.settings.params), hint=event.hint)
 
         @button.on_click
@@ -71,7 +71,7 @@ class ControlsTab:
             return stability_map.StabilityMapPanel(self.gui, scene, read, self.settings.set_all)
 
     def show_settings(self) -> None:
-        """Show the settings beside the controls: the help, and whether there is an event to run on to."""
+        """Show the settings beside the controls: the help, and the button of an event to run up to."""
         settings, kind = self.settings, self.settings.kind
         if self.run_on is not None and kind.awaited is not None:
             self.run_on.visible = kind.awaited.offered(settings.params)
@@ -80,11 +80,11 @@ class ControlsTab:
         self.help.content = note(fill("{}<br>{}", kind.about.get(settings.loaded, ""), KEYS))
 
     def show_readings(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:
-        """Bring the scene's texts up to date. hidden: headings that would answer a question of the workbook."""
+        """Update the scene's texts. hidden: headings that would answer a question of the workbook."""
         self.readings.show(snapshot, hidden)
 
     def show_marks(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:
-        """Bring the lines under the controls, the advice there and the stability map up to date.
+        """Update the lines under the controls, the advice there and the stability map.
 
         hidden: names of lines that would answer a question of the workbook.
         """

@@ -1,6 +1,4 @@
-"""Numbers of a file that the scene runs: changed in the panel, and the file with them sent to the browser."""
-
-import math
+"""Numbers of the scene's file: changed in the panel, and sent to the browser within the file."""
 
 import viser
 
@@ -8,15 +6,14 @@ from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import ViserEvent
 from app.render.markup.html import fill, note
 from app.scenes.contract import FileEditing
-from sim.quantities import write_number
-from sim.tables import number_of
-from sim.validation import ConvergenceError
+from sim.quantities import read_number, write_number
+from sim.validation import ConvergenceError, argument_error, check_positive
 
 APPLY, SAVE = "Apply", "Save file"
 
 
 class FileNumbers:
-    """The folder, in the container that is open; it is shown while a file is open."""
+    """The folder, in the open container; it is shown while a file is open."""
 
     def __init__(self, gui: viser.GuiApi, editing: FileEditing, settings: SceneSettings) -> None:
         self.editing, self.settings = editing, settings
@@ -52,7 +49,7 @@ class FileNumbers:
                 self.say(str(reason))
 
     def show(self) -> None:
-        """Show the numbers of the chosen thing, unless they are shown: some may be half typed."""
+        """Show the numbers of the chosen thing, unless they are already shown: some may be half typed."""
         if not self.fields:
             return
         now = self.chooser.value, dict(self.editing.numbers(self.settings.params)[self.chooser.value])
@@ -62,24 +59,23 @@ class FileNumbers:
                 self.fields[name].value = write_number(value)
 
     def apply(self) -> None:
-        """Begin again with the numbers in the fields. Raises ValueError or ConvergenceError for one that cannot be."""
-        before = self.editing.numbers(self.settings.params)[self.chooser.value]
-        values = {name: read(name, field.value, before[name]) for name, field in self.fields.items()}
+        """Restart with the numbers in the fields. Raises ValueError or ConvergenceError for an impossible one."""
+        values = {name: read(name, field.value) for name, field in self.fields.items()}
         params = self.editing.changed(self.settings.params, self.chooser.value, values)
         self.say("")
         if params != self.settings.params:
             self.settings.begin_with(params)
 
     def say(self, text: str) -> None:
-        """Say something below the buttons."""
+        """Show a sentence below the buttons."""
         self.line.content = note(fill('<div role="status">{}</div>', text)) if text else ""
 
 
-def read(name: str, text: str, before: float) -> float:
-    """The number above 0 that a text is; `before` where it is shown so. Raises ValueError."""
-    if text == write_number(before):  # which may have fewer digits
-        return before
-    value = number_of(text.strip())
-    if value is None or not math.isfinite(value) or value <= 0.0:
-        raise ValueError(f"{name}: {text!r} is not allowed; allowed: a number above 0")
-    return value
+def read(name: str, text: str) -> float:
+    """The number above 0 in a text, in the unit of the name or with another unit. Raises ValueError."""
+    title, _, unit = name.removesuffix("]").partition(" [")
+    try:
+        value = read_number(text, unit)
+    except ValueError as reason:
+        raise argument_error(title, text, f"above 0 {unit}; {reason}") from None
+    return check_positive(title, value, unit)

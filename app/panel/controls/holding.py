@@ -1,4 +1,4 @@
-"""Two hidden buttons, by which a page says that a slider is held and let go (`app/render/js/fields.js`)."""
+"""Two hidden buttons, by which a page reports that a slider is held and released (`app/render/js/fields.js`)."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,7 @@ from app.render.markup.html import fill
 
 
 def add_holding(gui: viser.GuiApi, history: History) -> None:
-    """The buttons; all changes by a slider while it is held are one act of the history."""
+    """Add the buttons; all changes by a held slider are one act of the history."""
     held: GuiHandle = gui.add_button("Slider held", visible=False)
     free: GuiHandle = gui.add_button("Slider free", visible=False)
 

@@ -1,4 +1,4 @@
-"""The scene's texts among the controls: short ones that are always shown, and foldable ones."""
+"""The scene's texts among the controls: short permanent ones, and foldable ones."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -24,7 +24,7 @@ class Note(NamedTuple):
 
 
 class Readings:
-    """The texts, in the container that is open where this is made."""
+    """The texts, made in the open container."""
 
     def __init__(
         self,
@@ -34,7 +34,7 @@ class Readings:
         post: PostCommand,
         name_file: Callable[[str], str],
     ) -> None:
-        """tab: the container, in which folders are made when a scene first has a text for them.
+        """tab: the container, in which a folder is made when a scene first has a text for it.
 
         post: takes commands for the simulation. name_file: name of a file, of its end.
         """
@@ -43,7 +43,7 @@ class Readings:
         self.notes: dict[str, Note] = {}
 
     def show(self, snapshot: AnySnapshot, hidden: frozenset[str]) -> None:
-        """Bring all texts up to date; a folder without a text is not shown.
+        """Update all texts; a folder without a text is hidden.
 
         hidden: headings of texts that would answer a question of the workbook.
         """

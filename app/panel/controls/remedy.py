@@ -1,4 +1,4 @@
-"""Buttons that follow an advice: a value of a parameter, and a new start."""
+"""Buttons that follow an advice: a value of a parameter, and a restart."""
 
 from collections.abc import Callable, Mapping
 
@@ -10,7 +10,7 @@ from app.scenes.contract import Advice
 
 
 class Remedy:
-    """The button, in the container that is open where this is made; hidden without an advice."""
+    """The button, made in the open container; hidden without an advice."""
 
     def __init__(
         self, gui: viser.GuiApi, label: str, follow: Callable[[Advice], None], order: float | None = None
@@ -22,7 +22,7 @@ class Remedy:
         self.button.on_click(self.on_click)
 
     async def on_click(self, event: ViserEvent) -> None:
-        """A browser follows the advice."""
+        """Follow the advice for a browser."""
         if event.client_id is not None and self.advice is not None:
             self.follow(self.advice)
 

@@ -1,4 +1,4 @@
-"""The scenes to choose from as pictures, beside the list of their names."""
+"""The choice of scenes as pictures, in addition to the list of names."""
 
 import base64
 import functools
@@ -15,7 +15,7 @@ TITLE = "Scenes in pictures"
 
 
 def add_scene_pictures(gui: viser.GuiApi, chooser: GuiHandle, scenes: tuple[str, ...]) -> None:
-    """A folder of a picture for each scene; a press on the page chooses the scene in the list (js/panel/scenes.js)."""
+    """Add a folder with a picture of each scene; a press chooses the scene in the list (js/panel/scenes.js)."""
     uuid = uuid_of(chooser)
     if not uuid:
         return

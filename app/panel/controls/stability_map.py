@@ -1,8 +1,8 @@
 """The map of the open scene over step and stiffness: measured on request, drawn in the panel, clickable.
 
-viser has no picture that answers a click. The map is SVG in an HTML element. Its click handler moves a hidden slider
-of two handles; from there on a click is a change like any other, which `app/server/web/guard.py` bounds.
-Of viser's inner names the handler uses `window.__viserMutable.sendMessage`;
+viser has no clickable picture. The map is SVG in an HTML element, whose click handler moves a hidden slider with two
+handles. From there on a click is a change like any other, which `app/server/web/guard.py` bounds.
+Of viser's private names the handler uses `window.__viserMutable.sendMessage`;
 `tests/browser/scenes/test_rope.py` clicks it.
 """
 
@@ -18,10 +18,10 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.formats.formatting import SUPERSCRIPTS
 from app.render.colormap import OUTCOME_COLOURS
 from app.render.handles.viser_inside import uuid_of
 from app.render.handles.viser_types import ViserEvent
+from app.render.markup.axis import Axis, decades, draw_axes
 from app.render.markup.html import note
 from app.scenes.contract import SpringParams, StabilityMap
 from sim.parameters import Parameter, parameters_of
@@ -31,10 +31,10 @@ from sim.springs.automatic import AUTO, choose_for_step
 from sim.validation import ConvergenceError
 
 ROWS, COLS = 20, 28
-DECADES = 1.5  # of step and of stiffness to each side of where the parameters stand
-WORK = 200_000  # steps times points that a cell may take
-LEFT, TOP, WIDE, HIGH = 46.0, 6.0, 246.0, 168.0  # of the map within its picture
-PICTURE = (300.0, 210.0)
+DECADES = 1.5  # of step and stiffness to each side of the parameters
+WORK = 200_000  # largest product of steps and points of a cell
+LEFT, TOP, WIDE, HIGH = 40.0, 24.0, 252.0, 168.0  # of the map within its picture
+PICTURE = (300.0, 234.0)
 
 
 class Axes(NamedTuple):
@@ -58,14 +58,14 @@ def shown(params: SpringParams) -> tuple[object, ...]:
 
 
 def span(parameter: Parameter, value: float, count: int) -> NDArray[np.float64]:
-    """Values (count,) about `value`, even in their logarithms, within the parameter's range."""
+    """Values (count,) about `value`, evenly spaced in the logarithm, within the parameter's range."""
     low = max(value / 10.0**DECADES, parameter.log_from)
     high = max(min(value * 10.0**DECADES, parameter.high), 1.01 * low)
     return low * (high / low) ** np.linspace(0.0, 1.0, count)
 
 
 def axes_of(params: SpringParams, parameter: str) -> Axes:
-    """The axes of a map about where the parameters stand."""
+    """The axes of a map about the present parameters."""
     known = parameters_of(params)
     return Axes(
         params,
@@ -76,7 +76,7 @@ def axes_of(params: SpringParams, parameter: str) -> Axes:
 
 
 def method_of(params: SpringParams, net: Net) -> Integrator:
-    """The method that runs."""
+    """The running method."""
     if params.integrator == AUTO:
         return choose_for_step(net, params.time_step).integrator
     return INTEGRATORS[params.integrator]
@@ -108,7 +108,7 @@ class StabilityMapPanel:
         self.click = gui.add_multi_slider(" ", 0.0, 1.0, step=1e-4, initial_value=(0.0, 0.0), visible=False)
         self.axes: Axes | None = None
         self.rows: list[MapRow] = []
-        self.problem = ""  # reason why there is no map, or no more of it
+        self.problem = ""  # reason why the map is missing or incomplete
         self.asked = 0  # number of requests: a thread that is no longer the latest stops
 
         @self.button.on_click
@@ -154,7 +154,7 @@ class StabilityMapPanel:
                 self.problem = f"The map could not be measured: {type(error).__name__}: {error}"
 
     def draw(self) -> None:
-        """Show the map as far as it is known, with a dot where the parameters stand; on the viewer thread."""
+        """Show the map as far as it is known, with a dot at the present parameters; on the viewer thread."""
         axes = self.axes
         found = picture(axes, self.rows, self.read(), uuid_of(self.click)) if axes is not None else ""
         problem = note(self.problem) if self.problem else ""
@@ -173,48 +173,20 @@ class StabilityMapPanel:
         })  # fmt: skip
 
 
-def place_of(values: NDArray[np.float64], value: float) -> float:
-    """Place of a value between the first and the last, 0 to 1, by logarithms."""
-    return math.log(max(value, 1e-300) / values[0]) / math.log(values[-1] / values[0])
-
-
-def decade_ticks(values: NDArray[np.float64]) -> tuple[list[float], list[float]]:
-    """The powers of ten between the first and the last value, and the other whole multiples of them."""
-    low, high = values[0] * (1.0 - 1e-9), values[-1] * (1.0 + 1e-9)
-    exponents = range(math.floor(math.log10(low)), math.floor(math.log10(high)) + 1)
-    multiples = [(digit, float(f"{digit}e{exponent}")) for exponent in exponents for digit in range(1, 10)]
-    inside = [(digit, value) for digit, value in multiples if low <= value <= high]
-    return [value for digit, value in inside if digit == 1], [value for digit, value in inside if digit > 1]
-
-
-def tick_text(value: float) -> str:
-    """A power of ten, with its exponent raised."""
-    exponent = round(math.log10(value))
-    return f"{value:g}" if -2 <= exponent <= 2 else f"10{str(exponent).translate(SUPERSCRIPTS)}"
-
-
-def axis(values: NDArray[np.float64], name: str, *, across: bool) -> str:
-    """Ticks at the decades, short ones at their multiples, and the name with its unit, as SVG."""
-    parts: list[str] = []
-    decades, others = decade_ticks(values)
-    for value in (*decades, *others):
-        part, length = place_of(values, value), 5 if value in decades else 3
-        x, y = (LEFT + WIDE * part, TOP + HIGH) if across else (LEFT, TOP + HIGH * (1.0 - part))
-        dx, dy = (0, length) if across else (-length, 0)
-        parts.append(f'<path d="M{x:.1f} {y:.1f}l{dx} {dy}" stroke="currentColor"/>')
-        if value in decades:
-            at = f'x="{x:.1f}" y="{y + 16:.1f}" text-anchor="middle"'
-            at = at if across else f'x="{x - 7:.1f}" y="{y + 4:.1f}" text-anchor="end"'
-            parts.append(f"<text {at}>{tick_text(value)}</text>")
-    x, y = (LEFT + WIDE / 2, TOP + HIGH + 30) if across else (11.0, TOP + HIGH / 2)
-    turn = "" if across else f' transform="rotate(-90 {x} {y})"'
-    return "".join(parts) + f'<text x="{x}" y="{y}" text-anchor="middle"{turn}>{name}</text>'
+def drawn_axes(axes: Axes) -> tuple[Axis, Axis]:
+    """The axes of step and stiffness within the picture."""
+    unit = parameters_of(axes.params)[axes.parameter].unit
+    return (
+        decades("time step h [s]", axes.steps[0], axes.steps[-1], LEFT, WIDE),
+        decades(f"stiffness [{unit}]", axes.stiffnesses[0], axes.stiffnesses[-1], TOP + HIGH, -HIGH),
+    )
 
 
 def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -> str:
     """The map as HTML. slider: the uuid of the slider that a click moves."""
     colours = list(OUTCOME_COLOURS.values())
     height, width = HIGH / (ROWS - 1), WIDE / (COLS - 1)
+    across, up = drawn_axes(axes)
     parts: list[str] = []
     for i, row in enumerate(rows):
         y = TOP + HIGH - (i + 0.5) * height
@@ -226,15 +198,12 @@ def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -
                 f'fill="{colours[int(row.outcomes[a])]}"/>'
             )
     limits = [
-        f"{LEFT + WIDE * place_of(axes.steps, row.critical):.1f},{TOP + HIGH - i * height:.1f}"
+        f"{across.at(math.log10(row.critical)):.1f},{TOP + HIGH - i * height:.1f}"
         for i, row in enumerate(rows)
         if 0.0 < row.critical < math.inf
     ]
-    x = LEFT + WIDE * place_of(axes.steps, params.time_step)
-    y = TOP + HIGH * (1.0 - place_of(axes.stiffnesses, getattr(params, axes.parameter)))
-    known = parameters_of(params)
-    stiffness = f"stiffness [{known[axes.parameter].unit}]"
-    ticks = axis(axes.steps, "time step h [s]", across=True) + axis(axes.stiffnesses, stiffness, across=False)
+    x = across.at(math.log10(params.time_step))
+    y = up.at(math.log10(max(getattr(params, axes.parameter), 1e-300)))
     done = len(rows) == ROWS
     words = " · ".join(
         f'<span style="border-left:9px solid {colour};padding-left:4px">{name}</span>'
@@ -255,6 +224,7 @@ def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -
         f'onclick="{send}">{clip}<g clip-path="url(#springtide-map)" shape-rendering="crispEdges">{"".join(parts)}'
         f'</g><g clip-path="url(#springtide-map)">'
         f'<polyline points="{" ".join(limits)}" fill="none" stroke="#000" stroke-width="1.6"/>'
-        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="#fff" stroke="#000" stroke-width="2"/></g>{ticks}</svg>'
+        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="#fff" stroke="#000" stroke-width="2"/></g>'
+        f"{draw_axes(across, up, grid=False)}</svg>"
         f"{words}<br>Line: critical step by theory. Dot: the settings now. Click to go there.{progress}{stale}</div>"
     )

@@ -26,7 +26,7 @@ PICTURE_SIZES = {  # [pixels]
     "1920 x 1080": (1920, 1080),
     "3840 x 2160": (3840, 2160),
 }
-REPLAY_DURATION = 20.0  # [s] of a replay as it plays
+REPLAY_DURATION = 20.0  # [s] playing time of a replay
 REPLAY, ARRAYS, PICTURE = f"Replay (last {REPLAY_DURATION:g} s)", "Data (.npz)", "Picture"
 PLOTS, CHARTS = "Plots as CSV", "Plots as SVG"
 # The page makes clips and PNG files of plots, and has the other plots made (js/panel/share.js).
@@ -42,7 +42,7 @@ MakeReplay = Callable[[AnyKind, Sequence[RecordedFrame], Plotted], str]
 
 
 class Files:
-    """The buttons that make a file; `add_run` and `add` put them into the folder that is open."""
+    """The buttons that make a file; `add_run` and `add` put them into the open folder."""
 
     def __init__(
         self,
@@ -58,11 +58,11 @@ class Files:
         self.busy = threading.Lock()  # one file at a time
 
     def add_run(self) -> None:
-        """The files that hold the run."""
+        """Add the files of the run."""
         self.server.gui.add_button_group("", (REPLAY, ARRAYS)).on_click(self.on_file)
 
     def add(self) -> None:
-        """The other files."""
+        """Add the other files."""
         gui = self.server.gui
         makers: GuiHandle = gui.add_button_group("", (PLOTS, CHARTS), visible=False)
         makers.on_click(self.on_file)
@@ -73,7 +73,7 @@ class Files:
         gui.add_button_group("", (PICTURE,)).on_click(self.on_file)
 
     async def on_file(self, event: ViserEvent) -> None:
-        """Make a file in a separate thread, and send it to the browser that asks."""
+        """Make a file in a separate thread, and send it to the requesting browser."""
         client = event.client
         if client is None:
             return
@@ -98,14 +98,14 @@ class Files:
         return f"{name}, {len(content) / 1e6:.2f} MB, was sent to the browser."
 
     def picture_file(self, client: viser.ClientHandle) -> tuple[str, bytes]:
-        """One browser's view, drawn again at the chosen size. Raises ValueError where it is of another scene by now."""
+        """One browser's view, drawn again at the chosen size. Raises ValueError if it now shows another scene."""
         picture = take_picture(client, PICTURE_SIZES[self.size.value], transparent=self.transparent.value)
         if not self.settings.is_open:
             raise ValueError("another scene was opened before it was ready")
         return file_name(self.settings, ".png"), picture
 
     def replay_file(self) -> tuple[str, bytes]:
-        """The recording up to the moment that is shown as one page. Raises ValueError where nothing was recorded."""
+        """The recording up to the shown moment as one page. Raises ValueError if nothing was recorded."""
         shown = self.recorder.shown
         frames = [kept for kept in self.recorder.kept() if shown is None or kept.time <= shown.time]
         page = self.make_replay(self.settings.kind, frames, self.plots.plotted())

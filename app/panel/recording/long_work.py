@@ -1,4 +1,4 @@
-"""Words about work that takes long, such as a file: the browser that asked is told, whatever scene it shows by then."""
+"""Notes on long work, such as a file, for the browser that requested it, whatever scene it shows by then."""
 
 import threading
 import traceback
@@ -6,14 +6,14 @@ from collections.abc import Callable
 
 import viser
 
-SHOWN_TIME = 10.0  # [s] for which the end of a work is shown
+SHOWN_TIME = 10.0  # [s] for which the result of work is shown
 
 
 class LongWork:
-    """One work in a separate thread, with a notification in the browser that asked for it."""
+    """Work in a separate thread, with a notification in the requesting browser."""
 
     def __init__(self, client: viser.ClientHandle, title: str, failed: str) -> None:
-        """title: names the work. failed: begins the words on why it came to nothing."""
+        """title: names the work. failed: first words of the message on a failure."""
         self.failed = failed
         self.words = client.add_notification(title, "…", loading=True)
 
@@ -36,7 +36,7 @@ class LongWork:
         threading.Thread(target=run, name="long work", daemon=True).start()
 
     def end(self, text: str, color: str) -> None:
-        """Say how it ended, for a while."""
+        """Show the result for a while."""
         words = self.words
         words.body, words.loading, words.color = text, False, color  # type: ignore[assignment]
         words.auto_close_seconds = SHOWN_TIME

@@ -1,4 +1,4 @@
-"""Pictures of one browser's view, drawn by it once more."""
+"""Pictures of one browser's view, drawn by it again."""
 
 import io
 

@@ -1,4 +1,4 @@
-"""The last minutes of a scene: its frames, in bounded memory, and which of them is shown instead of the present."""
+"""The last minutes of a scene: its frames, in bounded memory, and the one shown instead of the present."""
 
 import bisect
 import collections
@@ -13,16 +13,16 @@ from app.messages import BaseParams, Checkpoint, RunLine
 from app.scenes.checkpoints import arrays_in
 from app.scenes.contract import AnySnapshot, FramePacking
 
-MAX_BYTES = 150e6  # of the arrays of all frames and states that are kept
-MAX_DURATION = 180.0  # [s] of simulated time that is kept
+MAX_BYTES = 150e6  # of the arrays of all kept frames and states
+MAX_DURATION = 180.0  # [s] of kept simulated time
 MAX_RATE = 30.0  # [1/s] frames kept a second of wall time, and those that have a state; the page may show more
 MIN_INTERVAL = 0.8 / MAX_RATE  # [s] of wall time between two: those of a scene at this rate do not come quite evenly
 MAX_PAUSE = 0.25  # [s] between two frames as they are played: a pause of the lab is shorter there
-RATES = (1.0, 0.5, 0.2, 0.1)  # at which a recording is played, as parts of the rate that it was recorded at
-THINNED_SHARE = 0.9  # of MAX_BYTES that is left when frames were taken out
-SPACING_GROWTH = 1.1  # factor between two spacings that are tried
+RATES = (1.0, 0.5, 0.2, 0.1)  # of playing a recording, as fractions of the recorded rate
+THINNED_SHARE = 0.9  # of MAX_BYTES left after thinning
+SPACING_GROWTH = 1.1  # factor between two tried spacings
 MIN_SPACING, MAX_SPACING = 1e-3, 0.25  # time between two frames over their age, where frames are taken out
-STATE_INTERVAL = 0.1  # [s] in which the next frame with a state comes, where copies of states cost little
+STATE_INTERVAL = 0.1  # [s] in which the next frame with a state comes, if copies of states are cheap
 
 
 class RecordedFrame(NamedTuple):
@@ -33,12 +33,12 @@ class RecordedFrame(NamedTuple):
     packed: object  # the scene's own record, or its packed form
     params: BaseParams
     arrays: Mapping[int, int]  # identity -> bytes of each array of frame and state; some are shared with other frames
-    state: Checkpoint | None = None  # to go on from
+    state: Checkpoint | None = None  # to resume from
     packing: FramePacking | None = None
 
     @property
     def frame(self) -> object:
-        """The scene's own record; made anew at each call where it is packed."""
+        """The scene's own record; unpacked at each call if it is packed."""
         return self.packed if self.packing is None else self.packing.unpack(self.packed)
 
 
@@ -54,7 +54,7 @@ def arrays_of_frame(frame: object) -> dict[int, int]:
 
 
 class FrameMemory:
-    """The bytes of arrays, of each once, however many frames share it."""
+    """The bytes of arrays, each counted once, however many frames share it."""
 
     def __init__(self) -> None:
         self.bytes = 0
@@ -81,21 +81,21 @@ class Recorder:
     """Records on the viewer's thread; the page's controls choose on viser's event loop. One lock for both.
 
     While a frame is chosen, the page shows it, and nothing is recorded. Another run begins a new recording; one that
-    goes on from a moment of the recording continues it there.
-    Where memory is short, frames are taken out, the more the older they are: the time between those that stay grows in
-    proportion to their age. Those with a state stay rather than others.
+    resumes from a moment of the recording continues it there.
+    If memory is short, frames are thinned out: the time between those that stay grows in proportion to their age.
+    Frames with a state are preferred.
     """
 
     def __init__(self, packing: FramePacking | None = None, wake: Callable[[], None] = lambda: None) -> None:
-        """packing: of the scene. wake: has the viewer's thread look at the recording at once."""
+        """packing: of the scene. wake: makes the viewer's thread check the recording at once."""
         self.packing, self.wake = packing, wake
         self.lock = threading.Lock()
         self.frames: collections.deque[RecordedFrame] = collections.deque()
         self.memory = FrameMemory()
-        self.spacing = 0.0  # time between frames over their age when frames were taken out last
+        self.spacing = 0.0  # time between frames over their age at the last thinning
         self.noted_at = 0.0  # [s] of the clock, of the last frame
         self.line = RunLine()  # the runs of the frames
-        self.was_running = False  # at the last snapshot: where a frame is chosen the lab pauses a little later
+        self.was_running = False  # at the last snapshot: after a choice of a frame the lab pauses a little later
         self.position: int | None = None  # of the frame that is shown; None: the present
         self.playing = False
         self.rate = 1.0
@@ -104,14 +104,14 @@ class Recorder:
         self.played = 0.0  # [s] of wall time since the frame at `position` was shown
 
     def follow(self, snapshot: AnySnapshot) -> None:
-        """Follow the lab by a snapshot: it goes on, began again or went back, which decides the shown frame."""
+        """Follow the lab by a snapshot, which decides the shown frame: the lab continued, restarted or went back."""
         with self.lock:
             status = snapshot.status
-            if status.running and not self.was_running:  # the lab goes on: the present is shown
+            if status.running and not self.was_running:  # the lab continues: the present is shown
                 self.position, self.playing = None, False
             self.was_running = status.running
             known = self.line.number
-            # Within a run time goes back where its last moments are shown again.
+            # Within a run time goes back when its last moments are replayed.
             end = min(self.line.follow(status.run), status.time)
             while self.frames and self.frames[-1].time > end:
                 self.forget(self.frames.pop())
@@ -144,11 +144,11 @@ class Recorder:
                 self.make_room()
 
     def forget(self, kept: RecordedFrame) -> None:
-        """Give up a frame that is no longer among the others."""
+        """Release a frame that is no longer among the others."""
         self.memory.remove(kept.arrays)
 
     def make_room(self) -> None:
-        """Take frames out until there is room for those of some seconds."""
+        """Remove frames until there is memory for those of some seconds."""
         self.spacing = max(self.spacing / SPACING_GROWTH, MIN_SPACING)
         while self.memory.bytes > THINNED_SHARE * MAX_BYTES and len(self.frames) > 1:
             if self.spacing < MAX_SPACING:
@@ -158,7 +158,7 @@ class Recorder:
                 self.forget(self.frames.popleft())
 
     def thin(self, spacing: float) -> None:
-        """Take out the frames that come sooner after another than `spacing` times their age."""
+        """Remove frames that follow another one sooner than `spacing` times their age."""
         newest, last, last_state = self.frames[-1].time, -math.inf, -math.inf
         frames: collections.deque[RecordedFrame] = collections.deque()
         for kept in self.frames:
@@ -194,7 +194,7 @@ class Recorder:
                 self.playing, self.played = False, 0.0
 
     def play(self) -> None:
-        """Play from the frame that is shown, from the first where that is the last or the present; or stop."""
+        """Play from the shown frame, or from the first if that is the last or the present; or stop."""
         with self.lock:
             if not self.frames:
                 return
@@ -211,7 +211,7 @@ class Recorder:
             self.position, self.playing = None, False
 
     def advance(self, wall: float) -> None:
-        """Play on to `wall` [s] of the clock, at the pace at which the frames came, times `rate`."""
+        """Play up to `wall` [s] of the clock, at the recorded pace times `rate`."""
         with self.lock:
             spent, self.advanced_at = wall - self.advanced_at, wall
             if not self.playing or self.position is None:

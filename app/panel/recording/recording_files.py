@@ -18,7 +18,7 @@ from app.scenes.charts import Chart, Column, Columns, chart_of, numbers_of, with
 from app.scenes.contract import AnyKind
 from app.scenes.setups import described
 
-TIME = "t [s]"  # label of the first column of what is plotted over simulated time
+TIME = "t [s]"  # label of the first column of plots over simulated time
 NOTHING = "nothing has been plotted yet: let the scene run first"
 MAX_ARRAYS = 300e6  # [bytes] of all arrays of a file, before they are compressed; of more, each second or third frame
 
@@ -37,7 +37,7 @@ def recording_npz(kind: AnyKind, frames: Sequence[RecordedFrame]) -> bytes:
     """The arrays that were drawn as an .npz file: each (frames, ...) under its name, `t` [s], and `about` as JSON.
 
     `about` holds the scene, the parameters at the end, and the unit of each array. The file holds the last frames that
-    have the same arrays in the same shapes. Raises ValueError where nothing was recorded.
+    have the same arrays in the same shapes. Raises ValueError if nothing was recorded.
     """
     if not frames:
         raise ValueError("nothing has been recorded yet: let the scene run first")
@@ -67,7 +67,7 @@ def recording_npz(kind: AnyKind, frames: Sequence[RecordedFrame]) -> bytes:
 
 
 class Plotted(NamedTuple):
-    """Data of a scene's plots: rows over time, and the charts that the scene makes whole, by their parameter."""
+    """Data of a scene's plots: rows over time, and the complete charts of the scene by their parameter."""
 
     rows: Sequence[PlotRow]
     curves: Mapping[str, Chart | Columns]
@@ -88,10 +88,10 @@ def within(chart: Chart | Columns, start: float, end: float) -> Chart | Columns:
 
 
 def plots_csv(kind: AnyKind, plotted: Plotted) -> str:
-    """Plots as CSV with units, a column each; an empty cell: no value there. A column without any is left out.
+    """Plots as CSV with units, a column each; an empty cell means no value. A column without any is left out.
 
     Plots over the same first column share it. Others stand beside them, and the shorter ones end with empty cells.
-    Raises ValueError where there is nothing.
+    Raises ValueError if there is nothing.
     """
     units = {name: plot.unit for plot in kind.plots.values() for name in plot.series}
     columns: list[tuple[str, Column]] = []
@@ -134,7 +134,7 @@ def plot_charts(kind: AnyKind, plotted: Plotted) -> list[Drawing]:
 
 
 def plots_svg(kind: AnyKind, plotted: Plotted) -> str:
-    """All plots of a scene in one SVG file, one below the other. Raises ValueError where there is nothing to draw."""
+    """All plots of a scene in one SVG file, one below the other. Raises ValueError if there is nothing to draw."""
     charts = plot_charts(kind, plotted)
     if not charts:
         raise ValueError(NOTHING)

@@ -21,16 +21,16 @@ class ReportPictures:
         self.busy = threading.Lock()
 
     def start(self, client: viser.ClientHandle | None, task: Task, name: str, is_shown: Callable[[], bool]) -> None:
-        """Take a picture of a browser's view for a task. name: of its file. is_shown: whether task and scene are."""
+        """Take a picture of a browser's view for a task. name: of its file. is_shown: true while both are shown."""
         if client is None or not self.busy.acquire(blocking=False):
             return
         work = LongWork(client, "Picture for the report", "No picture was taken")
         work.start(lambda: self.take(client, task, name, is_shown), self.busy.release)
 
     def take(self, client: viser.ClientHandle, task: Task, name: str, is_shown: Callable[[], bool]) -> str:
-        """Keep a picture in the student's folder; returns the words on it. In a separate thread.
+        """Save a picture in the student's folder; returns the words on it. Runs in a separate thread.
 
-        Raises ValueError where the view is no longer that of the task.
+        Raises ValueError if the view is no longer that of the task.
         """
         picture = take_picture(client, (PICTURE_WIDTH, 0), jpeg=True)
         if not is_shown():

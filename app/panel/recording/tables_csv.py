@@ -9,7 +9,7 @@ from app.formats.formatting import NO_NUMBER, SUPERSCRIPTS, THOUSANDS
 
 POWER = re.compile(r" × 10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 DIGITS = str.maketrans({sign: chr(plain) for plain, sign in SUPERSCRIPTS.items()})
-HIDDEN_CLASS = "springtide-info"  # of an information sign, whose text is no part of its cell
+HIDDEN_CLASS = "springtide-info"  # of an information sign, whose text does not belong to its cell
 NO_TABLE = "there is no table here now"
 
 
@@ -19,11 +19,11 @@ class Tables(HTMLParser):
     def __init__(self) -> None:
         super().__init__()
         self.tables: list[list[list[str]]] = []  # rows of cells
-        self.cell: list[str] | None = None  # parts of the cell that is being read: a heading has its unit in the second
+        self.cell: list[str] | None = None  # parts of the present cell: a heading has its unit in the second
         self.skipping = False
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """A table, row, cell or line begins, or a sign that is no content."""
+        """Begin a table, row, cell or line, or a sign without content."""
         if tag == "table":
             self.tables.append([])
         elif tag == "tr":
@@ -36,7 +36,7 @@ class Tables(HTMLParser):
             self.skipping = True
 
     def handle_endtag(self, tag: str) -> None:
-        """A cell ends, or the sign."""
+        """End a cell, or the sign."""
         if tag == "span":
             self.skipping = False
         elif tag in ("td", "th") and self.cell is not None:
@@ -46,7 +46,7 @@ class Tables(HTMLParser):
             self.cell = None
 
     def handle_data(self, data: str) -> None:
-        """Text of a cell."""
+        """Add text to a cell."""
         if self.cell is not None and not self.skipping:
             self.cell[-1] += data
 

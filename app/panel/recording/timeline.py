@@ -28,7 +28,7 @@ class Timeline:
         self.span_at = 0.0
         self.told: tuple[object, ...] = ()  # known to the pages: the shown frame, whether it plays, and the run
         self.is_running = False  # the lab, at the last update
-        self.ran_before = False  # the lab ran when a page chose a frame of the recording
+        self.ran_before = False  # the lab was running when a page chose a frame
         self.actions: dict[str, Callable[[float], None]] = {
             "show": self.show, "step": self.step, "play": self.play, "live": self.go_live,
             "continue": self.resume, "rate": self.set_rate, "loop": self.set_loop,
@@ -38,9 +38,9 @@ class Timeline:
         self.state = gui.add_html("")
 
     async def on_inbox(self, _: ViserEvent) -> None:
-        """A page has sent its own word, which is new each time, an action, its number, and the number of the run.
+        """Take a page's message: its own word, which is new each time, an action, its number, and the run's number.
 
-        A time of another run than the recorded one means nothing in this one.
+        A time of another run than the recorded one is ignored.
         """
         words = self.inbox.value.split()
         try:
@@ -79,7 +79,7 @@ class Timeline:
         self.recorder.show_present()
 
     def resume(self, moment: float) -> None:
-        """Go on from a time [s] of the recording, or from the last state before it."""
+        """Continue from a time [s] of the recording, or from the last state before it."""
         self.recorder.show_time(moment)
         kept = self.recorder.resumable()
         if kept is not None and kept.state is not None:
@@ -91,11 +91,11 @@ class Timeline:
             self.recorder.rate = rate
 
     def set_loop(self, on: float) -> None:
-        """Play the recording again and again, or once."""
+        """Play the recording in a loop, or once."""
         self.recorder.loops = on > 0.0
 
     def update(self, *, running: bool) -> None:
-        """Keep the pages up to date. running: the lab runs."""
+        """Update the pages. running: the lab runs."""
         self.is_running = running
         now = time.monotonic()
         recorder, shown = self.recorder, self.recorder.shown

@@ -23,14 +23,14 @@ UNDO = "Undo this change"
 class SceneSwitch(NamedTuple):
     """A change of the whole lab."""
 
-    page: str  # word that the page which made it knows itself by (app/render/js/panel/share.js)
-    scene: str  # that is shown after it
-    subject: Setup | str  # that was opened: a set-up, or the name of a comparison
+    page: str  # word of the page that made it (app/render/js/panel/share.js)
+    scene: str  # shown after it
+    subject: Setup | str  # opened: a set-up, or the name of a comparison
     before: Setup  # the former set-up
     end: float = 0.0  # [s] of the monotonic clock until which it is shown; 0: not shown yet
 
     def words(self) -> str:
-        """The line as HTML; each page shows the sentence that is meant for it."""
+        """The line as HTML; each page shows its own sentence."""
         if isinstance(self.subject, str):
             title, name = COMPARISONS[self.subject].title, "side by side"
         else:
@@ -52,7 +52,7 @@ class SceneSwitches:
         self.latest: SceneSwitch | None = None
 
     def shown_in(self, scene: str) -> SceneSwitch | None:
-        """The change to show in the panel of a scene; its time begins in that of the scene that it opened."""
+        """The change to show in the panel of a scene; its time begins in the panel of the opened scene."""
         change = self.latest
         if change is None or change.scene != scene:
             return None

@@ -27,7 +27,7 @@ class PaneWords(NamedTuple):
 class ComparisonCalls(NamedTuple):
     """Calls to the viewer. Each returns at once."""
 
-    compare: Callable[[Sequence[Setup], bool], None]  # show set-ups beside the lab; True: the first of them in the lab
+    compare: Callable[[Sequence[Setup], bool], None]  # show set-ups beside the lab; True: the first one in the lab
     end: Callable[[], None]  # show the lab alone
     panes: Callable[[], tuple[PaneWords, ...]]  # words of each pane; () for a lab alone
 
@@ -38,7 +38,7 @@ class CompareFolder:
     def __init__(self, gui: viser.GuiApi, buttons: GuiHandle, settings: SceneSettings, beside: ComparisonCalls) -> None:
         """buttons: that play, step and reset. settings: with the presets to compare with.
 
-        The line and its button stand in no tab: the page reads them also where no tab was opened.
+        The line and its button are outside the tabs: the page reads them even if no tab was opened.
         """
         self.settings, self.beside, self.buttons = settings, beside, buttons
         self.shown: tuple[PaneWords, ...] | None = None
@@ -48,7 +48,7 @@ class CompareFolder:
         self.gui = gui
 
     def add(self) -> None:
-        """The folder, in the container that is open."""
+        """Add the folder, in the open container."""
         gui = self.gui
         with gui.add_folder("Compare side by side", expand_by_default=False):
             self.choice = gui.add_dropdown(
@@ -75,7 +75,7 @@ class CompareFolder:
             self.beside.end()
 
     def update(self) -> None:
-        """Keep the list of presets and the line for the page up to date."""
+        """Update the list of presets and the line for the page."""
         names = self.settings.presets
         if self.choice.options != names:
             self.choice.options = names

@@ -37,11 +37,11 @@ from app.scenes.setups import (
     write_query,
 )
 
-CONFIRMED_TIME = 2.0  # [s] for which a button says that it has done what it names
+CONFIRMED_TIME = 2.0  # [s] for which a button confirms its action
 COPY, SAVE = "Copy link", "Save set-up"
 KEEP_CURVES, DROP_CURVES = "Keep curves", "Drop curves"
 KEEP, REMOVE = "Keep as preset", "Remove preset"
-COMPARE = "?compare="  # begins the address of a comparison that is ready
+COMPARE = "?compare="  # begins the address of a ready-made comparison
 
 
 class Share:
@@ -69,7 +69,7 @@ class Share:
         gui = server.gui
         self.files = Files(server, settings, recorder, plots, make_replay)
         self.lines: dict[str, viser.GuiHtmlHandle] = {}  # of each group
-        # Identity of buttons -> the buttons, their names, and the time [s] until which they say that it is done.
+        # Identity of buttons -> the buttons, their names, and the time [s] until which they confirm.
         self.confirmed: dict[str, tuple[GuiHandle, tuple[str, ...], float]] = {}
         self.confirming = threading.Lock()  # the event loop begins a confirmation, the viewer's thread ends it
         with head:
@@ -80,7 +80,7 @@ class Share:
         gui.add_html(str(holder))
 
     def add(self) -> None:
-        """The controls, in the container that is open."""
+        """Add the controls, in the open container."""
         gui = self.server.gui
         with gui.add_folder("This run"):
             self.curves: GuiHandle = gui.add_button_group("", (KEEP_CURVES,))
@@ -107,15 +107,15 @@ class Share:
             self.files.add()
 
     def add_line(self, group: str) -> None:
-        """The line of a group, below its buttons."""
+        """Add the line of a group, below its buttons."""
         self.lines[group] = self.server.gui.add_html("")
 
     def say(self, group: str, text: object) -> None:
-        """Say something below the buttons of a group."""
+        """Show a sentence below the buttons of a group."""
         self.lines[group].content = note(text) if text else ""
 
     def confirm(self, buttons: GuiHandle, name: str, done: str) -> None:
-        """Have a button say for a moment that its action was done."""
+        """Have a button confirm its action for a moment."""
         with self.confirming:
             _, options, _ = self.confirmed.get(uuid_of(buttons), (buttons, buttons.options, 0.0))
             self.confirmed[uuid_of(buttons)] = buttons, options, time.monotonic() + CONFIRMED_TIME
@@ -131,7 +131,7 @@ class Share:
                     del self.confirmed[identity]
 
     async def on_inbox(self, event: ViserEvent) -> None:
-        """A page has sent its address ("?scene=...") or a file ("{...}"), below a line with the page's own word."""
+        """Take an address ("?scene=...") or a file ("{...}") from a page, below a line with the page's own word."""
         (page, _, text), client = self.inbox.value.partition("\n"), event.client
         if not text or client is None:
             return
@@ -161,7 +161,7 @@ class Share:
                 self.changes.latest = change
 
     def change(self, subject: Setup | str, page: str) -> SceneSwitch:
-        """The change that a page makes by opening something."""
+        """The change made by a page that opens something."""
         settings = self.settings
         scene = comparison_named(subject)[0].scene if isinstance(subject, str) else subject.scene
         return SceneSwitch(page, scene, subject, Setup(settings.kind.name, settings.params, {}, settings.loaded))
@@ -197,17 +197,17 @@ class Share:
             book.go(book.tasks.index(book.named(setup.task)))
 
     def refuse(self, client: viser.ClientHandle | None, reason: str) -> None:
-        """Tell one browser why a set-up was not taken."""
+        """Tell one browser why a set-up was refused."""
         if client is not None:
             client.add_notification("Couldn't open this set-up", reason, color="red", auto_close_seconds=30.0)
 
     def place(self, setup: Setup, client: viser.ClientHandle | None) -> None:
-        """Give one browser the camera of a set-up that is shown already."""
+        """Give one browser the camera of the set-up already shown."""
         if client is not None and setup.camera is not None:
             place_camera(client.camera, *setup.camera)
 
     async def on_link(self, event: ViserEvent) -> None:
-        """Show the link, or save the set-up, with the camera of the browser that asks."""
+        """Show the link, or save the set-up, with the camera of the requesting browser."""
         client = event.client
         if client is None:
             return

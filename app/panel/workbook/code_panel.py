@@ -3,7 +3,7 @@
 import numpy as np
 import viser
 
-from app.formats.formatting import number
+from app.formats.formatting import metres, number
 from app.lab.check.diagnosis.shown import equation_lines
 from app.lab.check.program_check import Verdict
 from app.lab.course.live_values import LiveValues
@@ -13,7 +13,7 @@ from app.lab.student.live_net import CLOTH, ROPE, StudentReport
 from app.lab.student.live_tables import Call, LiveTables, TableReport
 from app.lab.student.scene_values import VALUES, calls_here
 from app.lab.student.session import CodeState, Session
-from app.panel.plots import scale_of
+from app.render.markup.axis import draw_axes, fitted, rounded
 from app.render.markup.html import (
     ERROR_COLOUR,
     GOOD_COLOUR,
@@ -30,9 +30,9 @@ from app.render.markup.html import (
 from app.scenes.charts import PALETTE
 
 SAME = 1e-6  # [m] below which two ropes are the same
-ROUNDING = 1e-9  # [m] by which a right solution may differ where nothing else explains a difference
-CHART_WIDTH, CHART_HEIGHT = 280, 124  # [pixels] of the chart of the difference
-CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 18, 22  # [pixels] of its margins
+ROUNDING = 1e-9  # [m] by which a right solution may differ if nothing else explains a difference
+CHART_WIDTH, CHART_HEIGHT = 280, 148  # [pixels] of the chart of the difference
+CHART_LEFT, CHART_BOTTOM, CHART_TOP = 40, 42, 22  # [pixels] of its margins
 MAX_POINTS = 150  # of its line
 ORDER = ("failed", "wrong", "not checked", "checking", "right")  # of the functions
 COLOURS = {
@@ -44,7 +44,7 @@ COLOURS = {
 }
 
 
-HINTS = {  # scene -> what to begin with
+HINTS = {  # scene -> first step
     "rope": "Write spring_force in rope.py and save it: the rope uses it right away.",
     "cloth": "Write cloth_forces or cloth_links in cloth.py and save it: the cloth uses it right away.",
     "square_sea": "Write gravity, spectrum or dispersion in square_sea.py and save it: the sea uses it right away.",
@@ -63,7 +63,7 @@ class CodePanel:
     def __init__(self, gui: viser.GuiApi, session: Session, scene: str) -> None:
         self.session, self.scene = session, scene
         self.net = session.cloth if scene == "cloth" else session.rope
-        self.state = session.state  # as the headline shows it
+        self.state = session.state  # as shown by the headline
         self.calls: dict[str, Call] = {}  # of functions at the numbers of the scene
         with gui.add_folder("Your code"):
             self.text = gui.add_html("")
@@ -99,14 +99,14 @@ class CodePanel:
 
 
 def tables_of(session: Session) -> TableReport:
-    """Functions that run by tables, and of the others those that the student has begun."""
+    """Functions that run by tables, and the others that the student has begun."""
     report, begun = session.tables.report, session.begun
     idle = {name: why for name, why in report.idle.items() if name in begun}
     return report._replace(idle=idle, off=bool(session.tables.tables) and not session.tables.shown)
 
 
 def place_of(error: RunError) -> str:
-    """The file of an error, and its line where it is known."""
+    """The file of an error, and its line if known."""
     return f"{error.file}, line {error.line}" if error.line else error.file
 
 
@@ -116,12 +116,12 @@ def is_busy(state: CodeState) -> bool:
 
 
 def busy_text(state: CodeState) -> Html:
-    """The reason, and that it is tried again."""
+    """The reason, and a note that it will be tried again."""
     return coloured(f"could not be run ({state.error.text if state.error else ''}); trying again", WARNING_COLOUR)
 
 
 def mistake_of(session: Session, begun: frozenset[str]) -> str:
-    """The first mistake of a function that is begun, in the order of the lab; "" if none is known."""
+    """The first mistake of a function under way, in the order of the lab; "" if none is known."""
     verdicts = ((task.name, session.versions.verdicts.get(task.name)) for task in session.tasks if task.name in begun)
     found = next(((name, verdict) for name, verdict in verdicts if verdict and verdict.state == "wrong"), None)
     return "" if found is None else f"{found[0]} is wrong: {found[1].mistake or found[1].sentence}"
@@ -130,7 +130,7 @@ def mistake_of(session: Session, begun: frozenset[str]) -> str:
 def headline(state: CodeState, report: StudentReport, tables: TableReport, scene: str, mistake: str = "") -> Html:
     """State of the files on one line, for the head of the panel.
 
-    mistake: of a function that runs.
+    mistake: in a running function.
     """
     if is_busy(state):
         return fill("Your code: {}", busy_text(state))
@@ -211,7 +211,8 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
     if report.left_at == report.left_at:
         said.append(coloured(f"Your {scene} left its bounds at t = {report.left_at:.2f} s.", ERROR_COLOUR))
     elif report.difference == report.difference:
-        said.append(fill("{} from the program's {}.", bold(length_text(report.difference)), TRANSLUCENT[scene]))
+        apart = "Less than 1 µm" if report.difference < SAME else metres(report.difference)
+        said.append(fill("{} from the program's {}.", bold(apart), TRANSLUCENT[scene]))
         said.append(difference_chart(report, scene))
     if report.grid != (0, 0):
         rows, cols = report.grid
@@ -225,13 +226,8 @@ def net_texts(state: CodeState, report: StudentReport, scene: str) -> list[Html]
     return said
 
 
-def length_text(length: float) -> str:
-    """A distance between the ropes."""
-    return "Less than 1 µm" if length < SAME else f"{number(length)} m"
-
-
 def difference_chart(report: StudentReport, thing: str) -> Html:
-    """The course of the difference as a line; nothing without a difference. thing: "rope" or "cloth".
+    """Chart of the difference over time; "" without a difference. thing: "rope" or "cloth".
 
     A chart of viser's (uPlot) in a folder widens the panel with each change of its axes.
     """
@@ -239,39 +235,22 @@ def difference_chart(report: StudentReport, thing: str) -> Html:
     if len(times) < 2 or differences.max() < SAME:
         return Html()
     chosen = np.unique(np.linspace(0, len(times) - 1, MAX_POINTS).astype(int))
-    scale = scale_of(0.0, float(differences.max()))
-    first, last = float(times[0]), float(times[-1])
-    x = CHART_LEFT + (times[chosen] - first) / (last - first) * (CHART_WIDTH - CHART_LEFT - 4)
+    x = fitted("t [s]", float(times[0]), float(times[-1]), CHART_LEFT, CHART_WIDTH - CHART_LEFT - 4)
     bottom = CHART_HEIGHT - CHART_BOTTOM
-    y = bottom - differences[chosen] / scale.high * (bottom - CHART_TOP)
-    line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
-    ticks = join(
-        tick_mark(bottom - tick / scale.high * (bottom - CHART_TOP), word)
-        for tick, word in zip(scale.ticks, scale.words, strict=True)
-    )
+    name = f"Distance from the program's {thing} [m]"
+    y = rounded(name, 0.0, float(differences.max()), bottom, CHART_TOP - bottom)
+    points = zip(times[chosen].tolist(), differences[chosen].tolist(), strict=True)
+    line = " ".join(f"{x.at(time):.1f},{y.at(difference):.1f}" for time, difference in points)
     return fill(
         '<svg class="springtide-difference" viewBox="0 0 {w} {h}" width="100%" role="img" font-size="11" '
-        'fill="currentColor"><title>Distance of your {thing} from the program\'s [m] over time [s]</title>{ticks}'
-        '<text x="0" y="11">Distance from the program\'s {thing} [m]</text>'
-        '<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>'
-        '<text x="{left}" y="{foot}">{first:.1f} s</text>'
-        '<text x="{w}" y="{foot}" text-anchor="end">{last:.1f} s</text></svg>',
-        thing=thing, w=CHART_WIDTH, h=CHART_HEIGHT, ticks=ticks, line=line, colour=PALETTE[0], left=CHART_LEFT,
-        foot=CHART_HEIGHT - 3, first=first, last=last,
-    )  # fmt: skip
-
-
-def tick_mark(y: float, word: str) -> Html:
-    """A line across the chart at a height [pixels], with its word."""
-    return fill(
-        '<path d="M{left} {y:.1f}H{right}" stroke="currentColor" opacity="0.2"/>'
-        '<text x="{end}" y="{foot:.1f}" text-anchor="end">{word}</text>',
-        left=CHART_LEFT, right=CHART_WIDTH, y=y, end=CHART_LEFT - 4, foot=y + 4, word=word,
+        'fill="currentColor"><title>Distance of your {thing} from the program\'s [m] over time [s]</title>{axes}'
+        '<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/></svg>',
+        thing=thing, w=CHART_WIDTH, h=CHART_HEIGHT, axes=draw_axes(x, y), line=line, colour=PALETTE[0],
     )  # fmt: skip
 
 
 def function_lines(session: Session, scene: str) -> Html:
-    """State and errors of every function that is begun: mistakes first, and of these those in the file of the scene."""
+    """State and errors of each function under way: mistakes first, beginning with the file of the scene."""
     verdicts, waiting = session.versions.verdicts, session.check.waiting
     rows: list[tuple[int, bool, Html]] = []
     is_left = False

@@ -32,7 +32,7 @@ from app.render.markup.html import (
 from app.scenes.contract import AnyKind, AnySnapshot
 from sim.parameters import Value, in_words, parameters_of
 
-TYPING_PAUSE = 1.0  # [s] after the last keystroke, after which a text is kept
+TYPING_PAUSE = 1.0  # [s] after the last keystroke until a text is saved
 UNANSWERED = "Choose …"  # in the list of choices
 SET_UP, SHOW, HIDE = "Set this up", "Show the answer", "Hide the answer"
 PICTURE = "Take a picture"
@@ -43,7 +43,7 @@ STATE_WORDS = {"right": "Right.", "wrong": "Not right.", "given": "Saved."}
 class SnapshotValues(Mapping[str, LiveValue]):
     """Values that a task may name: the parameters, quantities of the scene, the clock, and the state of the run.
 
-    A quantity is computed when it is first asked for; one that the scene does not have now is missing.
+    A quantity is computed when first read; one that the scene lacks at present is missing.
     """
 
     def __init__(self, kind: AnyKind, snapshot: AnySnapshot) -> None:
@@ -118,7 +118,7 @@ class QuestionWidgets:
         return "" if answer is None else answer if isinstance(answer, str) else f"{answer:.10g}"
 
     async def on_field(self, event: ViserEvent) -> None:
-        """A browser has answered; a text is kept once the typing pauses."""
+        """Take an answer from a browser; a text is saved once the typing pauses."""
         if event.client_id is None:
             return
         text = str(event.target.value)
@@ -134,21 +134,21 @@ class QuestionWidgets:
             self.store(text)
 
     def store(self, text: str) -> None:
-        """Keep an answer, or remember why it was refused."""
+        """Save an answer, or remember why it was refused."""
         self.refusal = self.guide.attempt(lambda: self.workbook.answer(self.task, self.question, text))
         if not self.refusal:
-            self.guide.refusal = ""  # as that a prediction comes first
+            self.guide.refusal = ""  # such as that a prediction comes first
         self.guide.stale = True
 
     def flush(self, now: float) -> None:
-        """Keep a text that is not being typed any more."""
-        typed = self.typed  # a browser may type on meanwhile
+        """Save a text whose typing has ended."""
+        typed = self.typed  # a browser may continue typing meanwhile
         if typed is not self.flushed and now - typed[1] >= TYPING_PAUSE:
             self.flushed = typed
             self.store(typed[0])
 
     def show(self) -> None:
-        """Show the stored answer and its check; a text that is being typed is left alone."""
+        """Show the stored answer and its check, except over a text that is being typed."""
         verdict = self.workbook.verdict(self.task, self.question)
         self.field.disabled = self.question.key == PREDICTION and self.workbook.is_shown(self.task)
         shown = self.kept_text()
@@ -185,14 +185,14 @@ class QuestionWidgets:
 
 
 class ControlsAgain:
-    """The controls of the panel that a task shows a second time; made in the container that is open."""
+    """The controls of the panel that a task shows a second time; made in the open container."""
 
     def __init__(self, gui: viser.GuiApi, controls: Controls) -> None:
         self.controls, self.place = controls, gui.add_folder(None)
         self.names: tuple[str, ...] = ()  # of their parameters
 
     def show(self, names: tuple[str, ...]) -> None:
-        """Show those of these parameters, in place of the ones before."""
+        """Show the controls of these parameters instead of the former ones."""
         self.names = names
         self.controls.show_again(names, self.place)
 
@@ -211,13 +211,13 @@ class GuideTab:
     ) -> None:
         """set_up: shows the set-up of a task; raises ValueError if it does not exist. tab: holds the guide.
 
-        controls: those of the panel; a task repeats the ones that it is about.
+        controls: of the panel; a task repeats its own.
         """
         self.gui, self.kind, self.workbook, self.set_up = gui, kind, workbook, set_up
         self.values: LiveValues = {}
-        self.stale = True  # True if something other than live values has to be shown anew
+        self.stale = True  # True if something other than live values has to be shown again
         self.revision: int = workbook.revision
-        self.refusal = ""  # reason why the last thing that was asked for was not possible
+        self.refusal = ""  # reason why the last request was refused
         self.unwritten = ""  # reason why a step could not be ticked off at the last look
         self.pictures = ReportPictures(workbook)
         self.shown: Task | None = None
@@ -228,7 +228,7 @@ class GuideTab:
             self.text = gui.add_html("")
             self.tools = gui.add_button_group("", (SET_UP, SHOW))
             self.tools.on_click(self.on_tool)
-            # Folders without a name, so that what a task brings has its place.
+            # Folders without a name, which hold the widgets of a task in place.
             self.again = ControlsAgain(gui, controls)
             self.readings = gui.add_html("")
             self.question_place = gui.add_folder(None)
@@ -238,7 +238,7 @@ class GuideTab:
                 self.name.on_update(self.on_name)
         self.show_task(workbook.task)
 
-    # ----- what browsers do
+    # ----- actions of browsers
 
     async def on_name(self, event: ViserEvent) -> None:
         """The student's name, for the report."""
@@ -264,7 +264,7 @@ class GuideTab:
         self.pictures.start(client, task, f"{self.kind.name}{at}", lambda: self.shown is self.workbook.task is task)
 
     def attempt(self, action: Callable[[], None]) -> str:
-        """Do something; returns why it was not possible, or ""."""
+        """Try an action; returns the reason for a failure, or ""."""
         try:
             action()
         except ValueError as error:
@@ -273,7 +273,7 @@ class GuideTab:
             return f"answers.toml could not be written: {error.strerror or error}"
         return ""
 
-    # ----- what is shown
+    # ----- display
 
     def update(self, snapshot: AnySnapshot, refresh: bool) -> None:
         """Show changes. Called on the viewer's thread.
@@ -281,7 +281,7 @@ class GuideTab:
         refresh: show the live values of this snapshot, as the panel shows its readout: both say the same.
         """
         now = time.monotonic()
-        task = self.workbook.task  # callbacks turn to others meanwhile
+        task = self.workbook.task  # callbacks may change it meanwhile
         stale, self.stale = self.stale, False  # requests from now on are for the next update
         for widgets in self.questions:
             widgets.flush(now)
@@ -324,7 +324,7 @@ class GuideTab:
         return tuple(name for name in names if name in self.again.controls.parameters)
 
     def show_values(self, task: Task) -> None:
-        """Show the texts of the task with the values of now."""
+        """Show the texts of the task with the present values."""
         shown = self.workbook.is_shown(task)
         self.tasks.show(task)
         compares = any(question.kind == "text" and question.why for question in task.questions)
@@ -350,12 +350,12 @@ class GuideTab:
         if not self.is_set_up_here(task) and setup.scene:
             scene = in_words(setup.scene).lower()
             elsewhere = coloured(f"This task is about the {scene}: press “{SET_UP}”.", WARNING_COLOUR)
-        # In a workbook the steps of a task say what to do.
+        # In a workbook the steps of a task are the instructions.
         look = Html() if self.workbook.folder is not None and task.steps else faint(setup.look)
         return fill('<div class="springtide-guide">{}<div>{}</div>{}</div>', elsewhere, asked, look)
 
     def now(self, task: Task) -> Html:
-        """The live values that the task keeps in sight."""
+        """The live values that the task keeps visible."""
         found = [self.values.get(name) for name in self.workbook.set_up_of(task).show if name not in self.again.names]
         rows = [fill("{}: <b>{}</b>", v.meaning, format(v, "")) for v in found if isinstance(v, LiveNumber)]
         return fill("Now: {}", join(rows, " · ")) if rows else Html()
@@ -392,12 +392,12 @@ class GuideTab:
         return fill('<div class="springtide-answer">{}{}</div>', laws, fill_in(guide.answer, self.values))
 
     def close(self) -> None:
-        """End, and keep the texts that are being typed."""
+        """End, and save the texts that are being typed."""
         self.shown = None
         self.flush()
 
     def flush(self) -> None:
-        """Keep the texts that are being typed."""
+        """Save the texts that are being typed."""
         for widgets in self.questions:
             widgets.flush(float("inf"))
 

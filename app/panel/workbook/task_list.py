@@ -11,7 +11,7 @@ SIGNS = {"right": "✓", "begun": "●", "open": "○"}  # before a task, by its
 
 
 class TaskList:
-    """Chooses a task of the workbook; made in the container that is open."""
+    """Chooses a task of the workbook; made in the open container."""
 
     def __init__(self, gui: viser.GuiApi, workbook: Workbook) -> None:
         self.workbook = workbook
@@ -23,12 +23,12 @@ class TaskList:
         self.turn.on_click(self.on_turn)
 
     async def on_chooser(self, event: ViserEvent) -> None:
-        """A task was chosen."""
+        """Take the chosen task."""
         if event.client_id is not None and event.target.value in self.titles:
             self.workbook.go(self.titles.index(event.target.value))
 
     async def on_turn(self, event: ViserEvent) -> None:
-        """On to the next task, or back."""
+        """Turn to the next or the previous task."""
         self.workbook.go(self.workbook.index + (1 if event.target.value == ON else -1))
 
     def titles_now(self) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ def setup_of_task(own: task.TaskSetup) -> Setup:
 def read_link(query: str, workbook: Workbook | None) -> Setup:
     """The set-up of a link; of one that names only a task, with or without its scene, the task's own.
 
-    Raises ValueError with everything in it that is not allowed.
+    Raises ValueError with all its errors.
     """
     name, rest = split_task(query)
     if not name:

@@ -50,7 +50,7 @@ class GrabLine:
         )
 
     def show(self, ends: Any, load: float = 0.4) -> None:
-        """ends: (2, 3) [m], None while nothing is grabbed. load: share of the largest force of the grab, 0 to 1."""
+        """ends: (2, 3) [m], None while nothing is grabbed. load: fraction of the largest force of the grab, 0 to 1."""
         self.line.visible = ends is not None
         if ends is not None:
             self.line.points = np.array([ends], np.float32)

@@ -21,7 +21,7 @@ class Gizmo:
         """scale: length of the arrows [m]. options: of viser's transform controls."""
         self.offset: Vector = (0.0, 0.0, 0.0)  # [m] of the arrows from the thing
         self.dragged_at = 0.0  # [s]
-        # In a tuple: the position that was last shown, None where the arrows are hidden. No tuple: it is not known.
+        # In a tuple: the position that was last shown, None if the arrows are hidden. No tuple: it is not known.
         self.shown: tuple[Vector | None] | None = None
         self.handle = server.scene.add_transform_controls(
             f"/{thing.replace(' ', '_')}_gizmo", scale=scale, disable_rotations=True,

@@ -138,7 +138,7 @@ def intercept(
 ) -> bool:
     """Pass the messages of each browser through the function that `join` returns. False if that is not possible.
 
-    join: called with a browser's id and viser's handlers of its messages. leave: called when the browser has gone.
+    join: called with a browser's id and viser's handlers of its messages. leave: called when the browser has left.
     """
 
     def put() -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import ChartLine
+from app.render.markup.axis import Axis, draw_axes, fitted, rounded
 from app.render.markup.html import Html, fill, join
 
 WIDTH, PLOT_HEIGHT = 560, 208  # [px] of the chart, and of it without its key
@@ -16,9 +17,9 @@ KEY_HEIGHT = 20  # [px] of a row of the key
 KEY_LINE, KEY_SPACE = 24, 16  # [px] for the piece of line before a name, and between two names
 CHARACTER_WIDTH = 6.6  # [px] of a name in the key
 FIRST_LABEL_WIDTH = 40  # [px] for the label of the first column, at the end of the key's rows
-MAX_TICKS = 5  # on each axis, at most
-SPACE = 0.05  # of the range, above and below
+INTERVALS = 6  # approximate number of them on the first axis
 BEYOND = "beyond the chart"  # name of the marks of values that are
+COLOUR = "#1b2a3a"  # of the axes and all words
 MARK_COLOUR = "#4d5560"  # in the key
 BEYOND_SIZE = 5  # [px] of such a mark, from its middle
 
@@ -28,34 +29,6 @@ class Drawing(NamedTuple):
 
     svg: Html
     height: int  # [px]
-
-
-class Axis(NamedTuple):
-    """A linear scale of pixels."""
-
-    low: float
-    high: float
-    start: float  # [px] of `low`
-    length: float  # [px] to `high`; below 0 it goes up
-
-    def at(self, value: float) -> float:
-        """Place of a value [px]; values beyond the ends have that of the end."""
-        return self.start + self.length * (self.within(value) - self.low) / (self.high - self.low)
-
-    def within(self, value: float) -> float:
-        """A value, or the end beyond which it lies."""
-        return min(max(value, self.low), self.high)
-
-
-def ticks(low: float, high: float) -> Sequence[float]:
-    """Round numbers from `low` to `high`, at most `MAX_TICKS` intervals apart."""
-    if not high > low:
-        return (low,)
-    rough = (high - low) / MAX_TICKS
-    power = 10.0 ** math.floor(math.log10(rough))
-    step = next(power * factor for factor in (1.0, 2.0, 5.0, 10.0) if power * factor >= rough * (1.0 - 1e-9))
-    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-    return [round(step * i, 12) + 0.0 for i in range(first, last + 1)]
 
 
 def line_chart(
@@ -82,32 +55,27 @@ def line_chart(
     finite = finite[np.isfinite(finite)]
     if finite.size == 0:
         return None
+    start, last = float(places[0]), float(places[-1])
+    if end is not None:
+        start, last = 0.0, max(last, end)
+    x = fitted(first, start, last if last > start else start + 1.0, LEFT, WIDTH - LEFT - RIGHT, INTERVALS)
+    low, high = limits or (float(finite.min()), float(finite.max()))
+    y = rounded(title, low, high, PLOT_HEIGHT - BOTTOM, TOP + BOTTOM - PLOT_HEIGHT)
     if scale:
-        marks = [(math.log10(value), word) for value, word in scale]
-        low, high = marks[0][0], marks[-1][0]
-    else:
-        low, high = limits or (float(finite.min()), float(finite.max()))
-        space = SPACE * ((high - low) or abs(high) or 1.0)
-        low, high = low - space, high + space
-        marks = [(tick, f"{tick:g}") for tick in ticks(low, high)]
-    start = 0.0 if end is not None else float(places[0])
-    last = float(places[-1]) if end is None else end
-    x = Axis(start, last if last > start else start + 1.0, LEFT, WIDTH - LEFT - RIGHT)
-    y = Axis(low, high, PLOT_HEIGHT - BOTTOM, TOP + BOTTOM - PLOT_HEIGHT)
+        marks = tuple((math.log10(value), word) for value, word in scale)
+        y = y._replace(low=marks[0][0], high=marks[-1][0], ticks=marks)
     drawn = join(draw_line(line, places, column, x, y) for line, column in zip(lines, values, strict=True))
     leaves = any(
-        not (line.cross or line.fill) and bool(((column < low) | (column > high))[np.isfinite(column)].any())
+        not (line.cross or line.fill) and bool(((column < y.low) | (column > y.high))[np.isfinite(column)].any())
         for line, column in zip(lines, values, strict=True)
     )
     key, rows = draw_key(lines, [BEYOND] if leaves else [])
     height = PLOT_HEIGHT + KEY_HEIGHT * rows
     svg = fill(
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w} {h}" width="{w}" height="{h}" role="img"'
-        ' font-family="sans-serif" font-size="12" fill="#1b2a3a">'
-        '<rect width="{w}" height="{h}" fill="#ffffff"/><text x="{l}" y="18" font-weight="bold">{title}</text>'
-        '<text x="{r}" y="{first_y}" text-anchor="end">{first}</text>{axes}{drawn}{key}</svg>',
-        w=WIDTH, h=height, l=LEFT, r=WIDTH - RIGHT, first_y=PLOT_HEIGHT + KEY_HEIGHT - 6, title=title, first=first,
-        axes=draw_axes(x, y, marks), drawn=drawn, key=key,
+        ' font-family="sans-serif" font-size="12" color="{colour}" fill="{colour}">'
+        '<rect width="{w}" height="{h}" fill="#ffffff"/>{axes}{drawn}{key}</svg>',
+        w=WIDTH, h=height, colour=COLOUR, axes=draw_axes(x, y), drawn=drawn, key=key,
     )  # fmt: skip
     return Drawing(svg, height)
 
@@ -137,7 +105,7 @@ def draw_line(line: ChartLine, places: NDArray[np.float64], values: NDArray[np.f
         runs, left = runs_within(places, values, y)
     path, area = "", ""
     for run in runs:
-        along = "L".join(f"{x.at(place):.1f} {y.at(value):.1f}" for place, value in run)
+        along = "L".join(f"{x.at(place):.1f} {y.at(y.within(value)):.1f}" for place, value in run)
         path += f"M{along}"
         area += f"M{x.at(run[0][0]):.1f} {y.start}L{along}L{x.at(run[-1][0]):.1f} {y.start}Z"
     below = fill('<path d="{}" fill="{}"/>', area, line.fill) if line.fill else Html()
@@ -195,7 +163,7 @@ def runs_within(
 def draw_beyond(place: float, value: float, y: Axis, colour: str) -> Html:
     """A triangle at the edge beyond which a value lies. place: [px]."""
     up = -1 if value > y.high else 1
-    edge, size = y.at(value), BEYOND_SIZE
+    edge, size = y.at(y.within(value)), BEYOND_SIZE
     return fill(
         '<path class="beyond" d="M{:.1f} {:.1f}h{}l{} {}z" fill="{}"/>',
         place - size, edge - up * 2 * size, 2 * size, -size, up * 2 * size, colour,
@@ -205,23 +173,6 @@ def draw_beyond(place: float, value: float, y: Axis, colour: str) -> Html:
 def dashes(line: ChartLine) -> str:
     """The dashes of a line as SVG has them."""
     return " ".join(f"{length:g}" for length in line.dash) or "none"
-
-
-def draw_axes(x: Axis, y: Axis, marks: Sequence[tuple[float, str]]) -> Html:
-    """Ticks, their words, and the two axes. marks: (value, word) of the second."""
-    base = PLOT_HEIGHT - BOTTOM
-    across = join(
-        fill('<path d="M{0:.1f} {1}v5" stroke="#4d5560"/><text x="{0:.1f}" y="{2}" text-anchor="middle">{3:g}</text>',
-             x.at(tick), base, base + 18, tick)
-        for tick in ticks(x.low, x.high)
-    )  # fmt: skip
-    up = join(
-        fill('<path d="M{0} {1:.1f}h{2}" stroke="#d8dde3"/><text x="{3}" y="{4:.1f}" text-anchor="end">{5}</text>',
-             LEFT, y.at(tick), WIDTH - LEFT - RIGHT, LEFT - 6, y.at(tick) + 4, word)
-        for tick, word in marks
-    )  # fmt: skip
-    lines = fill('<path d="M{} {}V{}H{}" fill="none" stroke="#4d5560"/>', LEFT, TOP, base, WIDTH - RIGHT)
-    return join((up, across, lines))
 
 
 def draw_key(lines: Sequence[ChartLine], marks: Sequence[str] = ()) -> tuple[Html, int]:

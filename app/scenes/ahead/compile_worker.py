@@ -15,7 +15,7 @@ from app.scenes.ahead.compiling import Job, compile_job
 
 
 def main() -> None:
-    """Compile the pieces that are asked for."""
+    """Compile the requested pieces."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the lab, which then closes our input
     if "--ahead" in sys.argv:
         lower_priority(BACKGROUND_NICENESS)

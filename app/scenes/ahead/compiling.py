@@ -1,7 +1,7 @@
 """Compiles ahead: the pieces of each scene, a marker file for each compiled piece, and processes that compile them.
 
 Compiling in the process of the lab would stop its threads. What is waited for is shared among some workers. Another
-one, of low priority, goes on with the rest of the open scene, and then with the other scenes. The workers fill the
+one, of low priority, continues with the rest of the open scene, and then with the other scenes. The workers fill the
 cache on disk, from which this process loads. If one of them is killed, what it was at is compiled later by the process
 that needs it.
 """

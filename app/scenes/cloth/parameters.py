@@ -54,7 +54,7 @@ class ClothParams:
     law: str = law_parameter("Cloth")
     thickness: float = in_cloth(
         0.0, 0.0, 0.1, "m",
-        "Particles of the cloth that come nearer to each other than this are pushed apart; 0 is off",
+        "Particles of the cloth closer than this are pushed apart; 0 is off",
         title="Self-collision distance",
     )  # fmt: skip
 
@@ -83,7 +83,7 @@ class ClothParams:
     speed: float = speed_parameter(0.01, 4.0)
 
     colour: str = in_look(
-        "fabric", choices={"fabric": "Fabric", "strain": "Strain"}, doc="Quantity that the colour of the cloth shows"
+        "fabric", choices={"fabric": "Fabric", "strain": "Strain"}, doc="Quantity shown by the colour of the cloth"
     )
     full_strain: float = in_look(
         5.0, 0.1, 100.0, "%", "Strain at the end of the colour scale", log_from=0.1, title="Strain scale"
@@ -97,7 +97,7 @@ class ClothParams:
     )
     plot_losses: bool = in_plots(
         False,
-        doc=f"Energy that damping has taken; above {MAX_ACCOUNTED_PARTICLES} particles since the plot is open",
+        doc=f"Energy dissipated by damping; above {MAX_ACCOUNTED_PARTICLES} particles since the plot was opened",
         title="Dissipated energy",
     )  # fmt: skip
     plot_strain: bool = in_plots(False, doc="Largest strain over time", title="Largest strain")

@@ -56,7 +56,7 @@ QUANTITIES: Quantities = {
     "elastic_energy": for_sweeps("J", "Elastic energy of the springs", lambda now: now.energy.elastic),
     "potential_energy": for_sweeps("J", "Potential energy above z = 0", lambda now: now.energy.gravity),
     "contact_energy": for_sweeps("J", "Elastic energy of the contacts", lambda now: now.energy.contact),
-    "dissipated_energy": for_sweeps("J", "Energy that damping took since the start", lambda now: now.dissipated),
+    "dissipated_energy": for_sweeps("J", "Energy dissipated by damping since the start", lambda now: now.dissipated),
     "largest_strain": Quantity("%", "Largest strain", lambda now: 100.0 * float(now.frame.strain.max())),
     # A sweep leaves them out: the stability of a large cloth is assessed now and then only.
     **{name: quantity._replace(recorded=False) for name, quantity in STABILITY.items()},

@@ -100,7 +100,7 @@ class ClothScene(NetScene[ClothParams]):
     stability: ClothReadings
 
     def __init__(self, params: ClothParams, live: "LiveCode | None" = None) -> None:
-        """live: runs a student's functions, where there are any."""
+        """live: runs a student's functions, if any."""
         if live is not None:
             from app.scenes.cloth import student_cloth  # only `springtide lab DIR` pays for it
 
@@ -139,7 +139,7 @@ class ClothScene(NetScene[ClothParams]):
             self.student.start(self.params, self.state)
 
     def resume(self, kept: object) -> None:
-        """Go on from a checkpoint of `keep`."""
+        """Resume from a checkpoint of `keep`."""
         super().resume(kept)
         self.tuner.restart()
         self.assess_stability()
@@ -148,7 +148,7 @@ class ClothScene(NetScene[ClothParams]):
             self.student.begin(self.student.rows_of(self.state.x), self.student.rows_of(self.state.v), self.state.t)
 
     def change_forces(self, params: ClothParams) -> None:
-        """Take new parameters. The motion goes on, interpolated where the grid changes."""
+        """Take new parameters. The motion continues, interpolated where the grid changes."""
         old, self.params = self.params, params
         self.tuner.restart()
         net = build(params, self.sphere_at(self.state.t))

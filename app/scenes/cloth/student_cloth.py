@@ -68,7 +68,7 @@ class StudentCloth(StudentNet):
         self.tell_grid()
 
     def change(self, params: ClothParams, old: ClothParams, state: State) -> None:
-        """Other parameters: the motion goes on, from the program's where the points are others."""
+        """Other parameters: the motion continues, from the program's where the points are others."""
         if self.set_up(params) or params.integrator != old.integrator:
             self.begin(self.rows_of(state.x), self.rows_of(state.v), state.t)
         self.tell_grid()
@@ -102,7 +102,7 @@ class StudentCloth(StudentNet):
     def pictured(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float32]] | None:
         """The program's cloth (3, r, c) [m] as it is drawn beside the student's, and that, (rows, cols, 3) [m].
 
-        None where there is no cloth of the student's. x: (3, r, c) [m] the program's now.
+        None if there is no cloth of the student's. x: (3, r, c) [m] the program's now.
         """
         assert self.sheet is not None
         shape = (self.sheet.rows, self.sheet.cols, 3)
@@ -115,7 +115,7 @@ class StudentCloth(StudentNet):
         return x, own.reshape(shape).astype(np.float32)
 
     def take(self, done: Marched, max_reach: float) -> None:
-        """Take an answer of this run; a coarse cloth that is too slow goes on as a coarser one."""
+        """Take an answer of this run; a coarse cloth that is too slow continues as a coarser one."""
         step = self.sent[-1].h if self.sent else 0.0
         super().take(done, max_reach)
         seconds = 0.0 if done is None else done.value.step_time

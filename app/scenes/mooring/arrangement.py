@@ -1,6 +1,7 @@
 """The mooring that the parameters describe: sea, body, anchors, fairleads and lines as a `System`."""
 
 import dataclasses
+import functools
 import itertools
 import math
 from typing import NamedTuple
@@ -27,6 +28,7 @@ HEIGHT_OVER_WIDTH = 0.55  # of a buoy and of a box
 # Of a vessel from a file as drawn: over the distance of its fairleads, over the extent, and its height over its width.
 VESSEL_WIDTH, LEAST_VESSEL, LARGEST_VESSEL, VESSEL_HEIGHT = 2.0, 0.04, 0.25, 0.3
 BOX_LENGTH = 1.6  # of a box, over its width
+BODY_TOP = 0.9  # height of what the first view shows of the body above still water, over its width
 FLOATING_PART = 0.4, 0.65  # of the length from the anchor: where floats are
 MAX_SURFACE_POINTS = 49  # along a side of the drawn surface
 SURFACE_SIDE = 2.6  # of the drawn surface, in `extent`s
@@ -37,6 +39,17 @@ class Places(NamedTuple):
 
     anchors: tuple[Vector, ...]  # [m]
     fairleads: tuple[Vector, ...]  # [m] from the body's centre
+
+    def slack(self, body: NDArray[np.float64], length: float) -> float:
+        """Level way [m] from the body's place to where the first line of this length [m] is straight."""
+        ways = body + np.subtract(self.fairleads, self.anchors)
+        straight = np.sqrt(np.maximum(length**2 - ways[:, 2] ** 2, 0.0))
+        return float((straight - np.hypot(ways[:, 0], ways[:, 1])).min())
+
+
+def at_most(length: float, vector: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A vector, shortened where it is longer."""
+    return vector * min(1.0, length / max(float(np.linalg.norm(vector)), 1e-9))
 
 
 def water_of(params: MooringParams) -> Water:
@@ -109,6 +122,22 @@ def first_places(params: MooringParams) -> Places:
         rim = min(x, y) if params.body == "buoy" else min(x / max(abs(c), 1e-9), y / max(abs(s), 1e-9))
         fairleads.append((rim * c, rim * s, -float(z)))
     return Places(tuple(anchors), tuple(fairleads))
+
+
+def shown_points(params: MooringParams) -> NDArray[np.float64]:
+    """Points (n, 3) [m] that the first view shows: ends of lines, the body with its mast, the bed under it."""
+    wide, x, y = width_of(params), 0.0, 0.0
+    if params.moordyn_file:
+        found = opened(params)
+        ends, (x, y, _) = [point.position for point in found.system.points], found.middle
+    else:
+        ends = list(first_places(params).anchors)
+        if params.lines == 1 and params.length > params.depth:  # it drifts until its line is nearly straight
+            drift = max(math.sqrt(params.length**2 - params.depth**2) - params.reach, 0.0)
+            bearing = math.radians(params.direction)
+            x, y = drift * math.cos(bearing), drift * math.sin(bearing)
+    body = [(x + side * wide, y, BODY_TOP * wide) for side in (-1.0, 1.0)]
+    return np.array([*ends, *body, (x, y, -depth_of(params))])
 
 
 def sea_of(params: MooringParams) -> Waves | None:
@@ -207,6 +236,18 @@ def build(params: MooringParams, places: Places, body: MooredBody, sea: Waves | 
         tuple(lines), tuple(points), params.depth, (body,), GRAVITY, DENSITY, friction=params.friction,
         current=(params.current * c, params.current * s, 0.0), waves=sea,
     )  # fmt: skip
+
+
+@functools.lru_cache(maxsize=2)
+def held(lines: tuple[Line, ...], points: tuple[Point, ...], moved: Vector, depth: float) -> System:
+    """The lines in still water between fixed anchors and a body that is held: its points are coupled, `moved` [m]."""
+    placed = [
+        point._replace(kind="coupled", position=vector_of(np.add(point.position, moved)), body=None)
+        if point.kind == "body"
+        else point._replace(kind="fixed" if point.kind == "coupled" else point.kind)
+        for point in points
+    ]
+    return System(lines, tuple(placed), depth, (), GRAVITY, DENSITY)
 
 
 def rows_of(system: System, params: MooringParams) -> LineRows:

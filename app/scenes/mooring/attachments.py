@@ -27,7 +27,7 @@ class Attachments:
 
     @property
     def at_rest(self) -> bool:
-        """True if none is on its way."""
+        """True if none is moving."""
         return all(one.at_rest for one in (*self.anchors, *self.fairleads))
 
     def drag(self, thing: str, place: Vector) -> None:

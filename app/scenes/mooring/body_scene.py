@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import Place, SceneCommand, Vector, vector_of
-from app.scenes.mooring.arrangement import body_of, build, hull_of, line_types, rows_of, sea_of
+from app.scenes.mooring.arrangement import at_most, body_of, build, held, hull_of, line_types, rows_of, sea_of
 from app.scenes.mooring.attachments import Attachments
 from app.scenes.mooring.line_scene import LineScene
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.readings.restoring import StaticInputs
+from app.scenes.mooring.readings.restoring import CurveInputs
 from app.scenes.mooring.start import rest_or_start
 from app.scenes.mooring.start_check import Fault, fault_of, overload_of
 
@@ -46,7 +46,7 @@ class MooringScene(LineScene):
         return found or (overload_of(self.params) if failure else None)
 
     def change_forces(self, params: MooringParams) -> None:
-        """Take parameters; the motion goes on."""
+        """Take parameters; the motion continues."""
         old, self.params = self.params, params
         self.sea = sea_of(params)
         self.body = body_of(params, self.sea)
@@ -64,7 +64,7 @@ class MooringScene(LineScene):
         self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
-        """Go on with the mooring as it is arranged now."""
+        """Continue with the mooring as it is arranged now."""
         self.system = build(self.params, self.attached.places, self.body, self.sea)
 
     @property
@@ -85,9 +85,7 @@ class MooringScene(LineScene):
     def on_the_bed(self, place: Vector) -> Vector:
         """The place [m] of an anchor, no farther than its line reaches from the body's place of rest."""
         longest = math.hypot(self.params.length, self.params.depth)
-        away = np.array(place[:2]) - self.excursion.rest[:2]
-        away *= min(1.0, longest / max(float(np.linalg.norm(away)), 1e-9))
-        x, y = (self.excursion.rest[:2] + away).tolist()
+        x, y = (self.excursion.rest[:2] + at_most(longest, place[:2] - self.excursion.rest[:2])).tolist()
         return x, y, -self.params.depth
 
     def on_the_hull(self, place: Vector) -> Vector:
@@ -124,14 +122,13 @@ class MooringScene(LineScene):
         v = self.state.v[:, self.system.node_count]
         force = mass * (GRAB_RATE**2 * (np.array(self.grabbed[1]) - self.body_place()) - 2.0 * GRAB_RATE * v)
         limit = self.params.pull * self.params.density * hull_of(self.params).volume * self.system.gravity
-        force *= min(1.0, limit / max(float(np.linalg.norm(force)), 1e-9))
-        return np.concatenate((force, np.zeros(3)))[None]
+        return np.concatenate((at_most(limit, force), np.zeros(3)))[None]
 
     def is_bounded(self) -> bool:
         """False once anything is not finite or is farther away than lines reach."""
         p = self.params
         far = FARTHEST * (p.length + p.reach + p.depth)
-        return bool(np.abs(self.state.x).max() < far)  # false of a NaN as well
+        return bool(np.abs(self.state.x).max() < far)  # false for NaN too
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""
@@ -143,10 +140,8 @@ class MooringScene(LineScene):
             "rotation": (self.rotation().copy(), "rad"),
         }
 
-    def static_inputs(self, far: float = 0.0) -> StaticInputs:
+    def curve_inputs(self, far: float = 0.0) -> CurveInputs:
         """Everything that the restoring curve depends on. far: [m] offset to which it goes at least."""
-        system, (x, y) = self.system, self.wave_direction.tolist()
-        return StaticInputs(
-            self.attached.places, system.lines, vector_of(self.excursion.rest), (x, y), self.params.length,
-            self.params.reach, far, system.depth, system.gravity, system.density,
-        )  # fmt: skip
+        rest, p, (x, y) = self.excursion.rest, self.params, self.wave_direction.tolist()
+        system = held(self.system.lines, self.system.points, vector_of(np.subtract(rest, self.body.place)), p.depth)
+        return CurveInputs(system, (x, y), self.attached.places.slack(rest, p.length), p.reach, far)

@@ -1,4 +1,4 @@
-"""Lines on the simulation thread, for a scene whose lines the parameters describe and for one of a file."""
+"""Lines on the simulation thread, described by the parameters or by a file."""
 
 import abc
 import math
@@ -32,7 +32,7 @@ from sim.validation import DivergenceError
 from sim.waves import AMPLITUDE, Waves
 
 FRAME_INTERVAL = 1 / 30  # [s] between frames
-SAMPLE = 1 / 240  # [s] between two looks at the tensions: a snap is short
+SAMPLE = 1 / 240  # [s] between two samples of the tensions: a snap is short
 FADE = 10.0  # [s] over which waves and current begin, as the mooring starts at rest
 MAX_TENSION_SCALE = 2.0  # end of the colour scale, in largest static tensions
 LINE_SERIES = tuple(f"line {i + 1}" for i in range(MAX_LINES))
@@ -79,7 +79,7 @@ class LineScene(abc.ABC):
         return faster_steps(INTEGRATORS[self.params.integrator], self.stability, "segments")
 
     def reset(self) -> None:
-        """At rest in level water, with all things in their first places."""
+        """Begin at rest in level water, with all objects at their initial places."""
         self.grabbed: tuple[int, Vector] | None = None
         self.arrange()
         rest, failure = rest_or_start(self.system)
@@ -102,15 +102,15 @@ class LineScene(abc.ABC):
 
     @abc.abstractmethod
     def arrange(self) -> None:
-        """Make the system and all trackers of the parameters."""
+        """Make the system and all trackers from the parameters."""
 
     @abc.abstractmethod
     def take_system(self) -> None:
-        """Go on with the mooring as it is arranged now."""
+        """Continue with the mooring as arranged now."""
 
     @abc.abstractmethod
     def change_forces(self, params: MooringParams) -> None:
-        """Take parameters; the motion goes on."""
+        """Take parameters; the motion continues."""
 
     @property
     @abc.abstractmethod
@@ -118,7 +118,7 @@ class LineScene(abc.ABC):
         """True while a user moves a part of the mooring."""
 
     def handle(self, command: SceneCommand) -> None:
-        """Carry out a command of the mouse, or begin the statistics again."""
+        """Carry out a command of the mouse, or restart the statistics."""
         match command:
             case RestartStatistics():
                 self.tensions.restart()
@@ -145,10 +145,10 @@ class LineScene(abc.ABC):
 
     @abc.abstractmethod
     def is_bounded(self) -> bool:
-        """False once anything is not finite or is farther away than lines reach."""
+        """False once a value is not finite or a point is farther away than the lines reach."""
 
     def diagnosis(self) -> str:
-        """Cause of the divergence, and settings that would hold."""
+        """Cause of the divergence, and settings that would be stable."""
         fault = self.start.fault
         if fault is not None and fault.is_grave:
             return fault.said
@@ -161,7 +161,7 @@ class LineScene(abc.ABC):
         """The state for a file: name -> (array, unit)."""
 
     @abc.abstractmethod
-    def static_inputs(self, far: float = 0.0) -> CurveInputs:
+    def curve_inputs(self, far: float = 0.0) -> CurveInputs:
         """Everything that the restoring curve depends on. far: [m] offset to which it goes at least."""
 
     def lying(self) -> NDArray[np.float64]:
@@ -182,7 +182,7 @@ class LineScene(abc.ABC):
         self.take_step()
 
     def take_step(self) -> None:
-        """Compare the time step with the modes that were found last."""
+        """Compare the time step with the last modes found."""
         self.stability: Gauge = gauge_of(self.step_modes, INTEGRATORS[self.params.integrator], self.step)
 
     def driven(self) -> dict[str, NDArray[np.float64]]:
@@ -200,7 +200,7 @@ class LineScene(abc.ABC):
         return fade_at(self.state.t)
 
     def advance(self, steps: int) -> None:
-        """Take steps. Raises DivergenceError where the state leaves its bounds, and keeps the last good one."""
+        """Take steps. Raises DivergenceError if the state leaves its bounds, and keeps the last good one."""
         if self.start.failure:
             raise DivergenceError(self.start.failure if self.start.fault is None else self.start.fault.said)
         self.add_due_row()  # of the start
@@ -232,7 +232,7 @@ class LineScene(abc.ABC):
         return self.rows.end_forces(state.x, v, state.t, p)
 
     def measure(self) -> None:
-        """Take tensions, offset and path of the state, into the statistics too."""
+        """Measure tensions, offset and path of the state, and add them to the statistics."""
         if self.is_dragged:
             self.tensions.leave_out(self.time, self.params.wave_period)
         at_anchor, at_fairlead = self.find_tensions()
@@ -292,7 +292,7 @@ class LineScene(abc.ABC):
         wave, excursion = self.wave_direction, self.excursion
         now = float((self.body_place() - excursion.rest)[:2] @ wave)
         pull = -float(self.force_of_lines() @ wave)
-        return {"plot_restoring": self.restoring.chart(self.static_inputs, excursion.farthest, now, pull)}
+        return {"plot_restoring": self.restoring.chart(self.curve_inputs, self.rows, excursion.farthest, now, pull)}
 
     @property
     def wave_direction(self) -> NDArray[np.float64]:
@@ -305,7 +305,7 @@ class LineScene(abc.ABC):
         return copied({name: getattr(self, name) for name in self.changing}, self.system, self.sea)
 
     def resume(self, kept: object) -> None:
-        """Go on from a checkpoint of `keep`."""
+        """Resume from a checkpoint of `keep`."""
         restore(self, kept)
         self.grabbed = None
         self.take_step()

@@ -133,7 +133,7 @@ PRESETS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 ABOUT = {  # preset -> what it shows and what to try
-    "Chain catenary": "A buoy on three chains: see where each touches the bed wander with the waves.",
+    "Chain catenary": "A buoy on three chains: watch the touchdown points on the bed move with the waves.",
     "Taut ropes": "Light ropes under tension hold by their stretch: compare the offset with that of chains.",
     "Four-point spread": "A box on four chains in a current: drag one anchor away and watch the other tensions.",
     "Snap in a storm": "One rope goes slack in high waves and snaps taut: see the peaks of its tension.",

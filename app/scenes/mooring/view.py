@@ -1,17 +1,18 @@
 """The mooring seen above and below the water: bed, lines coloured by tension, body, anchors, watch circle, surface."""
 
+import math
 from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import viser
 
 from app.formats.packing import compile_packing
 from app.messages import RestartStatistics, Snapshot, Vector
-from app.render.cameras import set_clipping
+from app.render.cameras import framing_view, point_in_view, set_clipping
 from app.render.handles.dragging import GrabLine, drag
 from app.render.handles.gizmo import Gizmo
 from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand, SceneView
-from app.scenes.mooring.arrangement import depth_of, extent
+from app.scenes.mooring.arrangement import depth_of, extent, shown_points
 from app.scenes.mooring.drawing.bed_view import DrawnBed
 from app.scenes.mooring.drawing.body_view import DrawnBody
 from app.scenes.mooring.drawing.ends_view import DrawnEnds
@@ -23,7 +24,10 @@ from app.scenes.mooring.parameters import MAX_LINES, MooringParams
 from app.scenes.mooring.readings.report import TENSIONS, figures_of, marks_of, notes_of, readout_of
 from app.scenes.springs.drawing.html import simple_drawing
 
-ARROW_SIZE, SMALL_ARROW_SIZE = 0.12, 0.07  # in `extent`s
+ARROW_SIZE, SMALL_ARROW_SIZE = 0.10, 0.05  # in `extent`s
+BEARING, PITCH = math.radians(277.0), math.radians(17.5)  # of the first view: across the waves, the horizon high up
+FRAME = 0.97, -0.9, 0.4  # half width, lower and upper edge of what it shows, over half the height of the picture
+LABEL = -0.15, -0.78  # where it shows the depth, in the same
 FAR_VIEW = 40.0  # where the picture ends, and the bed would, in `extent`s
 MooringSnapshot: TypeAlias = Snapshot[MooringParams, MooringFrame, MooringReadings]
 Shape: TypeAlias = tuple[Any, ...]
@@ -62,18 +66,18 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
         }
 
     def first_view(self, params: MooringParams) -> tuple[Vector, Vector]:
-        """Position and target [m] of a camera that has not been moved: beside the surface, which it sees edge on."""
-        far = extent(params)
-        return (0.35 * far, -2.2 * far, 0.42 * far), (0.0, 0.0, -0.4 * depth_of(params))
+        """Position and target [m] of a camera that has not been moved: near enough that its picture is full."""
+        return framing_view(shown_points(params), BEARING, PITCH, self.FIELD_OF_VIEW, FRAME)
 
     def build(self, frame: MooringFrame) -> DrawnMooring:
         """Make everything for another arrangement."""
         for part in self.drawn or ():
             part.remove()
         server, far = self.server, extent(frame.params)
+        label = point_in_view(self.first_view(frame.params), self.FIELD_OF_VIEW, LABEL, -depth_of(frame.params))
         set_clipping(server, 0.002 * far, FAR_VIEW * far)
         return DrawnMooring(
-            DrawnBed(server, frame), DrawnLines(server, frame), DrawnBody(server, frame, self.on_body),
+            DrawnBed(server, frame, label), DrawnLines(server, frame), DrawnBody(server, frame, self.on_body),
             DrawnEnds(server, frame), WatchCircle(server, frame), SeenWater(server, frame),
         )  # fmt: skip
 

@@ -35,7 +35,7 @@ def round_up(t: float) -> float:
 
 
 class RaceCharts:
-    """The rows of a race, thinned out as it goes on."""
+    """The rows of a race, thinned out as it continues."""
 
     def __init__(self, race: Race) -> None:
         self.race = race

@@ -2,7 +2,7 @@
 
 All ropes and the reference meet at the end of each tick, a multiple of the longest step; steps that do not divide the
 tick are shortened equally. A rope that diverges stops at its last good state and says why. A rope with a method that
-accepts no damping never starts on a damped net. The others go on.
+accepts no damping never starts on a damped net. The others continue.
 """
 
 import copy
@@ -45,8 +45,8 @@ class Result(NamedTuple):
     step: float  # [s]
     stiffness: float  # [N/m]
     gauge: Gauge
-    evals: float  # force evaluations a step, lately
-    corrections: float  # corrections a step, lately; 0 for explicit methods
+    evals: float  # recent force evaluations a step
+    corrections: float  # recent corrections a step; 0 for explicit methods
     step_time: float  # [s] of processor time that a step takes
     error: float  # [m] largest distance of a point from the reference run; NaN without one
     error_floor: float  # [m] smallest error that the reference run can tell; NaN without one
@@ -134,7 +134,7 @@ class Entrant(NetMotion):
         self.assess_stability()
 
     def change_net(self, net: Net, *, still_pins: bool = False) -> None:
-        """Go on with another net; a rope whose method allows no damping stops if the net has some."""
+        """Continue with another net; a rope whose method allows no damping stops if the net has some."""
         super().change_net(net, still_pins=still_pins)
         self.check_damping()
         self.assess_stability()
@@ -205,7 +205,7 @@ class Race:
         return self.references[min(entrant.number, len(self.references)) - 1]
 
     def change_net(self, net: Net) -> None:
-        """Go on with other forces. net: of rope 1."""
+        """Continue with other forces. net: of rope 1."""
         for entrant in self.entrants:
             entrant.change_net(stiffened(net, self.ratio ** (entrant.number - 1)))
         for reference, entrant in zip(self.references, self.entrants, strict=False):
@@ -248,7 +248,7 @@ class Race:
         return math.nan if entrant.failure else self.reference_of(entrant).distance(entrant.state.x)
 
     def error_floor(self, entrant: Entrant) -> float:
-        """Smallest error [m] that the reference run can tell; NaN where there is no reference."""
+        """Smallest error [m] that the reference run can tell; NaN if there is no reference."""
         reference = self.reference_of(entrant)
         return TRUST_FACTOR * reference.separation if reference.is_available and reference.horizon is None else math.nan
 
@@ -281,7 +281,7 @@ class Race:
         return np.ascontiguousarray([entrant.state.x[:, 0].T for entrant in self.entrants])
 
     def reference_points(self) -> NDArray[np.float64] | None:
-        """(ropes, points, 3) [m] of the reference runs, or None where one is missing."""
+        """(ropes, points, 3) [m] of the reference runs, or None if one is missing."""
         references = [self.reference_of(entrant) for entrant in self.entrants]
         if any(not reference.is_available or reference.horizon is not None for reference in references):
             return None

@@ -8,8 +8,8 @@ from app.scenes.race.names import rope_name
 
 MIN_SHOWN_ENERGY = 1e-10  # [J]: less is round-off and is shown as 0
 TABLE_INFO = (
-    "Step: the time step relative to the largest stable one; above 100 % a rope diverges. Forces: how often they are "
-    "computed in a second of the run; time: for one step on this computer."
+    "Step: the time step relative to the largest stable one; above 100 % a rope diverges. Forces: evaluations per "
+    "second of the run; time: of one step on this computer."
 )
 HEAD = (("error", ""), ("energy error", "J"), ("step", "of limit"), ("forces", "a second"), ("time", "a step"))
 

@@ -115,11 +115,11 @@ PRESETS: dict[str, dict[str, Any]] = {
 
 ABOUT = {  # preset -> what it shows and what to try
     "Euler against RK4 against leapfrog": "One rope, three methods: see how far each is from the exact motion.",
-    "Euler at rising stiffness": "Explicit Euler at one step and six stiffnesses: see which ropes it can hold.",
-    "RK4 at the same values": "The same six stiffnesses by Runge-Kutta 4: compare which ropes hold.",
+    "Euler at rising stiffness": "Explicit Euler at one step and six stiffnesses: see which ropes stay stable.",
+    "RK4 at the same values": "The same six stiffnesses by Runge-Kutta 4: compare which ropes stay stable.",
     "Leapfrog read literally": "Leapfrog beside the lab's formulas word for word: compare the errors.",
-    "Undamped until chaos": "Five methods at the same cost, until the smallest difference decides.",
-    "Implicit methods on a very stiff rope": "Three methods for stiff ropes: compare the energy each takes.",
+    "Undamped until chaos": "Five methods at the same cost, until chaos magnifies the smallest difference.",
+    "Implicit methods on a very stiff rope": "Three methods for stiff ropes: compare the energy that each dissipates.",
     "Shaken at the root": "All ropes are shaken alike, and never come to rest: compare the errors.",
 }
 

@@ -25,13 +25,13 @@ def quantities_of(n: int) -> Quantities:
             floor=of_rope(n, lambda r: r.error_floor),
         ),
         f"numerical_dissipation_{n}": Quantity(
-            "J", f"Energy that the method of rope {n} took", of_rope(n, lambda r: r.numerical_dissipation)
+            "J", f"Energy dissipated by the method of rope {n}", of_rope(n, lambda r: r.numerical_dissipation)
         ),
         f"h_omega_{n}": Quantity(
             "1", f"hω (step times highest frequency) of rope {n}", of_rope(n, lambda r: r.gauge.h_omega)
         ),
         f"energy_error_{n}": for_tasks(
-            "J", f"Energy that the method of rope {n} added", of_rope(n, lambda r: -r.numerical_dissipation)
+            "J", f"Energy added by the method of rope {n}", of_rope(n, lambda r: -r.numerical_dissipation)
         ),
         f"limit_{n}": for_tasks(
             "1", f"Limit of hω (step times highest frequency) of rope {n}", of_rope(n, lambda r: r.gauge.limit)

@@ -36,7 +36,7 @@ class RaceFrame(NamedTuple):
     references: NDArray[np.float32] | None  # the same of the reference runs, or None if none is shown
     labels: tuple[str, ...]
     failed: tuple[bool, ...]
-    root: Vector  # [m] where the roots are going to
+    root: Vector  # [m] to which the roots are moving
     grab: GrabFrame | None
 
 
@@ -80,7 +80,7 @@ class RaceScene:
 
     @property
     def step(self) -> float:
-        """Time between two meetings of all ropes [s]; `advance` counts in it."""
+        """Time between two common instants of all ropes [s], the unit of `advance`."""
         return self.race.tick
 
     @property
@@ -89,7 +89,7 @@ class RaceScene:
         return self.race.t
 
     def reset(self) -> None:
-        """All ropes at rest, level from their roots, and these where a new scene has them."""
+        """Restart all ropes at rest, level from their roots at their initial places."""
         self.handles.restart()
         self.net = build_rope(self.params, self.handles.root.position)  # of rope 1
         self.race = Race(self.net, self.params)
@@ -102,12 +102,12 @@ class RaceScene:
         return copied({name: getattr(self, name) for name in CHANGING}, self.charts.drawn)
 
     def resume(self, kept: object) -> None:
-        """Go on from a checkpoint of `keep`."""
+        """Resume from a checkpoint of `keep`."""
         restore(self, kept)
         self.handles.grab.clear()
 
     def change_forces(self, params: RaceParams) -> None:
-        """Take new parameters; the motion goes on."""
+        """Take new parameters; the motion continues."""
         self.params = params
         self.net = build_rope(params, self.handles.root.position)
         self.race.change_net(self.net)
@@ -156,7 +156,7 @@ class RaceScene:
         return self.charts.charts()
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:
-        """No plot rows: the charts of this scene thin out as the race goes on."""
+        """No plot rows: the charts of this scene thin out their data over time."""
         return ()
 
     def arrays(self) -> dict[str, tuple[NDArray[np.float64], str]]:
@@ -171,5 +171,5 @@ class RaceScene:
             "separation": (separations, "m, of each reference run from a second one that started 0.1 nm away"),
             "error": (np.array([race.error(e) for e in race.entrants]), "m, NaN where a rope or the reference failed"),
             "energy": (np.array([entrant.stored_energy() for entrant in race.entrants]), "J, stored"),
-            "numerical_dissipation": (taken, "J, that the method took"),
+            "numerical_dissipation": (taken, "J, dissipated by the method"),
         }

@@ -265,7 +265,7 @@ class FloatingBodies:
         """One step of h [s] on the sea `at` the bodies in the middle of the step.
 
         slick (n,) [m]: thickness of oil at each that is no layer. forces: those of `forces_of`; None for a sea that is
-        no sum of waves. Raises FloatingPointError where a body's state is no longer finite.
+        no sum of waves. Raises FloatingPointError if a body's state is no longer finite.
         """
         if self.count == 0:
             return

@@ -24,7 +24,7 @@ class Cutaway(NamedTuple):
     floor: float  # [m] height
     points: NDArray[np.float64]  # (n, 2) [m]
     top: NDArray[np.float64]  # (n,) [m] height of the surface
-    interface: NDArray[np.float64]  # (n,) [m] height of the water below the oil; the surface where there is no oil
+    interface: NDArray[np.float64]  # (n,) [m] height of the water below the oil; the surface if there is no oil
     has_oil: bool  # oil on water, rather than one fluid
 
 

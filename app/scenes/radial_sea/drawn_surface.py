@@ -27,9 +27,9 @@ from sim.waves import Waves
 
 NEGLIGIBLE_ENERGY = 1e-4  # of the largest of all parts of the spectrum: a part with less is left out
 COMPARE_INTERVAL = 2.0  # [s] of wall time between two timings of the other surface
-COST_MEMORY = 0.9  # share of the old value in the running mean of a surface's cost
+COST_MEMORY = 0.9  # fraction of the old value in the running mean of a surface's cost
 FOAM_RADIUS = 80.0  # [m] within which the foam threshold is measured
-FOAM_GAIN = 0.05  # share of the new value in the running mean of the foam threshold
+FOAM_GAIN = 0.05  # fraction of the new value in the running mean of the foam threshold
 FOAM_WIDTH = 0.07  # change of the Jacobian over which foam goes from none to full
 MAX_FOAM_JACOBIAN = 0.97  # threshold above which nothing is foam: the surface is not compressed anywhere
 TILE_SIZE, TILE_LENGTH = 128, 256.0  # points a side (as many vertices as the rings have) and side [m] of the square sea
@@ -74,7 +74,7 @@ class SeaNow(Protocol):
         ...
 
     def tile_now(self) -> Sea:
-        """The square sea, made where it is not there."""
+        """The square sea, made if it is not there."""
         ...
 
     def slick_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -126,7 +126,7 @@ class DrawnSurface:
         self.drawn = key
 
     def foam_share(self, scene: SeaNow) -> float:
-        """Share of the sea that is foam. Oil reduces it in proportion to the mean square slope that it leaves."""
+        """Fraction of the sea that is foam. Oil reduces it in proportion to the mean square slope that it leaves."""
         clean = self.clean_waves(scene.sum)[1]
         remaining = scene.sum.mean_square_slope / clean if clean > 0.0 else 0.0
         return whitecaps(scene.params.wind_speed) * remaining if scene.params.waves else 0.0

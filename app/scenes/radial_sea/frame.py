@@ -99,7 +99,7 @@ class SurfaceReading(NamedTuple):
     extent: float  # [m] across, before it repeats
     height: float  # Hs [m] expected of its waves
     slope: float  # mean square slope of its waves
-    error: float  # of Hs, as a share of that of the whole spectrum on these fluids
+    error: float  # of Hs, as a fraction of that of the whole spectrum on these fluids
 
 
 class RadialReadings(NamedTuple):
@@ -113,7 +113,7 @@ class RadialReadings(NamedTuple):
     clean_slope: float  # without the oil
     middle_period: float  # [s] above which half of the energy of the waves is
     oil_budget: OilBudget
-    surfaces: dict[str, SurfaceReading]  # radial and square sea side by side; empty unless asked for
+    surfaces: dict[str, SurfaceReading]  # radial and square sea side by side; empty unless requested
     age: float  # [s] for which the waves have run under the oil
     past: Mapping[FluidColumn, float]  # fluids that the waves have run on -> [s]
     weathering: Weathering | None  # the spill over five days; None without one

@@ -22,11 +22,11 @@ class BodyMeters:
         self.restart()
 
     def restart(self) -> None:
-        """Begin all means and periods anew."""
+        """Restart all means and periods."""
         self.heave, self.lift = HeaveMeter(len(self.keel)), WindowMean(len(self.keel), UPWARD_FORCES)
 
     def restart_of(self, i: int) -> None:
-        """Begin those of body i anew."""
+        """Restart those of body i."""
         self.heave.restart(i)
         self.lift.restart(i)
 

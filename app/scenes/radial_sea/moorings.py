@@ -20,7 +20,7 @@ class BodyMoorings:
         self.tie(places, drafts, hulls)
 
     def tie(self, places: NDArray[np.float64], drafts: NDArray[np.float64], hulls: list[Hull]) -> None:
-        """Tie the bodies anew."""
+        """Tie the bodies again."""
         keel, volume = (np.array(values) for values in ([h.extents[2, 0] for h in hulls], [h.volume for h in hulls]))
         rest = np.column_stack([places, -drafts])
         self.lines = just_taut(rest, keel, LINE_STIFFNESS * volume, BED_DEPTH, LINE_REACH)

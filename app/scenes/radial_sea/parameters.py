@@ -1,4 +1,4 @@
-"""The parameters of the radial sea, its presets, and which parameters mean nothing just now."""
+"""The parameters of the radial sea, its presets, and the parameters without effect at present."""
 
 import dataclasses
 import functools
@@ -27,7 +27,7 @@ from sim.parameters import parameter, with_parameters
 OILS = tuple(name for name in fluids() if "water" not in name)
 CAMERA_TARGETS = ("free", "first buoy", "second buoy", "box", "cutaway", "from above", "rig")
 WATER = "sea water"
-MIN_FILM = 1e-6  # [m] of oil that counts as a layer: thinner, the spill is gone
+MIN_FILM = 1e-6  # [m] least thickness of a layer of oil: a thinner spill is gone
 OWN_DENSITIES = ("density_1", "density_2", "density_3")  # parameters: densities of the first bodies
 LEVEL_SPECTRUM = "pierson_moskowitz"  # makes no waves without wind
 in_bodies = functools.partial(parameter, group="Bodies")
@@ -57,15 +57,15 @@ class RadialSeaParams:
         affects="look", title="Cutaway",
     )  # fmt: skip
     follow: str = in_main(
-        "free", choices=CAMERA_TARGETS, doc="Target that the camera looks at and moves with", affects="look",
+        "free", choices=CAMERA_TARGETS, doc="Target that the camera follows", affects="look",
         title="Camera follows",
     )  # fmt: skip
 
     waves: bool = in_waves(True, doc="Waves; without them the sea is level")
     wind_direction: float = in_main(25.0, -180.0, 180.0, "°", "Direction that the wind blows to, from +x towards +y")
-    spectrum: str = in_waves("jonswap", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
+    spectrum: str = in_waves("jonswap", choices=SPECTRUM_TITLES, doc="Spectrum of the waves")
     wave_count: int = in_waves(
-        96, 8, 512, "", "Number of waves in the sum, whose height and slope the panel tells; each has the same energy",
+        96, 8, 512, "", "Number of waves in the sum, each of the same energy; the panel shows their height and slope",
         log_from=8, title="Number of waves",
     )  # fmt: skip
     choppiness: float = in_waves(
@@ -103,18 +103,18 @@ class RadialSeaParams:
     )  # fmt: skip
 
     spill_volume: float = in_spill(
-        100.0, 1.0, 1e5, "m³", "Oil that was spilled, all at once", log_from=1.0, title="Volume spilled"
+        100.0, 1.0, 1e5, "m³", "Volume of oil spilled, all at once", log_from=1.0, title="Volume spilled"
     )
     temperature: float = in_spill(
         15.0, 0.0, 30.0, "°C", "Temperature of the oil; the water's density stays as at 15 °C"
     )
     spill_hours: float = in_spill(
         0.0, 0.0, 120.0, "h",
-        "Time since the spill: the oil evaporates, takes up water and thickens, and floats here as it is by then",
+        "Time since the spill, during which the oil evaporates, takes up water and thickens",
         title="Time since the spill",
     )  # fmt: skip
     spread: bool = in_spill(
-        False, doc="The layer is as thin as the oil has spread by then, instead of as thick as set",
+        False, doc="Use the thickness to which the oil has spread by then, instead of the one set",
         title="Thickness as spread",
     )  # fmt: skip
 
@@ -203,7 +203,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
 }  # fmt: skip
 
-ABOUT = {  # preset -> what it shows and what to try
+ABOUT = {  # preset -> a sentence: its subject and something to try
     "Clear water": "Buoys and a box float on clean water: push one under and let go.",
     "Light crude spill 0.2 m": "Light crude oil on the sea: compare how deep bodies float with clean water.",
     "Heavy fuel oil": "Half a metre of heavy fuel oil: see which waves it has damped.",
@@ -215,7 +215,7 @@ ABOUT = {  # preset -> what it shows and what to try
 
 
 def hidden(params: RadialSeaParams) -> set[str]:
-    """The parameters that mean nothing with the others as they are."""
+    """The parameters without effect beside the present others."""
     names = unused_waves(params)
     if params.spill != "layer":
         names |= {"thickness", "temperature"}
@@ -260,7 +260,7 @@ def reading_of(params: RadialSeaParams) -> MeshReading:
 
 
 def own_densities_of(params: RadialSeaParams) -> tuple[float, ...]:
-    """Densities [kg/m3] of the first bodies, where they have their own."""
+    """Densities [kg/m3] of the first bodies, if they have their own."""
     return tuple(getattr(params, name) for name in OWN_DENSITIES) if params.own_densities else ()
 
 
@@ -272,7 +272,7 @@ def densities_of(params: RadialSeaParams) -> tuple[float, ...]:
 def spill_of(params: RadialSeaParams) -> Spill | None:
     """The spill that floats on the sea.
 
-    None without a layer of oil, or where the oil's record does not tell how it evaporates.
+    None without a layer of oil, or if the oil's record has no distillation data.
     """
     if params.spill != "layer" or not can_weather(params.oil):
         return None
@@ -283,7 +283,7 @@ def spill_of(params: RadialSeaParams) -> Spill | None:
 
 
 def weathered_oil(params: RadialSeaParams) -> WeatheredOil | None:
-    """The oil of the spill as it is by then; None where there is no spill to follow."""
+    """The oil of the spill at its present age; None without a spill to follow."""
     spill = spill_of(params)
     return None if spill is None else spill_at(spill, params.spill_hours)
 
@@ -295,7 +295,7 @@ def spill_at(spill: Spill, hours: float) -> WeatheredOil:
 
 
 def oil_of(params: RadialSeaParams) -> Fluid:
-    """The oil in force: of a layer as warm and as old as set, else at 15 degrees and fresh."""
+    """The oil in force: of a layer at its set temperature and age, otherwise fresh and at 15 degrees."""
     if params.spill != "layer":
         return fluids()[params.oil]
     weathered = weathered_oil(params) if params.spill_hours > 0.0 else None
@@ -325,7 +325,7 @@ def column_of(params: RadialSeaParams) -> FluidColumn:
 
 
 def spectrum_of(params: RadialSeaParams) -> Spectrum:
-    """The spectrum of the waves; one that makes none without wind where there are to be none."""
+    """The spectrum of the waves; for a level sea one that makes no waves without wind."""
     return chosen_spectrum(params) if params.waves else SPECTRA[LEVEL_SPECTRUM]
 
 

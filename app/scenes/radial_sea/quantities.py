@@ -38,7 +38,7 @@ OF_BODY: Quantities = {  # of a `BodyReading`
     "mean_buoyancy": Quantity("N", "mean buoyancy over the last minute", lambda body: body.mean_lift[0]),
     "wet_volume_above": Quantity("m³", "wet volume in the upper fluid", lambda body: body.wet_volume[0]),
     "wet_volume_below": Quantity("m³", "wet volume in the lower fluid", lambda body: body.wet_volume[1]),
-    "offset": Quantity("m", "horizontal distance from where its lines hold it", lambda body: body.offset),
+    "offset": Quantity("m", "horizontal distance from its moored position", lambda body: body.offset),
     "line_tension": Quantity("N", "largest tension of its mooring lines", lambda body: body.tension),
     "heave_period": Quantity("s", "heave period as measured", lambda body: body.period),
     "heave_period_theory": Quantity("s", "heave period by theory", lambda body: body.prediction.period),
@@ -226,12 +226,12 @@ QUANTITIES: Quantities = {name: quantity for kind in BODY_KINDS for name, quanti
     "film_light": for_tasks(
         "1", "Light through a film of 0.1 mm", lambda now: math.exp(-FILM_THICKNESS / OPAQUE_THICKNESS)
     ),
-    "opaque_thickness": for_tasks("m", "Thickness that is opaque", lambda now: -OPAQUE_THICKNESS * math.log(MIN_LIGHT)),
+    "opaque_thickness": for_tasks("m", "Least opaque thickness", lambda now: -OPAQUE_THICKNESS * math.log(MIN_LIGHT)),
     "nozzle_height": for_tasks("m", "Height of the nozzle", lambda now: NOZZLE[2]),
-    "flight_time": for_tasks("s", "Flight of a drop to the level of the sea", lambda now: FALL_TIME),
+    "flight_time": for_tasks("s", "Flight time of a drop to sea level", lambda now: FALL_TIME),
     "flight_distance": for_tasks(
         "m",
-        "Distance that a drop flies",
+        "Range of a drop",
         lambda now: math.hypot(LANDING[0] - NOZZLE[0], LANDING[1] - NOZZLE[1]),
     ),
     **{name: one._replace(value=of_oil_budget(one.value)) for name, one in OF_OIL_BUDGET.items()},

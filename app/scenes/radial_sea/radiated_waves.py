@@ -7,7 +7,7 @@ from sim.ocean import Sea
 from sim.ocean.tile.query import bicubic
 
 SIZE, LENGTH = 96, 57.6  # cells and side [m] of the square
-WIDEST = 0.42  # share of the side within which rings are drawn whole; they fade to its edge
+WIDEST = 0.42  # fraction of the side within which rings are drawn whole; they fade to its edge
 LEAK = 0.08  # [1/s] stands for what leaves the square and would come back in on its other side
 
 

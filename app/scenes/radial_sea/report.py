@@ -29,7 +29,7 @@ HEIGHT = (
     "Significant height: the mean of the highest third of the waves, from trough to crest. Mean slope: the root of the "
     "mean squared slope."
 )
-LEAST_LEFT = 1e-3  # share of a wave below which nothing is said of how much it is
+LEAST_LEFT = 1e-3  # fraction of a wave, below which no number is shown
 SURFACES = (("sum", "radial sum"), ("fft", "square FFT"))
 
 
@@ -144,8 +144,8 @@ def weight_tables(readings: RadialReadings) -> tuple[Html, ...]:
         table((("buoyancy now", ""), *wet, ("buoyancy", "N")), forces),
         table((("mean upward force, 60 s", ""), ("weight", "N"), ("buoyancy", "N"), ("waves", "N"), ("drag", "N"),
                ("own motion", "N")), means),
-        faint("On average buoyancy carries the weight. Waves, drag and what the motion meets (added mass, radiated "
-              "waves, lines, a pull) push up and down; over a minute little of them remains."),
+        faint("On average buoyancy carries the weight. Waves, drag and reactions to the motion (added mass, "
+              "radiated waves, lines, a pull) push up and down, and nearly cancel over a minute."),
     )  # fmt: skip
 
 
@@ -241,7 +241,7 @@ def fluids_html(snapshot: Snapshot) -> Html:
 
 
 def surfaces_html(snapshot: Snapshot) -> Html:
-    """The lab's question 1.2-6, answered by measurement where that is asked for."""
+    """The lab's question 1.2-6, answered by measurement on request."""
     readings: RadialReadings = snapshot.readings
     if not readings.surfaces:
         return Html()

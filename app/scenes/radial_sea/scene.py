@@ -112,12 +112,12 @@ class RadialSeaScene:
     frame_interval = FRAME_INTERVAL
     pace = 1.0
     faster = "fewer bodies, fewer waves or a larger step"  # these take the time
-    note = ""  # it always runs what the parameters ask for
+    note = ""  # it never departs from the parameters
 
     def __init__(self, params: RadialSeaParams, live: "LiveCode | None" = None) -> None:
-        """live: runs a student's functions, where there are any.
+        """live: runs a student's functions, if any.
 
-        Raises ValueError where the parameters name a hull file that is not a closed mesh.
+        Raises ValueError if the parameters name a hull file that is not a closed mesh.
         """
         self.params = params
         self.student: StudentRadialSea | None = None
@@ -136,7 +136,7 @@ class RadialSeaScene:
         return self.params.time_step
 
     def reset(self) -> None:
-        """The bodies at rest in their places, and only the oil of the parameters."""
+        """Restart with the bodies at rest in their places, and only the oil of the parameters."""
         p = self.params
         self.time = 0.0
         self.column, self.age = self.fluids(p), exposure_of(p)
@@ -149,13 +149,13 @@ class RadialSeaScene:
             self.set_down_box(self.student)
         self.radiated_waves = RadiatedWaves()
         self.well_blowout = WellBlowout(p)
-        self.camera = (0.0, 0.0)  # [m] where the browser's camera is
+        self.camera = (0.0, 0.0)  # [m] place of the browser's camera
         self.foam, self.drawing = Foam(), DrawnSurface()
         self.set_grid()
         self.plot_rows.restart()
 
     def keep(self) -> dict[str, object]:
-        """Waves, bodies, their waves, fire and oil, as they are now."""
+        """Checkpoint of waves, bodies, their waves, fire and oil."""
         bodies = self.bodies
         return copied(
             {name: getattr(self, name) for name in CHANGING},
@@ -166,7 +166,7 @@ class RadialSeaScene:
         )
 
     def resume(self, kept: object) -> None:
-        """Go on from a checkpoint of `keep`."""
+        """Resume from a checkpoint of `keep`."""
         restore(self, kept)
         self.bodies.release_all()
         self.tile, self.drawing.drawn = None, ()
@@ -177,12 +177,12 @@ class RadialSeaScene:
             self.take_student(self.student)
 
     def make_bodies(self) -> FloatingBodies:
-        """The bodies that the parameters ask for, at rest in their places."""
+        """Make the bodies of the parameters, at rest in their places."""
         p = self.params
         return FloatingBodies(p.bodies, p.size, p.density, self.column, self.shape_of_file(), own_densities_of(p))
 
     def shape_of_file(self) -> Shape | None:
-        """The shape in the hull file that the parameters name, which is read once."""
+        """The shape in the parameters' hull file, which is read once."""
         file = self.params.hull, reading_of(self.params)
         if file != self.hull_file:
             self.file_shape = shape_from_file(file[0], reading=file[1]) if file[0] else None
@@ -190,7 +190,7 @@ class RadialSeaScene:
         return self.file_shape
 
     def set_grid(self) -> None:
-        """Make the radial grid that the parameters ask for, unless it is there."""
+        """Make the radial grid of the parameters, unless it exists."""
         p = self.params
         choice = (p.rings, p.spokes, p.ring_law)
         if choice != self.grid_choice:
@@ -199,7 +199,7 @@ class RadialSeaScene:
             self.drawing.forget_costs()
 
     def tile_now(self) -> Sea:
-        """The square sea, made where it is not there."""
+        """The square sea, made on first use."""
         if self.tile is None:
             self.tile = tile_of(self)
         return self.tile
@@ -216,7 +216,7 @@ class RadialSeaScene:
         other_fluids = column != self.column or exposure_of(params) != exposure_of(old)
         other_waves = choice != self.wave_choice
         self.column, self.wave_choice = column, choice
-        # Energy that oil took stays taken; only another age at the start, set by hand, begins anew.
+        # Energy lost to oil stays lost; only a new age at the start, set by hand, restarts.
         set_anew = params.spill != "none" and params.exposure != old.exposure
         if other_waves or other_fluids:
             waves = draw(choice) if other_waves else None
@@ -241,7 +241,7 @@ class RadialSeaScene:
         self.drawing.forget_costs()
 
     def fluids(self, params: RadialSeaParams) -> FluidColumn:
-        """The fluids that the parameters describe, by a student's functions where the sea runs by them."""
+        """The fluids of the parameters, by a student's functions if the sea uses them."""
         return column_of(params) if self.student is None else self.student.column(params)
 
     def take_student(self, student: "StudentRadialSea") -> None:
@@ -252,7 +252,7 @@ class RadialSeaScene:
         column = self.fluids(self.params)
         if changed & {"mixture_viscosity", "wave_decay"}:
             self.column, self.tile = column, None
-            self.sum.change(self.time, None, column, self.age)  # by the law of the student, as if from the start
+            self.sum.change(self.time, None, column, self.age)  # by the student's law, as if from the start
             self.bodies.set_fluids(self.params.density, column, own_densities_of(self.params))
         if "draft" in changed:
             self.set_down_box(student)
@@ -260,13 +260,13 @@ class RadialSeaScene:
         student.report(self.params, self.bodies)
 
     def set_down_box(self, student: "StudentRadialSea") -> None:
-        """Put the box as deep into the water as the student's draft says."""
+        """Put the box into the water at the student's draft."""
         box, draft = box_of(self.bodies), student.numbers.draft
         if box is not None and draft is not None:
             self.bodies.set_down(box, draft)
 
     def handle(self, command: SceneCommand) -> None:
-        """Drag bodies, and take the place of the camera."""
+        """Drag bodies, and note the place of the camera."""
         match command:
             case StudentAnswer() if self.student is not None:
                 self.take_student(self.student)
@@ -279,7 +279,7 @@ class RadialSeaScene:
 
     @kept_whole()
     def advance(self, steps: int) -> None:
-        """Take steps. Raises DivergenceError where a body's state is no longer finite."""
+        """Take steps. Raises DivergenceError if a body's state is no longer finite."""
         bodies, sea, h = self.bodies, self.sea, self.step
         coefficients = MotionCoefficients(gravity=self.column.gravity)
         self.sum.slick = self.well_blowout.cover(self.column)
@@ -307,7 +307,7 @@ class RadialSeaScene:
         self.well_blowout.step(sea, self.time, steps * h)
 
     def age_waves(self, duration: float) -> None:
-        """Let the waves decay under the oil for `duration` [s] more."""
+        """Let the waves decay under the oil for a further `duration` [s]."""
         self.age += duration
         due = self.age - sum(self.sum.past.values())
         if due >= AGEING_INTERVAL:
@@ -326,7 +326,7 @@ class RadialSeaScene:
     def add_plot_row(self, surface: float) -> None:
         """Add a plot row; `surface` [m] is the height of the sea at the first body."""
         bodies = self.bodies
-        draft = np.full(PLOTTED_BODIES, math.nan)  # of a body that is not there
+        draft = np.full(PLOTTED_BODIES, math.nan)  # of a missing body
         draft[: min(PLOTTED_BODIES, bodies.count)] = bodies.meters.draft[:PLOTTED_BODIES]
         self.plot_rows.add(self.time, *draft.tolist(), surface, float(bodies.fleet.position[0, 2]))
 
@@ -393,7 +393,7 @@ class RadialSeaScene:
         return None if spill is None else weather(spill)
 
     def curves(self) -> dict[str, Chart] | None:
-        """The chart of the oil budget, where it is open; the same one until spill or time change."""
+        """The chart of the oil budget, if it is open; the same object until spill or time change."""
         spill = spill_of(self.params) if self.params.plot_budget else None
         return None if spill is None else {"plot_budget": budget_chart(spill, self.params.spill_hours)}
 

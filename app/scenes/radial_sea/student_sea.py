@@ -26,7 +26,7 @@ WHAT = {
 WAVENUMBERS = np.geomspace(1e-3, 1e3, 121)  # [rad/m] of the table of decays
 SHOWN_WAVE = 2.0 * math.pi  # [rad/m] wavenumber of the wave of 1 m; the panel shows its decay
 LOST = 0.5  # exponent of the share of a wave that is left after the time that a decay is asked for, by Lamb's law
-LEAST = 1e-12  # share of a wave that is left at least: below, a rate cannot be determined
+LEAST = 1e-12  # fraction of a wave that is left at least: below, a rate cannot be determined
 
 
 class StudentNumbers(NamedTuple):

@@ -27,7 +27,7 @@ class RopeFrame(NamedTuple):
 class NumericalCost(NamedTuple):
     """Cost of an implicit method since it was chosen."""
 
-    corrections: float  # corrections a step, lately
+    corrections: float  # recent corrections a step
     numerical_dissipation: float  # [J] that the method took, negative where it fed the motion
     damping_dissipation: float  # [J] that the rope's own damping took
 

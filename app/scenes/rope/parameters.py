@@ -17,12 +17,12 @@ class RopeParams(SharedRopeParams):
     colour: str = in_look(
         "tension",
         choices={"tension": "Tension", "plain": "One colour"},
-        doc="Quantity that the colour of the rope shows",
+        doc="Quantity shown by the colour of the rope",
     )
     plot_energy: bool = in_plots(False, doc="Energies over time", title="Energy")
     plot_losses: bool = in_plots(
         False,
-        doc="Energy that damping has taken since the start, and the error of the account",
+        doc="Energy dissipated by damping since the start, and the numerical error",
         title="Dissipated energy",
     )
     plot_tip: bool = in_plots(False, doc="Height of the last point over time", title="Height of the tip")
@@ -51,7 +51,7 @@ ABOUT = {  # preset -> what it shows and what to try
     "Lab code: 10 points": "The rope of the course lab: raise the stiffness until it trembles.",
     "Lab scene: 50 points": "Fifty points, as in the pictures of the course lab, in real time.",
     "Euler explodes": "Explicit Euler adds energy in each step: see how long the rope lasts.",
-    "Lab's Euler": "Symplectic Euler, the method of the lab code, holds at the same step.",
+    "Lab's Euler": "Symplectic Euler, the method of the lab code, stays stable at the same step.",
     "Stiff rope": "Sixty points on stiff springs hardly stretch, and need 40 000 steps a second.",
     "Pendulum": "One point on a stiff spring: compare its period with that of a pendulum of 1 m.",
     "Over the sphere": "The rope falls over a sphere: move the sphere by its arrows.",

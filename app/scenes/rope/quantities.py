@@ -37,7 +37,7 @@ class RopeInstant(SceneInstant):
 
     @functools.cached_property
     def readings(self) -> RopeReadings:
-        """The readings, assessed anew: those of the scene are up to half a second old."""
+        """The readings, newly assessed: those of the scene are up to half a second old."""
         self.scene.assess_stability()
         return self.scene.readings()
 
@@ -99,7 +99,7 @@ QUANTITIES: Quantities = {
     "gravity_energy": for_sweeps("J", "Potential energy gained since the start", lambda now: now.gained),
     "contact_energy": for_sweeps("J", "Elastic energy of the contacts", lambda now: now.energy.contact),
     "dissipated_energy": for_sweeps(
-        "J", "Energy that damping took since the start", lambda now: now.scene.state.dissipated
+        "J", "Energy dissipated by damping since the start", lambda now: now.scene.state.dissipated
     ),
     "energy_error": for_sweeps(
         "J",

@@ -101,7 +101,7 @@ class RopeScene(NetScene[RopeParams]):
     stability: RopeReadings
 
     def __init__(self, params: RopeParams, live: "LiveCode | None" = None) -> None:
-        """live: runs a student's functions, where there are any."""
+        """live: runs a student's functions, if any."""
         if live is not None:
             from app.scenes.rope import student_rope  # only `springtide lab DIR` pays for it
 
@@ -139,7 +139,7 @@ class RopeScene(NetScene[RopeParams]):
             self.student.restart(rows_of(self.state.x), rows_of(self.state.v))
 
     def resume(self, kept: object) -> None:
-        """Go on from a checkpoint of `keep`."""
+        """Resume from a checkpoint of `keep`."""
         super().resume(kept)
         self.max_speed = np.inf
         self.assess_stability()
@@ -147,7 +147,7 @@ class RopeScene(NetScene[RopeParams]):
             self.student.begin(rows_of(self.state.x), rows_of(self.state.v), self.state.t)
 
     def change_forces(self, params: RopeParams) -> None:
-        """Take new parameters. The motion goes on, interpolated where the number of points changes."""
+        """Take new parameters. The motion continues, interpolated where the number of points changes."""
         old, self.params = self.params, params
         self.take_net(build(params, self.handles.root.position, self.handles.sphere.position))
         self.max_speed = np.inf

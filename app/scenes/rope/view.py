@@ -5,13 +5,15 @@ from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
 from app.formats.formatting import number
 from app.formats.packing import compile_packing
 from app.messages import Snapshot, Vector
 from app.render.coloured_mesh import ColouredMesh
+from app.render.handles.viser_inside import set_arrays
 from app.render.markup.html import Html, bold, fill
-from app.render.meshes import ball
+from app.render.meshes import ball, rod, tube_faces
 from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand
 from app.scenes.rope.frame import NumericalCost, RopeFrame, RopeReadings
@@ -28,7 +30,8 @@ REFERENCE_OPACITY = 0.35
 TUBE_STEP = 2.0**-15  # [m] to which points of the tube are rounded for the page
 REFERENCE_RADIUS = 1.35 * ROPE_RADIUS  # [m]: seen around the student's rope where both are in one place
 BEAD_COLOUR = (58, 68, 86)
-HOOK_COLOUR = (60, 66, 80)
+HANGER_COLOUR = (60, 66, 80)
+HANGER_RADIUS, HANGER_HEIGHT = 0.012, 25.0  # [m] of the rod that the root hangs from: it leaves the picture upwards
 SPHERE_ARROW_LENGTH = 0.45  # [m]
 SPHERE_ARROW_GAP = 0.08  # [m] between the top of the sphere and its arrows
 SHOWN_SHARE = 0.6  # of the picture's height that the rope takes at most as it hangs
@@ -92,6 +95,29 @@ class TensionRope(RopesDrawing):
         self.show_beads(frame.params.show_points, frame.grab)
 
 
+class Hanger:
+    """The rod from above that holds the root, with a ball at its end.
+
+    It moves by its vertices, as the rope does: a slow page applies positions of nodes at other times.
+    """
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        sphere, faces = ball(8)
+        straight = rod(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, HANGER_HEIGHT]]), HANGER_RADIUS)
+        self.vertices = np.concatenate([MAX_BEAD_RATIO * ROPE_RADIUS * sphere, straight]).astype(np.float32)
+        self.mesh = server.scene.add_mesh_simple(
+            "/hanger", self.vertices, np.concatenate([faces, tube_faces(2) + np.uint32(len(sphere))]),
+            color=HANGER_COLOUR, cast_shadow=False,
+        )  # fmt: skip
+        self.shown = np.zeros(3, np.float32)  # [m]
+
+    def show(self, root: NDArray[np.float32]) -> None:
+        """Move to the root (3,) [m]."""
+        if not np.array_equal(root, self.shown):
+            self.shown = root.copy()
+            set_arrays(self.mesh, vertices=self.vertices + self.shown)
+
+
 class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
     """Draws `RopeFrame`s."""
 
@@ -101,9 +127,7 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
     def __init__(self, server: viser.ViserServer, post: PostCommand) -> None:
         super().__init__(server, post)
         self.sphere = Sphere(server, post, SPHERE_ARROW_LENGTH, SPHERE_ARROW_GAP)
-        hook_radius = MAX_BEAD_RATIO * ROPE_RADIUS
-        self.hook = server.scene.add_mesh_simple("/hook", *ball(8), scale=hook_radius, color=HOOK_COLOUR)
-        self.shown_hook: Any = None
+        self.hanger = Hanger(server)
         self.reference = SecondNet(
             server, "/reference", "yours", color=REFERENCE_COLOUR, opacity=REFERENCE_OPACITY, receive_shadow=False
         )
@@ -121,19 +145,13 @@ class RopeView(RopesView[RopeParams, RopeFrame, RopeReadings]):
 
     def draw(self, frame: RopeFrame) -> TensionRope:
         """A drawing for the number of points of a frame."""
-        self.shown_hook = None
         return TensionRope(self.server, frame)
 
     def show(self, frame: RopeFrame) -> None:
         """Assign a new frame to the handles; call it where a picture is handed over as one."""
         self.show_ropes(frame, frame.points[None])
         p = frame.params
-        root = tuple(self.points[0].tolist())
-        # A slow page moves a node later than the vertices of the rope: while the root moves, the hook is not shown.
-        self.hook.visible = self.shown_hook in (None, root)
-        if root != self.shown_hook:
-            self.shown_hook = root
-            self.hook.position = root
+        self.hanger.show(self.points[0])
         self.sphere.show(frame.sphere, frame.sphere[:3] if frame.sphere and p.handles else None)
         if frame.reference is None:
             self.reference.hide()

@@ -1,4 +1,4 @@
-"""A spring network that left its bounds: its last frames, the cause, and settings that would hold."""
+"""Divergence of a spring network: its last frames, the cause, and stable settings."""
 
 import collections
 import math
@@ -15,12 +15,12 @@ from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
 from sim.springs.stability import Gauge
 
-MOMENTS = 60  # that are kept: a second at 60 frames a second
+MOMENTS = 60  # kept: a second at 60 frames a second
 MARGIN = 0.9  # of the largest stable step: the fastest motion of a run grows with its pulls
 FIRST_RATE = 60  # [1/s] steps a second; others are this times a power of two
-SHORTEST_STEP = 1e-5  # [s] that the parameter allows
+SHORTEST_STEP = 1e-5  # [s] least value of the parameter
 SYMBOLS = "; h: the step, ω: the highest frequency of the springs"
-MAX_OVERSHOOT = 3.0  # of the bounds, up to which a moment beyond them is kept too
+MAX_OVERSHOOT = 3.0  # of the bounds, up to which moments beyond them are kept too
 
 
 class LastMoments:
@@ -31,21 +31,21 @@ class LastMoments:
         self.frames: collections.deque[tuple[float, object, NDArray[np.float32]]] = collections.deque(maxlen=MOMENTS)
 
     def add(self, t: float, frame: object, points: NDArray[np.float32]) -> None:
-        """Keep the frame of time t [s], unless it is kept already. points: (..., 3) [m] that move."""
+        """Keep the frame of time t [s], unless it is kept already. points: (..., 3) [m] of the moving parts."""
         if not self.frames or self.frames[-1][0] < t:
             self.frames.append((t, frame, points.reshape(-1, 3)))
 
     def clear(self) -> None:
-        """The run begins again."""
+        """Clear the moments for a new run."""
         self.frames.clear()
 
     def __iter__(self) -> Iterator[LastFrame]:
-        """The moments, with the box about their points: only a divergence asks for it."""
+        """The moments, with the box about their points, which only a divergence needs."""
         return (LastFrame(t, frame, vector_of(x.min(axis=0)), vector_of(x.max(axis=0))) for t, frame, x in self.frames)
 
 
 def stability_number(value: float) -> str:
-    """h omega or its limit, with two decimals where that says enough."""
+    """h omega or its limit, with two decimals if these are enough."""
     return f"{value:.2f}" if 0.1 <= value < 100.0 else number(value, 2)
 
 
@@ -57,7 +57,7 @@ def limit_text(gauge: Gauge) -> str:
 
 
 def divergence_text(t: float, integrator: Integrator, step: float, gauge: Gauge, alternative: str) -> str:
-    """The sentences for the panel. t [s]; step [s]; alternative: another setting that would hold, or ""."""
+    """The sentences for the panel. t [s]; step [s]; alternative: another stable setting, or ""."""
     method = method_name(integrator.name)
     start = f"The run became unstable at t = {t:.2f} s: its time step was"
     limit = limit_text(gauge) + (SYMBOLS if gauge.omega else "")
@@ -79,7 +79,7 @@ def short_divergence_text(t: float, gauge: Gauge) -> str:
 
 
 def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
-    """The step at which leapfrog would hold; "" where that is no news."""
+    """Words on the step at which leapfrog is stable; "" if that is no news."""
     longest = INTEGRATORS["leapfrog"].stable_step(gauge.highest, 0.0)
     if integrator.name == "leapfrog" or not 0.0 < longest < math.inf:
         return ""
@@ -87,7 +87,7 @@ def leapfrog_alternative(integrator: Integrator, gauge: Gauge) -> str:
 
 
 def holding_step(step: float, gauge: Gauge) -> Advice | None:
-    """A time step, 1/n with a round n, that would have held in a run that diverged, or None."""
+    """A time step, 1/n with a round n, at which a diverged run would have been stable, or None."""
     largest = MARGIN * gauge.critical_step if gauge.share > 1.0 else step / 4
     if not SHORTEST_STEP <= largest < math.inf:
         return None

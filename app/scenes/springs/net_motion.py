@@ -38,7 +38,7 @@ class NetMotion:
         return self.net.families[0].stiffness
 
     def use(self, method: Integrator, step: float) -> None:
-        """Go on with this method and step [s]; its cost is counted from here on."""
+        """Continue with this method and step [s]; its cost is counted from here on."""
         if (method, step) == (self.method, self.step):
             return
         if method is not self.method:
@@ -48,7 +48,7 @@ class NetMotion:
         self.counted = self.state.force_evals, self.state.steps
 
     def change_net(self, net: Net, *, still_pins: bool = False) -> None:
-        """Go on with another net, interpolated if its points are others. The change is work.
+        """Continue with another net, interpolated if its points are others. The change is work.
 
         still_pins: pinned particles are at rest from here on.
         """

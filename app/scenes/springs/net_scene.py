@@ -66,7 +66,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @property
     def note(self) -> str:
-        """Reason why another method runs than the one chosen, or ""."""
+        """Reason why the method differs from the chosen one, or ""."""
         return "" if self.params.integrator == AUTO else self.fallback_note
 
     @property
@@ -76,11 +76,11 @@ class NetScene(abc.ABC, Generic[P]):
 
     @abc.abstractmethod
     def reset(self) -> None:
-        """Begin again with `params`."""
+        """Restart with `params`."""
 
     @abc.abstractmethod
     def net_during(self, t: float, duration: float) -> Net:
-        """The net with the motions that a user causes over the next `duration` [s] from time t [s]."""
+        """The net with the motions caused by a user over the next `duration` [s] from time t [s]."""
 
     @abc.abstractmethod
     def moved(self, good: State, steps: int, found: Extremes) -> None:
@@ -88,7 +88,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @abc.abstractmethod
     def assess_stability(self) -> None:
-        """Compare the step with its limit at the state as it is."""
+        """Compare the step with its limit at the present state."""
 
     @abc.abstractmethod
     def has_news(self) -> bool:
@@ -96,7 +96,7 @@ class NetScene(abc.ABC, Generic[P]):
 
     @abc.abstractmethod
     def alternative(self) -> str:
-        """Another setting that would hold, after a divergence; "" without one."""
+        """Another stable setting after a divergence; "" without one."""
 
     @abc.abstractmethod
     def add_plot_row(self) -> None:
@@ -123,7 +123,7 @@ class NetScene(abc.ABC, Generic[P]):
         return copied({name: getattr(self, name) for name in self.CHANGING})
 
     def resume(self, kept: object) -> None:
-        """Go on from a checkpoint of `keep`."""
+        """Resume from a checkpoint of `keep`."""
         restore(self, kept)
         self.choose_method()
         self.grab.clear()
@@ -132,7 +132,7 @@ class NetScene(abc.ABC, Generic[P]):
         self.recent.clear()
 
     def take_net(self, net: Net, *, still_pins: bool = False) -> None:
-        """Go on with another net, as `NetMotion.change_net` does."""
+        """Continue with another net, as `NetMotion.change_net` does."""
         self.recent.clear()
         if net.shape != self.net.shape:
             self.grab.clear()
@@ -140,19 +140,19 @@ class NetScene(abc.ABC, Generic[P]):
         self.choose_method()
 
     def choose_method(self) -> None:
-        """Go on with the method and step of the parameters, or with another method if the net does not allow it."""
+        """Continue with the method and step of the parameters, or another method if the net does not allow it."""
         method, self.fallback_note = integrator_or_fallback(self.params.integrator, self.net, self.step)
         self.motion.use(method, self.step)
 
     def advance(self, steps: int) -> None:
-        """Take steps. Raises DivergenceError where the net leaves its bounds, and keeps the last good state."""
+        """Take steps. Raises DivergenceError if the net leaves its bounds, and keeps the last good state."""
         self.add_due_row()  # of the start
         motion, good = self.motion, self.state  # which is shown in the middle of the steps
         state = good.copy()
         net = self.net_during(good.t, steps * self.step)
         try:
             net = self.take_steps(net, state, steps)
-        finally:  # where it is ended early the steps that were taken count
+        finally:  # the steps before a cancellation count
             found = extremes(state.x, state.v)
             if motion.holds(found):
                 motion.state = state
@@ -176,22 +176,22 @@ class NetScene(abc.ABC, Generic[P]):
         return net
 
     def repeat_to_divergence(self, net: Net, good: State, steps: int) -> None:
-        """Take the steps that left the bounds once more, keep a frame of each, and go back to the last good state."""
+        """Repeat the steps that left the bounds, keep a frame of each, and return to the last good state."""
         motion = self.motion
         motion.state = good.copy()
         try:
             for _ in range(steps):
                 motion.take_steps(net, self.state, 1, with_account=self.with_account)
                 found = extremes(self.state.x, self.state.v)
-                if found.reach < MAX_OVERSHOOT * motion.max_reach:  # false of a NaN as well
+                if found.reach < MAX_OVERSHOOT * motion.max_reach:  # false for NaN too
                     self.frame()
                 if not motion.holds(found):
                     break
-        finally:  # it may be ended early
+        finally:  # it may be cancelled
             motion.state = good
 
     def diagnosis(self) -> str:
-        """Cause of the divergence, and settings that would hold."""
+        """Cause of the divergence, and settings that would be stable."""
         return divergence_text(self.time, self.motion.method, self.step, self.stability.stability, self.alternative())
 
     def take_plot_rows(self) -> tuple[PlotRow, ...]:

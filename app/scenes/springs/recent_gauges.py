@@ -31,7 +31,7 @@ class RecentGauges(Generic[R]):
         self.readings.clear()
 
     def worst(self, t: float, readings: R) -> R:
-        """The readings with the largest share of the stable step among these, of time t [s], and those before."""
+        """The readings with the largest fraction of the stable step among these, of time t [s], and those before."""
         self.readings.append((t, readings))
         while self.readings[0][0] < t - SPAN:
             self.readings.popleft()

@@ -7,7 +7,6 @@ both at the moment that the student's has reached, so that what differs is the n
 import collections
 import math
 import queue
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,7 +119,7 @@ class StudentNet:
         table = np.array(self.rows).reshape(-1, 2)
         self.live.report = self.live.report._replace(
             version=done.saved.number, own=done.own, compiled=done.compiled, method=self.method, unlike=self.unlike,
-            sphere=any(segment.forces.radius > 0.0 for segment in segments),
+            sphere=any(segment.forces.sr > 0.0 for segment in segments),
             seconds=march.step_time, step=segments[-1].h,
             behind=sum(segment.steps * segment.h for segment in self.waiting),
             left_at=self.time if left else math.nan, difference=self.rows[-1][1] if self.rows else math.nan,
@@ -149,19 +148,14 @@ def divided(segment: Segment) -> list[Segment]:
 
 def forces_of(net: Net, start: float) -> Forces:
     """Material and surroundings of a net at a time [s]."""
-    p = net.kernel_view(1.0)
-    link, seconds = net.families[0], start - p.epoch
-    centre = p.sx + seconds * p.svx, p.sy + seconds * p.svy, p.sz + seconds * p.svz
-    return Forces(
-        p.mass, link.stiffness, link.damping, p.drag, link.rest, -p.gz, p.floor if p.has_floor else -math.inf,
-        p.sr if p.has_sphere else 0.0, centre, (p.svx, p.svy, p.svz), p.contact_k, p.contact_b, p.friction,
-        p.lab_contact, p.grabbed, (p.grab_x, p.grab_y, p.grab_z), p.grab_k, p.grab_b, p.grab_max,
-        declared=tuple((OWN[type(one)].name, tuple(map(float, one))) for one in net.forces), began=start,
-    )._replace(**air_of(p))  # fmt: skip
-
-
-def air_of(p: Any) -> dict[str, Any]:
-    """Air forces on a net, as its kernels take them."""
+    p, link = net.kernel_view(1.0), net.families[0]
+    given = {name: getattr(p, name) for name in p._fields if name in Forces._fields}
+    given |= {"stiffness": link.stiffness, "damping": link.damping, "rest_length": link.rest, "gravity": -p.gz}
+    if not p.has_floor:
+        given["floor"] = -math.inf
+    if not p.has_sphere:
+        given["sr"] = 0.0
     if not getattr(p, "has_air", False):  # a rope has none
-        return {}
-    return {"wind": (p.wind_x, p.wind_y, p.wind_z), "air_drag": p.air_drag, "air_lift": p.air_lift}
+        given |= {"air_drag": 0.0, "air_lift": 0.0}
+    declared = tuple((OWN[type(one)].name, tuple(map(float, one))) for one in net.forces)
+    return Forces(**given)._replace(epoch=p.epoch - start, declared=declared, began=start)

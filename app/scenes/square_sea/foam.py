@@ -9,12 +9,12 @@ from app.scenes.square_sea.foam_limit import FoamLimit
 from app.scenes.square_sea.parameters import SquareSeaParams
 from app.scenes.square_sea.tile_mesh import Fields, set_mesh_of
 from sim.ocean import Sea
-from sim.ocean.statistics.foam import pace
+from sim.ocean.statistics.foam import slope_and_frequency
 
-PACE_INTERVAL = 0.5  # [s] of simulated time between two calculations of the sea's slope and frequency
+SLOPE_INTERVAL = 0.5  # [s] of simulated time between two calculations of the sea's slope and frequency
 
 
-class WavePace:
+class WaveSlope:
     """Slope of the waves and the frequency at which it changes, found anew now and then."""
 
     def __init__(self) -> None:
@@ -25,12 +25,12 @@ class WavePace:
 
     def update(self, sea: Sea, t: float, amplitude: float) -> bool:
         """Find them at time t [s] if they are out of date; True if it was necessary."""
-        if abs(t - self.found_at) < PACE_INTERVAL:
+        if abs(t - self.found_at) < SLOPE_INTERVAL:
             return False
         waves = (sea.version, amplitude) if sea.is_steady(t) else None
         is_new = waves is None or waves != self.found_of
         if is_new:
-            self.slope, self.frequency = pace(sea, t)
+            self.slope, self.frequency = slope_and_frequency(sea, t)
             self.slope_left = sea.slope_left(t) * min(amplitude, 1.0) ** 2
         self.found_at, self.found_of = t, waves
         return is_new
@@ -45,7 +45,7 @@ class MeshFoam:
         self.cover, self.limit = 0.0, FoamLimit()  # fraction of the mesh that is foam
 
     def make_mesh(
-        self, fields: Fields, p: SquareSeaParams, dt: float, waves: WavePace, expected: float
+        self, fields: Fields, p: SquareSeaParams, dt: float, waves: WaveSlope, expected: float
     ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Vertices (n, n, 3) [m] and slopes (n, n, 2) of a sea, dt [s] after the last one, with its foam.
 

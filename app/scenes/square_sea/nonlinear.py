@@ -106,7 +106,7 @@ class Marching:
         self.sea.advance(max(t, self.sea.time))
 
     def resize(self, p: SquareSeaParams) -> None:
-        """Go on on the grid of the parameters."""
+        """Continue on the grid of the parameters."""
         n = solved_points(p)
         self.sea = self.sea.resized((n, 1 if self.sea.size[1] == 1 else n))
 

@@ -64,7 +64,7 @@ class SquareSeaParams:
     gravity: float = in_main(9.81, 0.01, 1000.0, "m/s²", "Gravity", log_from=0.01)
     view: str = in_main("deck", choices=VIEW_TITLES, doc="Place of the camera", affects="look")
 
-    spectrum: str = in_waves("pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum that the waves are drawn from")
+    spectrum: str = in_waves("pierson_moskowitz", choices=SPECTRUM_TITLES, doc="Spectrum of the waves")
     wind_direction: float = in_main(20.0, -180.0, 180.0, "°", "Direction that the wind blows to, from +x towards +y")
     transition: float = in_waves(
         3.0, 0.0, 600.0, "s", "Time for the sea to adapt to new weather", log_from=0.1, title="Time to adapt"
@@ -145,7 +145,7 @@ class SquareSeaParams:
     gauge: bool = in_look(True, doc="Draw the wave gauge, a buoy", title="Wave gauge")
     sky: str = in_look("park", choices=SKY_TITLES, doc="Sky and its light")
     sun: float = in_look(18.0, -180.0, 180.0, "°", "Direction of the sun, from +x towards +y", title="Sun direction")
-    clouds: float = in_look(0.4, 0.0, 1.0, "", "Fraction of the sky that clouds cover", title="Cloud cover")
+    clouds: float = in_look(0.4, 0.0, 1.0, "", "Fraction of the sky covered by clouds", title="Cloud cover")
     daylight: float = in_look(0.85, 0.05, 3.0, "", "Brightness", title="Brightness")
     visibility: float = in_look(3000.0, 50.0, 20000.0, "m", "Distance at which haze hides the sea", log_from=50.0)
 
@@ -155,7 +155,7 @@ class SquareSeaParams:
     )
     plot_wave_spectrum: bool = in_plots(False, doc="Spectrum at the wave gauge beside theory", title="Wave spectrum")
 
-    spectrum_file: str = ""  # a measured spectrum; it is named on the command line only, never by a browser
+    spectrum_file: str = ""  # a measured spectrum; named on the command line only, never by a browser
     spectrum_time: str = ""  # of its record, "" for the last one
 
 
@@ -203,7 +203,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     },
 }  # fmt: skip
 
-ABOUT = {  # preset -> what it shows and what to try
+ABOUT = {  # preset -> a sentence: its subject and something to try
     "Earth breeze": "Waves of a breeze on the Earth: turn the wind up, or choose another planet.",
     "Storm arriving": "A storm raises waves, foam and rain on a calm sea within 20 s.",
     "Storm over": "A storm dies down within 20 s, at sunset.",
@@ -218,7 +218,7 @@ ABOUT = {  # preset -> what it shows and what to try
 
 
 class RogueRecord(NamedTuple):
-    """A rogue wave as it was measured."""
+    """A measured rogue wave."""
 
     height: float  # [m] significant
     crest: float  # [m]
@@ -229,7 +229,7 @@ DRAUPNER = RogueRecord(11.9, 18.5, (12.0, 13.0))  # 1 January 1995, from the las
 
 
 class RainSettings(NamedTuple):
-    """Parameters of the rainfall: when one of these changes, it starts again."""
+    """Parameters of the rainfall: a change of one restarts it."""
 
     rate: float  # [mm/h]
     drops: int  # largest number of drops drawn
@@ -241,7 +241,7 @@ class RainSettings(NamedTuple):
 
 
 def marches(params: SquareSeaParams) -> bool:
-    """True if the sea is solved step by step, in place of the sum of linear waves, which is known at all times."""
+    """True if the sea is solved step by step; the sum of linear waves is known at all times."""
     return params.order > 1 or params.start in MARCHING_STARTS
 
 
@@ -251,7 +251,7 @@ def is_draupner(params: SquareSeaParams) -> bool:
 
 
 def sea_of(params: SquareSeaParams) -> tuple[object, ...]:
-    """The parameters and conditions that decide the heights of its waves."""
+    """The parameters and conditions that determine the heights of its waves."""
     return params.start, params.order, params.length, params.amplitude, params.seed, conditions(params)
 
 
@@ -262,12 +262,12 @@ def draupner_sea() -> tuple[object, ...]:
 
 
 def acting(params: SquareSeaParams) -> SquareSeaParams:
-    """The parameters with those replaced that have no effect where the sea is solved."""
+    """The parameters, with those replaced that have no effect on a solved sea."""
     return dataclasses.replace(params, **LINEAR_ONLY) if marches(params) else params
 
 
 def solved_points(p: SquareSeaParams) -> int:
-    """Points a side of the grid that is solved; of long-crested waves, along x alone."""
+    """Points along a side of the solved grid; of long-crested waves, along x alone."""
     size = int(p.size)
     if not marches(p) or p.start in LONG_CRESTED_STARTS:
         return size
@@ -275,7 +275,7 @@ def solved_points(p: SquareSeaParams) -> int:
 
 
 def gauge_home(params: SquareSeaParams) -> tuple[float, float]:
-    """Initial place of the wave gauge [m], until a click moves it: near the camera, or where a high wave is to come."""
+    """Initial place of the wave gauge [m], until a click moves it: near the camera, or at a coming high wave."""
     x, y = (
         math.copysign(min(abs(share) * params.length, math.inf if marches(params) else limit), share)
         for share, limit in zip(GAUGE_OFFSET_SHARE, MAX_GAUGE_OFFSET, strict=True)
@@ -320,7 +320,7 @@ def rain_settings(params: SquareSeaParams) -> RainSettings:
 
 
 def hidden(params: SquareSeaParams) -> set[str]:
-    """Names of the parameters that have no effect while the others are as they are."""
+    """Names of the parameters without effect beside the present others."""
     names = unused_waves(params)
     if params.planet != "by mass":
         names |= {"planet_mass", "radius_rule"}

@@ -169,9 +169,7 @@ QUANTITIES: Quantities = {
     ),
     "skewness": for_sweeps("1", "Skewness of the heights of the drawn sea", lambda now: now.moments[0]),
     "kurtosis": for_sweeps("1", "Kurtosis of the heights of the drawn sea", lambda now: now.moments[1]),
-    "breaking_loss": for_sweeps(
-        "J/m²", "Energy that breaking has taken since the start", lambda now: now.breaking_loss
-    ),
+    "breaking_loss": for_sweeps("J/m²", "Energy lost by breaking since the start", lambda now: now.breaking_loss),
     **{name: one._replace(value=of_report(one.value)) for name, one in EXPECTED.items()},
     "gravity_here": for_tasks("m/s²", "Gravity", lambda now: gravity(now.frame.params)),
     "gravity_light": for_tasks("m/s²", "Gravity of 1/100 Earth mass", lambda now: gravity_of(LIGHT, "same_density")),

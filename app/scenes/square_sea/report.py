@@ -29,7 +29,7 @@ HEIGHT = (
 )
 CREST = "The highest crest of the tile now. Theory: the most probable highest crest of as many waves."
 MOMENTS = (
-    "Skewness is above 0 where crests are higher than troughs are deep. Kurtosis is above 3 where high waves are many."
+    "Skewness is above 0 if crests are higher than troughs are deep. Kurtosis is above 3 if high waves are frequent."
 )
 SLOPE = "Mean square slope: the mean of the squared slope of the water, on which its glitter depends."
 BAND_WIDTH = 2.0  # standard deviations to each side: 95 of 100 seas lie within
@@ -87,7 +87,7 @@ def heights_table(r: Report, frame: SeaFrame) -> Html:
             ("kurtosis", bold(fixed(found.kurtosis, 2)), "3", fixed(t.kurtosis, 2)),
         ),
     )
-    return join((measured, faint(f"Breaking has taken {percent(found.lost)} of the energy.")))
+    return join((measured, faint(f"Breaking has dissipated {percent(found.lost)} of the energy.")))
 
 
 def draupner_table(r: Report, highest: Highest) -> Html:
@@ -123,7 +123,7 @@ def foam_text(r: "SeaReadings", g: float) -> str:
 
 
 def breaking_text(params: SquareSeaParams) -> str:
-    """A warning where the waves are too high for the depth; "" where they are not."""
+    """A warning where the waves are too high for the depth; "" if they are not."""
     if params.deep:
         return ""
     height = here(params).height
@@ -244,7 +244,7 @@ def order_line(params: SquareSeaParams, frame: SeaFrame) -> str:
     """Line under the order: the highest crest, or the solver."""
     if frame.highest is not None:
         return f"{highest_text(frame.highest)}, at t = {frame.highest.time:.1f} s"
-    return "solved step by step; new weather begins it again" if marches(params) else "a sum of linear waves"
+    return "solved step by step; new weather restarts it" if marches(params) else "a sum of linear waves"
 
 
 def wind_line(params: SquareSeaParams) -> str:
@@ -281,7 +281,7 @@ def viscosity_line(params: SquareSeaParams, area: float) -> str:
     if length > 0.0 and is_weak(1.0 / length, params.viscosity, gravity(params)):
         so_far = f"; the decay so far is that of the lab's length l = {metres(length, 2)}"
     if params.viscosity == 0.0:
-        return f"no decay{so_far}; a reset gives the waves back" if so_far else "no decay"
+        return f"no decay{so_far}; a reset restores the waves" if so_far else "no decay"
     omega, decay = viscous_root(2.0 * math.pi, params.viscosity, gravity(params))
     how = "a wave of 1 m" if omega > 0.0 else "1 m is too short to swing: such a hump"
     return f"{how} falls to 37 % in {seconds(1.0 / float(decay), 2)}{so_far}"

@@ -15,7 +15,7 @@ from app.scenes.checkpoints import copied, restore
 from app.scenes.contract import Pieces
 from app.scenes.packed_surface import SentSurface
 from app.scenes.plot_rows import PlotRows
-from app.scenes.square_sea.foam import MeshFoam, WavePace
+from app.scenes.square_sea.foam import MeshFoam, WaveSlope
 from app.scenes.square_sea.frame import SeaFrame, SeaReadings
 from app.scenes.square_sea.parameters import (
     DRAUPNER,
@@ -66,17 +66,18 @@ def warm_up() -> Pieces:
 def compile_drawn_sea() -> None:
     """Call all kernels of a small sea with rain."""
     small = SquareSeaParams(size="64", mesh="32", length=64.0, rain=50.0, plot_wave_spectrum=True)
-    for params in (small, SquareSeaParams(**{**vars(small), "choppiness": 0.0})):
-        scene = SquareSeaScene(params)
-        for _ in range(4):
-            scene.advance(30)
-            scene.frame()
+    call_kernels(small, dataclasses.replace(small, choppiness=0.0))
 
 
 def compile_nonlinear_sea() -> None:
     """Call all kernels of both kinds of nonlinear sea."""
     small = SquareSeaParams(size="64", mesh="32", length=64.0, order=3, wind_speed=15.0)
-    for params in (small, dataclasses.replace(small, start="breather", spectrum="regular")):
+    call_kernels(small, dataclasses.replace(small, start="breather", spectrum="regular"))
+
+
+def call_kernels(*seas: SquareSeaParams) -> None:
+    """Advance seas by some frames."""
+    for params in seas:
         scene = SquareSeaScene(params)
         for _ in range(4):
             scene.advance(30)
@@ -96,15 +97,15 @@ def needs(params: SquareSeaParams) -> tuple[str, ...]:
 class SquareSeaScene:
     """The sea on the simulation thread.
 
-    Linear waves are analytic in time: a step only moves the clock. Nonlinear ones are solved step by step; `sea` is
+    Linear waves are analytic in time: a step only moves the clock. Nonlinear waves are solved step by step; `sea` is
     then the linear sea of the same conditions, for theory.
     """
 
     faster = "a smaller grid"
-    note = ""  # it always runs what the parameters ask for
+    note = ""  # it never departs from the parameters
 
     def __init__(self, params: SquareSeaParams, live: "LiveCode | None" = None, step: float = STEP) -> None:
-        """live: runs a student's functions, where there are any. step: of the clock [s]."""
+        """live: runs a student's functions, if any. step: of the clock [s]."""
         self.params, self.step = params, step
         self.student: StudentSea | None = None
         if live is not None:
@@ -127,7 +128,7 @@ class SquareSeaScene:
         return 1.0 / self.params.frame_rate
 
     def reset(self) -> None:
-        """The sea at time 0, with the wave gauge where a new scene has it."""
+        """Restart the sea at time 0, with the wave gauge at its initial place."""
         self.steps, self.gauge_placed = 0, False  # placed: by a click
         self.gauge.put(gauge_home(self.params))
         self.begin_plots()
@@ -135,11 +136,11 @@ class SquareSeaScene:
         self.read_gauge()  # for the row of the start
 
     def keep(self) -> dict[str, object]:
-        """Sea, foam and rain, as they are now."""
+        """Checkpoint of sea, foam and rain."""
         return copied({name: getattr(self, name) for name in CHANGING}, self.foam.values)
 
     def resume(self, kept: object) -> None:
-        """Go on from a checkpoint of `keep`; the wave gauge keeps its place and forgets later values."""
+        """Resume from a checkpoint of `keep`; the wave gauge keeps its place and drops later values."""
         restore(self, kept)
         while self.gauge.trace and self.gauge.trace[-1][0] > self.time:
             self.gauge.trace.pop()
@@ -157,7 +158,7 @@ class SquareSeaScene:
         self.gauge.trace.clear()
 
     def make_sea(self) -> None:
-        """Make the sea at time 0. If `start` is a calm or a storm, it starts so and changes to the weather set."""
+        """Make the sea at time 0. If `start` is a calm or a storm, it begins so and changes to the set weather."""
         p = self.params
         start_wind = None if marches(p) else START_WIND_SPEEDS.get(p.start)
         self.sea = Sea(int(p.size), p.length, seed=p.seed, **conditions(p, start_wind))
@@ -175,7 +176,7 @@ class SquareSeaScene:
         self.make_rainfall()
 
     def begin_marching(self) -> None:
-        """Begin a nonlinear sea at the present time, where there is to be one."""
+        """Begin a nonlinear sea at the present time, if the parameters need one."""
         self.marching: Marching | None = None
         if marches(self.params):
             from app.scenes.square_sea import nonlinear  # only nonlinear waves pay for it
@@ -192,11 +193,11 @@ class SquareSeaScene:
 
     @property
     def water(self) -> "tuple[Sea | NonlinearSea, float]":
-        """The sea that is drawn, and its time [s]: a nonlinear one may have stopped before the clock."""
+        """The drawn sea, and its time [s]: a nonlinear one may have stopped before the clock."""
         return (self.sea, self.time) if self.marching is None else (self.marching.sea, self.marching.sea.time)
 
     def make_rainfall(self) -> None:
-        """Make the rain that the parameters ask for."""
+        """Make the rain of the parameters."""
         p = self.params
         self.rainfall: SeaRain | None = None
         if p.rain > 0.0:
@@ -206,7 +207,7 @@ class SquareSeaScene:
     def clear_mesh(self) -> None:
         """Start a new drawn mesh, without foam."""
         n = min(int(self.params.mesh), solved_points(self.params))
-        self.foam, self.waves = MeshFoam(n), WavePace()
+        self.foam, self.waves = MeshFoam(n), WaveSlope()
         self.drawn: SeaFrame | None = None
         self.drawn_at = self.time
         self.statistics.measured_at, self.statistics.earlier_height = -math.inf, None
@@ -233,9 +234,9 @@ class SquareSeaScene:
             self.make_rainfall()
 
     def change_sea(self, transition: float, foam_cover: float, viscosity: float) -> None:
-        """Let the sea adapt to its conditions in this time [s]; a nonlinear one begins again with them.
+        """Let the sea adapt to its conditions in this time [s]; a nonlinear one restarts with them.
 
-        foam_cover: fraction of the sea that is foam now, if no wave is damped. viscosity: [m2/s] until now.
+        foam_cover: present fraction of foam without damping. viscosity: [m2/s] until now.
         """
         self.sea.change(self.time, transition, **self.conditions())
         self.begin_marching()
@@ -244,7 +245,7 @@ class SquareSeaScene:
         self.waves.found_at = self.statistics.measured_at = -math.inf
 
     def conditions(self) -> dict[str, Any]:
-        """The arguments of `Sea.change`, by a student's functions where the sea runs by them."""
+        """The arguments of `Sea.change`, from a student's functions if the sea uses them."""
         return conditions(self.params) if self.student is None else self.student.conditions(self.params)
 
     def take_student(self, student: "StudentSea") -> None:
@@ -261,7 +262,7 @@ class SquareSeaScene:
         student.report(self.params)
 
     def handle(self, command: SceneCommand) -> None:
-        """A click on the water places the wave gauge there."""
+        """Place the wave gauge at a click on the water."""
         match command:
             case StudentAnswer() if self.student is not None:
                 self.take_student(self.student)
@@ -293,7 +294,7 @@ class SquareSeaScene:
         return self.gauge_placed or p.gauge or p.plot_wave_gauge or p.plot_wave_spectrum
 
     def frame(self) -> SeaFrame:
-        """The sea as it is now; a surface that has not changed is not evaluated again."""
+        """Frame of the present sea; an unchanged surface is not evaluated again."""
         p, drawn = self.params, self.drawn
         if (
             drawn is None
@@ -332,7 +333,7 @@ class SquareSeaScene:
         return frame._replace(rain=rain, gauge=gauge, highest=fields.highest)
 
     def fields(self) -> Fields:
-        """The fields of the sea as it is now."""
+        """The fields of the present sea."""
         if self.marching is not None:
             return self.marching.fields(self.params)
         surface = self.sea.surface(self.time)
@@ -341,12 +342,12 @@ class SquareSeaScene:
     def make_frame(self, fields: Fields, dt: float) -> SeaFrame:
         """The mesh of these fields with the foam of the last one faded over dt [s]."""
         p = self.params
-        self.counts["paces"] += self.waves.update(self.sea, self.time, p.amplitude)
+        self.counts["slopes"] += self.waves.update(self.sea, self.time, p.amplitude)
         vertices, slopes = self.foam.make_mesh(fields, acting(p), dt, self.waves, self.expected_foam_cover(self.time))
         return SeaFrame(p, self.time, vertices, slopes, self.foam.values, self.waves.slope, None, None, SentSurface())
 
     def update_spectrum(self) -> None:
-        """The spectrum at the wave gauge, where it is shown and out of date."""
+        """Update the spectrum at the wave gauge, if it is shown and out of date."""
         p, t = self.params, self.time
         if p.plot_wave_spectrum and abs(t - self.spectrum_at) >= INTERVAL:
             columns = self.gauge.spectrum(self.sea, t, p.amplitude)

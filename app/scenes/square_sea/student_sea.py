@@ -57,7 +57,7 @@ class StudentSea(TableUser):
         return gravity(p) if table is None else float(table.values[0])
 
     def collect(self, p: SquareSeaParams) -> float | None:
-        """Take the tables that there are. In how long [s] the sea is to adapt to them; None where nothing changed."""
+        """Take the tables that there are. In how long [s] the sea is to adapt to them; None if nothing changed."""
         changed = self.take()
         if not changed:
             return None

@@ -92,7 +92,7 @@ def camera_of(params: SquareSeaParams) -> tuple[Vector, Vector]:
 
 @functools.lru_cache(maxsize=8)
 def rain_look(rate: float, gravity: float) -> tuple[tuple[float, float, float], float]:
-    """The rings and the extinction [1/m] of `Material` in rain of this rate [mm/h]; they are asked for each frame."""
+    """The rings and the extinction [1/m] of `Material` in rain of this rate [mm/h]; needed in each frame."""
     length, speed = ring_wave(gravity, SURFACE_TENSION, SEA_DENSITY)
     # Half of what drops take away they diffract by less than a degree: that part hides nothing.
     return (ring_flux(rate, gravity), length, speed), 0.5 * rainfall(rate, gravity).extinction

@@ -1,4 +1,4 @@
-"""Time of one loop: how long its ticks take, when controls have waited for too long, and the steps that fit a frame."""
+"""Time of one loop: the duration of ticks, the waiting time of controls, and the steps that fit a frame."""
 
 import contextlib
 from collections.abc import Callable, Generator
@@ -9,14 +9,14 @@ from app.scenes.timer import TIMER_STEP
 
 Clock: TypeAlias = Callable[[], float]  # [s]
 
-PATIENCE = 0.03  # [s] of a solve, after which controls are answered in the middle of it, and again after as much
-LATE_FRAMES = 16.0  # ratio of the frame interval to the time by which sleeps end too late, at least
-MAX_FRAME_INTERVAL = 0.1  # [s] that a busy machine may lead to
+PATIENCE = 0.03  # [s] of a solve between two times at which controls are handled
+LATE_FRAMES = 16.0  # least ratio of the frame interval to the lateness of sleeps
+MAX_FRAME_INTERVAL = 0.1  # [s] on a busy machine
 LATENESS_WEIGHT = 0.1  # of the last sleep in the mean
 SOLVE_SHARE = 0.7  # part of a frame that solving may take; the rest is for streaming
 PART_GROWTH = 8  # ratio of two successive parts of a frame's steps while the cost of a step is not known
 MAX_LONG_FRAME = 2 * FRAME_INTERVAL  # [s] after a sleep that ended late
-MAX_CATCH_UP = 0.5  # [s] of wall time that one tick makes up for: on a busy machine sleeps end late by tenths
+MAX_CATCH_UP = 0.5  # [s] of wall time that one tick makes up for: on a busy machine sleeps end tenths of a second late
 
 
 class TickClock:
@@ -27,14 +27,14 @@ class TickClock:
         self.now, self.effort, self.sleep, self.gives_way = now, effort, sleep, gives_way
         self.wall = 0.0  # [s] of all ticks
         self.busy_since: float | None = None  # [s] of `now`, while a tick runs
-        self.tick_time = 0.0  # [s] that the last tick took
-        self.lateness = 0.0  # [s] by which sleeps lately ended too late, as others had the processor
+        self.tick_time = 0.0  # [s] duration of the last tick
+        self.lateness = 0.0  # [s] recent lateness of sleeps, due to other programs
         self.turn_at = 0.0  # [s] of `now`, when controls were last answered
-        self.in_turn = False  # controls are being answered in the middle of a solve
+        self.in_turn = False  # controls are being handled during a solve
         self.is_late = False  # commands were handled in this tick, or in the last one
 
     def begin_tick(self, wall: float) -> bool:
-        """A tick begins, `wall` seconds after the last; True where controls were answered in the middle of that."""
+        """Begin a tick, `wall` seconds after the last; True if controls were handled during that."""
         self.wall += wall
         was_late, self.is_late = self.is_late, False
         self.begin_work()
@@ -42,16 +42,16 @@ class TickClock:
         return was_late
 
     def end_tick(self) -> None:
-        """The tick has ended."""
+        """End the tick."""
         self.tick_time = self.busy_time
         self.end_work()
 
     def begin_work(self) -> None:
-        """Note that work begins that may take long; controls have been answered."""
+        """Note the start of work that may take long; controls have been handled."""
         self.busy_since = self.turn_at = self.now()
 
     def end_work(self) -> None:
-        """Note that the work has ended."""
+        """Note the end of the work."""
         self.busy_since = None
 
     @property
@@ -62,7 +62,7 @@ class TickClock:
 
     @property
     def takes_long(self) -> bool:
-        """True if controls may have to be answered in the middle of a tick soon."""
+        """True if controls may soon have to be handled during a tick."""
         return self.busy_since is not None or self.tick_time > 0.5 * PATIENCE
 
     def turn_is_due(self) -> bool:
@@ -71,7 +71,7 @@ class TickClock:
 
     @contextlib.contextmanager
     def turn(self) -> Generator[None]:
-        """Inside, controls are answered in the middle of a solve."""
+        """Context in which controls are handled during a solve."""
         self.in_turn, self.turn_at = True, self.now()
         # A turn that was due at the start of a short tick is no reason for one in the next.
         self.is_late |= self.busy_since is not None and self.turn_at - self.busy_since >= PATIENCE
@@ -81,13 +81,13 @@ class TickClock:
             self.in_turn = False
 
     def end_sleep(self, now: float, wanted: float) -> None:
-        """Record that a sleep that was to end at `wanted` [s] ends `now` [s]."""
+        """Record a sleep that should have ended at `wanted` [s] and ends `now` [s]."""
         self.lateness += LATENESS_WEIGHT * (max(0.0, now - wanted - TIMER_STEP) - self.lateness)
 
     def frame_interval(self, scene: float) -> float:
         """Time [s] between frames: longer on a busy hub, whose processor all labs need for their controls.
 
-        scene: what the scene asks for [s].
+        scene: interval requested by the scene [s].
         """
         late = LATE_FRAMES * self.lateness if self.gives_way else 0.0
         return max(scene, min(late, MAX_FRAME_INTERVAL))
@@ -98,15 +98,15 @@ class FixedStep:
 
     def __init__(self) -> None:
         self.debt = 0.0  # [s] of simulated time not yet stepped
-        self.cost = 0.0  # [s] of processor time that a step takes, lately
+        self.cost = 0.0  # [s] recent processor time of a step
         self.cost_unknown = True  # of a step with the present parameters
-        self.dropped = 0  # steps that were due and never taken
-        self.capped = False  # time could not be made up lately
+        self.dropped = 0  # steps due but never taken
+        self.capped = False  # some time could not be made up recently
 
     def steps(self, wall: float, speed: float, h: float, frame: float = FRAME_INTERVAL) -> int:
-        """Steps to take now, for `wall` seconds at `speed` with steps of h [s]; capped where time is dropped.
+        """Steps to take now, for `wall` seconds at `speed` with steps of h [s]; sets `capped` if time is dropped.
 
-        frame: [s] between pictures; where that is longer, or the last sleep ended late, there is more time to solve in.
+        frame: [s] between pictures; a longer one, or a late sleep, leaves more time for solving.
         """
         self.debt += min(wall, MAX_CATCH_UP) * speed
         due = int(self.debt / h * (1 + 1e-9))

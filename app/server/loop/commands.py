@@ -1,4 +1,4 @@
-"""Commands before a tick: those that pass, those that wait, those that are superseded, and those that cancel a solve.
+"""Commands before a tick: which pass, wait, are superseded, or cancel a solve.
 
 Parameters wait until the kernels that they need are compiled, since compiling here would freeze the page. Nothing
 overtakes what it may depend on.
@@ -34,23 +34,23 @@ Motion = Play | Pause | TogglePlay | Halt  # transport commands: they do not tou
 
 
 class Record(NamedTuple):
-    """Parameters, and the number of the act with which the run that has them begins."""
+    """Parameters, and the number of the act that begins their run."""
 
     params: BaseParams
     act: int
 
 
 def merged(commands: Iterable[Command], record: Record) -> list[Command]:
-    """The commands that have the same effect as all of them in order. record: that of the scene before.
+    """The shortest commands with the effect of all in order. record: that of the scene before.
 
-    Only neighbours are merged, so that nothing moves past what might depend on it.
+    Only neighbours are merged, so that no command overtakes another that it may depend on.
     """
     kept: list[Command] = []
     for command in commands:
         match kept[-1] if kept else None, command:
             case (_, Take(start=True, back=False)):
                 while kept and is_begun_over(kept[-1]):
-                    kept.pop()  # nothing of it is left once the scene has begun again, and runs
+                    kept.pop()  # the new run leaves nothing of it
             case (Take(), Take()) if command.changes_only:
                 drop_changes(kept, command, record)
             case (StepOnce(before), StepOnce(steps)):
@@ -65,7 +65,7 @@ def merged(commands: Iterable[Command], record: Record) -> list[Command]:
 
 
 def is_begun_over(command: Command) -> bool:
-    """True if nothing of a command is left once the scene has begun again, nor in the run that an undo goes back to."""
+    """True if a restart leaves nothing of a command, neither in the new run nor in the one that an undo restores."""
     if isinstance(command, Take):
         return command.state is None and not command.back
     return isinstance(command, Reset)
@@ -89,7 +89,7 @@ def repeats(earlier: Command, later: Command) -> bool:
 
 
 def drop_changes(kept: list[Command], change: Take, record: Record) -> None:
-    """Drop the last changes of parameters, as far as `change` alone has the same effect as all of them in order."""
+    """Drop the last changes of parameters, as long as `change` alone has the effect of all in order."""
     last = len(kept)
     while last and isinstance(before := kept[last - 1], Take) and before.changes_only:
         last -= 1
@@ -102,7 +102,7 @@ def drop_changes(kept: list[Command], change: Take, record: Record) -> None:
 
 
 def records_of(record: Record, commands: Iterable[Command]) -> list[Record]:
-    """A record, and those to which the commands lead from it one after the other."""
+    """A record, followed by the record after each command."""
     records = [record]
     for command in commands:
         if isinstance(command, Take | Reset):
@@ -118,11 +118,11 @@ def effect_between(before: Record, after: Record) -> Effect | None:
 
 
 def is_one_change(records: Sequence[Record]) -> bool:
-    """True if going from the first record to the last at once has the same effect as going by the others.
+    """True if going from the first record to the last at once has the same effect as through the others.
 
-    Other forces count from the next step on, so that of several the last ones count: a net whose number of points
-    changes twice is interpolated once. A scene that has begun again and then takes other forces need not be as one that
-    begins with these.
+    Changed forces act from the next step on, so that only the last of several count: a net whose number of points
+    changes twice is interpolated once. A scene that begins and then takes other forces may differ from one that begins
+    with these.
     """
     effects: list[Effect | None] = [effect_between(a, b) for a, b in itertools.pairwise(records)]
     begins = [number for number, effect in enumerate(effects) if effect == "start"]
@@ -137,14 +137,14 @@ def rank(effect: Effect | None) -> int:
 
 
 def begins_anew(command: Command) -> bool:
-    """True if the scene begins from its start after this command, whatever it is like before."""
+    """True if the scene starts from its beginning after this command, whatever its state before."""
     return isinstance(command, Reset) or (isinstance(command, Take) and command.start)
 
 
 def is_urgent(command: Command) -> bool:
     """True if a command should not wait for a long solve.
 
-    Drags, going on and those of a waiting program may; a change of parameters as its effect asks for.
+    Drags, resuming and commands of a waiting program may wait; a change of parameters depends on its effect.
     """
     if isinstance(command, Take):
         return not command.changes_only
@@ -152,7 +152,7 @@ def is_urgent(command: Command) -> bool:
 
 
 def effect_of_takes(record: Record, commands: Iterable[Command]) -> tuple[BaseParams, Effect | None]:
-    """The last parameters that commands bring, and the greatest effect on the way to them from `record`."""
+    """The last parameters of the commands, and the greatest effect on the way to them from `record`."""
     records = records_of(record, commands)
     effects: list[Effect | None] = [effect_between(a, b) for a, b in itertools.pairwise(records)]
     return records[-1].params, max(effects, key=rank, default=None)
@@ -162,17 +162,17 @@ class Activity(NamedTuple):
     """One solve. A new beginning of the scene cancels each of them."""
 
     kind: Literal["none", "steps", "beginning", "forces", "frame"]
-    may_end: bool = False  # cancelled by all that asks for another solve, too
+    may_end: bool = False  # cancelled by every command that needs another solve, too
 
 
 NOTHING = Activity("none")
-STEPS = Activity("steps", may_end=True)  # the scene's frame is that of a whole step, also in the middle of one
-BEGINNING = Activity("beginning")  # where it fails, there is no scene to run
+STEPS = Activity("steps", may_end=True)  # the scene's frame is that of a whole step, even during one
+BEGINNING = Activity("beginning")  # if it fails, there is no scene to run
 OTHER_FORCES = Activity("forces")  # the scene's parameters are the old or the new ones
 
 
 class CompileGate:
-    """Holds back parameters of one scene until their kernels are compiled; the scene goes on with the present ones.
+    """Holds back parameters of one scene until their kernels are compiled; the scene continues with the present ones.
 
     The simulation thread alone calls it and changes it; the viewer thread reads `notice`.
     """
@@ -184,15 +184,15 @@ class CompileGate:
         record: Record,
         drop: Callable[[Take], None] = lambda take: None,
     ) -> None:
-        """record: the one that runs. drop: told of each that is dropped, to which an undo may go back."""
+        """record: the running one. drop: called with each dropped one, which an undo may restore."""
         self.compiling, self.kind, self.drop = compiling, kind, drop
-        self.record = record  # the one that was handed over last
-        self.held: list[Command] = []  # parameters that wait for the compiler, and what waits for them, in order
-        self.jobs: dict[BaseParams, list[Job]] = {}  # still to be compiled, asked for once and not in each tick
+        self.record = record  # the last one handed over
+        self.held: list[Command] = []  # parameters that wait for the compiler, and commands behind them
+        self.jobs: dict[BaseParams, list[Job]] = {}  # pending compilations, each requested once
         self.notice = ""  # pending compilation, in words
 
     def is_ready(self, params: BaseParams) -> bool:
-        """True if all is compiled that these parameters run; if not, it is compiled next."""
+        """True if everything that these parameters run is compiled; otherwise it is compiled next."""
         if params not in self.jobs:
             self.jobs[params] = self.compiling.missing(self.kind.name, params)
             if self.jobs[params]:
@@ -205,9 +205,9 @@ class CompileGate:
     def admit(self, commands: Iterable[Command]) -> list[Command]:
         """The commands that can be handled now, in order.
 
-        Parameters that cannot run yet wait, and come later by themselves. A reset and a program's wait that were asked
-        for after them come after them. Other commands concern the scene that is shown, and pass. Newer parameters that
-        can run drop those that wait (`drop_held`).
+        Parameters that cannot run yet wait, and are admitted later. A later reset or wait of a program stays behind
+        them. Other commands concern the scene that is shown, and pass. Newer parameters that can run drop those that
+        wait (`drop_held`).
         """
         admitted = self.passed()
         for command in commands:
@@ -221,7 +221,7 @@ class CompileGate:
         return admitted
 
     def passed(self, newer: Take | None = None) -> list[Command]:
-        """The commands that wait and can be handled now, up to the first that cannot. newer: comes after them."""
+        """The waiting commands that can be handled now, up to the first that cannot. newer: comes after them."""
         passed = self.pop_ready()
         if newer is not None:
             self.held = self.drop_held(newer) if self.held else [newer]
@@ -243,10 +243,10 @@ class CompileGate:
         return ready
 
     def drop_held(self, newer: Take) -> list[Command]:
-        """The commands that wait once newer parameters have come, without those of no more interest.
+        """The waiting commands without those that newer parameters make obsolete.
 
-        An undo goes back past all that waits. Other parameters that can run take the place of those that wait, and
-        begin the run of their act or go back to it, but where they come after a moment: that has parameters of its own.
+        An undo goes back past all of them. Other parameters that can run replace the waiting ones, and begin the run of
+        their act or return to it, unless they follow a moment, which has its own parameters.
         """
         waiting = [command for command in self.held if isinstance(command, Take)]
         if newer.changes_only:
@@ -261,5 +261,5 @@ class CompileGate:
         return [newer, *(command for command in self.held if isinstance(command, Advance))]
 
     def note(self, commands: Iterable[Command]) -> None:
-        """Note the record to which commands that are handled lead."""
+        """Note the record after the handled commands."""
         self.record = records_of(self.record, commands)[-1]

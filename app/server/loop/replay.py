@@ -1,4 +1,4 @@
-"""The last moments of a run that diverged, shown one after the other, so that the divergence is seen."""
+"""The last moments of a run that diverged, shown one after the other."""
 
 from app.messages import LastFrame
 
@@ -25,7 +25,7 @@ class Replay:
         return self.number == len(self.moments) - 1 and self.shown_for >= MOMENT_INTERVAL
 
     def play(self, wall: float) -> bool:
-        """Go on by `wall` [s]; returns whether another moment is shown than before. A late tick skips none."""
+        """Continue by `wall` [s]; returns True if the shown moment has changed. A late tick skips none."""
         self.shown_for += wall
         if self.shown_for < MOMENT_INTERVAL or self.number == len(self.moments) - 1:
             return False

@@ -1,4 +1,4 @@
-"""The runs of a scene: which is the present one, its steps within the budget of a frame, and the undo of its start."""
+"""The runs of a scene: the present one, its steps within the budget of a frame, and the undo of its start."""
 
 import collections
 import itertools
@@ -23,9 +23,9 @@ from sim.parameters import effect_of_change
 from sim.validation import DivergenceError
 
 HURRY_INTERVAL = 0.1  # [s] of simulated time between two snapshots while nobody looks and a program waits
-MAX_BYTES = 100e6  # of all runs that are kept for an undo; beyond that the oldest are dropped
+MAX_BYTES = 100e6  # of all runs kept for an undo; beyond that the oldest are dropped
 ROW_BYTES = 32  # of a number in a plot row, with its place in the tuple
-BEGUN = "the lab was reset or went on from another moment"  # answer to a program that waits for a time
+BEGUN = "the lab was reset or resumed from another moment"  # answer to a program that awaits a time
 
 
 class Goal(NamedTuple):
@@ -45,10 +45,10 @@ class Goal(NamedTuple):
 
 
 class AwaitedEvent:
-    """Event at whose beginning the run pauses; if it happens just now, when it happens again."""
+    """Event at whose beginning the run pauses; if it is happening now, its next occurrence."""
 
     def __init__(self, reached: Callable[[AnySnapshot], bool], latest: AnySnapshot) -> None:
-        """reached: whether it happens in a snapshot."""
+        """reached: true of a snapshot in which it happens."""
         self.reached = reached
         self.happens = reached(latest)
 
@@ -59,7 +59,7 @@ class AwaitedEvent:
 
 
 class SceneRun:
-    """Takes a scene's steps, and begins it again."""
+    """Takes a scene's steps, and restarts it."""
 
     def __init__(self, scene: AnyScene, audience: Callable[[], int], clock: TickClock, *, paused: bool) -> None:
         """The arguments are those of `SimLoop`."""
@@ -67,14 +67,14 @@ class SceneRun:
         self.identity, self.numbers = RunIdentity(), itertools.count(2)  # of this run; of those to come
         self.request = np.zeros(4, np.int64)  # for the running solve: see sim/interruption.py
         self.activity = NOTHING
-        self.unfinished: Callable[[], None] | None = None  # a reset that was ended early
-        self.unmade = False  # the scene could not begin: it waits for other values
+        self.unfinished: Callable[[], None] | None = None  # a reset that was cancelled
+        self.unmade = False  # the scene could not begin, and waits for other values
         self.running = not paused
         self.halted = ""
-        self.pacer = FixedStep()
+        self.fixed_step = FixedStep()
         self.replay: Replay | None = None  # of a run that has just diverged
-        self.seat: Seat | None = None  # at a clock that other loops have too
-        self.goal: Goal | None = None  # that a program waits for
+        self.seat: Seat | None = None  # at a clock shared with other loops
+        self.goal: Goal | None = None  # awaited by a program
         self.awaited: AwaitedEvent | None = None
         self.counts: collections.Counter[str] = collections.Counter()
         self.snapshots = Snapshots(self)
@@ -85,21 +85,21 @@ class SceneRun:
         return self.halted if self.replay is None else self.replay.reason
 
     def cancel(self, how: int = 1) -> None:
-        """Cancel the solve that runs. how: ABANDON even where it is kept whole. Any thread may call it."""
+        """Cancel the running solve. how: ABANDON even if it should be completed. Any thread may call it."""
         self.request[STOP] = how
 
     def play(self) -> None:
-        """Go on; after the last moments of a divergence from the last good state."""
+        """Play; after the last moments of a divergence from the last good state."""
         self.running, self.halted = True, ""
         if self.replay is not None and self.replay.ended:
             self.replay = None
 
     def pause(self) -> None:
-        """Stand still, and await no event."""
+        """Pause, and await no event."""
         self.running, self.awaited = False, None
 
     def run_on(self, reached: Callable[[AnySnapshot], bool]) -> None:
-        """Go on to an event."""
+        """Run up to an event."""
         self.play()
         self.awaited = AwaitedEvent(reached, self.snapshots.latest)
 
@@ -111,12 +111,12 @@ class SceneRun:
         self.halted = reason
 
     def go_on(self, wall: float) -> bool:
-        """The part of a tick that takes steps or shows the last moments of a divergence; True where that shows.
+        """Take steps, or replay the last moments of a divergence, within a tick; True if there is news to show.
 
         wall: [s] since the last tick.
         """
         if self.unfinished is not None:
-            return False  # no steps of a scene that is not made
+            return False  # a scene that could not be made takes no steps
         if self.running and self.audience() and self.replay is not None:
             return self.play_replay(self.replay, wall)
         if self.goal is not None and self.running and not self.audience():
@@ -130,45 +130,45 @@ class SceneRun:
         return False
 
     def keep_time(self, wall: float) -> bool:
-        """Take the steps that are due; True where there were any."""
+        """Take the steps that are due; True if there were any."""
         frame = self.clock.frame_interval(self.scene.frame_interval)
-        n = self.pacer.steps(wall, self.scene.params.speed * self.scene.pace, self.scene.step, frame)
+        n = self.fixed_step.steps(wall, self.scene.params.speed * self.scene.pace, self.scene.step, frame)
         if self.goal is not None:
             n = min(n, steps_to(self.scene, self.goal.until))
         return self.take_steps(n)
 
     def take_steps(self, n: int) -> bool:
-        """Take steps that are due, few at first where their cost is not known; True where there were any."""
+        """Take steps that are due, few at first if their cost is unknown; True if there were any."""
         if n:
-            (self.advance_within_budget if self.pacer.cost_unknown and self.running else self.advance)(n)
+            (self.advance_within_budget if self.fixed_step.cost_unknown and self.running else self.advance)(n)
         return n > 0
 
     def note_place(self) -> None:
-        """Say at the clock of several loops where the run is."""
+        """Report the time of the run to the clock of several loops."""
         if self.seat is not None:
             seat, scene = self.seat, self.scene
             seat.note(scene.time, scene.step, scene.pace, running=self.running, halted=bool(self.stopped_by))
 
     def follow(self, seat: Seat, wall: float) -> bool:
-        """Take the steps that lead to the time of the clock, as many as fit the frame; True where there were any.
+        """Take the steps up to the time of the clock, as many as fit the frame; True if there were any.
 
-        The loop of the first seat lets the clock's time pass.
+        The loop of the first seat advances the clock.
         """
         if seat.is_first and self.running:
             seat.clock.advance(min(wall, MAX_CATCH_UP), self.scene.params.speed)
         due = 0 if self.stopped_by else seat.due(self.scene.time, self.scene.step)
-        n = self.pacer.most(due, self.clock.frame_interval(self.scene.frame_interval))
-        self.pacer.capped = n < due or (seat.is_first and seat.clock.late)
+        n = self.fixed_step.most(due, self.clock.frame_interval(self.scene.frame_interval))
+        self.fixed_step.capped = n < due or (seat.is_first and seat.clock.late)
         return self.take_steps(n)
 
     def aim_at(self, seconds: float, answer: Future[float]) -> None:
-        """Go on for so long, and then answer the program that waits, with the time."""
+        """Run for this long, and then answer the waiting program with the time."""
         self.give_up("another program waits for the lab")
         self.goal = Goal(self.scene.time + seconds, answer, self.running)
         self.running = not self.stopped_by
 
     def settle(self) -> None:
-        """Answer the program that waits, where the run has come to the time or can come no further."""
+        """Answer the waiting program if the run has reached the time or cannot continue."""
         goal, reason = self.goal, self.stopped_by
         if goal is None or not (reason or steps_to(self.scene, goal.until) == 0 or goal.answer.cancelled()):
             return
@@ -179,7 +179,7 @@ class SceneRun:
         goal.end(DivergenceError(reason) if reason else self.scene.time)
 
     def pause_at_event(self) -> None:
-        """Pause if the event that is awaited has begun since the last frame."""
+        """Pause if the awaited event has begun since the last frame."""
         if self.awaited is not None and self.running and self.awaited.begins(self.snapshots.latest):
             self.awaited, self.running = None, False
             self.snapshots.publish()
@@ -187,7 +187,7 @@ class SceneRun:
     def hurry(self, until: float) -> None:
         """Take steps up to a time [s] while the frame's budget lasts, as many at once as a frame of a viewer has.
 
-        Some scenes record what they draw, so there is a snapshot now and then.
+        Some scenes record what they draw, so a snapshot is taken now and then.
         """
         most = max(1, int(FRAME_INTERVAL / self.scene.step * (1 + 1e-9)))
         start = self.clock.effort()
@@ -207,28 +207,28 @@ class SceneRun:
         part, spent = 1, 0.0
         while n > 0 and part > 0 and self.running and self.replay is None and not self.request[STOP]:
             part = min(part, n)
-            self.pacer.cost = 0.0
+            self.fixed_step.cost = 0.0
             spent += self.advance(part)
             n -= part
-            part = self.pacer.next_part(part, spent)
-        self.pacer.cost_unknown = False
+            part = self.fixed_step.next_part(part, spent)
+        self.fixed_step.cost_unknown = False
         if n > 0 and self.running:
-            self.pacer.capped, self.pacer.debt = True, 0.0
-            self.pacer.dropped += n if self.seat is None else 0
+            self.fixed_step.capped, self.fixed_step.debt = True, 0.0
+            self.fixed_step.dropped += n if self.seat is None else 0
 
     def advance(self, n: int) -> float:
         """Take n steps; returns the processor time they took [s]."""
         start = self.clock.effort()
         self.guarded(lambda: self.scene.advance(n), STEPS)
         seconds = self.clock.effort() - start
-        self.pacer.learn(n, seconds)
+        self.fixed_step.learn(n, seconds)
         self.counts["steps"] += n
         return seconds
 
     def guarded(self, action: Callable[[], None], activity: Activity = NOTHING) -> None:
-        """Run scene code; whatever goes wrong pauses the run and is kept for the panel to say.
+        """Run scene code; an error pauses the run and is kept for the panel.
 
-        A beginning that is cancelled is done once more; after a cancelled change of forces the scene begins anew.
+        A cancelled beginning is repeated; after a cancelled change of forces the scene restarts.
         """
         self.activity, begins = activity, activity == BEGINNING
         try:
@@ -252,8 +252,8 @@ class SceneRun:
             self.activity = NOTHING
 
     def play_replay(self, replay: Replay, wall: float) -> bool:
-        """Go on showing the last moments of a run that diverged, and halt at their end; True where that shows."""
-        self.pacer.capped = False
+        """Continue the replay of a divergence, and halt at its end; True if there is news to show."""
+        self.fixed_step.capped = False
         changed = replay.play(wall)
         if replay.ended:
             self.halt(replay.reason)
@@ -283,27 +283,27 @@ class SceneRun:
             self.replay = None
             spent += self.advance(1)
             if self.halted != halted or spent > SOLVE_SHARE * FRAME_INTERVAL:
-                self.pacer.dropped += count - done - 1
+                self.fixed_step.dropped += count - done - 1
                 return
 
     def give_up(self, reason: str) -> None:
-        """Tell the program that waits, if any, why the time that it waits for does not come."""
+        """Tell a waiting program why the awaited time will not be reached."""
         goal, self.goal = self.goal, None
         if goal is not None:
             goal.end(RuntimeError(reason))
 
     def clear(self) -> None:
-        """Forget how the run went, before the scene goes on from its start or from another moment."""
+        """Discard the state of the run, before the scene continues from its start or from another moment."""
         self.give_up(BEGUN)
         self.halted, self.replay, self.unfinished, self.unmade = "", None, None, False
-        self.pacer.debt = 0.0
+        self.fixed_step.debt = 0.0
 
     def identify(self, act: int = 0, before: int = 0, since: float = 0.0) -> None:
-        """Give the run that begins its number; see `RunIdentity`. act: 0 for that of the run before."""
+        """Give the new run its number; see `RunIdentity`. act: 0 for that of the run before."""
         self.identity = RunIdentity(next(self.numbers), act or self.identity.act, before, since)
 
     def reset(self, act: int = 0, action: Callable[[], None] | None = None) -> None:
-        """The scene from its start, or by another action, for an act; a run that had halted goes on."""
+        """Restart the scene, or begin it by another action, for an act; a halted run plays again."""
         self.running |= bool(self.halted)
         self.clear()
         self.identify(act)
@@ -326,23 +326,23 @@ def failure_words(error: Exception, *, begins: bool) -> str:
 
 
 class LeftRun(NamedTuple):
-    """A run as it was when it was left."""
+    """A run in the state in which it was left."""
 
-    act: int  # with which it began
+    act: int  # that began it
     params: BaseParams
     state: Checkpoint
-    rows: tuple[PlotRow, ...] | None  # of its plots; None: it was to go on from a moment, and has not begun
+    rows: tuple[PlotRow, ...] | None  # of its plots; None: it was to resume from a moment, and has not begun
     running: bool
 
     @property
     def arrays(self) -> dict[int, int]:
-        """Identity -> bytes of all that it holds."""
+        """Identity -> bytes of everything it holds."""
         rows = self.rows or ()
         return {**self.state.arrays, id(rows): ROW_BYTES * len(rows) * len(rows[0]) if rows else 0}
 
 
 class LeftRuns:
-    """The last ones, within bounded memory; one that is larger than that is not kept."""
+    """The last runs left, within bounded memory; a larger one is not kept."""
 
     def __init__(self) -> None:
         self.runs: collections.deque[LeftRun] = collections.deque()
@@ -356,7 +356,7 @@ class LeftRuns:
             self.memory.remove(self.runs.popleft().arrays)
 
     def pop(self, act: int) -> LeftRun | None:
-        """The last run of that act, which is no longer kept then; None if it is not kept."""
+        """Take out the last run of that act; None if it is not kept."""
         for place in reversed(range(len(self.runs))):
             if self.runs[place].act == act:
                 found = self.runs[place]
@@ -367,7 +367,7 @@ class LeftRuns:
 
 
 class RunSequence:
-    """Lets the runs of a scene follow each other: which commands begin another one, and the undo that goes back."""
+    """The sequence of a scene's runs: the commands that begin a new one, and the undo that goes back."""
 
     def __init__(self, run: SceneRun) -> None:
         self.run, self.left = run, LeftRuns()
@@ -389,7 +389,7 @@ class RunSequence:
             self.begin_with(params, act)
         elif is_other:
             self.change_start(params, act)
-        else:  # also where the run that an undo leaves has never begun
+        else:  # even if the run that an undo leaves has never begun
             self.take(params)
 
     def take(self, params: BaseParams) -> None:
@@ -402,9 +402,9 @@ class RunSequence:
             self.change_start(params)
         else:
             self.end_replay()
-            run.pacer.cost_unknown = True
+            run.fixed_step.cost_unknown = True
             run.guarded(lambda: scene.change_forces(params), OTHER_FORCES)
-            scene.params = params  # also where the scene failed, so that a reset has them
+            scene.params = params  # even if the scene failed, so that a reset uses them
 
     def end_replay(self) -> None:
         """End showing the last moments of a run that diverged."""
@@ -414,25 +414,25 @@ class RunSequence:
             run.replay = None
 
     def change_start(self, params: BaseParams, act: int = 0) -> None:
-        """The scene from its start with these parameters; it runs if it ran before or had halted."""
+        """Restart the scene with these parameters; it plays if it played before or had halted."""
         run = self.run
         self.end_replay()
-        run.scene.params, run.pacer.cost_unknown = params, True
+        run.scene.params, run.fixed_step.cost_unknown = params, True
         if run.seat is not None:
             run.seat.begin_others()
         run.reset(act)
 
     def begin_again(self, act: int) -> None:
-        """The scene from its start, as an act asks for; 0: as no act does."""
+        """Restart the scene for an act; 0: for none."""
         self.run.awaited = None
         if act not in (0, self.run.identity.act):
             self.leave()
         self.run.reset(act)
 
     def begin_with(self, params: BaseParams, act: int, left: LeftRun | None = None) -> None:
-        """The scene from its start with these parameters, running; or as it was in a run that was left."""
+        """Restart the scene with these parameters, playing; or restore a run that was left."""
         run = self.run
-        run.scene.params, run.pacer.cost_unknown = params, True
+        run.scene.params, run.fixed_step.cost_unknown = params, True
         if run.seat is not None:
             run.seat.begin_others()
             run.seat.tell_others(Play())
@@ -440,10 +440,10 @@ class RunSequence:
         run.running = not run.halted
 
     def resume(self, params: BaseParams, state: Checkpoint, act: int) -> None:
-        """The scene from a state that was kept, with the parameters that it had then, running."""
+        """Resume from a checkpoint, with its parameters, playing."""
         run = self.run
         run.clear()
-        run.scene.params, run.pacer.cost_unknown = params, True
+        run.scene.params, run.fixed_step.cost_unknown = params, True
         run.snapshots.forget_rates()
         run.guarded(lambda: run.scene.resume(state.value))
         run.identify(act, state.run, run.scene.time)
@@ -460,12 +460,12 @@ class RunSequence:
             self.left.add(LeftRun(run.identity.act, run.scene.params, kept_state(run), rows, run.running))
 
     def keep_dropped(self, take: Take) -> None:
-        """Keep a run that was to go on from a moment for an undo, where newer parameters have taken its place."""
+        """Keep a run that was to resume from a moment for an undo, when newer parameters replace it."""
         if take.state is not None:
             self.left.add(LeftRun(take.act, take.params, take.state, None, True))
 
     def go_back(self, command: Take) -> None:
-        """Go back to the run of an act, as it was when it was left; from its start if it is not kept."""
+        """Go back to the run of an act as it was left; restart it if it is not kept."""
         params, start, _, act, _ = command
         run, left = self.run, self.left.pop(act)
         if left is None:
@@ -479,10 +479,10 @@ class RunSequence:
         run.running = left.running and not run.halted
         if run.seat is not None and not run.running:
             run.seat.tell_others(Pause())
-        self.take(params)  # which may have been changed just before the run was left
+        self.take(params)  # they may have changed just before the run was left
 
     def return_to(self, left: LeftRun) -> None:
-        """The scene from its start, then as it was in a run that was left, with its plots."""
+        """Restart the scene, then restore a run that was left, with its plots."""
         run = self.run
         run.scene.reset()
         run.scene.resume(left.state.value)

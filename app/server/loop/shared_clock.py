@@ -1,18 +1,18 @@
-"""One clock for several simulation loops: all advance by the same simulated time, and the slowest sets the pace.
+"""One clock for several simulation loops: all advance by the same simulated time, and the slowest sets the speed.
 
-The clock's time rises with the wall clock, but never beyond what every loop can take: `LEAD` after the next step of the
-one that is farthest behind. Each loop takes the steps that lead to the clock's time. Once the clock stands, all come to
-it, so that their times differ by less than a step.
+The clock's time rises with the wall clock, but at most to `LEAD` after the next step of the slowest loop. Each loop
+takes the steps up to the clock's time. Once the clock stands still, all reach it, so that their times differ by less
+than a step.
 
-The clock's time is written by the loop of the first seat alone. Each seat's numbers are written by its own loop, which
-also passes on to the others what concerns all.
+Only the loop of the first seat writes the clock's time. Each seat's numbers are written by its own loop, which also
+passes common commands on to the others.
 """
 
 import queue
 
 from app.messages import Command, Pause, Play, Reset, StepOnce, TogglePlay
 
-LEAD = 0.05  # [s] of wall time by which loops may differ while they run: they draw at different moments
+LEAD = 0.05  # [s] of wall time by which running loops may differ: they draw at different moments
 MAX_DEBT = 0.25  # [s] of wall time that the clock makes up for
 MAX_HAND_STEPS = 100  # single steps that one command takes
 
@@ -23,16 +23,16 @@ class Seat:
     def __init__(self, clock: "SharedClock") -> None:
         self.clock = clock
         self.told: queue.SimpleQueue[Command] = queue.SimpleQueue()  # commands from the other loops
-        self.offset = clock.origin  # [s] of the clock, at which the scene's time was 0
-        self.reached = clock.origin  # [s] of the clock, to which the loop has come
+        self.offset = clock.origin  # [s] of the clock when the scene's time was 0
+        self.reached = clock.origin  # [s] of the clock reached by the loop
         self.step = 0.0  # [s] of the scene
-        self.pace = 1.0  # factor on the speed that the scene asks for
+        self.pace = 1.0  # factor on the speed requested by the scene
         self.running = True
         self.halted = False
 
     @property
     def is_first(self) -> bool:
-        """True if this loop lets the clock's time pass."""
+        """True if this loop advances the clock."""
         return self.clock.seats[:1] == (self,)
 
     def due(self, time: float, step: float) -> int:
@@ -40,20 +40,20 @@ class Seat:
         return max(0, int((self.clock.time - self.offset - time) / step * (1 + 1e-9) + 1e-6))
 
     def note(self, time: float, step: float, pace: float, *, running: bool, halted: bool) -> None:
-        """Say where the loop is: its scene's time and step [s], and its pace."""
+        """Record the state of the loop: its scene's time and step [s], and its pace."""
         self.running, self.halted, self.pace = running, halted, pace
         self.reached, self.step = self.offset + time, step
 
     def begin(self) -> None:
-        """The run has begun again, with all others: its time is 0 where the clock was then."""
+        """Note a restart with all others: the run's time is 0 at the present time of the clock."""
         self.offset = self.clock.origin
 
     def go_on_from(self, time: float) -> None:
-        """The run goes on from another time [s] of its own; from here on it advances as the others do."""
+        """Resume from another time [s] of the run; from here on it advances as the others do."""
         self.offset = self.clock.time - time
 
     def begin_others(self) -> None:
-        """Have all other runs begin again, as this one does."""
+        """Restart all other runs with this one."""
         if self in self.clock.seats:
             self.clock.origin = self.clock.time
             self.tell_others(Reset())
@@ -75,7 +75,7 @@ class Seat:
                 self.tell_others(command)
             case Reset():
                 self.begin_others()
-                if any(seat.halted for seat in self.clock.seats):  # which paused the others
+                if any(seat.halted for seat in self.clock.seats):  # the halted one has paused the others
                     self.tell_others(Play())
                     self.told.put(Play())
             case _:
@@ -88,7 +88,7 @@ class SharedClock:
 
     def __init__(self) -> None:
         self.time = 0.0  # [s] simulated
-        self.origin = 0.0  # [s] of `time`, at which the runs were last begun
+        self.origin = 0.0  # [s] of `time` at the last start of the runs
         self.debt = 0.0  # [s] simulated by which `time` is late
         self.late = False  # True while time that could not be made up is dropped
         self.seats: tuple[Seat, ...] = ()
@@ -96,7 +96,7 @@ class SharedClock:
     def advance(self, wall: float, speed: float) -> None:
         """Let `wall` seconds pass at `speed`, as far as all loops can follow; called by the first seat's loop.
 
-        Where one scene asks for slow motion, all have it.
+        If one scene requests slow motion, all have it.
         """
         speed *= min((seat.pace for seat in self.seats), default=1.0)
         most = MAX_DEBT * speed

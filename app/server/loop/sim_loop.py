@@ -50,13 +50,13 @@ from app.server.loop.shared_clock import Seat
 from sim.interruption import ABANDON, STOP, TURN, is_kept_whole, use_request
 
 IDLE_INTERVAL = 0.1  # [s] between two ticks while there is nothing to do
-ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody looks: a browser that comes, or a command, ends it
-MIN_SLEEP = 1e-3  # [s] between two ticks where the last sleep ended late: a tick at once would have no steps to take
+ALONE_INTERVAL = 0.25  # [s] between two ticks while nobody watches; a new browser or a command ends the wait
+MIN_SLEEP = 1e-3  # [s] between two ticks after a late sleep: a tick at once would have no steps to take
 MAX_COMMAND_DELAY = 2 * FRAME_INTERVAL  # [s] for which a sleep may ignore commands
 
 
 class SimLoop:
-    """Runs a scene on a thread, by commands that come from others."""
+    """Runs a scene on a thread, by commands from other threads."""
 
     def __init__(
         self,
@@ -71,18 +71,18 @@ class SimLoop:
         sleep: Callable[[float], None] = time.sleep,
         gives_way: bool = ON_HUB,
     ) -> None:
-        """audience: how many browsers look.
+        """audience: number of watching browsers.
 
-        admit: of the commands that have come, and of those that it held back before, those to handle now.
+        admit: selects the commands to handle now, from new ones and those held back before.
         clock: wall time [s]. effort: clock of the cost of solving, this thread's processor time [s], so that a busy
         machine that takes the processor away does not make the scene look expensive.
-        sleep: for so long [s]. gives_way: whether frames become fewer where sleeps end late, as on a hub.
+        sleep: for a time [s]. gives_way: draw fewer frames if sleeps end late, as on a hub.
         """
         self.scene, self.admit = scene, admit
         self.commands: queue.SimpleQueue[Command] = commands or queue.SimpleQueue()
         self.waiting: list[
             Command
-        ] = []  # for the next tick: the one that ended a sleep, and those that a solve did not answer
+        ] = []  # for the next tick: the one that ended a sleep, and those not handled during a solve
         self.clock = TickClock(clock, effort, sleep, gives_way=gives_way)
         self.run = SceneRun(scene, audience, self.clock, paused=paused)
         self.runs = RunSequence(self.run)
@@ -116,15 +116,15 @@ class SimLoop:
         self.clock.end_tick()
 
     def take_in(self, *taken: Command) -> None:
-        """Have the commands wait that have come and can be handled. taken: out of the queue before."""
-        came = [*taken, *(self.commands.get_nowait() for _ in range(self.commands.qsize()))]  # nobody else takes
+        """Add the new commands that can be handled to the waiting ones. taken: popped from the queue before."""
+        came = [*taken, *(self.commands.get_nowait() for _ in range(self.commands.qsize()))]  # no other thread pops
         seat = self.run.seat
         self.waiting += [command if seat is None else seat.share(command) for command in self.admit(came)]
         if seat is not None:
             self.waiting += [seat.told.get_nowait() for _ in range(seat.told.qsize())]
 
     def join(self, seat: Seat | None) -> None:
-        """Follow a clock that other loops follow too, all from their start on; None: no longer.
+        """Follow a clock shared with other loops, all from their start; None: stop following.
 
         Called on the simulation thread, by an `Ask`.
         """
@@ -134,7 +134,7 @@ class SimLoop:
             self.run.note_place()
 
     def tell(self, read: Callable[[], object], answer: Future[object]) -> None:
-        """Answer a program that asks."""
+        """Answer a program's question."""
         if not answer.set_running_or_notify_cancel():
             return
         try:
@@ -143,29 +143,29 @@ class SimLoop:
             answer.set_exception(error)
 
     def ask_for_turn(self) -> None:
-        """Have controls answered in the middle of a solve that takes long; called from another thread."""
+        """Have controls handled during a long solve; called from another thread."""
         if self.clock.turn_is_due():
             self.run.request[TURN] = 1
 
     def give_turn(self) -> None:
-        """Answer controls in the middle of a solve, which calls this on its own thread.
+        """Handle controls during a solve, which calls this on its own thread.
 
-        What asks for another solve ends this one; the next tick handles it, from the last good state. What does not is
-        answered at once, and the solve goes on: a look, or a drag, which counts from the next steps on. A reset, a
-        change of forces, and what is kept whole are ended only where the scene begins anew; else parameters are
-        answered with the last frame, and the next tick takes them. A turn has no turn within it: what it shows may
-        need a solve of its own.
+        A command that needs another solve cancels this one; the next tick handles it, from the last good state. Other
+        commands, such as a look or a drag, are handled at once, and the solve continues; a drag acts from the next step
+        on. Resets, changes of forces and solves to be completed are cancelled only if the scene restarts; otherwise
+        parameters are answered with the last frame and taken by the next tick. Turns do not nest, as showing a frame
+        may need a solve.
         """
         if self.clock.in_turn:
             return
         try:
             with self.clock.turn():
                 self.handle_in_solve()
-        except Exception:  # the solve knows nothing of it
+        except Exception:  # the solve must not see it
             traceback.print_exc()
 
     def handle_in_solve(self) -> None:
-        """Cancel the solve for the commands that have come, or answer them with a snapshot."""
+        """Cancel the solve for the new commands, or answer them with a snapshot."""
         self.take_in()
         run, activity, whole = self.run, self.run.activity, is_kept_whole()
         params, effect = effect_of_takes(self.record, self.waiting)
@@ -186,18 +186,18 @@ class SimLoop:
             self.scene.handle(command)
         is_begun = self.latest.status.run == run.identity
         if drags or self.latest.params != params or not is_begun:
-            run.pacer.capped = activity == STEPS
+            run.fixed_step.capped = activity == STEPS
             run.snapshots.publish_in_solve(params, with_frame=within_steps)
 
     def drags_waiting(self) -> list[GrabTo | Place | Release]:
-        """The drags among the waiting commands; the others go on waiting for the next tick."""
+        """Take the drags out of the waiting commands; the others wait for the next tick."""
         drags = [command for command in self.waiting if isinstance(command, GrabTo | Place | Release)]
         self.waiting = [command for command in self.waiting if not isinstance(command, GrabTo | Place | Release)]
         return drags
 
     def handle_waiting(self) -> bool:
         """Handle the waiting commands once they are merged, after a reset that was cancelled, unless the first of them
-        that concerns the scene begins it again; True where there was one.
+        that concerns the scene begins it again; True if there was one.
 
         Those that follow a cancelled one wait for the next tick, where what has cancelled it may supersede them.
         """
@@ -215,7 +215,7 @@ class SimLoop:
         return bool(waiting) or unfinished is not None
 
     def handle(self, command: Command) -> None:
-        """Carry out one command. A scene that could not begin takes other values, and has nothing to run."""
+        """Carry out one command. A scene that could not begin only takes other values."""
         run = self.run
         match command:
             case _ if run.unmade and isinstance(command, SceneCommand | Play | StepOnce | TogglePlay | RunOn):
@@ -248,7 +248,7 @@ class SimLoop:
         run, clock = self.run, self.clock
         use_request(run.request, self.give_turn, clock.turn_is_due)
         with fine_timer():
-            last = due = wanted = clock.now()  # wanted: when a sleep should have ended
+            last = due = wanted = clock.now()  # wanted: the time at which a sleep should have ended
             while True:
                 run.request[STOP] = run.request[TURN] = 0
                 if stop.is_set():
@@ -260,7 +260,7 @@ class SimLoop:
                 last = now
                 idle = IDLE_INTERVAL if run.audience() else ALONE_INTERVAL
                 interval = clock.frame_interval(self.scene.frame_interval) if busy else idle
-                # A sleep that ended late makes the next one shorter; one that missed a whole frame is not made up for.
+                # A late sleep shortens the next one, unless it missed a whole frame.
                 due = interval + (due if now - due < interval else now)
                 wanted = max(due, clock.now())
                 rest = max(due - clock.now(), MIN_SLEEP if clock.tick_time < interval else 0.0)
@@ -268,25 +268,25 @@ class SimLoop:
                     self.wait(rest, stop)
 
     def tick_or_halt(self, wall: float) -> None:
-        """A tick; an error in it that `guarded` does not catch halts the run, and the thread lives to say so."""
+        """Tick; an error that `guarded` does not catch halts the run, and the thread stays alive to report it."""
         try:
             self.tick(wall)
         except Exception as error:
             traceback.print_exc()
             self.run.halt(f"The scene stopped with {type(error).__name__}: {error}")
-            with contextlib.suppress(Exception):  # said once, and where even the clock fails not at all
+            with contextlib.suppress(Exception):  # reported once; not at all if even the clock fails
                 self.run.snapshots.publish()
             self.clock.end_work()
 
     def take_answer(self, command: StudentAnswer) -> None:
-        """Let the scene take an answer of the student's functions within a sleep; the next tick shows it."""
+        """Let the scene take an answer of the student's functions during a sleep; the next tick shows it."""
         self.clock.begin_work()
         self.handle(command)
         self.clock.end_work()
         self.run.snapshots.is_current = False
 
     def wait(self, seconds: float, stop: threading.Event) -> None:
-        """Sleep for `seconds`; a command ends a sleep that is longer than a hand should have to wait."""
+        """Sleep for `seconds`; a command ends a sleep that is too long for a user to wait."""
         start, left = self.clock.now(), seconds
         while left > MAX_COMMAND_DELAY and not self.waiting and not stop.is_set():
             with contextlib.suppress(queue.Empty):
@@ -296,7 +296,7 @@ class SimLoop:
                     stop.wait(max(0.0, FRAME_INTERVAL - (self.clock.now() - start)))  # not more ticks than frames
                     return
                 self.take_answer(command)
-            self.take_in()  # parameters that were held back may be ready
+            self.take_in()  # held-back parameters may be ready
             if self.waiting:
                 return
             left = seconds - (self.clock.now() - start)

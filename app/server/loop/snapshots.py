@@ -25,11 +25,11 @@ from app.server.loop.replay import Replay
 from sim.interruption import InterruptionError
 from sim.validation import DivergenceError
 
-MAX_TIME_WITHOUT_FRAME = 1.0  # [s] without a whole picture, after which one is finished though controls wait
-KEEP_INTERVAL = 0.1  # [s] of wall time between two states that are kept, at least
-KEEP_SHARE = 0.003  # of a core that keeping states may take
+MAX_TIME_WITHOUT_FRAME = 1.0  # [s] without a complete picture, after which one is finished although controls wait
+KEEP_INTERVAL = 0.1  # [s] least wall time between two checkpoints
+KEEP_SHARE = 0.003  # fraction of a core for checkpoints
 RATE_WINDOW = 1.0  # [s] over which rates are measured
-RESTARTED_SHOWN = 8.0  # [s] of wall time for which the panel says that a run was not kept
+RESTARTED_SHOWN = 8.0  # [s] of wall time for which the panel reports a run that was not kept
 MAX_PLOT_ROWS = 20_000  # waiting for the viewer, and kept for a program; beyond that the oldest are dropped
 
 
@@ -40,7 +40,7 @@ class ShownRun(Protocol):
     identity: RunIdentity
     audience: Callable[[], int]
     clock: TickClock
-    pacer: FixedStep
+    fixed_step: FixedStep
     counts: collections.Counter[str]
     activity: Activity
     running: bool
@@ -60,15 +60,15 @@ class Snapshots:
     def __init__(self, run: ShownRun) -> None:
         self.run = run
         self.history: collections.deque[tuple[float, float]] = collections.deque()  # (wall, simulated) [s]
-        self.restarted_until = 0.0  # [s] of the ticks, while the panel says that an undo could only begin a run again
-        self.keep_at = 0.0  # [s] of the ticks from which a state is kept again
+        self.restarted_until = 0.0  # [s] of the ticks until which the panel reports an undo that had to restart a run
+        self.keep_at = 0.0  # [s] of the ticks of the next checkpoint
         self.plot_rows: collections.deque[RunRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # for the viewer to take
         self.kept_rows: collections.deque[PlotRow] = collections.deque(maxlen=MAX_PLOT_ROWS)  # of this run
         self.line = RunLine()  # of `kept_rows`
         self.published = 0.0  # [s] of simulated time, of the last snapshot
-        self.is_current = True  # the latest snapshot is of the scene as it is
-        self.whole_at = run.clock.now()  # [s], when that was so last
-        self.fresh = threading.Event()  # set with each new snapshot, cleared by who shows it
+        self.is_current = True  # the latest snapshot shows the present scene
+        self.whole_at = run.clock.now()  # [s] when that was last true
+        self.fresh = threading.Event()  # set with each new snapshot, cleared when it is shown
         self.latest: AnySnapshot = self.collect(self.next_serial())
 
     def next_serial(self) -> int:
@@ -88,7 +88,7 @@ class Snapshots:
         last = self.without_frame()._replace(params=params)
         try:
             self.latest = self.collect(last.serial)._replace(params=params) if with_frame else last
-        except DivergenceError:  # the solve is about to find that out
+        except DivergenceError:  # the solve itself is about to raise this
             self.latest = last
         self.fresh.set()
 
@@ -99,11 +99,11 @@ class Snapshots:
         run.activity = Activity("frame", may_end=run.clock.now() - self.whole_at < MAX_TIME_WITHOUT_FRAME)
         try:
             if run.unfinished is not None or run.unmade:
-                self.is_current = True  # all that there is of a scene that is not made
+                self.is_current = True  # a scene that could not be made has nothing else
                 return self.without_frame()
             found = self.collect(serial)
             self.is_current, self.whole_at = run.scene.params is params, run.clock.now()
-            return found._replace(serial=run.counts["snapshots"])  # controls may have been answered with others
+            return found._replace(serial=run.counts["snapshots"])  # controls may have received others
         except InterruptionError:
             run.counts["pictures ended early"] += 1
             self.is_current = False
@@ -126,8 +126,8 @@ class Snapshots:
     def collect(self, serial: int) -> AnySnapshot:
         """The scene's frame, readings, parameters and curves; hands its plot rows over.
 
-        While the last moments before a divergence are shown again, the frame is of one of them.
-        Raises DivergenceError where the frame holds a number that is not finite.
+        During the replay of a divergence the frame is one of its last moments.
+        Raises DivergenceError if a number of the frame is not finite.
         """
         scene, replay = self.run.scene, self.run.replay
         frame = scene.frame() if replay is None else replay.moment.frame
@@ -145,21 +145,21 @@ class Snapshots:
         while kept and kept[-1][0] > end:
             kept.pop()
         for row in rows:
-            if not kept or row[0] > kept[-1][0]:  # a run that goes on from a moment makes the row of it once more
+            if not kept or row[0] > kept[-1][0]:  # a run that resumes from a moment repeats its row
                 kept.append(row)
                 self.plot_rows.append((identity, row))
 
     def pop_rows(self) -> list[RunRow]:
-        """The rows that have come since the last call; the viewer thread calls it."""
+        """Take out the rows since the last call; the viewer thread calls it."""
         return [self.plot_rows.popleft() for _ in range(len(self.plot_rows))]
 
     def bring_back(self, rows: Sequence[PlotRow]) -> None:
-        """Plot the rows of a run that comes back, in place of those of its start."""
+        """Plot the rows of a restored run, in place of those of its start."""
         self.run.scene.take_plot_rows()
         self.hand_over(rows)
 
     def keep_state(self) -> Checkpoint | None:
-        """The state of a running scene, a few times a second; seldom where copying it takes long."""
+        """Checkpoint of a running scene, a few times a second; rarely if copying takes long."""
         run, clock = self.run, self.run.clock
         if not run.running or run.activity == STEPS or run.replay is not None:
             return None
@@ -179,7 +179,7 @@ class Snapshots:
         while len(history) > 2 and history[0][0] < wall - RATE_WINDOW:
             history.popleft()
         elapsed = wall - history[0][0]
-        capped = run.pacer.capped and run.running
+        capped = run.fixed_step.capped and run.running
         return Status(
             running=run.running,
             time=simulated,
@@ -202,11 +202,11 @@ class Snapshots:
         self.history.clear()
 
     def show_restarted(self) -> None:
-        """Have the panel say for a while that an undo could only begin a run again."""
+        """Have the panel report for a while that an undo had to restart a run."""
         self.restarted_until = self.run.clock.wall + RESTARTED_SHOWN
 
 
 def kept_state(run: ShownRun) -> Checkpoint:
-    """The state of a run, to go on from."""
+    """Checkpoint of a run, to resume from."""
     value = run.scene.keep()
     return Checkpoint(value, arrays_in(value), run.identity.number)

@@ -1,11 +1,11 @@
 """Access beyond the browsers of this machine, and the path of the lab. Without either by default.
 
-Behind a proxy the page has an address that is not the server's own. What the proxy does has to be said:
+Behind a proxy the page has an address that is not the server's own. The settings describe the proxy:
 
-- `base_path`: the path that the proxy puts before every path. A proxy that takes its path away again needs none.
+- `base_path`: the path that the proxy adds before every path. A proxy that removes it again needs none.
 - `origins`: the addresses of pages that may connect, as the browser sees them.
-- `key`: a secret that every request has to bring, as the first part of its path or in the header `KEY_HEADER`. Who has
-  it may connect, whatever the address of the page is. Nobody else may, no other user of the same machine either.
+- `key`: a secret that every request must have, as the first part of its path or in the header `KEY_HEADER`. Anyone
+  who has it may connect, whatever the address of the page, and nobody else, not even another user of the machine.
 """
 
 import re
@@ -82,7 +82,7 @@ def read_key(text: str) -> str:
 
 
 def admitted(access: Access, request: Request) -> Request | Response:
-    """The request with the path as the server itself names it, or the answer to one that is not let in."""
+    """The request with the server's own path, or the answer to a refused one."""
     path, mark, query = request.path.partition("?")
     base = access.base_path
     if path == base != "" and request.headers.get("Upgrade") is None:
@@ -100,7 +100,7 @@ def admitted(access: Access, request: Request) -> Request | Response:
 
 
 def is_same(given: str, expected: str) -> bool:
-    """True if two texts are equal, in a time that does not say how much of them is."""
+    """True if two texts are equal, in a time that does not depend on how much of them is."""
     return compare_digest(given.encode("utf-8", "replace"), expected.encode())
 
 

@@ -47,18 +47,18 @@ from app.server.web.page import own_answer, with_cover
 from app.server.web.panes import Panes
 from app.server.web.rate_limit import LIMIT, RateLimit, put_small_first
 
-MAX_NUMBER = 1e6  # any number in a message beyond this is refused
+MAX_NUMBER = 1e6  # largest number allowed in a message
 MAX_LENGTH = 1000  # of a text, or of a list
-MAX_FIELD_LENGTH = 64  # of what is typed into a field
-MAX_TEXT_LENGTH = 5100  # of a field of several lines: a set-up file, and the word of the page that sends it
+MAX_FIELD_LENGTH = 64  # of a text typed into a field
+MAX_TEXT_LENGTH = 5100  # of a field of several lines: a set-up file, and the word of the page
 INTAKE_INTERVAL = 1 / 60  # [s] between two turns of handling one browser's messages
-MAX_WAITING = 64  # messages of one browser that wait for their turn
+MAX_WAITING = 64  # waiting messages of one browser
 STARTING = threading.Lock()  # one server at a time: websockets' serve() is patched while a server starts
 
 ClientId: TypeAlias = int
 MergeKey: TypeAlias = tuple[object, ...]
 
-# Messages that a browser of ours sends. No uploads, no forms, no share tunnel.
+# Messages that our page sends. No uploads, no forms, no share tunnel.
 ALLOWED = (
     "CommandTriggerMessage",
     "GetRenderResponseMessage",
@@ -77,8 +77,8 @@ ALLOWED = (
 def is_own_origin(origin: str | None, host: str | None, bound: str) -> bool:
     """True if a websocket with these headers comes from our own page, on a server bound to address `bound`.
 
-    A browser always sends an Origin; programs that send none are not what is defended against. The Host must be a name
-    of this machine, as a page of another name that resolves to it (DNS rebinding) has Origin and Host alike.
+    A browser always sends an Origin; programs that send none are no threat here. The Host must be a name of this
+    machine, since a page of another name that resolves to it (DNS rebinding) has the same Origin and Host.
     """
     if origin is None:
         return True
@@ -105,7 +105,7 @@ def is_loopback(host: str) -> bool:
 
 
 def may_connect(request: Request, bound: str, access: Access) -> bool:
-    """True if a request, which brought the key where there is one, is from a page that may connect."""
+    """True if a request, which has the key if one is set, comes from a page that may connect."""
     origin = request.headers.get("Origin")
     return bool(access.key) or origin in access.origins or is_own_origin(origin, request.headers.get("Host"), bound)
 
@@ -114,7 +114,7 @@ def may_connect(request: Request, bound: str, access: Access) -> bool:
 def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list[str]]:
     """While open, a websocket server that starts refuses upgrades from other pages with 403, and serves the panes.
 
-    Yields a list with an entry for each server that has started.
+    Yields a list with an entry for each started server.
     """
     serve = websockets.asyncio.server.serve
     started: list[str] = []
@@ -175,7 +175,7 @@ def is_sequence(value: object) -> TypeGuard[Sequence[object]]:
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """True if this is a finite number, and no bool."""
+    """True if this is a finite number and not a bool."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
@@ -207,14 +207,14 @@ def allowed_value(handle: GuiHandle, value: object) -> object:
     if issubclass(kind, CHOICES):
         return value if isinstance(value, str) and value in handle.options else None
     if issubclass(kind, viser.GuiTextHandle):
-        if handle.multiline:  # its content is judged where it is saved, which can say so
+        if handle.multiline:  # its content is checked when it is saved, which can report errors
             return value[:MAX_TEXT_LENGTH] if isinstance(value, str) else None
         return value if isinstance(value, str) and len(value) <= MAX_FIELD_LENGTH and value.isprintable() else None
     return None
 
 
 def same(good: object, sent: object) -> bool:
-    """True if a browser already shows the value that was made of its message."""
+    """True if a browser already shows the value accepted from its message."""
     return (is_sequence(good) and is_sequence(sent) and list(good) == list(sent)) or good == sent
 
 
@@ -232,16 +232,16 @@ class MessageFilter:
         self.is_in_place = False  # True if messages pass through it
 
     def __call__(self, message: ViserMessage) -> ViserMessage:
-        """The message, with a value bounded where it only had to be bounded, or None where it is refused.
+        """The message, with its value bounded if that is enough, or None if it is refused.
 
-        Counts what is refused, and tells every browser of a value that was bounded.
+        Counts refused messages, and tells every browser a bounded value.
         """
         if kind_of(message) != "GuiUpdateMessage":
             good = message if kind_of(message) in ALLOWED and is_bounded(dataclasses.asdict(message)) else None
         else:
             good = self.judge_update(message)
             if good is not None and not same(good.updates["value"], message.updates["value"]):
-                # The sender shows what it sent; tell it, and everyone, what was made of it.
+                # The sender shows its own value: send the accepted one to it and to everyone.
                 send_to_all(self.server, good)
         if good is None:
             self.refused[type(message).__name__] += 1
@@ -261,7 +261,7 @@ class MessageFilter:
 
 
 def merge_key(message: ViserMessage) -> MergeKey | None:
-    """Key by which messages are coalesced to the latest. None for messages that never are."""
+    """Key by which messages are coalesced to the latest. None for messages that are never coalesced."""
     match kind := kind_of(message):
         case "GuiUpdateMessage" | "CommandTriggerMessage" | "GuiButtonHoldMessage":
             return kind, message.uuid
@@ -276,30 +276,30 @@ def merge_key(message: ViserMessage) -> MergeKey | None:
 
 
 def is_camera(message: ViserMessage) -> bool:
-    """True if a browser says with this message where its camera is."""
+    """True if this message holds the camera of a browser."""
     return kind_of(message) == "ViewerCameraMessage"
 
 
 class Intake:
     """The messages of one browser on their way to viser's handlers, on viser's event loop.
 
-    A message that comes alone is handled at once. What comes faster than `INTAKE_INTERVAL` waits for the next turn, and
-    of messages that supersede each other only the last is handled: a browser that floods is slowed, others are not.
+    A single message is handled at once. Messages faster than `INTAKE_INTERVAL` wait for the next turn, and of messages
+    that supersede each other only the last is handled: a browser that floods slows itself, not others.
 
-    viser counts a browser from its first camera message on and ignores half of what it sends before. All else waits
-    until then: a page may send the link in its address first.
+    viser counts a browser from its first camera message on, and ignores half of its earlier messages. These wait until
+    then: a page may send the link in its address first.
     """
 
     def __init__(self, message_filter: Callable[[ViserMessage], ViserMessage], handlers: "list[Handler]") -> None:
         self.message_filter, self.handlers = message_filter, handlers
         self.waiting: dict[MergeKey, ViserMessage] = {}
-        self.unmerged = 0  # counts messages that are never merged, for keys of their own
+        self.unmerged = 0  # counts messages that are never merged, to give each a key
         self.turn: asyncio.Task[None] | None = None
-        self.turned_at = -math.inf  # [s] when a message was last handled
+        self.turned_at = -math.inf  # [s] time of the last handled message
         self.counted = False  # True once viser has had a camera message
 
     def queue(self, client: ClientId, message: ViserMessage) -> None:
-        """Queue a message, over one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
+        """Queue a message, replacing one that it supersedes; beyond `MAX_WAITING` the oldest is dropped."""
         if kind_of(message) not in ALLOWED:
             self.message_filter(message)  # refused and counted
             return
@@ -315,7 +315,7 @@ class Intake:
             self.turn = asyncio.get_running_loop().create_task(self.handle_waiting(client))
 
     def close(self) -> None:
-        """Handle nothing more: a camera message handled after its browser has gone would count as a browser."""
+        """Handle no more messages: a camera message handled after its browser has left would count as a browser."""
         self.waiting, self.handlers = {}, []
 
     async def handle_waiting(self, client: ClientId) -> None:
@@ -335,7 +335,7 @@ class Intake:
             self.turn = None
 
     async def handle(self, client: ClientId, message: ViserMessage) -> None:
-        """Screen a message and call its handlers; one that fails is reported, and the others are called."""
+        """Filter a message and call its handlers; one that fails is reported, and the others are called."""
         good = self.message_filter(message)
         if good is None:
             return
@@ -348,7 +348,7 @@ class Intake:
 
 
 def put_intakes(server: viser.ViserServer, message_filter: MessageFilter) -> bool:
-    """Pass every message of a browser through its intake before viser's handlers see it. False: it is not possible."""
+    """Pass every message of a browser through its intake before viser's handlers. False if that is impossible."""
     intakes: dict[ClientId, Intake] = {}
 
     def join(client: ClientId, handlers: list[Handler]) -> Taker:
@@ -364,7 +364,7 @@ def put_intakes(server: viser.ViserServer, message_filter: MessageFilter) -> boo
 
 @contextlib.contextmanager
 def quiet() -> Generator[None]:
-    """While open, viser prints nothing: we print our own address, and a notebook would show all of it."""
+    """Context in which viser prints nothing: we print our own address, and a notebook would show both."""
     console = rich.get_console()
     before, console.quiet = console.quiet, True
     try:
@@ -374,26 +374,26 @@ def quiet() -> Generator[None]:
 
 
 def check_port(host: str, port: int) -> None:
-    """Raise OSError where it cannot be bound: viser would take the next port, or wait for the address forever."""
+    """Raise OSError if it cannot be bound: viser would take the next port, or wait for the address forever."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     with socket.socket(family, socket.SOCK_STREAM) as probe:
-        if os.name == "posix":  # ports of servers that have just ended; elsewhere also those of others that run
+        if os.name == "posix":  # ports of servers that have just ended; elsewhere it would allow those of running ones
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         probe.bind((host, port))
 
 
 class Opened(NamedTuple):
-    """A server that listens."""
+    """A listening server."""
 
     server: viser.ViserServer
     message_filter: MessageFilter
-    panes: Panes  # the labs that are reached through its port
+    panes: Panes  # the labs reached through its port
 
 
 def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> Opened:
     """A viser server that only our own page may connect to, with its messages filtered by `MessageFilter`.
 
-    access: who else may connect. Raises OSError where the port is busy or may not be bound.
+    access: who else may connect. Raises OSError if the port is busy or may not be bound.
     """
     check_port(host, port)
     # A message that cannot be decoded ends its connection, and would print a traceback each time.
@@ -414,7 +414,7 @@ def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> Opened
 
 
 def open_pane(panes: Panes, number: int) -> Opened:
-    """The same for a pane, which is reached through the port of the first lab and protected with it."""
+    """The server of a pane, reached through the port of the first lab and protected with it."""
     with STARTING, panes.making(number), quiet():
         server = viser.ViserServer(port=0, label="Springtide", verbose=False)
     return Opened(server, guarded(server), panes)

@@ -1,8 +1,8 @@
-"""The page that a browser is given: viser's, with a title, a cover for while nothing is drawn, and our own scripts.
+"""The page of the lab: viser's, with a title, a cover until something is drawn, and our own scripts.
 
-viser serves one HTML file. The cover stands at the top of its body, so that it is seen before the client behind it has
-been read; below it stand our modules (`app/render/scripts.py`). Where viser's page is not as expected, it is sent as it
-is: the lab works by viser's client alone.
+viser serves one HTML file. The cover is at the top of its body, so that it is seen before the client behind it is read;
+our modules follow (`app/render/scripts.py`). If viser's page is not as expected, it is sent unchanged: the lab works
+with viser's client alone.
 """
 
 import functools
@@ -18,7 +18,7 @@ from websockets.http11 import Request, Response
 
 from app.render.scripts import PAGE, before_tags, tags
 
-ALIVE_PATH = "/springtide-alive"  # requested by the page, to see whether the server is still there
+ALIVE_PATH = "/springtide-alive"  # requested by the page, to check that the server answers
 # The answer to that: another name is another server, which knows nothing of the page.
 SERVER_NAME = secrets.token_hex(8)
 TITLE = "<title>Springtide</title>"
@@ -27,7 +27,7 @@ COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover
 
 
 def own_answer(request: Request, *, shared: bool) -> Response | None:
-    """The answer to a request that viser knows nothing of; None for the others. shared: pages of others may read it."""
+    """The answer to a request of ours; None for viser's. shared: other pages may read it."""
     path = request.path.partition("?")[0]
     if path == PANES_PATH:
         body = (resources.files("app.render") / "js" / "beside.html").read_bytes()
@@ -42,7 +42,7 @@ def own_answer(request: Request, *, shared: bool) -> Response | None:
 
 
 def with_cover(request: Request, response: Response | None) -> Response | None:
-    """viser's answer; where it is the page, with our title, cover and scripts."""
+    """viser's answer; for the page, with our title, cover and scripts."""
     path = request.path.partition("?")[0]
     if response is None or response.status_code != HTTPStatus.OK or path not in ("/", "/index.html"):
         return response
@@ -61,7 +61,7 @@ def style_sheet() -> str:
 
 @functools.cache
 def covered(sent: bytes, zipped: bool) -> bytes:
-    """viser's page with ours around it, compressed again where it was; as it was sent where it is not as expected."""
+    """viser's page with ours around it, compressed again if it was; unchanged if it is not as expected."""
     page = (gzip.decompress(sent) if zipped else sent).decode("utf-8")
     head, found, body = page.rpartition("<body>")
     # viser's client is one long script in the head: below the cover it does not delay it.

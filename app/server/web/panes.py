@@ -1,8 +1,8 @@
 """Labs beside the first one, at paths of its port: "/pane/2/" is a viser server that binds no port of its own.
 
-Whatever protects the first lab (who may connect, the key, the base path) protects the others too, and a proxy that
-passes one port passes all of them. The page of a pane is the same as the first one's, so only its websocket is handed
-over: to the handler of its own viser server, which runs on an event loop of its own.
+The protection of the first lab (origins, key, base path) covers the others too, and a proxy that passes one port passes
+all of them. The page of a pane is the same as the first one's, so only its websocket is handed over, to the handler of
+its own viser server, which runs on its own event loop.
 """
 
 # pyright: reportPrivateUsage=false
@@ -23,7 +23,7 @@ from app.render.handles.viser_types import ViserConnection
 
 PANE_PATH = re.compile(r"/pane/([2-9])(?=/)")
 T = TypeVar("T")
-CLOSING_TIME = 1.0  # [s] for which a pane that ends waits for its browsers
+CLOSING_TIME = 1.0  # [s] for an ending pane to wait for its browsers
 
 
 class Bridge:
@@ -74,7 +74,7 @@ class Unbound:
             await asyncio.wait(self.open, timeout=CLOSING_TIME)
 
     async def serve(self, connection: ViserConnection) -> None:
-        """Serve a browser that is connected to another event loop, on which this runs."""
+        """Serve a browser connected to another event loop, on which this runs."""
         assert self.loop is not None
         bridge = Bridge(connection, asyncio.get_running_loop())
         with contextlib.suppress(asyncio.CancelledError, RuntimeError):  # the pane has ended
@@ -98,7 +98,7 @@ class Panes:
         self.wanted: weakref.WeakKeyDictionary[ViserConnection, int] = weakref.WeakKeyDictionary()
 
     def read(self, connection: ViserConnection, request: Request) -> Request | None:
-        """The request with its path as the pane has it, or unchanged if it names no pane; None without a request."""
+        """The request with the pane's own path, or unchanged if it names no pane; None without a request."""
         found = PANE_PATH.match(request.path)
         if found is None:
             return request
@@ -109,7 +109,7 @@ class Panes:
         return replace(request, path=request.path[found.end() :])
 
     async def serve(self, connection: ViserConnection, first: Callable[[ViserConnection], Awaitable[None]]) -> None:
-        """Hand a websocket to the pane that it named; to `first`, the handler of the first lab, where it named none."""
+        """Hand a websocket to the named pane, or to `first`, the handler of the first lab, if it named none."""
         number = self.wanted.pop(connection, None)
         if number is None:
             await first(connection)
@@ -118,7 +118,7 @@ class Panes:
 
     @contextlib.contextmanager
     def making(self, number: int) -> Generator[None]:
-        """While open, a websocket server that starts becomes a pane."""
+        """Context in which a started websocket server becomes a pane."""
         serve = websockets.asyncio.server.serve
 
         def unbound(handler: PaneHandler, *_: object, **__: object) -> Unbound:
@@ -132,5 +132,5 @@ class Panes:
             websockets.asyncio.server.serve = serve  # type: ignore[assignment]
 
     def remove(self, number: int) -> None:
-        """Let nobody in any more."""
+        """Admit nobody any longer."""
         self.servers.pop(number, None)

@@ -1,13 +1,13 @@
-"""Sends a browser no more than its line carries, so that the answer to a control does not queue up behind pictures.
+"""Sends a browser no more than its line carries, so that answers to controls do not queue behind pictures.
 
-viser keeps of what waits for a browser only the newest: a picture replaces the one before. But what has been handed to
-the operating system, a tunnel or a proxy can no longer be replaced, and these take megabytes: on a slow line seconds.
-Therefore a ping follows each picture, or one of some where the last pong came at once. Its pong says when the picture
-has arrived, and from that how much the line carries. The next picture is sent once no more than this is on the way:
-what the line carries in a round trip, which keeps it busy, and in `QUEUE` seconds more. On a fast line that never
-waits. Meanwhile small updates of the panel go ahead of the pictures that wait.
+Of messages waiting for a browser viser keeps only the newest: a picture replaces the one before. But data in the
+buffers of the operating system, a tunnel or a proxy can no longer be replaced, and these hold megabytes, seconds of a
+slow line. Therefore a ping follows each picture, or one of several if the last pong came at once. Its pong shows when
+the picture has arrived, and so the rate of the line. The next picture is sent once the data in flight is at most that
+of a round trip, which keeps the line busy, and of `QUEUE` seconds more. A fast line never waits. Meanwhile small
+updates of the panel overtake the waiting pictures.
 
-The way of BBR (Cardwell et al. 2016, ACM Queue 14(5)), with pictures for packets.
+This follows BBR (Cardwell et al. 2016, ACM Queue 14(5)), with pictures for packets.
 """
 
 import asyncio
@@ -25,15 +25,15 @@ from app.render.handles.viser_types import ViserConnection, ViserMessage
 from app.server.web.transport import kind_and_size
 
 SMALL = 8192  # [bytes] below which a message is no picture: it never waits, and no ping follows it
-QUEUE = 0.02  # [s] of the line's rate that may wait in front of it, beyond what is on the way
+QUEUE = 0.02  # [s] of the line's rate that may queue, beyond the data in flight
 MOST = 12  # pictures on the way, however much a line carries: 30 a second where a round trip takes 0.4 s
-QUICK = 0.01  # [s] from a picture to its pong, within which a line is so quick that not each picture is asked about
-MAX_UNASKED = 4  # pictures that go one after the other without a ping over such a line: each costs 0.1 ms
+QUICK = 0.01  # [s] from a picture to its pong, below which not every picture needs a ping
+MAX_UNASKED = 4  # pictures in a row without a ping on such a line: each ping costs 0.1 ms
 SAMPLES = 5  # of the rate; their median counts: one pong may be late, and the next seem early
 PROBE_INTERVAL = 10.0  # [s] between two round trips that are measured while nothing else is on the way
 PROBES = 3  # the shortest counts
-PATIENCE = 1.0  # [s] beyond four times what it should take, after which a pong is no longer waited for
-FIRST_PATIENCE = 10.0  # [s] the same while the rate is not known
+PATIENCE = 1.0  # [s] beyond four times its expected time, after which a pong is given up
+FIRST_PATIENCE = 10.0  # [s] the same while the rate is unknown
 
 
 class Sent(NamedTuple):
@@ -65,7 +65,7 @@ class RateLimit:
         self.unasked = 0  # pictures since the last ping
 
     async def send(self, data: bytes) -> None:
-        """Send a message, a picture once there is room for it. Raises ConnectionClosed where the browser has gone."""
+        """Send a message, a picture once there is room for it. Raises ConnectionClosed if the browser has left."""
         if len(data) < SMALL:
             await self.send_now(data)
             return
@@ -89,7 +89,7 @@ class RateLimit:
         return self.clock() < self.probe_at and self.bytes_on_the_way <= bound and len(self.on_the_way) < MOST
 
     async def room(self) -> None:
-        """Wait until there is room for a picture; a pong that does not come in time is given up."""
+        """Wait until there is room for a picture; a late pong is given up."""
         while not self.has_room:
             if not self.on_the_way:
                 await self.probe()
@@ -117,7 +117,7 @@ class RateLimit:
         self.probe_at = self.clock() + PROBE_INTERVAL
 
     def learn(self, sent: Sent) -> None:
-        """A picture has arrived, or the browser has gone."""
+        """Note that a picture has arrived, or the browser has left."""
         if sent in self.on_the_way:
             self.on_the_way.remove(sent)
             self.bytes_on_the_way -= sent.size
@@ -137,7 +137,7 @@ class RateLimit:
 
 
 def has_come(pong: "asyncio.Future[float]") -> bool:
-    """True if a pong is there; otherwise it has not come yet, or the browser has gone."""
+    """True if a pong has arrived; otherwise it is pending, or the browser has left."""
     return pong.done() and not pong.cancelled() and pong.exception() is None
 
 
@@ -152,7 +152,7 @@ def put_small_first(server: viser.ViserServer) -> None:
 
 
 async def small_first(windows: Windows, limit: RateLimit) -> Windows:
-    """The same messages; where there is no room only small updates of the panel, and later the newest of the others."""
+    """The same messages; if there is no room only small updates of the panel, and later the newest of the others."""
     loop = asyncio.get_running_loop()
     held: dict[str, ViserMessage] = {}  # waiting messages, in order, by the key of the message that supersedes them
     more: asyncio.Future[Window] | None = None

@@ -1,9 +1,9 @@
 """Hands the frames of the viewer thread to viser, one at a time.
 
-viser's own `atomic()` holds a browser's next message back while a picture is handed over. But a message that is just
-being put together then ends in the middle of a picture, or takes half of one that the next replaces. Therefore no
-`atomic()` is used on the viewer's thread: a picture is handed over as a whole on viser's event loop, where messages are
-put together too. So mesh and poses of one picture are always in one message, however slow a browser is.
+viser's own `atomic()` holds a browser's next message back while a picture is handed over. But a message in preparation
+then ends in the middle of a picture, or contains half of one that the next replaces. Therefore the viewer's thread does
+not use `atomic()`: it hands over a complete picture on viser's event loop, which also composes messages. So mesh and
+poses of one picture are always in one message, however slow a browser is.
 """
 
 import collections
@@ -21,7 +21,7 @@ MAX_WAIT = 1.0  # [s] for viser's event loop to take a picture
 
 
 def kind_and_size(value: object) -> tuple[str, int] | None:
-    """("arrays" or "texts", bytes) of a property; None of a single number, which is not worth counting."""
+    """("arrays" or "texts", bytes) of a property; None for a single number, which is negligible."""
     if isinstance(value, np.ndarray):
         return "arrays", value.nbytes
     if isinstance(value, tuple):
@@ -38,14 +38,14 @@ class Transport:
     def __init__(self, server: viser.ViserServer) -> None:
         self.sent: collections.Counter[str] = collections.Counter()
         self.counting_thread: int | None = None
-        self.picture: list[object] = []  # messages of the picture that is being drawn
+        self.picture: list[object] = []  # messages of the picture under way
         self.given = threading.Event()  # viser has the last picture
         self.given.set()
         self.loop = server.get_event_loop()
         self.send_together = watch_messages(server, self.take)
 
     def take(self, message: object) -> bool:
-        """Count a message of the picture that is being drawn, and hold it until the whole is sent."""
+        """Count a message of the picture under way, and hold it until the whole is sent."""
         if threading.get_ident() != self.counting_thread:
             return False
         self.count(message)
@@ -65,7 +65,7 @@ class Transport:
 
     @contextlib.contextmanager
     def counted(self) -> Generator[None]:
-        """While open, messages of this thread are collected; at the end they are sent as one: see `wait`."""
+        """Context in which messages of this thread are collected; at its end they are sent together: see `wait`."""
         self.counting_thread = threading.get_ident()
         try:
             yield
@@ -81,7 +81,7 @@ class Transport:
         given = self.given = threading.Event()
 
         def send_all() -> None:
-            # It cannot be cut in two: the loop puts no message together while this runs on it.
+            # It cannot be split: the loop composes no message while this runs on it.
             self.send_together(picture)
             given.set()
 

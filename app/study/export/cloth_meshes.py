@@ -33,7 +33,7 @@ class ClothMeshes:
         step = interval / math.ceil(interval / params.time_step * (1.0 - 1e-9))
         self.scene = ClothScene(dataclasses.replace(params, time_step=step))
         if self.scene.note:
-            # Nobody would notice in a file that another integrator ran than the one that was asked for.
+            # A file would not show that another integrator ran than the requested one.
             raise argument_error(
                 "integrator",
                 params.integrator,

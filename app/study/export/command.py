@@ -61,7 +61,7 @@ def export(scene: str, params: Any, seconds: float, rate: float, start: float, f
 
     form: of the files; None for the first of the scene's that this installation can write. Returns the exit status: 0;
     1 for a run that diverged, which keeps the frames before that. Raises ValueError for arguments that are not allowed,
-    before any work, and OSError where the files cannot be written; then there is no folder.
+    before any work, and OSError if the files cannot be written; then there is no folder.
     """
     if scene not in EXPORTERS:
         raise argument_error("SCENE", scene, "one of " + ", ".join(EXPORTERS))
@@ -122,7 +122,7 @@ def write_frames(sequence: Sequence, folder: Path, scene: str, start: float, cou
 
 
 def check_folder(out: Path) -> None:
-    """Raises ValueError where `out` is not a new or an empty folder that can be made."""
+    """Raises ValueError if `out` is not a new or an empty folder that can be made."""
     try:
         if os.path.lexists(out) and (out.is_symlink() or not out.is_dir() or any(out.iterdir())):
             raise argument_error("--out", str(out), "a new or empty folder: nothing is overwritten")

@@ -14,7 +14,7 @@ class Sequence(Protocol):
     def write(self, folder: Path, start: float, count: int) -> Iterator[float | None]:
         """Write `count` frames, the first at `start` [s]. Yields the time [s] of each, None for one of a first pass.
 
-        Raises DivergenceError where the run diverges: the frames before that are written. Raises OSError.
+        Raises DivergenceError if the run diverges: the frames before that are written. Raises OSError.
         """
         ...
 

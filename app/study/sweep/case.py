@@ -62,7 +62,7 @@ def run_case(scene: str, values: dict[str, Any], times: tuple[float, ...]) -> Ou
         with np.errstate(all="ignore"):
             running = kind.make(make_setup(kind, "", values).params)
             if note := running.note:
-                # The numbers of another integrator than the one asked for are no result.
+                # Numbers of another integrator than the requested one are no result.
                 return failed(note)
             for index, until in enumerate(times):
                 row = advance_to(running, until) or row

@@ -1,4 +1,4 @@
-"""`springtide sweep`: check everything, run the cases that are not finished yet, write the results whole."""
+"""`springtide sweep`: check everything, run the missing cases, and write the results."""
 
 import argparse
 import contextlib
@@ -18,7 +18,7 @@ from sim.validation import argument_error
 REQUIRED_PACKAGES = ("xarray", "netCDF4")
 FIGURE_SUFFIXES = (".png", ".svg")
 
-Outcomes = Generator[tuple[int, Outcome], None, None]  # the number and the outcome of each case, as it is finished
+Outcomes = Generator[tuple[int, Outcome], None, None]  # number and outcome of each finished case
 Run = Callable[[dict[int, Any]], Outcomes]  # takes jobs by number
 
 
@@ -38,8 +38,8 @@ def run(arguments: argparse.Namespace) -> int:
 def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bool = False) -> int:
     """Run the sweep that a spec describes and write `out`; returns 0, or 1 where cases failed.
 
-    Raises ValueError for what is not allowed, before any work and before any file is made or removed; OSError for what
-    goes wrong later.
+    Raises ValueError for an invalid spec, before any work and before any file is made or removed; OSError for later
+    failures.
     """
     spec = read_spec(spec_path)
     if out.suffix != ".nc":
@@ -86,14 +86,14 @@ def runner(spec: Spec, scheduler: str | None) -> Iterator[Run]:
     from app.scenes.ahead.compiling import prepare
 
     def run(jobs: dict[int, Any]) -> Outcomes:
-        prepare(spec.scene, drawn=False)  # compiled here once, and not in every worker
+        prepare(spec.scene, drawn=False)  # compiled once here instead of in every worker
         yield from workers.on_cores(jobs)
 
     yield run
 
 
 def run_missing(spec: Spec, store: Any, run: Run) -> dict[int, Outcome]:
-    """Run and store the cases that are not stored yet; returns every case's outcome."""
+    """Run and store the missing cases; returns the outcomes of all."""
     outcomes: dict[int, Outcome] = store.outcomes
     total = len(spec.cases)
     jobs = {

@@ -91,7 +91,7 @@ def identity(spec: Spec) -> dict[str, Any]:
 
 
 def identity_in(path: Path) -> dict[str, Any] | None:
-    """The identity of the sweep that a file holds, or None where it is no finished sweep."""
+    """The identity of the sweep that a file holds, or None if it is no finished sweep."""
     import xarray as xr
 
     try:

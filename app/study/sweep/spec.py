@@ -179,7 +179,7 @@ def read_axis(name: str, parameter: Parameter, given: Any, design: str) -> Axis:
 
 
 def grid_axis(name: str, parameter: Parameter, axis: Axis) -> tuple[Any, ...]:
-    """The values along an axis of a grid. Raises ValueError where rounding to whole numbers makes two of them equal."""
+    """The values along an axis of a grid. Raises ValueError if rounding to whole numbers makes two of them equal."""
     values = grid_values(axis, parameter)
     if len(set(values)) < len(values):
         raise argument_error(f"{name}.count", len(values), f"at most {len(set(values))}: these are whole numbers")

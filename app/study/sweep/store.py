@@ -18,7 +18,7 @@ class Store:
     def __init__(self, path: Path, identity: dict[str, Any]) -> None:
         """Open or make the store of the sweep with this identity: its spec and its program.
 
-        Raises ValueError where the file belongs to another sweep, is no store, or another program writes to it; OSError
+        Raises ValueError if the file belongs to another sweep, is no store, or another program writes to it; OSError
         where it cannot be read or written.
         """
         self.path = path
@@ -70,7 +70,7 @@ class Store:
             raise no_store(self.path, error) from None
 
     def add(self, number: int, outcome: Outcome) -> None:
-        """Store one case. Raises OSError where it cannot be stored."""
+        """Store one case. Raises OSError if it cannot be stored."""
         try:
             text = json.dumps(outcome._asdict())
             self.connection.execute("INSERT OR REPLACE INTO cases VALUES (?, ?)", (number, text))
@@ -93,7 +93,7 @@ def columns_of(connection: sqlite3.Connection, table: str) -> list[str]:
 
 
 def outcome_of(content: Any) -> Outcome:
-    """The outcome that was stored as JSON. Raises ValueError or TypeError where it is no outcome."""
+    """The outcome that was stored as JSON. Raises ValueError or TypeError if it is no outcome."""
     outcome = Outcome(**content)
     sound = outcome.end in ENDS and isinstance(outcome.message, str)
     sound = sound and all(isinstance(number, float) for number in (outcome.diverged_at, outcome.run_time))

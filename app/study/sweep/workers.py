@@ -1,7 +1,7 @@
 """Workers of a sweep: processes on all cores of this machine, or those of a Dask cluster.
 
 Either way a case is run again when its worker dies, and a case that kills its workers ends as failed: nothing is lost,
-and the other cases go on.
+and the other cases continue.
 """
 
 import contextlib
@@ -30,7 +30,7 @@ def on_cores(jobs: dict[int, Job]) -> Generator[tuple[int, Outcome], None, None]
 def connected(address: str) -> Iterator[Any]:
     """A client of the Dask scheduler at `address`, for as long as the block lasts.
 
-    Raises ValueError where no scheduler or worker answers, or the workers run another program.
+    Raises ValueError if no scheduler or worker answers, or the workers run another program.
     """
     from distributed import Client
 
@@ -50,7 +50,7 @@ def connected(address: str) -> Iterator[Any]:
 def on_cluster(client: Any, jobs: dict[int, Job]) -> Generator[tuple[int, Outcome], None, None]:
     """Numbers and outcomes of the jobs as they are finished, from the workers of a Dask cluster.
 
-    Raises OSError where the scheduler goes away.
+    Raises OSError if the scheduler goes away.
     """
     from distributed import CancelledError, as_completed
 
@@ -74,7 +74,7 @@ def on_cluster(client: Any, jobs: dict[int, Job]) -> Generator[tuple[int, Outcom
 
 
 def check_address(address: str) -> None:
-    """Raises ValueError where nothing listens at `address`. (A client that fails to connect leaves threads behind.)"""
+    """Raises ValueError if nothing listens at `address`. (A client that fails to connect leaves threads behind.)"""
     host, _, port = address.rpartition("://")[2].rpartition(":")
     if not (host and port.isdecimal() and int(port) < 65536):
         raise argument_error("--scheduler", address, "an address such as tcp://host:8786")
@@ -85,7 +85,7 @@ def check_address(address: str) -> None:
 
 
 def check_workers(client: Any, address: str) -> None:
-    """Raises ValueError where there is no worker, or one that runs another program."""
+    """Raises ValueError if there is no worker, or one that runs another program."""
     try:
         client.wait_for_workers(1, timeout=MAX_ANSWER_TIME)
         programs = client.run(program)

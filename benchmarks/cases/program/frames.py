@@ -35,7 +35,7 @@ def run_scene(name: str, frames: int) -> tuple[list[tuple[float, float, float]],
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Medians [ms], their sum as a share of one core at 30 Hz, and the data of a frame to each browser [kB]."""
+    """Medians [ms], their sum as a fraction of one core at 30 Hz, and the data of a frame to each browser [kB]."""
     table = []
     for name in NAMES:
         times, size = run_scene(name, 40 if quick else 300)

@@ -22,7 +22,7 @@ SETTLING = 5000  # [ms] after the page is there, or a pause
 
 
 def chromium_path() -> str | None:
-    """Path of Chromium; None where it or its driver is not installed."""
+    """Path of Chromium; None if it or its driver is not installed."""
     found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     return found if importlib.util.find_spec("playwright") else None
 

@@ -4,8 +4,8 @@ C(n): n x n particles, 1 m, 1 kg, level, four corners pinned; structural springs
 0.002 N s/m each; 0.25 s from rest. Errors are the largest distance of any particle from the reference at the end.
 
 Explicit methods take steps at fractions of their critical step; methods without one take a ladder of step counts. Some
-rungs are left out, and their row says why: they would take too long, they diverge, or the reference is not good enough
-to tell their error.
+rungs are left out, with the reason in their row: they would take too long, they diverge, or the reference is too
+inexact for their error.
 
 All sizes take some five minutes; `--quick` (32 x 32 particles, rungs of up to a quarter of a second) ten seconds.
 """
@@ -34,7 +34,7 @@ STEP_LADDER = (0.95, 0.8, 0.6, 0.4, 0.2, 0.1, 0.05, 0.025)  # time steps over th
 STEP_COUNTS = (8, 32, 128, 512, 2048, 8192)  # of methods that have no critical step
 METHODS = tuple(name for name, record in INTEGRATORS.items() if not record.undamped_only)
 MEASURED = ("force evaluations", "time [ms]", "least [ms]", "x real time", "error [m]", "reference good to [m]")
-MAX_ERROR = 0.5  # [m] a larger one means another motion altogether
+MAX_ERROR = 0.5  # [m] beyond this the motion is a different one
 
 
 def benchmark_cloth(
@@ -58,7 +58,7 @@ def positions(net: Net, name: str, steps: int) -> Positions:
 
 
 def expected_time(net: Net, name: str, steps: int) -> float:
-    """About how long the whole motion takes [s], from its first sixteenth: for a solver that iterates, the easiest."""
+    """Estimated time of the whole motion [s], from its first sixteenth, the easiest part for an iterative solver."""
     state, first = State.at_rest(net), math.ceil(steps / 16)
     return processor_time(lambda: advance(net, state, INTEGRATORS[name], DURATION / steps, first)) * steps / first
 
@@ -91,7 +91,7 @@ def ladder(net: Net, name: str, truth: Reference, max_time: float, timing: float
         if expected > max_time:
             row["left out"] = f"over {max_time:g} s"
             if not INTEGRATORS[name].implicit:
-                break  # finer rungs take longer, except with a solver that iterates
+                break  # finer rungs take longer, except with an iterative solver
             continue
         with np.errstate(all="ignore"):
             start = effort_clock()

@@ -1,4 +1,4 @@
-"""The share of one core that a rope takes in real time: frames of 1/60 s, each with the steps that fill it."""
+"""The fraction of one core that a rope takes in real time: frames of 1/60 s, each with the steps that fill it."""
 
 import statistics
 import time

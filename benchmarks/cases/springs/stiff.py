@@ -1,8 +1,8 @@
-"""Implicit steps of a stiff cloth of 64 x 64 particles, hanging and draped: the share of a core that real time takes.
+"""Implicit steps of a stiff cloth of 64 x 64 particles, hanging and draped: fraction of a core for real time.
 
 The presets of the cloth scene, in a steady wind, at steps of 1/60 s, with stiffer structural springs. A correction of
-the solver is one product with its factors and one or two force evaluations. The last rows are what SciPy's sparse
-direct solver takes for the same matrix, once.
+the solver is one product with its factors and one or two force evaluations. The last rows time SciPy's sparse direct
+solver on the same matrix.
 """
 
 import dataclasses
@@ -41,7 +41,7 @@ def net_of(preset: str, stiffness: float, method: str) -> Net:
 
 
 def row(preset: str, stiffness: float, method: str, steps: int) -> dict[str, Any]:
-    """Steps from rest on one thread, in processor time, which other programs on the machine do not lengthen."""
+    """Steps from rest on one thread, in processor time, which other programs do not affect."""
     net = net_of(preset, stiffness, method)
     state, times, evals = State.at_rest(net), [], []
     advance(net, state.copy(), method, STEP, 1)  # loads the kernel

@@ -1,4 +1,4 @@
-"""The cost of particles: fire and an oil jet, as a share of one core at 30 Hz."""
+"""The cost of particles: fire and an oil jet, as a fraction of one core at 30 Hz."""
 
 import statistics
 import time
@@ -15,7 +15,7 @@ RATE = 30.0  # [Hz] frames
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Rows of name, particles, ms a step, share of one core at 30 Hz."""
+    """Rows of name, particles, ms a step, fraction of one core at 30 Hz."""
     repeats = 60 if quick else 400
     flat = np.zeros((24, 24))
     fire = Fire((0.0, 0.0, 0.0), count=COUNT)

@@ -17,7 +17,7 @@ BODIES = 200
 
 
 def rows(quick: bool = False) -> list[dict[str, Any]]:
-    """Rows of name, ms of processor time, share of a core in real time."""
+    """Rows of name, ms of processor time, fraction of a core in real time."""
     repeats = 31 if quick else 201
     return [bodies_row(repeats), *scene_rows(repeats)]
 

@@ -95,7 +95,7 @@ def check_hull(name: str, hull: object) -> None:
 
 
 def check_parts(vertices: np.ndarray, faces: np.ndarray, name: str) -> None:
-    """Raises ValueError where a part of a mesh is inside out or overlaps another one, which would count twice.
+    """Raises ValueError if a part of a mesh is inside out or overlaps another one, which would count twice.
 
     Close to each face inside it the mesh encloses a point once, outside not at all, or once where another part
     touches. Looked at are up to MAX_SAMPLES places on the faces of a mesh of several parts, except faces without area,

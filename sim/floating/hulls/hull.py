@@ -103,7 +103,7 @@ class Hull(ClosedMesh):
         own_table: with the table of linear coefficients that lies beside the file, if there is one. unit: "m", "cm",
         "mm" or "ft", by default that of the format, or metres. An open mesh is closed by weld [m], corners nearer than
         that become one; by mirror, "x" or "y", the plane across which the other half lies; by cap, "deck". Raises
-        ValueError where the file cannot be read, its mesh is not closed, oriented and finite, or its table is that of
+        ValueError if the file cannot be read, its mesh is not closed, oriented and finite, or its table is that of
         another one; ModuleNotFoundError without meshio, where the format needs it.
         """
         return Hull.of_shape(shape_from_file(path, own_table, MeshReading(unit, weld, mirror, cap)))

@@ -158,7 +158,7 @@ class Words:
         self.words, self.at = self.lines[line].split() if line < len(self.lines) else [], 0
 
     def numbers(self, count: int, what: str) -> np.ndarray:
-        """The next numbers (count,). Raises ValueError where they are not there."""
+        """The next numbers (count,). Raises ValueError if they are not there."""
         words = self.words[self.at : self.at + count]
         self.at += count
         try:

@@ -44,8 +44,8 @@ AXES = {  # after omega
 }
 WANTED = (*MATRICES, *FORCES, "omega", "wave_direction", "influenced_dof", "radiating_dof", "rho", "g")
 WIDEST_GAP = math.radians(31.0)  # between directions that are interpolated
-SYMMETRY = 1e-3  # share of the greatest force that a hull's own symmetry may miss
-SAME_DEPTH = 1e-3  # by how much a depth that is asked for may differ from one of the dataset
+SYMMETRY = 1e-3  # fraction of the greatest force that a hull's own symmetry may miss
+SAME_DEPTH = 1e-3  # largest difference of a requested depth from one of the dataset
 SAME_HEADING = 1e-3  # [rad] the same of a heading
 
 
@@ -228,7 +228,7 @@ def with_speed_zero(dataset: "Dataset", path: str) -> "Dataset":
 
 
 def with_one_depth(dataset: "Dataset", path: str, depth: float | None) -> tuple["Dataset", float]:
-    """The part of a dataset of the depth [m] that is asked for, and that depth. Raises ValueError without it."""
+    """The part of a dataset at the requested depth [m], and that depth. Raises ValueError without it."""
     depths = np.full(1, math.inf)
     if "water_depth" in dataset.variables:
         depths = np.atleast_1d(numbers(dataset, "water_depth", None, path, allow_infinite=True))
@@ -247,7 +247,7 @@ def with_one_depth(dataset: "Dataset", path: str, depth: float | None) -> tuple[
 
 
 def by_frequency(dataset: "Dataset", path: str) -> "Dataset":
-    """The dataset with `omega` as the axis of its frequencies. Raises ValueError where it has no such axis."""
+    """The dataset with `omega` as the axis of its frequencies. Raises ValueError if it has no such axis."""
     axes = [name for name in FREQUENCIES if name in dataset.dims]
     omega = dataset["omega"]
     if len(axes) != 1 or omega.dims != (axes[0],):
@@ -258,7 +258,7 @@ def by_frequency(dataset: "Dataset", path: str) -> "Dataset":
 def of_one_body(dataset: "Dataset", path: str, body: str | None) -> tuple["Dataset", str]:
     """The part of a dataset of one body with the six motions in their order, and the name before its motions.
 
-    Raises ValueError where the body is not there, was not named, or lacks a motion.
+    Raises ValueError if the body is not there, was not named, or lacks a motion.
     """
     parts = {}
     for axis in ("influenced_dof", "radiating_dof"):
@@ -302,7 +302,7 @@ def of_body(dataset: "Dataset", name: str, body: str) -> np.ndarray | None:
 
 
 def draft_of(dataset: "Dataset", path: str, body: str, draft: float | None) -> float:
-    """The draft [m] as given, or that of the dataset. Raises ValueError where neither is there."""
+    """The draft [m] as given, or that of the dataset. Raises ValueError if neither is there."""
     if draft is not None:
         return check_positive("draft", draft, "m")
     found = of_body(dataset, "draught", body)
@@ -314,7 +314,7 @@ def draft_of(dataset: "Dataset", path: str, body: str, draft: float | None) -> f
 def centre_of(dataset: "Dataset", path: str, body: str, given: Sequence[float] | None) -> np.ndarray:
     """The point (3,) [m] that the motions are about, as given, or that of the dataset.
 
-    Without a centre of rotation it is the centre of mass. Raises ValueError where none is there.
+    Without a centre of rotation it is the centre of mass. Raises ValueError if none is there.
     """
     if given is not None:
         return np.array(check_vector("rotation_center", given, "m"))
@@ -366,7 +366,7 @@ def numbers(
 
 
 def place_of_heading(headings: np.ndarray, path: str, heading: float | None) -> int:
-    """Index of the one of headings (n,) [rad] that is asked for. Raises ValueError without it."""
+    """Index of the requested one of headings (n,) [rad]. Raises ValueError without it."""
     if heading is None:
         return 0
     miss = np.abs(within_half_turn(headings - check_angle("heading", heading)))

@@ -37,7 +37,7 @@ from sim.water import SAME_WATER
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
 POLES = np.array([-0.362 + 0.419j, -0.408 + 0.850j, -0.311 + 1.274j, -1.344 + 1.128j, -1.127 + 4.227j])
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 10.0))  # in which waves run, of the excitation
-FIT_WIDTH = 0.12  # share of a hull's own frequency about which the memory is fitted best
+FIT_WIDTH = 0.12  # fraction of a hull's own frequency about which the memory is fitted best
 FIT_FLOOR = 0.06  # weight of the other frequencies
 STEADY_WEIGHT = 30.0  # of the condition that a steady motion meets no force
 DEEPEST = 0.98  # of the height of a hull: the draft at which one that is wholly under water has its coefficients
@@ -419,7 +419,7 @@ def natural_frequency(linear: LinearHull, axis: int, mass: float, stiffness: flo
 
     mass [m3 or m5]: of the solid over the fluid's density; stiffness [m2 or m4]: over the weight density. Roll and
     pitch carry the sway and surge that come with them. added scales the added mass. 0 where no force restores. Raises
-    ConvergenceError where the search does not end.
+    ConvergenceError if the search does not end.
     """
     if stiffness <= 0.0:
         return 0.0

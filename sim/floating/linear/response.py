@@ -25,7 +25,7 @@ from sim.floating.motion.body import Body, check_body, check_pose
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps
 from sim.floating.statics.righting import about_rest
 from sim.floating.statics.stability import is_stable
-from sim.numerics.angles import within_half_turn
+from sim.numerics.angles import within_half_turn, within_turn
 from sim.validation import argument_error, as_array, check_angle, check_positive
 from sim.water import EARTH_GRAVITY
 
@@ -102,7 +102,7 @@ def linear_forces(
     mass = density * np.block([[hull.volume * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), hull.inertia]])
     if abs(within_half_turn(heading - linear.heading)) > MAX_MISS:  # False for nan: all headings
         raise argument_error("heading", heading, f"{linear.heading:g} rad, the only one that the hull's dataset has")
-    index, weights = lagrange(np.append(DIRECTIONS, 2.0 * math.pi), heading % (2.0 * math.pi))
+    index, weights = lagrange(np.append(DIRECTIONS, 2.0 * math.pi), float(within_turn(heading)))
     k = linear.wavenumber(w / math.sqrt(gravity))
     beyond, is_long = linear.beyond_long_waves(k)
     X = np.einsum("d,ndm->nm", weights, beyond[:, index % len(DIRECTIONS)])

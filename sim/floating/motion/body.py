@@ -88,7 +88,7 @@ class Body(NamedTuple):
 
         Its x, y and heading stay. A body that is not stable upright leans as far as it turns over. Raises ValueError
         for a body that sinks, and for one that finds no stable rest within 60 degrees, with its GM. Raises
-        ConvergenceError where the search for rest does not end.
+        ConvergenceError if the search for rest does not end.
         """
         check_pose(self)
         draft = self.draft(layers)

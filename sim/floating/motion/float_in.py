@@ -76,7 +76,7 @@ class FloatState:
         self.surface = sea.at(self.fleet.position[:, :2], 0.0, self.widths).height if len(bodies) else np.zeros(0)
 
     def advance(self, h: float, steps: int) -> None:
-        """Go on by `steps` steps of h [s], of 1/60 s at most. Raises FloatingPointError as `step`."""
+        """Continue by `steps` steps of h [s], of 1/60 s at most. Raises FloatingPointError as `step`."""
         check_number("h", h, "s", 0, LONGEST_STEP * (1.0 + 1e-9), above=True)
         if not is_whole_number(steps) or steps < 0:
             raise argument_error("steps", steps, "a whole number from 0")
@@ -121,7 +121,7 @@ class FloatFrames:
         self.surface = np.empty((len(t), len(fleet.mass)))
 
     def advance(self, frame: int) -> None:
-        """Go on to a frame from the one before."""
+        """Continue to a frame from the one before."""
         self.state.t = float(self.t[frame - 1])
         self.state.advance(self.h, self.steps)
 

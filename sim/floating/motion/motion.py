@@ -20,8 +20,8 @@ where Archimedes says, apart from the mean of the drag. Mean forces of second or
 that order (Pinkster 1980), are left out.
 
 A hull that comes out of the water loses A, F_r and F_e with what of it is wet, below half of that at rest. With
-A = L L^T the part that it carries is L diag(c) L^T, c the wet share of each of the six motions: a sum of positive parts
-that grow with c, whatever A couples. Where a share grows, body and fluid share their momentum and their moment of
+A = L L^T the part that it carries is L diag(c) L^T, c the wet fraction of each of the six motions: a sum of positive
+parts that grow with c, whatever A couples. Where a share grows, body and fluid share their momentum and their moment of
 momentum, (M + A)(V - U) = const for the six motions at once (von Karman 1929, NACA TN 321, for the vertical one). Where
 a share shrinks, the velocities stay, and the fluid that is left behind keeps its energy. So neither change of A gives
 energy: p^T (M + A)^-1 p falls as A grows at constant p, V^T (M + A) V falls as A shrinks at constant V.

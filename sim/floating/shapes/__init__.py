@@ -15,7 +15,7 @@ __all__ = ["SHAPES", "Appearance", "Immersed", "Shape"]
 
 
 def _discover() -> dict[str, Shape]:
-    """Name -> shape of every file of this folder, in the order that the shapes ask for."""
+    """Name -> shape of every file of this folder, in the order that the shapes declare."""
     found: list[Shape] = []
     for module in pkgutil.iter_modules(__path__):
         shape = getattr(importlib.import_module(f"{__name__}.{module.name}"), "SHAPE", None)

@@ -24,7 +24,17 @@ from sim.jit import kernel
 from sim.validation import argument_error, as_array, check_number
 from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
-AT_SURFACE = 1e-9  # share of the height of a hull within which a vertex lies in the surface
+AT_SURFACE = 1e-9  # fraction of the height of a hull within which a vertex lies in the surface
+
+
+@kernel(inline=True)
+def turned(i, j, k, a, b, c):
+    """The corners of a triangle across the surface and their depths, in the same order from the one that is alone."""
+    if (a > 0.0) == (b > 0.0):
+        return k, i, j, c, a, b
+    if (a > 0.0) == (c > 0.0):
+        return j, k, i, b, c, a
+    return i, j, k, a, b, c
 
 
 @kernel(noalias=True)
@@ -48,12 +58,7 @@ def add_pressure(x, faces, area, first, last, depth, weight, out):
         s /= 3.0
         wet = 1.0
         if a < 0.0 or b < 0.0 or c < 0.0:
-            if (a > 0.0) == (b > 0.0):
-                i, j, k = k, i, j
-                a, b, c = c, a, b
-            elif (a > 0.0) == (c > 0.0):
-                i, j, k = j, k, i
-                a, b, c = b, c, a
+            i, j, k, a, b, c = turned(i, j, k, a, b, c)
             t1 = a / (a - b)
             t2 = a / (a - c)
             t = t1 * t2
@@ -123,12 +128,7 @@ def add_displaced(x, faces, nz, depth, out):
             continue
         cut = a < 0.0 or b < 0.0 or c < 0.0
         if cut:
-            if (a > 0.0) == (b > 0.0):
-                i, j, k = k, i, j
-                a, b, c = c, a, b
-            elif (a > 0.0) == (c > 0.0):
-                i, j, k = j, k, i
-                a, b, c = b, c, a
+            i, j, k, a, b, c = turned(i, j, k, a, b, c)
         x0, y0, z0 = x[0, i], x[1, i], x[2, i]
         x1, y1, z1 = x[0, j], x[1, j], x[2, j]
         x2, y2, z2 = x[0, k], x[1, k], x[2, k]

@@ -55,7 +55,7 @@ def righting_arm(body: Body, heel: ArrayLike, layers: Layers = SEA_WATER) -> np.
 
 
 def about_rest(body: Body, layers: Layers) -> tuple[Loaded, Balance]:
-    """The body, and the balance about which it heels: near upright where there is one, else where it is at rest."""
+    """The body, and the balance about which it heels: near upright if there is one, else where it is at rest."""
     check_kind("body", body, Body, "a Body")
     body.draft(layers)
     loaded = Loaded(*body.loaded(), check_layers(layers))

@@ -1,8 +1,8 @@
 """Rest and stability of a loaded hull at any heel, by the exact integrals over its mesh.
 
-A body is stable in a pose of rest where each tilt is righted: where both eigenvalues of its restoring matrix, which are
-its metacentric heights about two level axes, are above 0 (Newman 1977, section 6.16). A ball has none, and rests in any
-pose: within `NEUTRAL` a body counts as one.
+A body is stable in a pose of rest if each tilt is righted: both eigenvalues of its restoring matrix, its metacentric
+heights about two level axes, are above 0 (Newman 1977, section 6.16). A ball has heights of 0 and rests in any pose; a
+body counts as a ball within `NEUTRAL`.
 """
 
 import functools
@@ -23,16 +23,16 @@ from sim.validation import ConvergenceError, argument_error
 Quaternion = tuple[float, float, float, float]
 UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 MAX_TILT = math.radians(60.0)  # of a body at rest
-LEVEL = 1e-9  # share of the size of a hull: an arm below it counts as 0
-NEUTRAL = 1e-3  # share of the size of a hull: a GM nearer to 0 counts as 0, as that of a ball of 500 triangles
+LEVEL = 1e-9  # fraction of the size of a hull: an arm below it counts as 0
+NEUTRAL = 1e-3  # fraction of the size of a hull: a GM nearer to 0 counts as 0, as that of a ball of 500 triangles
 FIRST_LEAN = 0.05  # [rad] from an unstable rest, where the search for a stable one begins
 MAX_TURN = 0.2  # [rad] of one turn of the search for rest
 MAX_TURNS = 60  # of that search
-ROUND_OFF = 1e-15  # share of the height of a hull that counts as 0
+ROUND_OFF = 1e-15  # fraction of the height of a hull that counts as 0
 
 
 class Balance(NamedTuple):
-    """A body in a pose in which the displaced fluids weigh as much as it does."""
+    """A body in a pose in which it weighs as much as the displaced fluids."""
 
     rotation: Quaternion
     height: float  # [m] of the centre of gravity over the surface
@@ -106,14 +106,14 @@ def near_upright(loaded: Loaded) -> Balance | None:
     """The balance next to upright in which no arm turns the body, stable or not; None without one within MAX_TILT."""
     try:
         return settled(loaded, balance_at(loaded, UPRIGHT), lambda heights: heights)
-    except ConvergenceError:  # there need not be one
+    except ConvergenceError:  # it may not exist
         return None
 
 
 def rest_of(loaded: Loaded) -> Balance:
-    """The body at stable rest: next to upright, or where it comes to rest when it turns over from there.
+    """The body at stable rest: near upright, or after turning over from there.
 
-    Raises ValueError if no such angle is within MAX_TILT, ConvergenceError where the search does not end.
+    Raises ValueError if no such angle is within MAX_TILT, ConvergenceError if the search does not converge.
     """
     start = balance_at(loaded, UPRIGHT)
     found = near_upright(loaded)
@@ -145,7 +145,7 @@ def leaning(balance: Balance) -> Quaternion:
 def settled(loaded: Loaded, start: Balance, over: Callable[[np.ndarray], np.ndarray]) -> Balance | None:
     """The balance in which no arm turns the body, by Newton's method over the tilts about x and y.
 
-    None without one within MAX_TILT. Raises ConvergenceError where the arms do not vanish.
+    None without one within MAX_TILT. Raises ConvergenceError if the arms do not vanish.
 
     over: of the metacentric heights (2,), those that a step divides by. As they are, it leads to the next balance;
     their sizes lead downhill, to a stable one.

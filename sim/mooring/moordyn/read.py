@@ -46,12 +46,12 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
     """The System of a MoorDyn file of version 1 or 2.
 
     Coupled bodies become coupled points at their places. A free one becomes a Body, which turns by small angles with
-    the stiffness that its lines at rest give it. Rods become points or stiff lines: see `rods`. A link is damped where
-    it is slack, too, as MoorDyn has it. Steady forces on points are in N.
+    the stiffness that its lines at rest give it. Rods become points or stiff lines: see `rods`. Slack links
+    are damped too, as in MoorDyn. Steady forces on points are in N.
 
-    say: takes a line on each thing of the file that is left out. None: a UserWarning on what may change forces.
-    content: what the file is to hold in place of what it holds, as of `changed_moordyn`.
-    Raises ValueError with everything that cannot be read, and its sections and lines.
+    say: takes a line on each omitted part of the file. None: a UserWarning on those that may change forces.
+    content: text to use instead of the file's, as of `changed_moordyn`.
+    Raises ValueError with all unreadable parts, by section and line.
     """
     path, wrong = Path(path), Refusals()
     found = split_sections(read_text(path) if content is None else decoded(content), wrong)
@@ -115,7 +115,7 @@ def turned(system: System, said: list[str]) -> System:
         for b, body in enumerate(system.bodies):
             turn = rest.nodes[:, system.node_count + 2 * b + 1]
             arms = [np.subtract(point.position, body.place) for point in system.points if point.body == body.id]
-            # of a turn about its own arm nothing is seen
+            # a turn about its own arm has no effect
             angle = max((float(np.linalg.norm(np.cross(turn, arm)) / np.linalg.norm(arm)) for arm in arms if arm.any()),
                         default=0.0)  # fmt: skip
             if angle > MOST_TURN:
@@ -151,7 +151,7 @@ def read_rows(
 
 
 def depth_of(fields: Mapping[str, float], points: Iterable[Point], said: list[str]) -> float:
-    """The depth of the water [m]: that of the lowest fixed point if it is not given, or is less, as in MoorDyn."""
+    """The depth of the water [m]: that of the lowest fixed point if none or less is given, as in MoorDyn."""
     lowest = -min((point.position[2] for point in points if point.kind == "fixed"), default=0.0)
     given = fields.get("depth", 0.0)
     if not max(lowest, given) > 0.0:

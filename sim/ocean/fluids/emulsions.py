@@ -16,16 +16,16 @@ from typing import NamedTuple
 from sim.validation import argument_error, check_number, check_positive
 
 MOONEY_CROWDING = 0.65  # of water drops in oil (Mackay and others 1980)
-PAL_RHODES_DROPS = 0.84  # share of drops that makes an emulsion 100 times as viscous (NOAA's PyGNOME, for water in oil)
+PAL_RHODES_DROPS = 0.84  # drops that make an emulsion 100 times as viscous (NOAA's PyGNOME, for water in oil)
 PAL_RHODES_POLE = 1.187
 
 
 class MixtureLaw(NamedTuple):
     """A law for the viscosity of a mixture."""
 
-    viscosity: Callable[[float, float, float], float]  # of drops, of the continuous fluid, share of drops -> viscosity
+    viscosity: Callable[[float, float, float], float]  # (of drops, of the other fluid, fraction of drops) -> viscosity
     is_emulsion: bool  # and no solution, in which neither fluid is the continuous one
-    max_drops: float  # share of drops, by volume, up to which the law holds
+    max_drops: float  # fraction of drops, by volume, up to which the law holds
 
 
 def arrhenius(first: float, second: float, fraction: float) -> float:

@@ -62,7 +62,7 @@ class FluidColumn:
 
     @property
     def drops(self) -> float:
-        """Share of the drops in an emulsion, by volume."""
+        """Fraction of the drops in an emulsion, by volume."""
         return 1.0 - self.fraction if self.continuous_fluid is self.oil else self.fraction
 
     @property

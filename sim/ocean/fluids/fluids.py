@@ -95,7 +95,7 @@ def mixed(
 
 
 class Reflectance(NamedTuple):
-    """Share of light reflected, by polarisation and for unpolarised light."""
+    """Fraction of light reflected, by polarisation and for unpolarised light."""
 
     s: np.ndarray
     p: np.ndarray

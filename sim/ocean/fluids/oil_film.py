@@ -41,12 +41,12 @@ APPEARANCES = {
 
 
 def light_through(thickness: ArrayLike) -> NDArray[np.float64]:
-    """(..., 3) share of the light from the water below that films of these thicknesses [m], >= 0, let through."""
+    """(..., 3) fraction of the light from the water below that films of these thicknesses [m], >= 0, let through."""
     return np.exp(-EXTINCTION * checked(thickness))
 
 
 def mirrored_light(thickness: ArrayLike, index: float, water_index: float) -> NDArray[np.float64]:
-    """(..., 3) share of light from straight above that films of these thicknesses [m], >= 0, send back.
+    """(..., 3) fraction of light from straight above that films of these thicknesses [m], >= 0, send back.
 
     index, water_index: refractive indices of oil and water.
     """

@@ -17,7 +17,7 @@ import numpy as np
 
 from sim.interruption import raise_if_stopped
 
-NEAR = 0.15  # shift of the root, as a share of the frequency, up to which it is found at once, without steps
+NEAR = 0.15  # shift of the root, as a fraction of the frequency, up to which it is found at once, without steps
 START = 1e-3  # such a shift where the steps begin
 GROWTH = 0.2  # of the logarithm of the viscosities in a step
 MAX_STEPS = 200
@@ -72,7 +72,7 @@ def surface_roots(layers: Layers, film: bool = False) -> tuple[np.ndarray, np.nd
 def _continued(first: np.ndarray, layers: Layers, film: bool) -> np.ndarray:
     """The shift of the root as both viscosities grow by equal factors, from where it is small to their values.
 
-    first (n,): the shift, as a share of the frequency, that the full viscosities make at once. On the way they are
+    first (n,): the shift, as a fraction of the frequency, that the full viscosities make at once. On the way they are
     complex, with a positive imaginary part: so the two roots that meet where a wave begins to creep are passed on the
     side of the slower one.
     """

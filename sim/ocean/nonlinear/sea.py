@@ -1,11 +1,11 @@
 """A periodic sea of nonlinear waves, by the high-order spectral method (see `expansion.py` for the equations).
 
-Choose it where waves act on one another: groups that steepen, crests, rogue waves. `Sea` is cheaper and reaches any
+Choose it for waves that interact: groups that steepen, crests, rogue waves. `Sea` is cheaper and reaches any
 time at once. Limits:
 - Potential flow under a surface without overhangs: no overturning, no tension, no viscosity, level bottom.
 - Steepness by order. The speed of a wave of k a = 0.3 in deep water is off by 1.4e-3 at order 3, 1e-4 at 5 and 1e-5 at
   7; k a = 0.35 needs order 7, k a = 0.4 breaks up. An even order need not improve on the odd one below it.
-- No growth by wind: what breaks is lost. A sea of 10 m/s over 50 km loses 7.6 % of its Hs in 15 minutes.
+- No growth by wind to replace what breaking takes. A sea of 10 m/s over 50 km loses 7.6 % of its Hs in 15 minutes.
 - Energy drifts with the error of the steps: -1e-4 in 200 periods of k a = 0.2 at the default rtol.
 - Short waves on high crests: the series in z diverges where k_max a exceeds about 5 (k_max: largest wavenumber of
   the grid, a: amplitude of the sea). `breaking` damps what grows there.
@@ -58,13 +58,13 @@ FIRST_STEP = 0.05  # periods of the mean wave
 
 
 class NonlinearSea(AnySea):
-    """A tile of nonlinear sea that moves on in time, with the interface of all seas (`sim.ocean.any_sea`).
+    """A tile of nonlinear sea that advances in time, with the interface of all seas (`sim.ocean.any_sea`).
 
     Fields (n, m): [i, j] is at x = i length_x/n, y = j length_y/m. Not for two threads at once. Methods that take a
     time advance to it; they raise what `advance` raises.
     """
 
-    choppiness = 0.0  # the crests are sharp by themselves
+    choppiness = 0.0  # the crests are already sharp
     is_sum_of_waves = False
 
     def __init__(
@@ -123,7 +123,7 @@ class NonlinearSea(AnySea):
         self._balance = EnergyBalance(sum(self._now.energies), None if self.fade > 0.0 else 0.0)
 
     def _begin(self, equations: WaveEquations, u: np.ndarray, t: float) -> None:
-        """Go on by the equations on a grid, from spectra (2, rows, columns) at time t [s]."""
+        """Continue by the equations on a grid, from spectra (2, rows, columns) at time t [s]."""
         (n, m), columns = equations.modes.size, len(equations.modes.kx)
         self.size, self.transforms, self._equations = (n, m), equations.work, equations
         self._now = NonlinearInstant(equations, PaddedTransforms((m, n), columns, self.transforms), u, t)
@@ -206,7 +206,7 @@ class NonlinearSea(AnySea):
         return self._now.significant_height
 
     def significant_height_at(self, t: float) -> float:
-        """The same at time t [s]."""
+        """Hs [m] at time t [s]."""
         self.advance(t)
         return self.significant_height
 
@@ -253,7 +253,7 @@ class NonlinearSea(AnySea):
     def waves_at(self, t: float | None = None) -> Waves:
         """Linear waves with this elevation and potential at time t [s], by default the present one.
 
-        They go on as linear waves; moorings take them, and `largest` picks a few.
+        They continue as linear waves; moorings take them, and `largest` selects a few.
         """
         self.advance(self.time if t is None else t)
         return free_waves(self._equations.modes, self._now.u, self.time, self.water)
@@ -267,9 +267,9 @@ class NonlinearSea(AnySea):
     def kinematics(self, points: ArrayLike, t: float | None = None, stretching: str = "constant") -> Kinematics:
         """The water at points (n, 3) [m], z up from still water, by the sum over all waves; see `flow.py`.
 
-        t [s]: by default the present time. Above the surface, in crests and in troughs, is the water that is on it.
-        This flow reaches its own surface, so that either stretching changes nothing. The pressure is that beyond still
-        water, -rho g z. Raises ValueError for another shape or stretching.
+        t [s]: by default the present time. Points above the surface, in crests and in troughs, have the values at it.
+        This flow reaches its own surface, so that stretching has no effect. The pressure is that beyond still water,
+        -rho g z. Raises ValueError for another shape or stretching.
         """
         where = check_positions("points", points, 3)
         check_choice("stretching", stretching, STRETCHINGS)
@@ -281,9 +281,9 @@ class NonlinearSea(AnySea):
         return where * (np.array(self.size) / np.array(self.length))
 
     def _move(self, t: float) -> None:
-        """The same as `advance` for a time that is allowed."""
+        """`advance` to a time that has been checked."""
         try:
             self._march.advance(t)
-        finally:  # without the whole way: at the end of the last step
+        finally:  # if it stopped early: at the end of the last step
             t = min(t, self._march.reached)
             self._now = self._now.moved_to(self._march.at(t), t)

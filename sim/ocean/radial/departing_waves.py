@@ -18,7 +18,7 @@ class DepartingWaves:
     duration: float  # [s]
 
     def share_taken(self, t: float) -> float:
-        """Share of the energy that the other waves have at time t [s]."""
+        """Fraction of the energy that the other waves have at time t [s]."""
         return min(max((t - self.began) / self.duration, 0.0), 1.0) if self.duration > 0.0 else 1.0
 
     def joined_by(self, others: Waves, t: float) -> Waves:

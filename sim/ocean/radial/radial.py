@@ -1,4 +1,4 @@
-"""A sea that is a sum of Gerstner waves, drawn on a radial grid and asked at points.
+"""A sea as a sum of Gerstner waves, drawn on a radial grid and evaluated at points.
 
     >>> from sim.ocean import SPECTRA, RadialSea, draw_waves
     >>> jonswap = SPECTRA["jonswap"]
@@ -7,7 +7,7 @@
     (1,)
 
 A wave shorter than twice the local spacing of the grid is skipped, one up to four times it is faded, so that nothing
-pops as the grid moves; `evaluated` and `skipped` count (wave, vertex) pairs. At points all waves are there.
+pops as the grid moves; `evaluated` and `skipped` count (wave, vertex) pairs. Points have all waves.
 
 Displaced points gather at the crests, so that a fixed place sees each wave choppiness k a^2/2 too low (Lamb, Art. 251).
 All points are that much higher, the interface by its share of it: the mean level in place is that of still water.
@@ -49,7 +49,7 @@ class RadialSea(AnySea):
     def __init__(
         self, waves: Waves, column: FluidColumn = CLEAN, exposure: float = 0.0, choppiness: float = 1.0
     ) -> None:
-        """exposure [s]: how long the waves have run on this medium, and decayed; choppiness: factor on Gerstner's
+        """exposure [s]: time for which the waves have decayed on this medium; choppiness: factor on Gerstner's
         horizontal motion. The column carries the waves: they have the frequencies of the deep fluids in it.
         Raises ValueError for a negative number, other waves or another column, and waves of another depth or gravity.
 
@@ -96,7 +96,7 @@ class RadialSea(AnySea):
         self.expose(exposure or 0.0)
 
     def _set(self, waves: Waves, column: FluidColumn, phase: np.ndarray, loss: np.ndarray, t: float = 0.0) -> None:
-        """phase (n,) [rad] at time t [s]; loss (n,): -ln of the share of their amplitude that the waves have left."""
+        """phase (n,) [rad] at time t [s]; loss (n,): -ln of the fraction left of their amplitudes."""
         self.waves, self.column, self._lost = waves, column, loss
         k = waves.k
         rate, self.decay = column.roots(k)
@@ -117,7 +117,7 @@ class RadialSea(AnySea):
         self._footprints: Footprints | None = None
 
     def expose(self, duration: float) -> None:
-        """Let the waves decay at once as they would in `duration` [s] on this medium; phases stay as they are.
+        """Let the waves decay at once as in `duration` [s] on this medium; phases stay.
 
         Raises ValueError for a negative one.
         """
@@ -129,7 +129,7 @@ class RadialSea(AnySea):
 
     @property
     def time(self) -> float:
-        """Time [s] that the waves were last asked for, or of the last change if that is later."""
+        """Time [s] of the last evaluation, or of the last change if that is later."""
         return self._time
 
     @property
@@ -144,7 +144,7 @@ class RadialSea(AnySea):
 
     @property
     def amplitude(self) -> np.ndarray:
-        """Amplitudes (n,) [m] of the waves as they are, decayed."""
+        """Present amplitudes (n,) [m] of the decayed waves."""
         return self._own.amplitude
 
     @property
@@ -154,12 +154,12 @@ class RadialSea(AnySea):
 
     @property
     def significant_height(self) -> float:
-        """Hs = 4 sqrt(sum a^2/2) [m] of the waves as they are, decayed."""
+        """Hs = 4 sqrt(sum a^2/2) [m] of the decayed waves."""
         return 4.0 * math.sqrt(0.5 * float(np.square(self.amplitude).sum()))
 
     @property
     def mean_square_slope(self) -> float:
-        """sum (ka)^2/2 of the waves as they are."""
+        """sum (ka)^2/2 of the decayed waves."""
         return 0.5 * float(np.square(self.waves.k * self.amplitude).sum())
 
     def _drop_departed(self, t: float) -> None:
@@ -169,7 +169,7 @@ class RadialSea(AnySea):
             self._forget_wavenumbers()
 
     def waves_at(self, t: float | None = None) -> Waves:
-        """All waves as high as at time t [s], by default the sea's own, without the slick; first those that fade."""
+        """All waves with their heights at time t [s], by default the sea's own, without slick; fading ones first."""
         self._time = t = self._time if t is None else check_number("t", t, "s")
         self._drop_departed(t)
         return self._own if self._departing is None else self._departing.joined_by(self._own, t)
@@ -269,7 +269,7 @@ def check_carried(waves: Waves, column: FluidColumn) -> None:
 
 
 def lost(past: Mapping[FluidColumn, float], k: np.ndarray) -> np.ndarray:
-    """-ln of the share of the amplitude that waves of wavenumber k [rad/m] keep after the times [s] on these media."""
+    """-ln of the fraction of amplitude that waves of wavenumber k [rad/m] keep after the times [s] on these media."""
     return sum((column.roots(k)[1] * duration for column, duration in past.items()), np.zeros(k.shape))
 
 

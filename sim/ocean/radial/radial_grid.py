@@ -1,4 +1,4 @@
-"""A polar grid of fixed topology, dense in the middle reaching the horizon, for seas seen from one place."""
+"""A polar grid of fixed topology, dense in the middle and out to the horizon, for seas seen from one place."""
 
 import math
 
@@ -52,7 +52,7 @@ class RadialGrid:
             self.ring_law = (0.0, float(inner), float(q))
         angle = np.arange(spokes) * (2.0 * math.pi / spokes)
         ring = self.radii[:, None]
-        # Every other ring is turned by half a spoke: triangles are nearer to equilateral.
+        # Every other ring is turned by half a spoke, which makes triangles nearly equilateral.
         turned = angle + (np.arange(rings) % 2)[:, None] * (math.pi / spokes)
         self.x = np.append((ring * np.cos(turned)).ravel(), 0.0).astype(np.float32)
         self.y = np.append((ring * np.sin(turned)).ravel(), 0.0).astype(np.float32)

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim.numerics.angles import once_around
+from sim.numerics.angles import once_around, within_turn
 from sim.ocean.spectra.record import Conditions, Spectrum, SpreadConditions, from_frequency
 from sim.validation import argument_error, as_array
 
@@ -35,7 +35,7 @@ SLACK = 1e-6  # by which the second term stays inside what the first one allows
 
 
 class Measured:
-    """Densities over frequency, and maybe direction, with the functions of a `Spectrum`."""
+    """Densities over frequency and optionally direction, with the functions of a `Spectrum`."""
 
     def __init__(self, frequency: np.ndarray, density: np.ndarray, direction: np.ndarray | None = None) -> None:
         """frequency (n,) [Hz] rising, density (n,) [m2/Hz], or (n, m) [m2/Hz/rad] at directions (m,) [rad], rising."""
@@ -60,7 +60,7 @@ class Measured:
         f = c.omega(k) / (2.0 * math.pi)
         inside = (f >= self.frequencies[0]) & (f <= self.frequencies[-1])
         i, u = place_in(self.frequencies, f)
-        theta = self.directions[0] + np.mod(np.arctan2(ky, kx) - self.directions[0], 2.0 * math.pi)
+        theta = self.directions[0] + within_turn(np.arctan2(ky, kx) - self.directions[0])
         j, v = place_in(self.directions, theta)
         E = self.both
         low, high = (1.0 - v) * E[i, j] + v * E[i, j + 1], (1.0 - v) * E[i + 1, j] + v * E[i + 1, j + 1]
@@ -89,7 +89,7 @@ def around(direction: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, np.n
     if steps[last] <= GAP * np.delete(steps, last).max():
         return np.append(direction, direction[0] + turn), np.concatenate([density, density[:, :1]], axis=1)
     direction, density = np.roll(direction, -last - 1), np.roll(density, -last - 1, axis=1)
-    direction = direction[0] + np.mod(direction - direction[0], turn)
+    direction = direction[0] + within_turn(direction - direction[0])
     first, end = (
         direction[0] - 0.5 * (direction[1] - direction[0]),
         direction[-1] + 0.5 * (direction[-1] - direction[-2]),

@@ -1,4 +1,4 @@
-"""Waves of a buoy's record: a sea of long crests that passes one point as it was recorded there.
+"""Waves of a buoy's record: a sea of long crests that passes one point as recorded there.
 
     >>> import numpy as np
     >>> from sim.ocean import RadialSea
@@ -8,7 +8,7 @@
     >>> bool(abs(sea.at([[0.0, 0.0]], t=33.0).height[0] - np.interp(33.0, t, eta)) < 1e-2)
     True
 
-The record is the sum of its Fourier components, and each becomes one wave. It begins again after its length, so
+The record is the sum of its Fourier components, and each becomes one wave. It restarts after its length, so
 that its ends meet there. Of linear waves this is the only sea whose crests are all at right angles to the direction.
 """
 
@@ -28,9 +28,9 @@ from sim.waves import Waves
 
 CLEAN = FluidColumn()
 MIN_SAMPLES = 8
-UNEVEN = 1e-3  # of the spacing of samples, by which they may miss it
-HIGHEST = 10.0  # [Hz]: what is shorter is no gravity wave
-BRACKET = (0.05, 20.0)  # of omega^2/g, in which the wavenumber lies
+UNEVEN = 1e-3  # of the spacing of samples, their largest deviation from it
+HIGHEST = 10.0  # [Hz]: above, there are no gravity waves
+BRACKET = (0.05, 20.0)  # of omega^2/g, around the wavenumber
 
 
 def recorded_waves(
@@ -43,7 +43,7 @@ def recorded_waves(
 ) -> Waves:
     """The waves that run along a direction [rad] and pass a place (x, y) [m] as heights (n,) [m] at times (n,) [s].
 
-    The mean height is that of still water. water: the column of the `RadialSea` that they are for, or the conditions
+    The mean height is that of still water. water: the column of their `RadialSea`, or the conditions
     of water of any depth. error: root mean square of the height that may be left
     out, over Hs; the smallest waves are left out first. Only a sea with choppiness 0 passes the place exactly so.
 

@@ -17,7 +17,7 @@ SAMPLE_RATE = 10.0  # [Hz] to which the trace is resampled before its spectrum i
 MAX_TRACE_DURATION = 600.0  # [s] older samples of the trace are dropped
 MIN_SPECTRUM_DURATION = 10.0  # [s] no spectrum is computed of a shorter trace
 MAX_SEGMENT_DURATION = 50.0  # [s] length of the segments of Welch's method, or half the trace where that is shorter
-ENERGY_SHOWN = 0.99  # share of the energy of theory up to which the spectrum is returned
+ENERGY_SHOWN = 0.99  # fraction of the energy of theory up to which the spectrum is returned
 RAY_SAMPLES = 200  # positions along a ray at which it is compared with the water
 MIN_DOWNWARD_COMPONENT = 1e-4  # of a ray's unit vector: a flatter ray meets the water too far away
 

@@ -26,7 +26,7 @@ def _discover() -> dict[str, Spectrum[Any]]:
 
 
 def _declared() -> dict[str, Parameter]:
-    """Raises ValueError where two spectra declare one name differently."""
+    """Raises ValueError if two spectra declare one name differently."""
     found: dict[str, Parameter] = {}
     for spectrum in SPECTRA.values():
         for name, declared in parameters_of(spectrum.conditions).items():

@@ -43,7 +43,7 @@ def frequency(w: np.ndarray, c: AgeConditions) -> np.ndarray:
 
 
 def curvature(k: np.ndarray, c: AgeConditions) -> tuple[np.ndarray, np.ndarray]:
-    """B = B_l + B_h of wavenumbers k [rad/m], and the share Delta that differs along and across the wind."""
+    """B = B_l + B_h of wavenumbers k [rad/m], and the fraction Delta that differs along and across the wind."""
     g, U, Omega = c.gravity, c.wind_speed, c.inverse_wave_age
     s = c.tension / c.density if c.tension > 0.0 else EARTH_GRAVITY / KM_WATER**2
     km = math.sqrt(g / s)

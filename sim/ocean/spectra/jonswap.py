@@ -15,7 +15,7 @@ from sim.parameters import parameter
 
 GROWN_PEAK = (0.8 * pierson_moskowitz.BETA) ** 0.25 / WIND_HEIGHTS[pierson_moskowitz.WIND_HEIGHT]  # omega_p U10/g
 FULL_GROWTH = (22.0 / GROWN_PEAK) ** 3  # g F/U10^2
-PEAKED_UNTIL = 0.86  # share of the fetch of full growth from which on the peak factor falls
+PEAKED_UNTIL = 0.86  # fraction of the fetch of full growth from which on the peak factor falls
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ import numpy as np
 
 POINTS = 20001  # frequencies of the sums
 PEAK_POINTS = 401  # frequencies among which the peak is found
-TAIL = 1e-3  # share that the last tenth of the decades may add to a moment that converges
+TAIL = 1e-3  # fraction that the last tenth of the decades may add to a moment that converges
 
 
 class Moments(NamedTuple):

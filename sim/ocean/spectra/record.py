@@ -1,4 +1,4 @@
-"""The record of a wave spectrum, and the conditions that it is evaluated under."""
+"""The record of a wave spectrum, and the conditions under which it is evaluated."""
 
 import dataclasses
 import functools
@@ -55,7 +55,7 @@ class Conditions:
     )  # fmt: skip
 
     def __post_init__(self) -> None:
-        # Wide, but such that no power that a spectrum takes overflows or is lost in rounding.
+        # Wide, but without overflow or loss of digits in the powers that spectra take.
         check_number("wind_speed", self.wind_speed, "m/s", 0.0, 1e3)
         check_angle("wind_direction", self.wind_direction)
         check_number("gravity", self.gravity, "m/s2", 1e-6, 1e6)
@@ -105,17 +105,17 @@ class Spectrum(NamedTuple, Generic[C]):
     system."""
 
     name: str
-    doc: str  # its authors and year, a colon, and what it is good for
+    doc: str  # its authors and year, a colon, and its use
     density: Callable[[np.ndarray, np.ndarray, C], np.ndarray]  # S(kx, ky) [m4]
-    significant_height: Callable[[C], float] | None  # Hs [m] where a closed form exists
-    peak: Callable[[C], float] | None  # peak angular frequency [rad/s] where a closed form exists
+    significant_height: Callable[[C], float] | None  # Hs [m] if a closed form exists
+    peak: Callable[[C], float] | None  # peak angular frequency [rad/s] if a closed form exists
     conditions: type[C]
-    # S(omega) [m2 s] over all directions, where it is known; without it `density` is integrated
+    # S(omega) [m2 s] over all directions, if known; without it `density` is integrated
     frequency: Callable[[np.ndarray, C], np.ndarray] | None = None
-    wind_height: float = 10.0  # [m] of the wind speed that it takes
+    wind_height: float = 10.0  # [m] of its wind speed
     by_wind: bool = True  # the wind makes its waves: no wind, no waves
     line: Callable[[C], tuple[float, float, float]] | None = None  # (kx, ky [rad/m], m0 [m2]) of one regular wave
-    notes: tuple[str, ...] = ()  # of one from a file: lines on what was read, and on what was left out
+    notes: tuple[str, ...] = ()  # of one from a file: lines on data read and left out
 
     @property
     def title(self) -> str:

@@ -104,8 +104,8 @@ def files_beside(path: Path) -> dict[str, Path]:
 def moment_at(path: Path, kind: str, time: datetime.datetime, frequency: np.ndarray) -> np.ndarray | None:
     """Values (n,) of a file of directions at this time and these frequencies [Hz]; None without them.
 
-    Where one is missing, it is that of the nearest frequency that has one.
-    Raises ValueError for values that this kind cannot have: files whose names are exchanged.
+    A missing value is that of the nearest frequency with one.
+    Raises ValueError for values impossible for this kind, as in files with exchanged names.
     """
     records = records_of(read_text(path, FORMS), path)
     largest = TURN if kind.startswith("alpha") else PERCENT
@@ -129,15 +129,11 @@ def records_of(text: str, path: Path) -> Records:
 
     Raises ValueError that names the line.
     """
-    lines = [(i, line.split()) for i, line in enumerate(text.splitlines(), start=1) if line.strip()]
-    head = " ".join(lines[0][1]).lstrip("# ").split()
-    clock = 5 if head[4:5] == ["mm"] else 4
-    is_paired = any("(" in word for _, words in lines[:3] for word in words)
+    head, clock, lines = parts_of(text)
+    is_paired = any("(" in word for words in (head, *(words for _, words in lines[:1])) for word in words)
     frequency = None if is_paired else floats(head[clock:], path, 1)
     times, rows = [], []
-    for number, words in lines[1:]:
-        if words[0].startswith("#"):
-            continue
+    for number, words in lines:
         times.append(clock_time(words[:clock], path, number))
         values = words[clock:]
         if is_paired:
@@ -156,8 +152,18 @@ def records_of(text: str, path: Path) -> Records:
     return Records(times, frequency, values)
 
 
+def parts_of(text: str) -> tuple[list[str], int, list[tuple[int, list[str]]]]:
+    """The words of a table's head, how many of them are the clock, and the numbers and words of the lines below.
+
+    Lines that are empty or a comment are left out.
+    """
+    lines = [(i, line.split()) for i, line in enumerate(text.splitlines(), start=1) if line.strip()]
+    head = " ".join(lines[0][1]).lstrip("# ").split() if lines else []
+    return head, 5 if head[4:5] == ["mm"] else 4, [line for line in lines[1:] if not line[1][0].startswith("#")]
+
+
 def paired(words: list[str], path: Path, number: int) -> tuple[list[str], np.ndarray]:
-    """Values and frequencies [Hz] of "0.1 (0.033) 0.2 (0.038)", maybe behind one number, the separation frequency."""
+    """Values and frequencies [Hz] of "0.1 (0.033) 0.2 (0.038)", optionally after the separation frequency."""
     words = words[len(words) % 2 :] if words and len(words) > 1 and not words[1].startswith("(") else words
     places = words[1::2]
     if len(words) % 2 or not all(word.startswith("(") and word.endswith(")") for word in places):
@@ -189,23 +195,19 @@ def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spect
     Those are swell and wind sea of an NDBC summary (.spec), or WVHT, DPD and MWD of standard meteorological data. They
     spread as cos2s.
     """
-    lines = [(i, line.split()) for i, line in enumerate(text.splitlines(), start=1) if line.strip()]
-    head = " ".join(lines[0][1]).lstrip("# ").split()
+    head, clock, lines = parts_of(text)
     kind = next((one for one in SUMMARIES if set(SUMMARIES[one][0][:2]) <= set(head)), None)
     if kind is None:
         raise argument_error("path", str(path), f"{file_of_densities(path)}; this has no waves: {' '.join(head)[:80]}")
-    clock = 5 if head[4:5] == ["mm"] else 4
     times, rows = [], []
-    for number, words in lines[1:]:
-        if words[0].startswith("#"):
-            continue
+    for number, words in lines:
         if len(words) != len(head):
             raise line_error(path, number, f"{len(head)} columns, not {len(words)}")
         row = dict(zip(head, words, strict=True))
         try:
             found = [system_of([row[one] for one in columns], s, path, number) for *columns, s in SUMMARIES[kind]]
         except KeyError as missing:
-            raise line_error(path, lines[0][0], f"the columns of {kind}; {missing} is not here") from None
+            raise line_error(path, 1, f"the columns of {kind}; {missing} is not here") from None
         systems = [system for system in found if system is not None]
         if systems:
             times.append(clock_time(words[:clock], path, number))
@@ -229,7 +231,7 @@ def system_of(
 
     The direction is of the compass or in degrees; None if it is missing. None for waves that are missing.
     """
-    # each by itself, as none is a neighbour of another
+    # each by itself: they are no neighbours
     H, T = (float(floats([word], path, number)[0]) for word in words[:2])
     if not (math.isfinite(H) and math.isfinite(T)):
         return None

@@ -13,7 +13,7 @@ from sim.ocean.spectrum_files.sense import sense_of
 from sim.validation import argument_error
 
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 2.5))  # of spreadings that are made of moments
-NEAREST = datetime.timedelta(hours=1.5)  # between the time that is asked for and a record of a file
+NEAREST = datetime.timedelta(hours=1.5)  # between the requested time and a record of a file
 FORMS = "a table (CSV), a file of NDBC, SWAN, Datawell or AWAC, or one that `wavespectra` reads"
 MAGNETIC = "directions are those of the instrument's compass: from magnetic north, unless it was set otherwise"
 
@@ -65,7 +65,7 @@ def unrepeated(direction: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, 
 
 
 def nearest(times: list[datetime.datetime], when: datetime.datetime | None, path: Path) -> int:
-    """Index of the record nearest to a time, or of the last one. Raises ValueError where none is near."""
+    """Index of the record nearest to a time, or of the last one. Raises ValueError if none is near."""
     if when is None:
         return max(range(len(times)), key=times.__getitem__)
     i = min(range(len(times)), key=lambda j: abs(times[j] - when))

@@ -43,7 +43,7 @@ def text_reader(text: str) -> str:
 def from_wavespectra(
     path: Path, when: datetime.datetime | None, place: int | None = None, reader: str = ""
 ) -> Spectrum[Any]:
-    """The spectrum at a place, counted from 1, or the first one with data, at the time asked for, or the last one.
+    """The spectrum at a place, counted from 1, or the first one with data, at the requested time, or the last one.
 
     reader: of wavespectra, for a text file.
     """
@@ -98,7 +98,7 @@ def refused(path: Path, error: Exception) -> ValueError:
 
 
 def opened(wavespectra: Any, path: Path, reader: str) -> Any:
-    """The densities [m2/Hz/degree] of a file, along freq, dir [degrees that waves come from] and maybe time.
+    """The densities [m2/Hz/degree] of a file, along freq, dir [degrees that waves come from] and optionally time.
 
     reader: of wavespectra, "" for that which the names in a file of netCDF tell.
     """

@@ -23,7 +23,7 @@ class HighCrests(NamedTuple):
     """Theory of the heights of a tile at one moment. Linear heights are Gaussian: skewness 0 and kurtosis 3."""
 
     linear: float  # [m] the most probable highest crest of a linear sea
-    second_order: float  # [m] the crest that a wave exceeds as seldom, of second order
+    second_order: float  # [m] the equally rare crest of second order
     skewness: float  # of second order
     kurtosis: float
 

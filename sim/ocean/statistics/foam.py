@@ -25,7 +25,7 @@ def whitecaps(wind_speed: float) -> float:
     return min(3.84e-6 * check_number("wind_speed", wind_speed, "m/s", 0.0) ** 3.41, MAX_COVER)
 
 
-def pace(sea: "Sea", t: float) -> tuple[float, float]:
+def slope_and_frequency(sea: "Sea", t: float) -> tuple[float, float]:
     """(mean square slope, rms frequency [rad/s] of it) of the sea as its tile resolves it at time t [s]."""
     energy = sea.energy_at(t)
     steepness = (sea.k[:, None] ** 2 + sea.k[None, :] ** 2) * energy
@@ -38,8 +38,8 @@ def pace(sea: "Sea", t: float) -> tuple[float, float]:
 def threshold(coverage: float, spread: float, frequency: float, lasting: float) -> float:
     """The Jacobian below which foam is made so that the fraction `coverage` of the sea is foam; -inf without foam.
 
-    spread: standard deviation of J, choppiness sqrt(mss); frequency [rad/s]: of `pace`; lasting [s]: for how long foam
-    is seen after its crest has passed.
+    spread: standard deviation of J, choppiness sqrt(mss); frequency [rad/s]: of `slope_and_frequency`; lasting [s]: for
+    how long foam is seen after its crest has passed.
     Excursions of a Gaussian process below -z sigma last Phi(-z)/rate on average, with rate = (omega/2 pi) exp(-z^2/2)
     of them a second (Rice 1944). Passages come at random, so a point that is not breaking is free of foam with the
     probability exp(-rate lasting), and the covered share is 1 - Phi(z) exp(-rate lasting).
@@ -51,7 +51,7 @@ def threshold(coverage: float, spread: float, frequency: float, lasting: float) 
 
 @functools.lru_cache(maxsize=4)
 def excess(coverage: float, frequency: float, lasting: float) -> float:
-    """The z of `threshold`; cached, because every frame needs it and it seldom changes."""
+    """The z of `threshold`; cached, because every frame needs it and it rarely changes."""
 
     def too_little(z: float) -> float:
         rate = frequency / (2.0 * math.pi) * math.exp(-0.5 * z * z)

@@ -19,9 +19,9 @@ class SlopeSpectrum:
         self.slope = numbers.folded_sum(S * resolved(numbers.size)) * numbers.quarter**2  # a quarter plane, over dk^2
 
     def share_left(self, low_pass: float, lost: np.ndarray) -> float:
-        """Share that is left; 1 on a level sea.
+        """Fraction that is left; 1 on a level sea.
 
-        low_pass [m]: of the conditions. lost, a quarter plane: -ln of the share of each amplitude that is left.
+        low_pass [m]: of the conditions. lost, a quarter plane: -ln of the fraction of each amplitude that is left.
         """
         whole = float(self.slope.sum())
         passed = np.exp(-((self.numbers.quarter * low_pass) ** 2))

@@ -125,7 +125,7 @@ def measured(
 
     earlier: the field `interval` [s] before; tells the direction, of the waves that turn by less than a quarter of
     their period in between. Where those about the peak turn farther, it is nan: the waves are not resolved in time.
-    Raises ValueError where the fields do not fit.
+    Raises ValueError if the fields do not fit.
     """
     if height.ndim != 2 or height.shape[0] != height.shape[1]:
         raise argument_error("height", height.shape, "a square field")
@@ -225,7 +225,7 @@ def _bins(omega: np.ndarray, waves: np.ndarray) -> _Bins | None:
 def _peak_period(omega: np.ndarray, energy: np.ndarray, all_bins: _Bins | None = None) -> float:
     """2 pi/omega_p with omega_p = sum omega S^4/sum S^4 (Young 1995, Ocean Eng. 22:669), S in bins 6 % wide.
 
-    all_bins: those of all waves that run, where they are known; they are used where none of these waves is without
+    all_bins: those of all waves that run, if known; they are used where none of these waves is without
     energy.
     """
     found = all_bins if all_bins is not None and (energy[all_bins.waves] > 0.0).all() else None

@@ -17,7 +17,7 @@ from sim.waves import AMPLITUDE, EAST, ECHO, KX, KY, NORTH, PHASE, RATE, SPEED, 
 if TYPE_CHECKING:
     from sim.ocean.tile.surface import Surface
 
-TOLERANCE = 1e-9  # share of a cell at which a label counts as found
+TOLERANCE = 1e-9  # fraction of a cell at which a label counts as found
 NEWTON_STEPS, HALVINGS = 40, 8
 PIECE = 4096  # points at a time: the solve yields in between
 

@@ -137,7 +137,7 @@ class Ripples:
             self.mean = 0.0
 
     def take_over(self, other: "Ripples") -> None:
-        """Go on with the rings of another size of the same tile, as far as wavenumbers are shared."""
+        """Continue with the rings of another size of the same tile, as far as wavenumbers are shared."""
         half = min(self.size, other.size) // 2
         n = np.arange(1 - half, half)
         for mine, theirs in ((self._even, other._even), (self._odd, other._odd)):

@@ -159,7 +159,7 @@ class Sea(TileSurface, AnySea):
     def change(self, t: float, relax: float = 0.0, spectrum: str | Spectrum[Any] | None = None, **changes: Any) -> None:
         """From time t [s] on, other conditions: any of the constructor's that describe wind, gravity or the medium.
 
-        Phases go on without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
+        Phases continue without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
         relax = 0. Losses to viscosity stay: the new size is that of the new spectrum times the fraction that is left.
         Another spectrum takes what both use. Raises ValueError for a value that is not allowed or a condition that the
         spectrum does not use, TypeError for an unknown name.
@@ -193,7 +193,7 @@ class Sea(TileSurface, AnySea):
         self._waves.expose(chosen, self.conditions, decay, duration)
 
     def resized(self, size: int) -> "Sea":
-        """The same sea on a grid of another size: shared waves and rings go on as they are.
+        """The same sea on a grid of another size: shared waves and rings continue as they are.
 
         Raises ValueError for a size that is not allowed.
         """
@@ -241,7 +241,7 @@ class Sea(TileSurface, AnySea):
         return self._waves.magnitude(t) ** 2 * resolved(self.size)
 
     def slope_left(self, t: float) -> float:
-        """Share of the mean square slope that low-pass and viscosity have left at time t [s]; 1 on a level sea.
+        """Fraction of the mean square slope that low-pass and viscosity have left at time t [s]; 1 on a level sea.
 
         It is that of the tile's waves under the present wind, whether or not they have grown yet.
         """

@@ -1,4 +1,4 @@
-"""One moment of a sea: fields on the grid, each computed when first read and by the transforms it needs."""
+"""One moment of a sea: fields on the grid, each computed when first read, by the transforms it needs."""
 
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -31,7 +31,7 @@ class Multiple(Protocol):
 
 
 def field(make: Callable[[Any], np.ndarray]) -> property:
-    """A property that is computed when first read and kept with the other fields of its moment."""
+    """A property computed when first read and kept with the other fields of its moment."""
 
     def read(surface: Any) -> np.ndarray:
         if make.__name__ not in surface.fields:

@@ -1,4 +1,4 @@
-"""The heights h(k, t) of a tile with its rings, as the transforms take them: for the last time that was asked for."""
+"""The heights h(k, t) of a tile with its rings, as the transforms take them, for the last requested time."""
 
 import copy
 from typing import Any

@@ -32,7 +32,7 @@ class TileSurface:
 
     is_sum_of_waves = False
 
-    # The last grid, the version of the sea, and the share of each point.
+    # The last grid, the version of the sea, and the fraction of each point.
     _grid_shares: tuple[RadialGrid | None, int, np.ndarray] = None, 0, np.zeros(0, np.float32)
 
     def on(self: Any, grid: RadialGrid, t: float, centre: tuple[float, float] = (0.0, 0.0)) -> RadialSurface:

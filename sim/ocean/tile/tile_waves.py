@@ -18,11 +18,11 @@ from sim.validation import argument_error, check_number
 from sim.water import Water
 from sim.waves import Waves
 
-SETTLED_SHARE = 1e-7  # share of a change still to come below which it counts as done
+SETTLED_SHARE = 1e-7  # fraction of a change still to come below which it counts as done
 
 
 class DrawnWaves(NamedTuple):
-    """The waves that conditions ask for."""
+    """The waves under given conditions."""
 
     unit: np.ndarray  # amplitudes over their size, a full plane (`unit_amplitudes`)
     target: np.ndarray  # sqrt(S dk^2) [m], a full plane
@@ -46,7 +46,7 @@ class TileWaves:
         self.numbers = numbers
         self.version = 0  # counts changes
         self.past: dict[tuple[Medium, Conditions], float] = {}  # [s] spent in each medium before the last change
-        self.lost = np.zeros_like(numbers.quarter)  # -ln of the share of each wave that is left of that time
+        self.lost = np.zeros_like(numbers.quarter)  # -ln of the fraction of each wave that is left of that time
         # ((medium, conditions), decay rates) of the last call of `decay_in`
         self.other_decay: tuple[tuple[Medium, Conditions], np.ndarray] | None = None
         self.listed: tuple[tuple | None, Waves | None] = None, None  # key of the amplitudes, and the waves
@@ -63,8 +63,8 @@ class TileWaves:
     def change(self, t: float, relax: float, drawn: DrawnWaves, medium: Medium, conditions: Conditions) -> None:
         """From time t [s] on, sizes approach those of other conditions as 1 - exp(-(time - t)/relax).
 
-        medium, conditions: those until then. Phases go on without a jump, losses stay. drawn.unit: with the phases at
-        the last change.
+        medium, conditions: those until then. Phases do not jump, losses stay. drawn.unit: with the phases at the last
+        change.
         """
         duration, before = t - self.base, self.undecayed(t)
         self._spend(medium, conditions, self.decay, duration)
@@ -103,7 +103,7 @@ class TileWaves:
         return t
 
     def lost_at(self, t: float) -> np.ndarray:
-        """-ln of the share of each wave that is left at time t [s], a quarter plane. Errors as for `checked_time`."""
+        """-ln of the fraction left of each wave at time t [s], a quarter plane. Errors as for `checked_time`."""
         t = self.checked_time(t)
         return self.lost + self.decay * (t - self.base) if self.decays else self.lost
 
@@ -123,7 +123,7 @@ class TileWaves:
         self._set_planes()
 
     def take_over(self, other: "TileWaves") -> None:
-        """Go on as the waves of a tile of another grid, where this one has them too."""
+        """Continue as the waves of a tile of another grid, where this one has them too."""
         half = min(len(self.unit), len(other.unit)) // 2
         n = np.arange(1 - half, half)
         shared = np.ix_(n, n)  # negative indices count from the end, as FFT order does
@@ -135,7 +135,7 @@ class TileWaves:
         self._set_planes()
 
     def left_to_come(self, t: float) -> float:
-        """Share of the last change that is still to come at time t."""
+        """Fraction of the last change that is still to come at time t."""
         share = math.exp(-(t - self.base) / self.relax) if self.relax > 0.0 else 0.0
         return share if share > SETTLED_SHARE else 0.0
 

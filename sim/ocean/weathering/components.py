@@ -19,7 +19,7 @@ from sim.validation import check_choice, check_number
 CELSIUS = 273.15  # [K]
 WARM, COLD = 15.0, 0.0  # [C] of the two measurements of density and viscosity
 CUT_BOUNDS = np.array([266.0, 310.0, 353.0, 483.0, 563.0, 650.0, 800.0, 950.0, 1050.0])  # [K]
-SATURATE_OFFSET, SATURATE_SLOPE = 124.1069, 0.0877  # [%], [%/K] share of saturates in a cut, by its boiling point
+SATURATE_OFFSET, SATURATE_SLOPE = 124.1069, 0.0877  # [%], [%/K] fraction of saturates in a cut, by its boiling point
 RESIN_MOLAR_MASS, ASPHALTENE_MOLAR_MASS = 0.8, 1.0  # [kg/mol]
 INERT_DENSITY, MAX_DENSITY = 1100.0, 1090.0  # [kg/m3] of resins and asphaltenes, and at most of the others
 WATSON_SATURATES, WATSON_AROMATICS = 12.0, 10.0  # Watson's factor
@@ -38,7 +38,7 @@ class OilRecord(NamedTuple):
     resins: float
     asphaltenes: float
     emulsion_onset: float  # share evaporated from which it takes up water; inf: it never does
-    emulsion_water: float  # largest share of water in its emulsion; 0: it forms none
+    emulsion_water: float  # largest fraction of water in its emulsion; 0: it forms none
     distillation: tuple[tuple[float, float], ...]  # (share by mass that has boiled off, temperature [K])
 
 
@@ -121,7 +121,7 @@ def can_weather(oil: str) -> bool:
 def distillation_of(oil: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Shares by mass that have boiled off, and the temperatures [K], both (n,) and rising from 0 to 1.
 
-    Below and above what was measured the curve goes on straight, within 266 and 1050 K.
+    Below and above what was measured the curve continues straight, within 266 and 1050 K.
     Raises ValueError for an oil without a record.
     """
     record = oil_records()[check_oil(oil)]

@@ -68,7 +68,7 @@ def evaporation_rates(
 
 
 def water_content(elapsed: float, wind_speed: float, most: float) -> float:
-    """Share of water in the emulsion, by volume, `elapsed` [s] after its onset; at most `most`.
+    """Fraction of water in the emulsion, by volume, `elapsed` [s] after its onset; at most `most`.
 
     S = S_max (1 - e^(-k t/S_max)), k = 6 K U^2/d_max, is the surface of the drops per volume of oil, S_max that of the
     smallest ones; Y = S d_max/(6 + S d_max) (Eley, Hey and Symonds 1988, Oil Chem. Pollut. 4:253; rate of Mackay).
@@ -129,7 +129,7 @@ def wave_height(wind_speed: float) -> float:
 
 
 def breaking_share(wind_speed: float, salinity: float = 35.0) -> float:
-    """Share of the sea that breaks per second, as PyGNOME has it (Ding and Farmer 1994; Monahan 1971)."""
+    """Fraction of the sea that breaks per second, as PyGNOME has it (Ding and Farmer 1994; Monahan 1971)."""
     decay = 0.03742857 * salinity + 2.54
     return min(0.5 * (0.0125 * wind_speed if wind_speed < 4.0 else 0.01 * wind_speed + 0.01) / decay, 1.0)
 

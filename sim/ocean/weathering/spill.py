@@ -27,7 +27,7 @@ HOUR = 3600.0  # [s]
 MAX_HOURS = 120.0  # [h] that a spill is followed
 FIRST_STEP, STEP_GROWTH, MAX_STEP = 5.0, 1.06, 900.0  # [s] of the steps of time: short ones first
 MAX_DENSITY = 0.999  # of an emulsion, over the water's: heavier ones would sink, for which there is no law here
-GONE = 1e-6  # share of the oil below which nothing is left
+GONE = 1e-6  # fraction of the oil below which nothing is left
 MOUSSE_COLOUR = np.array([0x7A, 0x42, 0x1E])  # of an emulsion with much water: brown, chosen for drawing
 
 
@@ -60,7 +60,7 @@ class WeatheredOil(NamedTuple):
     evaporated: float
     dispersed: float  # taken down by breaking waves
     remaining: float  # on the sea
-    water_content: float  # share of water in the emulsion, by volume
+    water_content: float  # fraction of water in the emulsion, by volume
     area: float  # [m2]
     thickness: float  # [m] of the emulsion
     oil_density: float  # [kg/m3] without the water in it
@@ -132,7 +132,7 @@ class Weathering(NamedTuple):
 
 
 def blend_colour(colour: str, water: float) -> str:
-    """The colour "#rrggbb" of an oil with a share of water in it: it turns brown."""
+    """The colour "#rrggbb" of an oil with a fraction of water in it: it turns brown."""
     fresh = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)])
     red, green, blue = np.rint(fresh + water * (MOUSSE_COLOUR - fresh)).astype(int).tolist()
     return f"#{red:02x}{green:02x}{blue:02x}"

@@ -1,4 +1,4 @@
-"""The forces on a net: one file each, found by being here, with all that the program knows of the force.
+"""The forces on a net: one file each, discovered here, with everything the program knows of the force.
 
 `each` generates the kernels that loop over all forces, as source with one call per force, when the program starts. The
 list therefore costs nothing at run time.
@@ -31,7 +31,7 @@ FORCES: tuple[Force, ...] = tuple(
         key=lambda force: (force.rank, force.name),
     )
 )
-# Those with numbers of their own. A net has a record of these, so that its kernels hold only the forces that it has.
+# Forces with numbers. A net has a record of these, so that its kernels hold only its own forces.
 OWN = {force.numbers: force for force in FORCES if force.numbers is not None}
 Declared = namedtuple("Declared", [force.name for force in OWN.values()], module=__name__)
 there = kernel(lambda own: True, inline=True)
@@ -70,7 +70,7 @@ def each(
     turns: bool = False,
     **options: Any,
 ) -> Any:
-    """A kernel of `parameters` that calls this facet of all forces that have it, or the facet `having`, and act.
+    """A kernel of `parameters` that calls this facet of all acting forces that have it, or the facet `having`.
 
     result: a key of SUMMATIONS. turns: in the reverse order if the parameter `reverse` is True. options: of `kernel`.
     """
@@ -110,7 +110,7 @@ def each(
 
 
 def check_forces(forces: Any) -> tuple[Any, ...]:
-    """The numbers of the forces that a net declares, as they are. Raises ValueError for others."""
+    """The numbers of the forces that a net declares, checked. Raises ValueError for others."""
     known = f"numbers of the forces of sim.springs.forces: {', '.join(one.__name__ for one in OWN) or 'none so far'}"
     if not isinstance(forces, tuple) or any(type(one) not in OWN for one in forces):
         raise argument_error("forces", forces, known)

@@ -3,7 +3,7 @@
 Of a line of segments of length l without strain the curvature at an inner node is d/l^2 with d = x_{i-1} - 2 x_i +
 x_{i+1}, and the energy (EI/2) |d|^2 / l^3. Segments that are stretched by a strain e bend as if EI were (1 + e)^2 times
 as large. The energy is convex, and its force linear in the positions: neither rest nor the longest stable step need
-another method. An end is free to turn; at one that a clamp holds in the direction t the line goes on behind it as it
+another method. An end is free to turn; at one that a clamp holds in the direction t the line continues behind it as it
 does before it, turned about t, so that d = x_1 - x_0 - l t with twice the stiffness.
 
 A row of `bends` holds three nodes, their weights, the stiffness 2 energy/|d|^2 [N/m], a vector [m] and the links before

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from sim import point_laws
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
@@ -16,44 +17,8 @@ from sim.springs.points.arrays import mass_at, push
 from sim.springs.points.each_link import TINY
 from sim.springs.points.order import in_turn
 
-
-@kernel(inline=True)
-def touching(x, y, z, t, p, on_sphere):
-    """(depth, nx, ny, nz) of a point against the floor or the sphere; depth <= 0 is no contact."""
-    if on_sphere:
-        s = t - p.epoch
-        dx, dy, dz = x - p.sx - s * p.svx, y - p.sy - s * p.svy, z - p.sz - s * p.svz
-        distance = math.sqrt(dx * dx + dy * dy + dz * dz)
-        if distance == 0.0:
-            return p.sr, 0.0, 0.0, 1.0
-        return p.sr - distance, dx / distance, dy / distance, dz / distance
-    return p.floor - z, 0.0, 0.0, 1.0
-
-
-@kernel(inline=True)
-def contact_force(depth, nx, ny, nz, u, v, w, mass, p, on_sphere, with_damping):
-    """Force (fx, fy, fz) on a point of `mass` at `depth` that moves at (u, v, w) relative to the surface."""
-    k, b = p.contact_k, p.contact_b
-    if not with_damping:
-        return k * depth * nx, k * depth * ny, k * depth * nz
-    if p.lab_contact:
-        if on_sphere:
-            b *= depth
-        return k * depth * nx - b * u, k * depth * ny - b * v, k * depth * nz - b * w
-    vn = u * nx + v * ny + w * nz
-    normal = max(0.0, k * depth - b * vn)
-    fx, fy, fz = normal * nx, normal * ny, normal * nz
-    if p.friction > 0.0:
-        tx, ty, tz = u - vn * nx, v - vn * ny, w - vn * nz
-        speed = math.sqrt(tx * tx + ty * ty + tz * tz)
-        # F_t = -mu N t/|t|, at most what stops the point within the step
-        grip = mass * p.stop_rate
-        if p.friction * normal < grip * speed:
-            grip = p.friction * normal / speed
-        fx -= grip * tx
-        fy -= grip * ty
-        fz -= grip * tz
-    return fx, fy, fz
+touching = kernel(inline=True)(point_laws.touching)
+contact_force = kernel(inline=True)(point_laws.contact_force)
 
 
 @kernel(inline=True)

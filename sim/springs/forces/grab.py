@@ -2,18 +2,14 @@
 
 import math
 
+from sim import point_laws
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block
 from sim.springs.forces.record import SPRING_NETS, Force
 from sim.springs.points.arrays import push
 from sim.springs.points.each_link import TINY
 
-
-@kernel(inline=True)
-def secant(dx, dy, dz, stiffness, most):
-    """Secant stiffness of the pull [N/m]: its own within reach, most / distance beyond."""
-    distance = math.sqrt(dx * dx + dy * dy + dz * dz)
-    return most / distance if stiffness * distance > most else stiffness
+secant = kernel(inline=True)(point_laws.secant)
 
 
 @kernel(allocates=False)

@@ -13,7 +13,7 @@ NETS = (*SPRING_NETS, *LINES)
 
 
 def of_nets(springs: Any = None, lines: Any = None) -> dict[type, Any]:
-    """A facet that is another kernel, or none, for lines under water than for ropes, cloths and other nets."""
+    """A facet whose kernel for lines under water differs from that for ropes, cloths and other nets, or is missing."""
     return {**dict.fromkeys(SPRING_NETS, springs), **dict.fromkeys(LINES, lines)}
 
 
@@ -38,15 +38,15 @@ class Force(NamedTuple):
     rank: int = 100  # forces act in the order of their ranks; those of one rank by name
     numbers: type | None = None  # NamedTuple of floats, with their defaults
     acts: str = "True"  # condition on p: no facet is called otherwise. Of a force with numbers: that a net has them
-    # (x, v, t, p, with_damping, f, a): adds to a by `push`; f: scratch of `make_scratch`. None: it is in the loops over
+    # (x, v, t, p, with_damping, f, a): adds to a by `push`; f: scratch of `make_scratch`. None: part of the loops over
     # the links.
     accelerate: Any = None
-    # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] of what moves it; of lines by the masses
-    # and impulses of `sim.springs.points.line_points`
+    # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] put in; of lines by the masses and
+    # impulses of `sim.springs.points.line_points`
     damp: Any = None
     energy: Any = None  # (x, t, p) -> stored energy [J]
     power: Any = None  # (x, v, t, p, with_damping) -> (dissipated, put in) [W]
-    pins_power: Any = None  # (x, v, p) -> what moving pins put in through its damping [W]
+    pins_power: Any = None  # (x, v, p) -> power that moving pins put in through its damping [W]
     tangent: Any = None  # (x, u, t, p, part, longest, out): adds a matrix times u, see `sim.springs.forces.matrices`
     blocks: Any = None  # (x, v, t, g, p, points): adds g D + g^2 K of each point, see `sim.springs.forces.matrices`
     # Of a force with numbers, a function of these: most stiffness [N/m] and damping [N s/m] at any point.

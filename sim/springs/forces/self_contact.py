@@ -41,7 +41,7 @@ def find_pairs(x, p):
 
     Where p.pairs is full, the particles after that are left out; its last row keeps the largest number of them.
 
-    No pairs where p.stop asks for an end: who calls a kernel that may end in here looks at p.stop afterwards.
+    No pairs if p.stop cancels: callers of a kernel that may stop here check p.stop afterwards.
     """
     n = p.rows * p.cols
     reach = (1.0 + SKIN) * p.thickness
@@ -124,7 +124,7 @@ def farthest(x, seen, n):
 
 @kernel(allocates=False)
 def refresh_pairs(x, p):
-    """Find the pairs anew where something has moved by half the skin; returns their number."""
+    """Find the pairs again if a point has moved by half the skin; returns their number."""
     half = 0.5 * SKIN * p.thickness
     last = p.pairs.shape[0] - 1
     if p.pairs[last, 0] < 0 or not farthest(x, p.seen, np.uint64(p.rows * p.cols)) < half * half:

@@ -88,7 +88,7 @@ ClothArrays = namedtuple("ClothArrays", RopeArrays._fields + WideArrays._fields)
 def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
     """A kernel that stands for one of these, by the class of its argument p.
 
-    cloth: None for that of any other net. lines: those under water; None where they have no such kernel.
+    cloth: None for that of any other net. lines: those under water; None if they have no such kernel.
     """
     variants = {RopeArrays: rope, GridArrays: grid, ClothArrays: cloth or grid}
     return chosen(variants if lines is None else {**variants, LineArrays: lines})

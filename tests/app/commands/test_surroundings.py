@@ -104,6 +104,7 @@ def test_what_is_no_file_is_refused_and_left_alone(capsys, tmp_path):
     assert len(list(tmp_path.iterdir())) == 2
 
 
+@pytest.mark.long
 def test_an_ascii_terminal_takes_a_name_that_it_cannot_show(tmp_path):
     out = tmp_path / "mer–水.npz"
     # The name has to be one in the locale, or Python hands it over as bytes.
@@ -120,6 +121,7 @@ def served_ports(pid: int) -> list[int]:
     return [c.laddr.port for c in connections if c.status == psutil.CONN_LISTEN]
 
 
+@pytest.mark.long
 @needs_posix
 def test_the_lab_is_served_where_nothing_can_be_printed(tmp_path):
     """As a newcomer has it, without compiled kernels."""

@@ -1,4 +1,4 @@
-"""A class that checks at the end of the hour, on a machine that is busy with other things."""
+"""A class that checks at the end of the hour, on a busy machine."""
 
 import subprocess
 import sys
@@ -26,7 +26,7 @@ def write_folder(folder: Path) -> None:
 
 
 def states_of(folder: Path) -> dict[str, str]:
-    """What the check says of all functions of a folder."""
+    """States of all functions of a folder by the check."""
     with Runner(folder) as runner:
         verdicts = {name: check_program(folder, runner, task) for name, task in TASKS.items()}
     return {name: verdict.text for name, verdict in verdicts.items() if verdict.state not in ("right", "not checked")}

@@ -150,6 +150,7 @@ def test_a_run_that_diverges_ends_the_wait_with_its_reason(rope: Lab) -> None:
     assert rope.wait(0.1) == pytest.approx(0.1)
 
 
+@pytest.mark.long
 def test_a_reset_ends_a_wait_and_an_interrupt_leaves_the_lab_as_it_was(rope: Lab) -> None:
     def interrupt() -> None:
         wait_for(lambda: rope.running)

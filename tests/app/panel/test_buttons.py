@@ -1,4 +1,4 @@
-"""Every button of every tab, pressed as viser hands a browser's press on: none raises, and each shows what it did."""
+"""Every button of every tab, pressed as viser passes on a browser's press: none raises, and each shows its effect."""
 
 import asyncio
 import time
@@ -26,21 +26,21 @@ from tests.waiting import wait_for
 SAMPLE = ("rope", "radial_sea")  # whose panels are pressed in every run of the tests
 CLIENT = 1
 BUTTONS = (viser.GuiButtonHandle, viser.GuiButtonGroupHandle)
-# What a button says when it has done what it names; the others show it elsewhere.
+# Words of a button that confirm its action; the others show it elsewhere.
 CONFIRMED = {
     share.COPY: "Copied", share.SAVE: "Saved", share.KEEP: "Kept in the list", share.REMOVE: "Removed",
 }  # fmt: skip
 
 
 class Camera(SimpleNamespace):
-    """A camera that can be watched, and need not be hashable."""
+    """A camera with watchers, which need not be hashable."""
 
     def on_update(self, callback: object) -> None:
         """It never reports."""
 
 
 class Client:
-    """A browser as the panel's callbacks see it; it notes what it is sent."""
+    """A browser as the panel's callbacks see it; it records messages to it."""
 
     def __init__(self, gui: viser.GuiApi) -> None:
         self.client_id, self.gui, self.sent = CLIENT, gui, []
@@ -85,13 +85,13 @@ class Pressed:
         monkeypatch.setattr(self.panel.compare, "beside", asked)
 
     def buttons(self) -> Iterator[tuple[Any, str]]:
-        """Handles of the visible buttons, with the name of each; a handle may be made anew by a press."""
+        """Handles of the visible buttons, with the name of each; a press may replace a handle."""
         for handle in list(self.gui._gui_input_handle_from_uuid.values()):
             if isinstance(handle, BUTTONS) and handle.visible:
                 yield from ((handle, name) for name in getattr(handle, "options", ("",)))
 
     def press(self, handle: Any, name: str) -> None:
-        """Hand a press on to viser, as it comes from a browser; what the callback raises is raised here."""
+        """Pass a press on to viser, as from a browser; errors of the callback are raised here."""
         updates = {"value": name or True}
         coroutine = self.gui._handle_gui_updates(CLIENT, _messages.GuiUpdateMessage(handle._impl.uuid, updates))
         asyncio.run_coroutine_threadsafe(coroutine, self.viewer.server.get_event_loop()).result(60.0)
@@ -100,13 +100,13 @@ class Pressed:
         self.update()
 
     def update(self) -> None:
-        """Bring the panel up to date, as the viewer's thread does at each frame."""
+        """Update the panel, as the viewer's thread does at each frame."""
         self.panel.status_at = self.panel.marks_at = 0.0
         self.panel.recorder.advance(time.monotonic())
         self.panel.update(self.viewer.loop.latest, [])
 
     def shown(self) -> object:
-        """State that a user may see: the panel's texts and values, what was sent, posted and asked for."""
+        """State visible to a user: the panel's texts and values, and what was sent, posted and requested."""
         handles = list(self.gui._gui_input_handle_from_uuid.values())
         texts = [getattr(handle, name, None) for handle in handles for name in ("options", "label", "visible")]
         lines = [line.content for line in self.panel.share.lines.values()]

@@ -129,14 +129,14 @@ def test_numbers_are_applied_undone_and_saved(panel: Viewer) -> None:
     found: Any = panel.panel.controls_tab.file_numbers
     assert found.chooser.options == tuple(numbers(FILE))
     before = found.fields[LENGTH].value
-    found.fields[LENGTH].value = "130"
+    found.fields[LENGTH].value = "0,13 km"
     press(found, panel, APPLY)
     assert panel.settings.params.file_changes == (("length", "1", 130.0),)
     wait_for(lambda: panel.scene.params.file_changes)
     assert panel.scene.file.system.lines[0].length == 130.0
     ((name, written),) = press(found, panel, SAVE)
     assert (name, b"130.0" in written) == ("shared_line-changed.txt", True)
-    for wrong, words in (("-1", "a number above 0"), ("long", "'long'"), ("", "''")):
+    for wrong, words in (("-1", "-1.0 is not allowed; allowed: above 0 m"), ("long", "'long'"), ("", "''")):
         found.fields[LENGTH].value = wrong
         press(found, panel, APPLY)
         assert words in found.line.content.replace("&#39;", "'")

@@ -1,10 +1,11 @@
-"""Cameras that were placed: a page that reports an old place late is sent the new one again, a user is obeyed."""
+"""Cameras: a view that frames points; a page that reports an old place late is sent the new one again."""
 
 from typing import Any
 
 import numpy as np
+import pytest
 
-from app.render.cameras import is_waiting, place_camera
+from app.render.cameras import framing_view, is_waiting, place_camera, point_in_view
 from tests import coroutines
 
 OLD, NEW = ((15.0, -68.0, 5.0), (0.0, 0.0, 1.5)), ((-3.0, -4.0, 2.0), (0.0, 0.0, 0.0))
@@ -109,3 +110,36 @@ def test_a_page_whose_user_turns_the_camera_at_once_has_taken_it() -> None:
     camera.report(((-4.0, -3.0, 2.0), NEW[1]))  # as far from the same target
     assert not waits(camera)
     assert camera.sent == {}
+
+
+def in_picture(position: Any, target: Any, field_of_view: float, points: np.ndarray) -> np.ndarray:
+    """Places (n, 2) of points (n, 3) in a picture, to the right and up, in halves of its height."""
+    ahead = np.subtract(target, position) / np.linalg.norm(np.subtract(target, position))
+    right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
+    seen = points - position
+    edge = np.tan(0.5 * field_of_view) * (seen @ ahead)
+    return seen @ np.column_stack([right, np.cross(right, ahead)]) / edge[:, None]
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("stretch", [(9.0, 9.0, 1.0), (1.0, 1.0, 9.0)])
+def test_a_framing_view_shows_all_points_and_is_as_near_as_it_can_be(seed: int, stretch: Any) -> None:
+    random = np.random.default_rng(seed)
+    points = random.normal(size=(8, 3)) * stretch + random.normal(size=3) * 20.0
+    bearing, pitch, width, low, high = random.uniform((-3, 0.1, 0.6, -0.9, 0.2), (3, 0.6, 1.1, -0.4, 0.9))
+    position, target = framing_view(points, bearing, pitch, 0.8, (width, low, high))
+    x, y = in_picture(position, target, 0.8, points).T
+    assert np.arctan2(*np.subtract(position, target)[1::-1]) == pytest.approx(bearing)
+    assert abs(x).max() <= width + 1e-9
+    assert low - 1e-9 <= y.min()
+    assert y.max() <= high + 1e-9
+    # Points at both sides, or above and below, touch the edges: a camera farther on would lose one of them.
+    assert (x.min(), x.max()) == pytest.approx((-width, width)) or y.max() == pytest.approx(high)
+    assert y.min() == pytest.approx(low)
+
+
+def test_a_point_in_a_view_is_seen_at_its_place() -> None:
+    view = (3.0, -9.0, 4.0), (1.0, 2.0, -1.0)
+    point = point_in_view(view, 0.8, (-0.3, -0.6), -5.0)
+    assert point[2] == pytest.approx(-5.0)
+    assert in_picture(*view, 0.8, np.array([point]))[0] == pytest.approx((-0.3, -0.6))

@@ -36,8 +36,10 @@ class FakeServer:
         self.inbox.on_update = lambda callback: setattr(self, "reported", callback)
         return self.inbox
 
-    def add_html(self, content: str, order: float) -> None:
+    def add_html(self, content: str, order: float) -> Any:
         self.shown.append(content)
+        self.field = SimpleNamespace(content=content)
+        return self.field
 
     def report(self, client: int, *names: str) -> None:
         """A page reports the nodes that it draws with their shader."""
@@ -68,6 +70,18 @@ def test_a_shader_is_active_while_every_browser_reports_it(server: FakeServer, i
     assert injector.is_active("/sea") is None
 
 
+def test_the_page_is_told_the_nodes_of_a_whole_picture(server: FakeServer, injector: ShaderInjector) -> None:
+    told = lambda: re.findall(r'data-springtide-nodes="([^"]*)"', server.field.content)[0].split()  # noqa: E731
+    assert told() == []
+    injector.watch("/sea")
+    injector.watch("/rope")
+    assert told() == ["/sea", "/rope"]
+    injector.unwatch("/sea")
+    assert told() == ["/rope"]
+    injector.restart(server)  # type: ignore[arg-type]
+    assert told() == []
+
+
 def test_a_browser_that_left_is_forgotten(server: FakeServer, injector: ShaderInjector) -> None:
     server.clients = {1: None}
     injector.watch("/sea")
@@ -87,7 +101,7 @@ def test_each_scene_has_a_field_and_nothing_reported_before_counts(
     injector.restart(server)  # type: ignore[arg-type]
     injector.watch("/sea")
     assert injector.is_active("/sea") is None
-    assert server.shown == ['<span data-springtide-shaders="field"></span>'] * 2
+    assert [re.findall('shaders="([^"]*)"', words) for words in server.shown] == [["field"]] * 2
 
 
 def test_a_browser_that_never_reports_counts_as_one_without_shaders(

@@ -7,12 +7,15 @@ from app.panel.recording.recording_files import arrays_of
 from app.render.staff import HEIGHT, PLACE
 from app.scenes import NAMES, scene_named, view_named
 from app.scenes.contract import AnyKind
+from app.scenes.mooring.arrangement import first_places
 from app.scenes.setups import make_setup
+from tests.app.render.test_cameras import in_picture
 
 DURATION, LATER = 30.0, 0.5  # [s] of simulated time
 LOOKS = 5  # within LATER
 SHORT = 8.0  # [s] of the cloth, which takes half as long to compute as it lasts
 MIN_MOVE = 0.01  # [m]
+SHOWN_ASPECT = 1.05  # width over height of what js/page/camera.js shows beside the panel
 
 
 def drawn(kind: AnyKind, frame: object) -> np.ndarray:
@@ -63,14 +66,25 @@ def test_what_hangs_takes_about_half_of_the_picture_s_height(name: str) -> None:
 @pytest.mark.parametrize("name", ["rope", "race", "cloth"])
 def test_the_staff_of_one_metre_is_in_the_first_picture(name: str) -> None:
     kind, view = scene_named(name), view_named(name)
-    position, target = np.array(view.first_view(object.__new__(view), make_setup(kind).params))
-    ahead = (target - position) / np.linalg.norm(target - position)
-    right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
-    seen = np.array([(*PLACE, 0.0), (*PLACE, HEIGHT)]) - position
-    reach = np.tan(0.5 * view.FIELD_OF_VIEW) * (seen @ ahead)
+    position, target = view.first_view(object.__new__(view), make_setup(kind).params)
+    staff = np.array([(*PLACE, 0.0), (*PLACE, HEIGHT)])
     assert HEIGHT == 1.0
-    assert (abs(seen @ np.cross(right, ahead)) < reach).all()
-    assert (abs(seen @ right) < 1.05 * reach).all()  # what js/page/camera.js shows beside the panel
+    assert (abs(in_picture(position, target, view.FIELD_OF_VIEW, staff)) < (SHOWN_ASPECT, 1.0)).all()
+
+
+@pytest.mark.parametrize("preset", scene_named("mooring").presets)
+def test_body_and_anchors_fill_the_first_picture_of_a_mooring(preset: str) -> None:
+    kind, view = scene_named("mooring"), view_named("mooring")
+    params = make_setup(kind, preset).params
+    position, target = view.first_view(object.__new__(view), params)
+    box = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.3, 0.8)]) * params.size
+    points = np.concatenate([kind.make(params).frame().body + box, first_places(params).anchors])
+    x, y = in_picture(position, target, view.FIELD_OF_VIEW, points).T
+    assert abs(x).max() < SHOWN_ASPECT
+    assert abs(y).max() < 1.0
+    assert np.ptp(x) > 1.6 or np.ptp(y) > 1.1
+    horizon = in_picture(position, target, view.FIELD_OF_VIEW, np.array([(0.0, 1e7, 0.0)]))[0, 1]
+    assert 0.6 < horizon < 0.9
 
 
 @pytest.mark.parametrize("name", NAMES)

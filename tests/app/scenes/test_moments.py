@@ -1,4 +1,4 @@
-"""A scene goes on from a state that was kept as it went on then, to the last bit."""
+"""A scene resumes from a checkpoint exactly as it continued then, to the last bit."""
 
 import dataclasses
 from typing import Any

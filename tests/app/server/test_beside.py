@@ -19,7 +19,7 @@ from app.scenes import scene_named
 from app.scenes.comparisons import COMPARISONS
 from app.scenes.rope.parameters import PRESETS, RopeParams
 from app.scenes.setups import read_query
-from app.server.beside import SharedRecord
+from app.server.beside import ComparedLabs, SharedRecord
 from app.server.preparation import Preparation
 from app.server.viewer import Viewer
 from app.server.web.access import OWN_PAGES_ONLY, Access
@@ -118,6 +118,27 @@ def run(viewer: Any, action: Callable[[], None]) -> None:
     done = threading.Event()
     viewer.server.get_event_loop().call_soon_threadsafe(lambda: (action(), done.set()))
     assert done.wait(10.0)
+
+
+def test_a_change_in_a_pane_follows_the_first_lab_s_parameters(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the event loop of the first lab is busy as the panes open."""
+    seat = ComparedLabs.seat
+
+    def seat_slowly(labs: ComparedLabs, viewer: Any) -> None:
+        if viewer is labs.first:
+            viewer.call(lambda: time.sleep(0.5))
+        seat(labs, viewer)
+
+    monkeypatch.setattr(ComparedLabs, "seat", seat_slowly)
+    viewer = opened("rope", "rope&stiffness=2000")
+    try:
+        assert viewer.comparison is not None
+        second = viewer.comparison.viewers[1]
+        run(second, lambda: second.settings.set("speed", 0.25))
+        quiet(viewer, second)
+        assert viewer.settings.params.speed == second.settings.params.speed == 0.25
+    finally:
+        viewer.shut()
 
 
 class Pane:

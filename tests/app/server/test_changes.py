@@ -97,7 +97,7 @@ def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer) -> Non
             await undo(second)
             await until(lambda: lab.panel.kind.name == "rope" and not shown(lab))
             assert lab.settings.params == before
-            await undo(second)  # once more, and too late
+            await undo(second)  # again, and too late
             await follow(first, "?scene=rope&points=13")
             await undo(second)
             await until(lambda: lab.settings.params == before and not shown(lab))

@@ -218,7 +218,7 @@ def test_a_comparison_that_ends_in_a_tick_does_not_halt_the_lab(
 
 
 def held_at_the_clock(lab: Viewer, comparison: ComparedLabs, point: pytest.MonkeyPatch, place: int) -> Held:
-    """Hold the first lab's tick between the test for a seat and its use, as the clock goes on, or in a step by hand."""
+    """Hold the first lab's tick between the test for a seat and its use, while the clock runs, or in a step by hand."""
     loop, clock = lab.loop, comparison.clock
     if place == 0:
         looks = itertools.count()

@@ -27,7 +27,7 @@ def tube_bytes(lab: Any) -> int:
 
 @pytest.fixture
 def still(lab: Any) -> Any:
-    """A lab without its threads, and its view, which goes on drawing for browsers with shaders."""
+    """A lab without its threads, and its view, which continues drawing for browsers with shaders."""
     lab.served.stop_threads()
     record_shaders(lab.server)
     return lab

@@ -30,7 +30,7 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
     session = Session(folder, tasks, time_limit=1.0)
     viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
     try:
-        wait_for(lambda: taken(session) == 1)  # what the new folder holds; to begin again with it is no start of a run
+        wait_for(lambda: taken(session) == 1)  # what the new folder holds; to restart with it is no start of a run
         viewer.open("rope")
         loop = viewer.loop
         assert loop.latest.frame.reference is None
@@ -44,7 +44,7 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
         waited = time.monotonic() - started
         assert session.state.error is not None
         assert session.state.error.kind == "endless"
-        assert loop.run.counts["ticks"] - ticks > 3 * waited  # the loop of the scene goes on meanwhile
+        assert loop.run.counts["ticks"] - ticks > 3 * waited  # the loop of the scene continues meanwhile
         assert not loop.run.halted
         assert loop.latest.frame.reference is not None
         viewer.make_scene(scene_named("race"), RaceParams(), viewer.commands.put)  # which runs nothing of the student's

@@ -170,7 +170,7 @@ def test_values_with_which_a_scene_cannot_begin_leave_its_panel_which_puts_them_
     wait_for(lambda: said in panel.head.status.content)
     assert lab.loop.latest.status.unmade
     assert not panel.head.remedy.button.visible  # a shorter step does not help
-    panel.settings.set("damping", 3.0)  # which alone would let the motion go on
+    panel.settings.set("damping", 3.0)  # which alone would let the motion continue
     wait_for(lambda: lab.scene.params.damping == 3.0)
     assert lab.loop.run.halted == said
     panel.settings.set("stiffness", 500.0)

@@ -1,4 +1,4 @@
-"""Names of viser that are not public: one file uses them, and without any of them the lab runs.
+"""Private names of viser: one file uses them, and the lab runs without any one of them.
 
 Those of its page are held by tests/browser/water/test_water.py and tests/browser/scenes/test_rope.py.
 """
@@ -13,19 +13,19 @@ from tests.fresh import of_each
 ROOT = Path(__file__).parents[3]
 OWN = {"_replace", "_asdict", "_fields", "_exit", "_current_frames"}  # of named tuples, and of the modules os and sys
 
-# Each name that `app/render/handles/viser_inside.py` takes from viser's inside.
+# Each private name of viser that `app/render/handles/viser_inside.py` uses.
 NAMES = (
     "_binary_buffers", "_connected_clients", "_gui_input_handle_from_uuid", "_handle_incoming_message", "_impl",
     "_messages", "_queue_scene_message", "_websock_connection", "_websock_server", "SceneNodeUpdateMessage",
     "atomic_start", "get_message_buffer", "on_client_connect", "queue_message",
     "unregister_handler", "window_duration_sec", "window_generator",
 )  # fmt: skip
-QUIET = {"_connected_clients"}  # a browser that leaves while it arrives may count
+QUIET = {"_connected_clients"}  # a browser that leaves during its arrival may count
 SAMPLE = ("_websock_server", "_gui_input_handle_from_uuid")
-UNUSED = "unused"  # no name of viser: the lab as it is
+UNUSED = "unused"  # no name of viser: the unchanged lab
 
-# A name that viser has changed is one that our source spells in another way. Each is tried in a child of a process that
-# has imported viser: a scene that moves, a browser that is counted, a control that it sets, the dark floor, a replay.
+# A changed name of viser is imitated by another spelling in our source. Each is tried in a child of a process that has
+# imported viser: a moving scene, a counted browser, a control that it sets, the dark floor, a replay.
 WITHOUT = """
 import os, re, sys, time, types
 from pathlib import Path
@@ -88,6 +88,7 @@ def run_without(names: tuple[str, ...]) -> dict[str, list[str]]:
     return {row[1]: row[2:] for row in rows if row[0] == "found"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "names", [SAMPLE, pytest.param(NAMES, marks=pytest.mark.stress, id="all")], ids=lambda names: names[0]
 )

@@ -1,4 +1,4 @@
-"""All browser tests of the rope once more, through the proxy of a real Jupyter server with a token and a path."""
+"""All browser tests of the rope again, through the proxy of a real Jupyter server with a token and a path."""
 
 import functools
 import importlib.util

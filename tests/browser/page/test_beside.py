@@ -75,6 +75,7 @@ def test_two_ropes_on_one_clock_with_linked_cameras(pair: Viewer, open_tab: Any)
     tab.wait(lambda: pair.comparison is None and second.ended)
 
 
+@pytest.mark.long
 def test_a_pane_that_lost_its_line_says_so_and_comes_back_by_itself(pair: Viewer, open_tab: Any) -> None:
     pair.comparing.begin([read_query("?scene=rope&stiffness=2000")], False)
     assert pair.comparison is not None

@@ -78,7 +78,8 @@ def final_picture(tab: Tab) -> NDArray[np.float64]:
     return shots[-1]
 
 
-@pytest.mark.parametrize("scene", ["square_sea", pytest.param("radial_sea", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("scene", ["square_sea", "radial_sea"])
 def test_a_lost_context_comes_back_with_its_picture(open_tab: Callable[..., Tab], scene: str) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(scene)
@@ -118,13 +119,9 @@ def settled_counts(page: Any) -> dict[str, int]:
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
-    ("scene", "seconds", "cuts"),
-    [
-        pytest.param("square_sea", 0.0, CUTS, marks=pytest.mark.long),
-        ("rope", 0.0, CUTS),
-        pytest.param("rope", 10.0, 1, marks=pytest.mark.long),
-    ],
+    ("scene", "seconds", "cuts"), [("square_sea", 0.0, CUTS), ("rope", 0.0, CUTS), ("rope", 10.0, 1)]
 )
 def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str, seconds: float, cuts: int) -> None:
     viewer = Viewer("127.0.0.1", 0)
@@ -169,6 +166,7 @@ TELL = """state => { Object.defineProperty(document, "visibilityState", { value:
     document.dispatchEvent(new Event("visibilitychange")); }"""
 
 
+@pytest.mark.long
 def test_a_tab_that_was_hidden_for_an_hour_goes_on(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("rope")
@@ -218,6 +216,7 @@ def test_a_page_that_goes_round_all_scenes_holds_as_much_as_before(chromium: Any
         viewer.shut()
 
 
+@pytest.mark.long
 def test_a_page_reloads_for_another_server_only_and_not_while_it_records(
     chromium: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

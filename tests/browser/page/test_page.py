@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from app.render import scripts
+from app.render.injection import injector_of
 from app.server.viewer import Viewer
 from app.server.web.access import Access
 from app.server.web.page import covered
@@ -14,7 +15,7 @@ from tests.browser.conftest import new_page
 
 
 def shown(page: Any) -> str:
-    """The words on the cover; "" where it is not there."""
+    """The words on the cover; "" if it is not there."""
     return page.evaluate(
         """() => { const cover = document.getElementById("springtide-cover");
            return !cover || cover.classList.contains("springtide-hidden") ? "" : cover.innerText; }"""
@@ -42,6 +43,26 @@ def test_the_cover_goes_with_the_first_scene_and_comes_back_with_the_end(chromiu
         viewer.shut()
     wait_for(page, lambda words: "The lab has stopped. Start it again" in words)
     page.close()
+
+
+def test_the_cover_stays_until_all_nodes_of_the_scene_are_there(chromium: Any) -> None:
+    """On a slow page the sky may be there long before the vertices of a sea."""
+    viewer = Viewer("127.0.0.1", 0)
+    page = new_page(chromium, 640, 400, drawn=False)
+    try:
+        viewer.open("race")
+        injector = injector_of(viewer.server)
+        assert injector is not None
+        injector.watch("/late")
+        page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2", wait_until="commit")
+        page.wait_for_function("window.__springtide?.showsWhole?.()")
+        page.wait_for_timeout(1000)  # longer than the things of a scene are waited for without the list
+        assert "Preparing the picture" in shown(page)
+        viewer.server.scene.add_frame("/late")
+        wait_for(page, lambda words: words == "", 20.0)
+    finally:
+        viewer.shut()
+        page.close()
 
 
 @pytest.mark.parametrize(
@@ -175,6 +196,7 @@ def test_no_link_leads_the_page_to_another_server(chromium: Any) -> None:
             page.close()
 
 
+@pytest.mark.long
 def test_without_viser_s_inner_object_the_page_still_works(chromium: Any) -> None:
     """The page's own scripts find nothing: plain water, and no error."""
     viewer = Viewer("127.0.0.1", 0)

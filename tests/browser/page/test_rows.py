@@ -1,6 +1,6 @@
 """Each feature of the page in each browser: scenes, controls by mouse and by key, drags, files, failures, windows.
 
-All rows of a browser share one window, and all browsers one lab. Where a browser lacks something, the page says so.
+All rows of a browser share one window, and all browsers one lab. If a browser lacks something, the page says so.
 """
 
 import contextlib
@@ -34,7 +34,7 @@ from tests.browser.page.test_engines import BUTTON, FIELD, RUNS, TAB, named, unt
 from tests.browser.page.test_page import NO_WEBGL, REFUSED
 
 ENGINES = ["chromium", *(pytest.param(name, marks=pytest.mark.long) for name in ("firefox", "webkit"))]
-# Rows that hold in WebKitGTK. The others were not seen to hold there: on a busy machine it takes seconds for a frame.
+# Rows that pass in WebKitGTK. The others have not been seen to pass: on a busy machine it takes seconds for a frame.
 IN_WEBKIT = (
     "a_scene_runs_and_is_drawn_without_error", "the_camera_turns_moves_and_comes_back", "the_wheel_zooms",
     "a_point_of_the_rope_is_marked_and_pulled", "a_point_of_the_cloth_is_pulled", "the_arrows_move_the_root",
@@ -48,8 +48,9 @@ IN_WEBKIT = (
     "a_browser_that_hides_what_it_is", "a_touchpad_zooms", "a_window_of_another_size_or_zoom", "two_labs_side_by_side",
     "a_checkbox_and_a_folder", "tabs", "buttons_and_keys_of_the_lab",
 )  # fmt: skip
+DRAWN = ("rope", "square_sea")  # scenes drawn within seconds; the long tests draw the others
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
-# What the page says of errors; also that viser's client has ended.
+# Error messages of the page, including the end of viser's client.
 HOOK = """window.noted = [];
 for (const kind of ["error", "warn"]) {
     const earlier = console[kind];
@@ -135,7 +136,7 @@ class Visit:
         until(self.page, condition, words)
 
     def show(self, tab: str) -> None:
-        """Choose one of the panel's tabs by the mouse; again where a slow page takes the press for a drag."""
+        """Choose one of the panel's tabs by the mouse; repeated if a slow page takes the press for a drag."""
         for _ in range(3):
             self.page.press_on(named(TAB, tab))
             for _ in range(30):
@@ -151,7 +152,7 @@ class Visit:
         return getattr(self.viewer.settings.params, name)
 
     def drag(self, point: Any, by: tuple[float, float], done: Callable[[], Any], kind: str = "mouse") -> None:
-        """Drag what is at a point of the scene [m] until something has happened; again where a slow page was late."""
+        """Drag the object at a point of the scene [m] until something has happened; repeated on a slow page."""
         for _ in range(4):
             x, y = self.pixel(point)
             if kind == "mouse":
@@ -169,7 +170,7 @@ class Visit:
 
 @pytest.fixture(scope="module")
 def first_scripts() -> Iterator[list[str]]:
-    """Scripts that the page of the lab runs before all others, in each browser."""
+    """Scripts that run before all others in the page of each browser."""
     scripts = [HOOK]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(served_page, "before_tags", lambda: f"<script>{';'.join(scripts)}</script>{before_tags()}")
@@ -180,7 +181,7 @@ def first_scripts() -> Iterator[list[str]]:
 
 @pytest.fixture
 def with_script(first_scripts: list[str]) -> Iterator[Callable[[str], None]]:
-    """Has the page run one more script before all others, until the test ends."""
+    """Makes the page run one more script before all others, until the test ends."""
 
     def add(script: str) -> None:
         first_scripts.append(script)
@@ -251,7 +252,9 @@ def another_lab() -> Iterator[Callable[..., Viewer]]:
 # Scenes
 
 
-@pytest.mark.parametrize("scene", NAMES)
+@pytest.mark.parametrize(
+    "scene", [pytest.param(name, marks=() if name in DRAWN else pytest.mark.long) for name in NAMES]
+)
 def test_a_scene_runs_and_is_drawn_without_error(visit: Visit, scene: str) -> None:
     visit.page.run(
         """const put = WebGL2RenderingContext.prototype.linkProgram; window.programs = [];
@@ -383,6 +386,7 @@ def test_a_finger_pulls_the_rope(visit: Visit) -> None:
 # Controls, each by mouse and by key
 
 
+@pytest.mark.long
 def test_numbers(visit: Visit) -> None:
     """A click selects the old number, and Tab does."""
     visit.page.press_on(named(FIELD, "Stiffness"))
@@ -431,6 +435,7 @@ def test_a_checkbox_and_a_folder(visit: Visit) -> None:
     visit.page.wait(f"{is_open} === 'false';")
 
 
+@pytest.mark.long
 def test_a_list(visit: Visit) -> None:
     visit.page.press_on(PRESET)
     visit.page.press_on(named(OPTION, "Pendulum"))
@@ -492,6 +497,7 @@ def test_buttons_and_keys_of_the_lab(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_undo(visit: Visit) -> None:
     for press in (
         lambda: visit.page.type("u"),
@@ -504,6 +510,7 @@ def test_undo(visit: Visit) -> None:
         visit.until(lambda: visit.param("points") == 10, "undone")
 
 
+@pytest.mark.long
 def test_the_time_line(visit: Visit) -> None:
     visit.until(lambda: visit.viewer.loop.scene.time > 2.0, "it does not run")
     visit.page.wait('return document.querySelector("#springtide-time input:enabled")?.max > 1.0;')  # the page knows it
@@ -539,7 +546,7 @@ def test_a_link_is_copied_or_the_page_says_how(visit: Visit) -> None:
 
 
 def saved(visit: Visit, press: Callable[[], None], ending: str, begin: bytes) -> bytes:
-    """Press something, and wait for a file that the browser has saved."""
+    """Press something, and wait for the file that the browser saves."""
     folder = visit.page.downloads
     for earlier in folder.iterdir():
         earlier.unlink()
@@ -557,9 +564,9 @@ def saved(visit: Visit, press: Callable[[], None], ending: str, begin: bytes) ->
     ("button", "ending", "begin"),
     [
         ("Data (.npz)", ".npz", b"PK"),
-        ("Replay (last 20 s)", ".html", b"<!"),
+        pytest.param("Replay (last 20 s)", ".html", b"<!", marks=pytest.mark.long),
         ("Picture", ".png", b"\x89PNG"),
-        ("Save set-up", ".json", b"{"),
+        pytest.param("Save set-up", ".json", b"{", marks=pytest.mark.long),
         ("Save plots", ".csv", b"t [s],"),
     ],
 )
@@ -589,6 +596,7 @@ def test_a_clip_is_recorded_or_the_page_says_that_it_cannot(visit: Visit) -> Non
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_a_set_up_is_chosen_from_a_file(visit: Visit, tmp_path: Path) -> None:
     path = tmp_path / "set-up.json"
     for points in (23, 24):
@@ -612,6 +620,7 @@ def test_a_replay_plays_from_a_file(visit: Visit, tmp_path: Path) -> None:
 # Sessions
 
 
+@pytest.mark.long
 def test_a_task_of_the_workbook(visit: Visit, tmp_path: Path) -> None:
     tasks = load_tasks()
     folder = tmp_path / "mylab"
@@ -636,6 +645,7 @@ def test_a_task_of_the_workbook(visit: Visit, tmp_path: Path) -> None:
         visit.viewer.workbook = None
 
 
+@pytest.mark.long
 def test_the_teacher_s_page(visit: Visit, tmp_path: Path) -> None:
     tasks = load_tasks()
     folders = [tmp_path / name for name in ("ada", "bo")]
@@ -657,6 +667,7 @@ def test_the_teacher_s_page(visit: Visit, tmp_path: Path) -> None:
             server.server_close()
 
 
+@pytest.mark.long
 def test_two_labs_side_by_side(visit: Visit, another_lab: Callable[..., Viewer]) -> None:
     viewer = another_lab()
     viewer.open("rope")
@@ -671,7 +682,7 @@ def test_two_labs_side_by_side(visit: Visit, another_lab: Callable[..., Viewer])
     cameras = lambda: [visit.page.run(f"return ({camera})({k});") for k in (0, 1)]  # noqa: E731
     visit.until(lambda: np.allclose(*cameras(), atol=1e-3), "the cameras differ")
     before = cameras()[0]
-    for _ in range(3):  # again where a slow page was not ready
+    for _ in range(3):  # repeated if a slow page was not ready
         visit.page.press_in_frame(1, (70, 300), (100, 310), (130, 320))
         with contextlib.suppress(AssertionError):
             visit.until(lambda: not np.allclose(cameras()[0], before, atol=0.05), "the other camera stands")
@@ -682,7 +693,7 @@ def test_two_labs_side_by_side(visit: Visit, another_lab: Callable[..., Viewer])
     visit.until(lambda: not viewer.loop.run.running and not second.loop.run.running, "both do not pause")
 
 
-# What is lost, and what is missing
+# Losses and missing features
 
 
 def test_a_lost_context_comes_back(visit: Visit) -> None:
@@ -713,6 +724,7 @@ def test_a_server_that_ends_and_begins_again(visit: Visit, another_lab: Callable
         visit.page.wait(f"if (window.isFirst) return false; {RUNS}")
 
 
+@pytest.mark.long
 def test_a_page_is_loaded_again_left_and_come_back_to(visit: Visit) -> None:
     visit.page.run("window.isFirst = true; setTimeout(() => location.reload());")
     visit.page.wait(f"if (window.isFirst) return false; {RUNS}")
@@ -731,6 +743,7 @@ def test_a_hidden_page_goes_on_once_it_is_shown(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_without_webgl_the_page_says_so(visit: Visit, with_script: Callable[[str], None]) -> None:
     with_script(NO_WEBGL)
     visit.page.open(f"{visit.address}?without=webgl")
@@ -738,6 +751,7 @@ def test_without_webgl_the_page_says_so(visit: Visit, with_script: Callable[[str
     visit.page.open("about:blank")
 
 
+@pytest.mark.long
 def test_without_storage_the_page_works(visit: Visit, with_script: Callable[[str], None]) -> None:
     with_script(REFUSED)
     visit.open("&fixedDpr=0.2&without=storage")
@@ -750,6 +764,7 @@ def test_without_storage_the_page_works(visit: Visit, with_script: Callable[[str
     visit.page.open("about:blank")
 
 
+@pytest.mark.long
 def test_a_browser_that_hides_what_it_is(visit: Visit, with_script: Callable[[str], None]) -> None:
     """As Firefox does with resistFingerprinting: small textures, no name, and another ratio of pixels."""
     with_script(
@@ -765,6 +780,7 @@ def test_a_browser_that_hides_what_it_is(visit: Visit, with_script: Callable[[st
     visit.page.open("about:blank")
 
 
+@pytest.mark.long
 def test_without_float_targets_the_sea_has_a_sky(visit: Visit, with_script: Callable[[str], None]) -> None:
     with_script(NO_FLOATS)
     visit.open("&fixedDpr=0.2&without=floats")
@@ -780,7 +796,13 @@ def test_without_float_targets_the_sea_has_a_sky(visit: Visit, with_script: Call
 
 
 @pytest.mark.parametrize(
-    ("width", "height", "ratio"), [(800, 600, 1.0), (390, 844, 1.0), (667, 467, 1.5), (1000, 700, 2.0)]
+    ("width", "height", "ratio"),
+    [
+        pytest.param(800, 600, 1.0, marks=pytest.mark.long),
+        pytest.param(390, 844, 1.0, marks=pytest.mark.long),
+        (667, 467, 1.5),
+        pytest.param(1000, 700, 2.0, marks=pytest.mark.long),
+    ],
 )
 def test_a_window_of_another_size_or_zoom(visit: Visit, width: int, height: int, ratio: float) -> None:
     """Also at a zoom of 150 %."""
@@ -804,7 +826,7 @@ def test_a_window_of_another_size_or_zoom(visit: Visit, width: int, height: int,
 
 
 def test_less_motion_where_the_user_asks_for_it(visit: Visit) -> None:
-    """No driver but Playwright can ask: the rules for those who do are made to hold for all."""
+    """Only Playwright can set the preference: for other drivers the rules are made to apply always."""
     moving = """const cover = document.getElementById("springtide-cover");
         cover.classList.remove("springtide-hidden");
         const times = getComputedStyle(cover, "::after").animationIterationCount;

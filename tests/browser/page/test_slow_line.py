@@ -1,7 +1,7 @@
 """How soon the page shows the effect of a key over a line of 20 Mbit/s and a round trip of 80 ms, with a sea running.
 
 A router, or a tunnel, takes in a megabyte before the line: what is there cannot be replaced by what is newer.
-`tests/app/server/web/test_pace.py` counts what is on the way, in the normal suite.
+`tests/app/server/web/test_rate_limit.py` counts what is on the way, in the normal suite.
 """
 
 import json

@@ -115,6 +115,7 @@ TAKE_BACK: dict[str, Callable[[Tab], None]] = {
 }
 
 
+@pytest.mark.long
 def test_an_act_that_is_a_browsers_changes_nothing_in_another(two: tuple[Viewer, Tab, Tab]) -> None:
     viewer, acts, other = two
     params = viewer.settings.params
@@ -201,6 +202,7 @@ SHARED_ACTS: dict[str, tuple[Callable[[Tab], None], str]] = {
 }
 
 
+@pytest.mark.long
 def test_an_act_that_is_everybodys_shows_in_both_browsers(two: tuple[Viewer, Tab, Tab]) -> None:
     viewer, acts, other = two
     for act, (does, changes) in SHARED_ACTS.items():
@@ -222,6 +224,7 @@ def test_an_act_that_is_everybodys_shows_in_both_browsers(two: tuple[Viewer, Tab
     assert not other.errors
 
 
+@pytest.mark.long
 def test_a_reset_begins_the_run_of_all_and_leaves_each_camera_which_a_preset_places(
     two: tuple[Viewer, Tab, Tab],
 ) -> None:
@@ -243,6 +246,7 @@ def test_a_reset_begins_the_run_of_all_and_leaves_each_camera_which_a_preset_pla
         tab.wait(lambda tab=tab, place=place: np.allclose(own(tab)["camera"], place, atol=1e-3), 20)
 
 
+@pytest.mark.long
 def test_a_scene_is_everybodys_and_leaves_to_each_browser_what_is_its_own(two: tuple[Viewer, Tab, Tab]) -> None:
     viewer, acts, other = two
     switch("dark")(acts)

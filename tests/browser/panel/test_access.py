@@ -72,6 +72,7 @@ SCROLLED = """() => [...document.querySelectorAll(".mantine-ScrollArea-viewport"
 FOLDED = ".mantine-Paper-root > .mantine-Paper-root[aria-expanded=false]"
 
 
+@pytest.mark.long
 def test_folders_and_sliders_obey_the_keyboard(one_page: tuple[Viewer, Tab]) -> None:
     viewer, tab = one_page
     tab.follow(viewer, "rope")

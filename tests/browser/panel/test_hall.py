@@ -88,6 +88,7 @@ def test_a_chart_that_is_closed_leaves_the_window_to_the_picture(hall: tuple[Vie
     assert not tab.page.locator("#springtide-words").is_visible()
 
 
+@pytest.mark.long
 def test_one_key_projects_the_picture_and_the_charts_without_the_panel(hall: tuple[Viewer, Tab]) -> None:
     lab, tab = hall
     panel, words = tab.page.locator("[data-floating-window]").first, tab.page.locator("#springtide-words")

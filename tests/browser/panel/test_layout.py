@@ -133,7 +133,7 @@ def scroll_to_end(tab: Tab) -> None:
     )
 
 
-@pytest.mark.parametrize("size", [(780, 437), (390, 844)])
+@pytest.mark.parametrize("size", [(780, 437), pytest.param((390, 844), marks=pytest.mark.long)])
 def test_the_buttons_of_the_lab_stay_while_a_small_panel_is_scrolled(
     resized: tuple[Viewer, Tab], size: tuple[int, int]
 ) -> None:

@@ -1,4 +1,4 @@
-"""One screen of 1280 x 800 pixels: what one reads and what one changes stand together, for each scene and each task."""
+"""One screen of 1280 x 800 pixels: texts and controls are visible together, for each scene and each task."""
 
 import functools
 import time
@@ -18,10 +18,10 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
-SAMPLE = ("rope",)  # the other scenes are looked at under -m long
+SAMPLE = ("rope",)  # the other scenes are tested under -m long
 TASKS = load_tasks()
 MIN_SLIDERS = 5
-MAX_HEAD = 150  # [pixels] of the block that always stays
+MAX_HEAD = 150  # [pixels] of the permanent block
 MAX_WORDS = 92  # with the line of help
 MAX_STOPS = 9  # of Tab before the first control; one of them is the folder of scenes in pictures
 # The names of the sliders that are whole in the window, the height of the block above the tabs [pixels], and the words.
@@ -81,9 +81,9 @@ LARGE = """() => {
 
 
 def pause(lab: Viewer, tab: Tab) -> None:
-    """Pause the scene, and wait until the page says so.
+    """Pause the scene, and wait until the page shows it.
 
-    A line of the head says what is compiled, and another one that a busy machine is slower than real time.
+    A line of the head names the compilation, and another one says that a busy machine is slower than real time.
     """
     tab.wait(lambda: not any(lab.compiling.progress()), 200)
     lab.loop.commands.put(Pause())
@@ -126,7 +126,7 @@ def test_the_first_view_of_a_scene_has_what_one_changes(opened: tuple[Viewer, Ta
 
 
 def names_of(lab: Viewer, task: Task) -> set[str]:
-    """Names of what a task needs beside its text: buttons, controls, and fields of its questions."""
+    """Names of the widgets of a task: buttons, controls, and fields of its questions."""
     guide = lab.panel.guide
     assert guide is not None
     hidden = lab.panel.kind.hidden(lab.settings.params)
@@ -135,7 +135,7 @@ def names_of(lab: Viewer, task: Task) -> set[str]:
 
 
 def answer_at_length(book: Workbook, task: Task) -> int:
-    """Give each answer that is explained at the greatest length; returns the number of explanations."""
+    """Give the answers with the longest explanations; returns the number of explanations."""
     for question in task.questions:
         any_answer = {"choice": (*question.choices, "")[0], "number": 1, "text": "It was so."}[question.kind]
         right = str(any_answer if question.right is None else question.right)
@@ -146,7 +146,7 @@ def answer_at_length(book: Workbook, task: Task) -> int:
 
 
 def over_of(lab: Viewer, tab: Tab, task: Task, verdicts: int) -> tuple[float, ...]:
-    """By how much [pixels] a task is cut off; empty while the page does not show it, or so many verdicts."""
+    """Height [pixels] by which a task is cut off; empty while the page does not show it, or this many verdicts."""
     assert lab.panel.guide is not None
     if tab.page.locator(".springtide-verdict").count() != verdicts:
         return ()

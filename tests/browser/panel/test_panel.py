@@ -1,4 +1,4 @@
-"""Numbers typed key by key, and what the panel says of playing, in a real browser."""
+"""Numbers typed key by key, and the panel's state of playing, in a real browser."""
 
 import pytest
 
@@ -45,6 +45,7 @@ TAKEN = (  # all forms of a number: tests/sim/test_quantities.py
 )
 
 
+@pytest.mark.long
 def test_a_number_is_taken_as_it_is_typed(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     for name, text, value in TAKEN:
@@ -164,6 +165,7 @@ def test_keys_go_to_the_lab_after_a_list_was_used(shown: tuple[Viewer, Tab]) -> 
     tab.wait(lambda: not lab.loop.run.running, 10)
 
 
+@pytest.mark.long
 def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     panel = tab.page.locator(".springtide-panel").first
@@ -185,6 +187,7 @@ def test_the_panel_says_at_once_whether_the_lab_plays(shown: tuple[Viewer, Tab])
         says("Running", "Pause")
 
 
+@pytest.mark.long
 def test_a_press_on_a_picture_opens_its_scene(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port)
     picture = tab.page.locator('[data-springtide-scene="Cloth"]')
@@ -197,6 +200,7 @@ def test_a_press_on_a_picture_opens_its_scene(lab: Viewer, open_tab) -> None:
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_back_and_forward_go_through_scenes_and_presets(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port)
 

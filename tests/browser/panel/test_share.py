@@ -57,10 +57,11 @@ def load(tab: Tab, path: Path, content: object) -> None:
     tab.page.locator("[data-springtide-load]").set_input_files(str(path))
 
 
+@pytest.mark.long
 def test_a_link_is_taken_shown_to_the_others_and_made_again(
     opened: tuple[Viewer, Tab], open_tab: Callable[..., Tab], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """With a second visitor, who comes by a link."""
+    """With a second visitor, who follows a link."""
     lab, tab = opened
     monkeypatch.setattr("app.panel.sharing.changes.SHOWN_TIME", 60.0)  # of a slow machine
     query = "&scene=rope&stiffness=2k&time_step=1/600&camera=3,-4,2,0,0,1.5"
@@ -121,7 +122,7 @@ def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
     tab.page.get_by_role("button", name="Keep as preset").click()
     tab.wait(lambda: lab.settings.loaded == "Mine: Seventeen beads", 20)
     assert "Seventeen beads" in own_files(lab.panel.kind)
-    # Opened anew, as by a lab that is started later: the list is read from the files.
+    # Reopened, as by a later lab: the list is read from the files.
     tab.follow(lab, SCENE)
     assert vars(lab.settings.params)["points"] != 17
     tab.page.reload()
@@ -133,6 +134,7 @@ def test_an_own_preset_is_kept_listed_loaded_and_there_after_a_reload(
     assert preset.input_value() == "Mine: Seventeen beads"
 
 
+@pytest.mark.long
 def test_clip_picture_and_plots_are_made_as_files(
     one_page: tuple[Viewer, Tab], open_tab: Callable[..., Tab], tmp_path: Path
 ) -> None:

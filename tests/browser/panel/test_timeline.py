@@ -12,7 +12,7 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
-# The time [s] at which each chart has a line, where the whole of its time axis is seen.
+# The time [s] at which each chart has a line, if its whole time axis is visible.
 MOMENT_PLACES = """() => Object.values(window.__viserTestpoints?.uplots ?? {}).flatMap(({ chart }) => {
     const line = chart.over.querySelector(".springtide-moment"), times = chart.data[0];
     const whole = chart.scales.x.min === times[0] && chart.scales.x.max === times[times.length - 1];
@@ -26,7 +26,7 @@ PANEL_EDGE = """() => { const box = document.querySelector(
 # Fill the canvas with red.
 FILL = """() => { const gl = document.querySelector("canvas[data-engine]").getContext("webgl2");
     gl.bindFramebuffer(gl.FRAMEBUFFER, null); gl.clearColor(1, 0, 0, 1); gl.clear(gl.COLOR_BUFFER_BIT); }"""
-# Whether a press at the middle of the line reaches it.
+# True if a press at the middle of the line reaches it.
 IS_ON_TOP = """() => {
     const line = document.querySelector("#springtide-time input"), box = line.getBoundingClientRect();
     return document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2) === line; }"""
@@ -121,6 +121,7 @@ def test_under_a_bar_of_the_whole_width_the_picture_is_new_up_to_the_top(open_ta
         lab.shut()
 
 
+@pytest.mark.long
 def test_every_visitor_sees_the_moment_and_keys_lead_through_it(
     shown: tuple[Viewer, Tab], open_tab: Callable[..., Tab]
 ) -> None:

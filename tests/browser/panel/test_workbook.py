@@ -1,4 +1,4 @@
-"""A student goes through one task of the workbook in a real browser: predict, set up, measure, explain, come back."""
+"""A student does one task of the workbook in a real browser: predict, set up, measure, explain, return."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -90,6 +90,7 @@ def test_a_task_is_done_and_survives_a_reload(student: tuple[Viewer, Tab, Path])
     page.evaluate("address => history.replaceState(null, '', address)", address)
 
 
+@pytest.mark.long
 def test_a_link_to_a_task_shows_its_tab_until_another_is_chosen(one_page: tuple[Viewer, Tab]) -> None:
     """In a lab without a folder, whose first tab is another, also where the link opens another scene."""
     lab, tab = one_page
@@ -101,7 +102,7 @@ def test_a_link_to_a_task_shows_its_tab_until_another_is_chosen(one_page: tuple[
         tab.page.goto(f"{address}&task=3.3-3")
         tab.wait(lambda: lab.panel.kind.name == "cloth" and chosen.all_inner_texts() == ["Lab"])
         tab.show("View")
-        tab.page.wait_for_timeout(500)  # in which the page hears of new frames
+        tab.page.wait_for_timeout(500)  # for new frames to reach the page
         assert chosen.all_inner_texts() == ["View"]
     finally:
         tab.page.evaluate("address => history.replaceState(null, '', address)", address)

@@ -1,4 +1,4 @@
-"""The camera in a real browser: it stays above floor and water, finds back, and its picture stands in the free area."""
+"""The camera in a real browser: it stays above floor and water, returns, and its picture fills the free area."""
 
 import random
 
@@ -15,7 +15,7 @@ from tests.browser.conftest import Tab
 SCENE = "rope"
 # A small sea, so that the page is fast enough for many drags.
 SMALL = {"square_sea": {"size": "64", "mesh": "32"}, "radial_sea": {"rings": 32, "spokes": 32}}
-# Keeps the lowest height [m] of the camera in any frame: above the water, where there is a sea.
+# Keeps the lowest height [m] of the camera in any frame: above the water, if there is a sea.
 RECORD_HEIGHTS = """() => { const viewer = window.__viserMutable, scene = viewer.scene, earlier = scene.onBeforeRender;
     window.lowest = Infinity;
     scene.onBeforeRender = function (renderer, drawn, camera, target) {
@@ -59,7 +59,7 @@ def view_of(viewer: Viewer) -> np.ndarray:
 
 
 def stands_still(viewer: Viewer, tab: Tab) -> bool:
-    """True if page and server have one camera, and for half a second no other."""
+    """True if page and server have the same camera, unchanged for half a second."""
     seen = []
     for _ in range(2):
         seen += [view_of(viewer)[0], np.array(tab.page.evaluate(PAGE_CAMERA))]
@@ -81,6 +81,7 @@ def drag_at_random(tab: Tab, moves: random.Random, count: int) -> None:
             mouse.wheel(0, moves.choice([-300, 300]))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("drags", [4, pytest.param(50, marks=pytest.mark.stress)])
 def test_reset_view_after_random_drags_gives_the_first_view(shown: tuple[Viewer, Tab], drags: int) -> None:
     lab, tab = shown
@@ -126,7 +127,7 @@ def test_the_camera_stays_above_the_waves_of_a_storm(shown: tuple[Viewer, Tab], 
 
 @pytest.mark.long
 def test_set_this_up_on_a_slow_page_shows_what_the_task_is_about(shown: tuple[Viewer, Tab]) -> None:
-    """The page reports the camera of the scene before, long after the server has placed that of the task."""
+    """The page reports the camera of the former scene long after the server has placed that of the task."""
     lab, tab = shown
     tab.follow(lab, "race")
     tab.wait(lambda: tab.page.evaluate(PAGE_CAMERA)[1] < -50.0)  # the ropes are seen from far away
@@ -142,7 +143,7 @@ def test_set_this_up_on_a_slow_page_shows_what_the_task_is_about(shown: tuple[Vi
         tab.page.evaluate(ALL_FRAMES)
 
     def distance() -> float:
-        """[m] of the page's camera from where it should be, beside a body that drifts."""
+        """Distance [m] of the page's camera from its place beside a drifting body."""
         return float(
             np.linalg.norm(tab.page.evaluate(PAGE_CAMERA) - np.array(lab.view.first_view(lab.settings.params)[0]))
         )

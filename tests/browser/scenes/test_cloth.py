@@ -55,6 +55,7 @@ def test_a_browser_draws_nothing_while_paused_whatever_was_shown_before(shown: t
     tab.wait(still, 30)
 
 
+@pytest.mark.long
 def test_a_particle_is_dragged_by_the_mouse(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     tab.wait(lambda: lab.loop.scene.time > 1)

@@ -72,6 +72,7 @@ def test_labels_at_low_quality_are_those_at_high_pixel_for_pixel(race: tuple[Vie
     assert (found["low"][around] == found["high"][around]).all()
 
 
+@pytest.mark.long
 def test_no_label_covers_another_however_far_the_camera_is(race: tuple[Viewer, Any]) -> None:
     lab, page = race
     page.evaluate(CHOOSE, "high")

@@ -43,6 +43,33 @@ def test_open_water_lies_around_the_mooring(open_tab: Callable[..., Tab]) -> Non
     assert errors == []
 
 
+@pytest.mark.long
+def test_the_shadow_on_the_bed_is_that_of_the_body_where_it_is(open_tab: Callable[..., Tab]) -> None:
+    still = {"wave_height": 0.0, "watch": False, "handles": False, "steady_force": 300.0}
+    lab = Viewer("127.0.0.1", 0)
+    try:
+        lab.open("mooring", MooringParams(direction=30.0, **still), paused=True)
+        tab = open_tab(lab.port, width=400, height=400, drawn=True, ratio=1.0)
+        tab.wait(lambda: lab.view.drawn is not None)
+        drawn = lab.view.drawn
+        tab.wait(lambda: drawn.water.surface.has_shader is True and drawn.bed.sand.has_shader is True)
+        tab.page.add_style_tag(content=NO_NOTES + PANEL_HIDDEN + "#springtide-cover { display: none }")
+        tab.page.wait_for_timeout(3000)
+        x, y, _ = lab.loop.latest.frame.body.tolist()
+        # The sun stands over +y, a little towards -x (js/sea/open_water.js): the shadow falls the other way.
+        depth = lab.loop.latest.params.depth
+        places = [(x + 0.12 * depth, y - 0.31 * depth), (0.12 * depth, -0.31 * depth), (0.5 * x, -0.7 * depth)]
+        pixels = [tab.pixel((*place, -depth)) for place in places]
+        picture = np.asarray(Image.open(io.BytesIO(tab.page.screenshot())).convert("RGB")).astype(float)
+    finally:
+        lab.shut()
+    assert x > 5.0
+    assert y > 3.0
+    shadow, *lit = (picture[round(v) - 2 : round(v) + 3, round(u) - 2 : round(u) + 3].mean() for u, v in pixels)
+    assert shadow < 0.8 * min(lit)
+
+
+@pytest.mark.long
 def test_the_mooring_of_a_file_is_drawn_and_its_vessel_is_dragged(open_tab: Callable[..., Tab]) -> None:
     lab = Viewer("127.0.0.1", 0)
     try:

@@ -15,12 +15,12 @@ SCENE = "radial_sea"
 
 
 def uniform(tab: Tab, name: str) -> np.ndarray:
-    """Three numbers of the material that the page holds."""
+    """Three numbers of the page's material."""
     return tab.vertices("/sea/water_material")[WATER_UNIFORMS.index(name)]
 
 
 def drawn(lab: Viewer) -> bool:
-    """The sea is there, as water, and moves."""
+    """Check that the sea is drawn as water, and moves."""
     return lab.view.water is not None and lab.view.water.has_shader is True and lab.scene.time > 0.3
 
 
@@ -38,7 +38,7 @@ def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     tab.wait(lambda: lab.view.flames is not None and lab.view.flames.handle.visible)
     tab.wait(lambda: lab.view.material.slick is not None and lab.view.material.slick.radius > 3.0)
     tab.wait(lambda: uniform(tab, "slick")[2] > 3.0)
-    # The picture is shifted towards what the panel leaves free: the flames with it.
+    # The picture is shifted towards the area that the panel leaves free, with the flames.
     splats, camera = tab.page.evaluate(
         """() => {
           const { scene, camera } = window.__viserMutable;
@@ -82,7 +82,7 @@ def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Vie
     tab.wait(lambda: abs(thickness() - 0.4) < 0.05)
 
     def beside() -> float:
-        """How far the page's camera is from where it belongs beside the buoy [m]."""
+        """Distance of the page's camera from its place beside the buoy [m]."""
         (client,) = lab.server.get_clients().values()
         wanted = lab.scene.bodies.fleet.position[0, :2] + lab.view.follow_camera.start_offset[0, :2]
         return float(np.abs(np.asarray(client.camera.position)[:2] - wanted).max())
@@ -98,6 +98,7 @@ def test_a_window_shows_the_interface_and_the_camera_goes_along(shown: tuple[Vie
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_a_buoy_dragged_under_bobs_back(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     load(lab, waves=False, rig=False, rings=32, spokes=32)

@@ -1,5 +1,6 @@
 """The rope scene in a real browser, driven by mouse and keyboard."""
 
+import math
 from concurrent.futures import Future
 
 import numpy as np
@@ -20,6 +21,7 @@ SUNS = """() => {
     return [suns.filter((one) => one.visible).map((one) => one.intensity), suns.length]; }"""
 
 
+@pytest.mark.long
 def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_tab) -> None:
     tab = open_tab(lab.port, width=420, height=260, drawn=True)
     tab.wait(lambda: len(tab.vertices("/rope")) > 0)
@@ -29,6 +31,7 @@ def test_the_rope_is_drawn_and_swings_without_console_errors(lab: Viewer, open_t
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_drag_me_stands_at_the_free_end_until_the_first_drag_of_a_browser(lab: Viewer, open_tab) -> None:
     hanging: Future[float] = Future()
     lab.loop.commands.put(Pause())
@@ -73,6 +76,7 @@ def test_one_light_with_one_shadow_stands_for_the_sun(shown: tuple[Viewer, Tab])
     tab.wait(lambda: tab.page.evaluate(SUNS) == [[pytest.approx(0.9)], 3])
 
 
+@pytest.mark.long
 def test_dragging_the_arrows_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     arrow = np.array(ROOT) + (0.0, 0.0, 0.2)
@@ -84,6 +88,7 @@ def test_dragging_the_arrows_moves_the_root(shown: tuple[Viewer, Tab]) -> None:
     assert tab.errors == []
 
 
+@pytest.mark.long
 def test_dragging_a_bead_pulls_it_and_lets_go(shown: tuple[Viewer, Tab]) -> None:
     lab, tab = shown
     lab.settings.set("speed", 4.0)
@@ -187,7 +192,7 @@ def test_a_click_on_the_map_sets_step_and_stiffness(shown: tuple[Viewer, Tab]) -
     params = lab.settings.params
     picture.click(position={"x": unit * x, "y": unit * y}, timeout=60_000)
     tab.wait(lambda: lab.settings.params.stiffness != params.stiffness)
-    axes = lab.panel.controls_tab.map.axes
-    assert live.place_of(axes.steps, lab.settings.params.time_step) == pytest.approx(0.25, abs=0.02)
-    assert live.place_of(axes.stiffnesses, lab.settings.params.stiffness) == pytest.approx(0.75, abs=0.02)
+    across, up = live.drawn_axes(lab.panel.controls_tab.map.axes)
+    assert across.share(math.log10(lab.settings.params.time_step)) == pytest.approx(0.25, abs=0.02)
+    assert up.share(math.log10(lab.settings.params.stiffness)) == pytest.approx(0.75, abs=0.02)
     assert not tab.errors

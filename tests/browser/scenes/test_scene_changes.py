@@ -115,6 +115,7 @@ def test_a_scene_after_another_looks_as_in_a_fresh_start(open_tab: Callable[...,
         page.tab.wait(lambda: np.abs(page.picture() - fresh["rope"]).mean() > 2.0 * MAX_DIFFERENCE)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("names", [("square_sea", "rope"), pytest.param((*NAMES, NAMES[0]), marks=pytest.mark.long)])
 def test_the_page_says_what_is_opened_and_not_that_it_connects(
     open_tab: Callable[..., Tab], monkeypatch: pytest.MonkeyPatch, names: tuple[str, ...]

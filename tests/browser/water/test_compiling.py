@@ -1,6 +1,6 @@
 """A sea waits for its programs without stopping the page, and shows plain water or its last programs meanwhile.
 
-The browser of these tests compiles while the page waits; KHR_parallel_shader_compile is imitated.
+The browser of these tests blocks the page while it compiles; KHR_parallel_shader_compile is imitated.
 """
 
 import contextlib
@@ -57,10 +57,10 @@ DRAWN = """() => { const found = [];
         const key = material?.userData?.springtide;
         if (key?.startsWith("springtide-water") || key?.startsWith("springtide-dome")) found.push(key); });
     return found.sort(); }"""
-# The words on the cover; "" where it is not there.
+# The words on the cover; "" if it is not there.
 COVER = """() => document.getElementById("springtide-cover").classList.contains("springtide-hidden") ? ""
     : document.getElementById("springtide-cover-words").innerText"""
-# The colour behind a sea whose sky is not ready; empty where there is none.
+# The colour behind a sea whose sky is not ready; empty if there is none.
 STAND_IN = """() => { const color = document.documentElement.style.getPropertyValue("--springtide-sky");
     return (color.match(/[0-9]+/g) ?? []).map(Number); }"""
 
@@ -84,10 +84,11 @@ def wait_for(page: Any, shaders: list[str]) -> None:
     page.wait_for_function(f"shaders => ({DRAWN})().join() === shaders.join()", arg=shaders, timeout=60_000)
 
 
+@pytest.mark.long
 def test_a_page_never_waits_for_a_program_of_the_sea(chromium: Any) -> None:
     with open_sea(chromium, BESIDE) as (lab, page):
         wait_for(page, ["springtide-water/sea plain"])
-        # The cover stays until the picture is whole, and the mean colour of the sky stands in below it.
+        # The cover stays until the picture is complete, with the mean colour of the sky below it.
         page.wait_for_function(f"({COVER})() === 'Preparing the picture …'", timeout=60_000)
         page.wait_for_timeout(1500)
         assert page.evaluate(COVER) == "Preparing the picture …"

@@ -57,7 +57,7 @@ def colours(chromium: Any, scene: str, preset: str, quality: str) -> tuple[np.nd
 @pytest.mark.timeout(1200)
 @pytest.mark.parametrize(
     ("scene", "preset", "quality"),
-    [pytest.param(*case, marks=() if case == SAMPLE else pytest.mark.stress) for case in CASES],
+    [pytest.param(*case, marks=pytest.mark.long if case == SAMPLE else pytest.mark.stress) for case in CASES],
 )
 def test_the_first_whole_frame_has_the_colour_of_the_later_ones(
     scene: str, preset: str, quality: str, chromium: Any

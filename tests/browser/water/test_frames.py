@@ -11,7 +11,7 @@ from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
 WATCHED = 3000  # [ms], in which viser by itself draws three times
-SETTLED = 400  # [ms] without a frame, after a change that has been drawn: frames go on for 250 ms
+SETTLED = 400  # [ms] without a frame, after a change that has been drawn: frames continue for 250 ms
 # Count the frames of the scene that are drawn for the page, and those for images that the server asks for.
 COUNT = """() => { const viewer = window.__viserMutable, scene = viewer.scene, earlier = scene.onBeforeRender;
     window.drawnFrames = [0, 0];

@@ -18,14 +18,15 @@ def settled_picture(tab: Tab) -> np.ndarray:
     return final_picture(tab)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "sky"),
     [
         ("square_sea", "park"),
-        pytest.param("square_sea", "sunset", marks=pytest.mark.long),
-        pytest.param("square_sea", "dawn", marks=pytest.mark.long),
-        pytest.param("square_sea", "night", marks=pytest.mark.long),
-        pytest.param("radial_sea", "sunset", marks=pytest.mark.long),
+        ("square_sea", "sunset"),
+        ("square_sea", "dawn"),
+        ("square_sea", "night"),
+        ("radial_sea", "sunset"),
     ],
 )
 def test_the_sea_has_a_sky_that_looks_alike(open_tab: Callable[..., Tab], scene: str, sky: str) -> None:

@@ -132,6 +132,7 @@ def test_a_tile_s_border_is_as_any_place_within_it(picture: Picture, height: flo
         assert border.max() < difference.mean() + 4.0 * difference.std()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tile", [SHORT_TILE, pytest.param(40, marks=pytest.mark.stress)])
 def test_the_sea_does_not_repeat(picture: Picture, tile: int) -> None:
     """From so high that the tile is this many pixels long: places a tile apart are not alike."""

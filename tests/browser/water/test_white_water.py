@@ -27,12 +27,13 @@ SETTLED = 4000  # [ms] for the picture after the camera was moved
 
 
 def share_of_white(picture: np.ndarray) -> float:
-    """Share of the pixels that are nearer to white water than to dark water; brightness (rows, columns)."""
+    """Fraction of the pixels that are nearer to white water than to dark water; brightness (rows, columns)."""
     dark, white = np.quantile(picture, (0.1, 0.995))
     assert white > LEAST_CONTRAST * dark
     return float((picture > 0.5 * (dark + white)).mean())
 
 
+@pytest.mark.long
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize(
     "quality", ["low", *(pytest.param(one, marks=pytest.mark.stress) for one in ("medium", "high"))]

@@ -108,7 +108,7 @@ def test_a_dataset_of_one_heading_is_used_at_that_heading_only(tmp_path, depths)
     for body in (one, chosen):
         assert_is_capytaines(body, depths.sel(water_depth=20.0), "", heading)
         assert_refused("heading", lambda body=body: response_amplitude(body, [0.8], 0.7), "0.785398 rad")
-    w = [0.3, 0.349]  # below the dataset, where the damping goes on
+    w = [0.3, 0.349]  # below the dataset, where the damping continues
     B = linear_forces(one, [*w, 0.35], heading).damping[:, 2, 2]
     assert B[1] == pytest.approx(B[2], rel=0.01)
     shares = [radiated_share(float(wavenumber(np.array(v / math.sqrt(9.81)), 1.0, 20.0)), 20.0) for v in w]
@@ -150,7 +150,7 @@ def test_of_several_speeds_the_part_without_speed_is_read(tmp_path, depths):
 
 @pytest.mark.parametrize("first", [0.0, -180.0, 90.0, -360.0])
 def test_directions_of_a_full_turn_have_one_at_both_ends_once(tmp_path, first):
-    """0 to 360 degrees, or -180 to 180, as without the double one."""
+    """0 to 360 degrees, or -180 to 180, as without the repeated one."""
     turn = np.arange(13) * 30.0
     values = np.random.default_rng(1).uniform(0.5, 1.5, 12)[np.arange(13) % 12]  # no symmetry helps
 

@@ -24,7 +24,7 @@ def regular(k: float, amplitude: float, heading: float = 0.0, **more) -> RadialS
     )
 
 
-@pytest.mark.parametrize("heading", [0.0, 2.0])
+@pytest.mark.parametrize("heading", [pytest.param(0.0, marks=pytest.mark.long), 2.0])
 def test_a_loaded_barge_heaves_and_pitches_as_its_response_amplitude(heading):
     hull = Hull.box(30.0, 10.0, 5.0)
     density = FluidColumn().surface.density
@@ -36,7 +36,7 @@ def test_a_loaded_barge_heaves_and_pitches_as_its_response_amplitude(heading):
     period = 2.0 * math.pi / float(sea.rate[0])
     run = float_in(sea, [body], 25.0 * period, frames=25 * 40 + 1, coefficients=FREE)
     xi = response_amplitude(body, [w], heading, [(density, math.inf)])[0]
-    last = slice(-10 * 40, None)  # ten periods, when what the start brought has radiated
+    last = slice(-10 * 40, None)  # ten periods, after the transient has radiated
     wave = np.exp(-1j * float(sea.rate[0]) * run.t[last])
     for motion, measured in ((2, run.x[last, 0, 2]), (4, 2.0 * run.rotation[last, 0, 2])):
         found = 2.0 * np.mean(measured * wave.conj()) / amplitude
@@ -129,7 +129,7 @@ def test_a_body_between_the_fluids_follows_the_interface():
 
 @pytest.mark.parametrize("kind", ["square", "radial"])
 def test_a_body_at_rest_in_the_default_water_stays_at_rest(kind):
-    """One water: `afloat`, `Sea` and `RadialSea` have the same where none is named."""
+    """`afloat`, `Sea` and `RadialSea` have the same default water."""
     ship = Body(Hull.box(10.0, 4.0, 2.0), mass=41000.0, center_of_gravity=(0.0, 0.0, 0.0))
     sea = Sea(32, 100.0, "jonswap", wind_speed=0.0) if kind == "square" else regular(1.0, 0.0)
     run = float_in(sea, [ship.afloat(), BUOY._replace(position=(30.0, 0.0, 0.0)).afloat()], duration=20.0, frames=101)

@@ -41,7 +41,8 @@ from sim.waves import Waves
 WATER = ((1025.0, math.inf),)
 FREE = MotionCoefficients(quadratic_drag=0.0)
 INTERVAL = 1 / 60
-SAMPLE = (("box", 0.6), ("drum", 2.5), ("ball", 0.0), ("barge", 0.6), ("own", 2.5))  # hull, direction [rad]
+# Hulls and directions [rad]: in a plain run, and among the long tests.
+SAMPLE, SECOND = (("ball", 0.0), ("barge", 0.6), ("own", 2.5)), (("box", 0.6), ("drum", 2.5))
 
 
 def wedge() -> Hull:
@@ -85,7 +86,8 @@ def place(hull: Hull, density: float) -> tuple[float, float, float]:
 @pytest.mark.parametrize(
     ("name", "axis"),
     [
-        *[("box", 2), ("ball", 2), ("drum", 4), ("barge", 3)],
+        *[("ball", 2), ("barge", 3)],
+        *[pytest.param(name, axis, marks=pytest.mark.long) for name, axis in (("box", 2), ("drum", 4))],
         *[pytest.param(name, 2, marks=pytest.mark.stress) for name in ("drum", "barge")],
         *[
             pytest.param(name, axis, marks=pytest.mark.stress)
@@ -122,14 +124,15 @@ def test_free_decay_is_that_of_the_coefficients(name: str, axis: int) -> None:
         assert period * INTERVAL == pytest.approx(undamped, rel=0.02)
 
 
-# Each hull in waves from one side; from all sides under -m stress.
+def marks_of(name: str, direction: float) -> list[pytest.MarkDecorator]:
+    """Each hull is tried in waves from one side; from all sides under -m stress."""
+    one = name, direction
+    return [] if one in SAMPLE else [pytest.mark.long] if one in SECOND else [pytest.mark.stress]
+
+
 @pytest.mark.parametrize(
     ("name", "direction"),
-    [
-        pytest.param(name, direction, marks=[] if (name, direction) in SAMPLE else pytest.mark.stress)
-        for name in HULLS
-        for direction in (0.0, 0.6, 2.5)
-    ],
+    [pytest.param(name, direction, marks=marks_of(name, direction)) for name in HULLS for direction in (0.0, 0.6, 2.5)],
 )
 def test_response_in_regular_waves_is_that_of_the_coefficients(name: str, direction: float) -> None:
     """Heave, and the motions that come with it, from 0.3 to 3 times resonance, begun in the steady state."""

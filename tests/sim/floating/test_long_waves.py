@@ -1,4 +1,4 @@
-"""Waves longer than a hull's table holds: the body moves with the water and leans as the wave is steep."""
+"""Waves longer than in a hull's table: the body moves with the water and follows its slope."""
 
 import math
 
@@ -67,7 +67,7 @@ def first_frequency(body: Body, gravity: float = 9.81) -> float:
 
 
 def with_the_water(k: float, heading: float) -> np.ndarray:
-    """Motion (5,) of a body that is short beside the wave: surge to pitch."""
+    """Motion (5,) of a body much shorter than the wave: surge to pitch."""
     c, s = math.cos(heading), math.sin(heading)
     return np.array([1j * c, 1j * s, 1.0, 1j * k * s, -1j * k * c])
 
@@ -107,7 +107,7 @@ def test_a_body_on_another_planet_and_in_two_fluids_moves_with_long_waves() -> N
 
 
 def test_waves_push_a_moored_body_as_its_own_mass_is_pushed() -> None:
-    """The force for each metre of a long wave is (M + A) times the acceleration of the water, and C times its slope."""
+    """The force per metre of a long wave is (M + A) times the acceleration of the water, and C times its slope."""
     body, _ = twenty()[0]
     w = 0.1 * first_frequency(body)
     k, heading = w * w / 9.81, 0.7
@@ -164,6 +164,7 @@ def steady(body: Body, w: float, heading: float, periods: int = 5, skipped: int 
     return (fit[0] + 1j * fit[1]) / height
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [1, *(pytest.param(number, marks=pytest.mark.stress) for number in (2, 9, 17))])
 def test_in_time_a_body_moves_with_long_waves_too(number: int) -> None:
     body, heading = twenty()[number]

@@ -45,7 +45,7 @@ def test_a_cantilever_sinks_as_the_beam_with_a_pull_does(pull):
 
 
 def test_the_axial_force_at_a_clamp_is_the_pull_along_it():
-    """The share of bending is of the size of EI times the squared curvature: 3 % here."""
+    """The fraction of bending is of the size of EI times the squared curvature: 3 % here."""
     rest = cantilever(40, 1000.0, 300.0).at_rest()
     ways = np.diff(rest.x[1], axis=0)
     along = (1000.0 * ways[:, 0] - 300.0 * ways[:, 2]) / np.linalg.norm(ways, axis=1)

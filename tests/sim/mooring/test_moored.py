@@ -1,4 +1,4 @@
-"""A hull as a body of a mooring: its answer to waves is that of linear theory, and the account balances."""
+"""A hull as a body of a mooring: its response to waves is that of linear theory, and the account balances."""
 
 import dataclasses
 import math
@@ -39,7 +39,7 @@ def test_a_body_answers_a_wave_by_its_response_amplitude(heading):
     D = m.stiffness - RATE**2 * m.mass - 1j * RATE * m.damping
     body = floating.Body(floating.Hull.box(12.0, 8.0, 4.0), density=450.0)
     expected = floating.response_amplitude(body, [RATE], heading)[0]
-    # but for the little that holds surge and sway, and the symmetry of the matrices
+    # except for the weak restoring of surge and sway, and the symmetry of the matrices
     assert np.abs(np.linalg.solve(D, m.excitation[0]) - expected).max() < 1e-3 * np.abs(expected).max()
 
 

@@ -1,4 +1,4 @@
-"""One table of tests over all seas: each is asked by `AnySea` alone, and gives one and the same wave."""
+"""One table of tests over all seas: through `AnySea` alone, each gives the same wave."""
 
 import ast
 import math
@@ -125,8 +125,13 @@ def test_on_a_grid_every_sea_has_the_heights_that_it_has_at_points(kind: str, n:
     assert drawn.jacobian == pytest.approx(np.ones(len(grid)))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("n", [(4, 0), (0, -4)])
+@pytest.mark.parametrize(
+    ("kind", "n"),
+    [
+        *((kind, (4, 0)) for kind in KINDS),
+        *(pytest.param(kind, (0, -4), marks=pytest.mark.long if kind == "third order" else ()) for kind in KINDS),
+    ],
+)
 def test_a_small_body_follows_the_surface_of_every_sea(kind: str, n: tuple[int, int]) -> None:
     sea = sea_of(kind, n, math.inf, amplitude=0.1)
     buoy = Body(Hull.cylinder(0.25, 0.5), mass=48.0, center_of_gravity=(0.0, 0.0, -0.12)).afloat(sea.layers)
@@ -155,7 +160,7 @@ def test_a_hull_with_coefficients_of_one_depth_is_refused_in_another(kind: str, 
 
 @pytest.fixture(scope="module")
 def hull_of_20_m() -> Body:
-    """A box with a table of coefficients that counts as one of water 20 m deep."""
+    """A box with a table of coefficients that is taken for one of water 20 m deep."""
     import dataclasses
 
     from sim.floating.linear.hydrodynamics import table_length

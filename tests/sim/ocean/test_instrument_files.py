@@ -67,7 +67,7 @@ def awac(name: str, time: str, values: np.ndarray, kind: str = "") -> str:
 
 
 def test_a_file_of_an_awac_is_read(tmp_path):
-    """Densities in cm2/Hz at all frequencies, coefficients of directions at fewer, and -9 where they are missing."""
+    """Densities in cm2/Hz at all frequencies, coefficients of directions at fewer, and -9 if missing."""
     n, angle = 20, math.radians(FROM)
     r1, r2 = 0.94, 0.78
     parts = {"A1": r1 * math.cos(angle), "B1": r1 * math.sin(angle), "A2": r2 * math.cos(2 * angle),

@@ -161,6 +161,8 @@ def test_files_of_the_last_days_of_a_buoy_are_read(tmp_path):
     assert read_spectrum(path).uses("spreading")
     assert "alpha1 and of r1" in read_spectrum(path).notes[-1]
     assert_refused("path", lambda: read_spectrum(tmp_path / "44013.swdir"), "alpha1")
+    (tmp_path / "44013.swr1").write_text("", encoding="utf-8")
+    assert_refused("path", lambda: read_spectrum(path), "a file with at least one record")
 
 
 def test_files_of_a_past_year_of_a_buoy_are_read(tmp_path):

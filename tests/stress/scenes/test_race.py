@@ -25,7 +25,7 @@ def six(hammers) -> Hammer:
 
 
 def check_results(readings: RaceReadings, ropes: int) -> None:
-    """Every rope has a step and a gauge, and either a motion or a reason; NaN only where there is no reference."""
+    """Every rope has a step and a gauge, and either a motion or a reason; NaN only if there is no reference."""
     assert [result.number for result in readings.results] == list(range(1, ropes + 1))
     for result in readings.results:
         assert result.step > 0.0

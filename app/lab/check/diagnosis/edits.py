@@ -1,8 +1,8 @@
 """Functions that differ from another one by one edit, to name a mistake.
 
-The edits are those of a person who writes a formula down: another sign, operator, number, name or function, a part that
-is missing, a line that is missing. Edits of the reference solution are compared with the student's results, so that the
-student's function may be written in any way. Edits of the student's own function (`own_edits`, in the process that runs
+The edits are typical slips in writing a formula down: another sign, operator, number, name or function, a missing
+part, a missing line. Edits of the reference solution are compared with the student's results, so that the
+student's function may have any form. Edits of the student's own function (`own_edits`, in the process that runs
 it) are compared with the right results.
 """
 
@@ -33,15 +33,15 @@ WRAPS = ("np.sqrt({})", "({})**2", "-({})", "1/({})", "2*({})", "({})/2", "({}) 
 FACTORS = ("np.pi", "2*np.pi", "1000", "3", "6")
 WHOLE_WRAPS = ("np.abs({})", "np.maximum({}, 0)", "np.exp({})", "np.log({})", "np.floor({})")  # of a whole side
 ASARRAY = re.compile(r"np\.asarray\((\w+)\)")  # which says nothing of the formula
-SHORT = 12  # characters of an expression, below which the one around it is shown
-SHORT_IN_LINE = 5  # the same of one whose line is told
+SHORT = 12  # characters of an expression, below which the enclosing one is shown
+SHORT_IN_LINE = 5  # the same of an expression whose line is given
 
 
 Change: TypeAlias = Callable[[Any], ast.AST | None]  # of a node in a copy; None takes it out
 
 
 class Edit(NamedTuple):
-    """A function with one edit. before, after: the expression or line that differs; after is "" where it is taken out.
+    """A function with one edit. before, after: the expression or line that differs; after is "" if it is taken out.
 
     line: in the file. condition: "always" or "never" where a condition is fixed, which before has.
     """
@@ -54,7 +54,7 @@ class Edit(NamedTuple):
 
 
 def edits_of(function: Callable[..., Any]) -> Iterator[Edit]:
-    """The functions that differ from one by one edit; none of a function that may not end."""
+    """The functions that differ from one by one edit; none for a function that may not end."""
     try:
         tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
     except (OSError, TypeError, SyntaxError):
@@ -128,7 +128,7 @@ def put(place: tuple[ast.AST, str, int], node: ast.AST | None) -> None:
 
 
 def changes_of(node: ast.AST, parent: ast.AST, names: Sequence[str]) -> Iterator[Change]:
-    """The nodes that may stand in place of one, as functions of it in a copy; None for nothing. names: of values."""
+    """The nodes that may replace one, as functions of it in a copy; None removes it. names: of values."""
     is_index = isinstance(parent, ast.Subscript | ast.Slice) or is_range(parent)
     if isinstance(node, ast.BinOp):
         yield from (changed("op", other()) for other in OPERATORS.get(type(node.op), ()))
@@ -169,7 +169,7 @@ def is_range(node: ast.AST) -> bool:
 
 
 def more_changes(node: ast.AST, parent: ast.AST, names: Sequence[str]) -> Iterator[Change]:
-    """Further changes: something around an expression, other indices, parts that change places, a line less."""
+    """Further changes: something around an expression, other indices, swapped parts, a removed line."""
     is_value = isinstance(node, ast.expr) and isinstance(getattr(node, "ctx", ast.Load()), ast.Load)
     is_value = is_value and not isinstance(
         node, ast.Tuple | ast.Slice | ast.Constant | ast.Lambda | ast.Starred | ast.List | ast.ListComp
@@ -211,7 +211,7 @@ def more_changes(node: ast.AST, parent: ast.AST, names: Sequence[str]) -> Iterat
 
 
 def wrapped(text: str) -> Change:
-    """An expression in a formula that has {} in its place."""
+    """An expression put into the {} of a formula."""
 
     def change(node: Any) -> ast.AST:
         return ast.parse(text.format(ast.unparse(node)), mode="eval").body
@@ -220,12 +220,12 @@ def wrapped(text: str) -> Change:
 
 
 def replaced(name: str) -> Change:
-    """A name in place of a node."""
+    """A name instead of a node."""
     return lambda _: ast.Name(name, ast.Load())
 
 
 def exchanged(field: str, i: int) -> Change:
-    """Two entries of a list that change places."""
+    """Two swapped entries of a list."""
 
     def change(node: Any) -> ast.AST:
         entries = getattr(node, field)
@@ -273,10 +273,10 @@ def compiled(tree: ast.Module, name: str, known: Mapping[str, Any]) -> Callable[
 def explain_edit(
     function: Callable[..., Any], arguments: Sequence[str], agrees: Callable[[Callable[..., Any]], bool]
 ) -> Explanation | None:
-    """The edit of the reference solution that a student's function agrees with, or None.
+    """The edit of the reference solution that agrees with a student's function, or None.
 
-    function: the reference. arguments: the names that the student has. agrees: whether the student's results are those
-    of a function.
+    function: the reference. arguments: the names that the student has. agrees: tests a function against the
+    student's results.
     """
     definitions = definitions_of(function)
     for edit in edits_of(function):
@@ -298,7 +298,7 @@ def explain_edit(
 
 
 def definitions_of(function: Callable[..., Any]) -> dict[str, ast.expr]:
-    """The formulas of names that a function gives a value once."""
+    """The formulas of names that a function assigns once."""
     found: dict[str, list[ast.expr]] = {}
     for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
         for target in getattr(node, "targets", [getattr(node, "target", None)]):

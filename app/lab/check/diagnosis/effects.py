@@ -1,4 +1,4 @@
-"""Side effects of a function: it changes an argument, keeps something from call to call, writes a file.
+"""Side effects of a function: a changed argument, a memory between calls, a written file.
 
 The process of a student's functions calls `watched`. It compares the arguments, the state of the student's modules and
 the settings of Python and numpy before and after a call, and finds the line of a change by a second, traced call.
@@ -22,8 +22,8 @@ import numpy as np
 ARGUMENT, STATE, SETTING, FILE = "argument changed", "state kept between calls", "setting changed", "file written"
 EFFECTS = (ARGUMENT, STATE, SETTING, FILE)  # kinds, which are the names of the mistakes
 SAME_RESULT = 1e-9  # of the largest value, by which two results of equal calls may differ
-MAX_DEPTH = 6  # of values inside of values that are compared
-MAX_CODE = 70  # characters of a line that is shown
+MAX_DEPTH = 6  # of nested values that are compared
+MAX_CODE = 70  # characters of a shown line
 WRITES = frozenset(("os.mkdir", "os.remove", "os.rename", "os.rmdir", "os.truncate"))  # audit events beside "open"
 RANDOM = ("numpy's random numbers", "Python's random numbers")
 SETTINGS = frozenset((
@@ -37,12 +37,12 @@ OPERATORS: dict[type[ast.operator], str] = {
 }  # fmt: skip
 
 
-# A function and the modules that it may keep something in, as they are before any call.
+# A function and the modules in which it may keep something, as they are before any call.
 Anew: TypeAlias = Callable[[], tuple[Callable[..., Any], Sequence[ModuleType]]]
 
 
 class Effect(Exception):  # noqa: N818 - a judgement on a function, not an error of the program
-    """A function has a side effect. kind: one of `EFFECTS`. file, line: of the cause, where known."""
+    """Side effect of a function. kind: one of `EFFECTS`. file, line: of the cause, if known."""
 
     def __init__(self, kind: str, text: str, file: str = "", line: int | None = None) -> None:
         super().__init__(text)
@@ -50,7 +50,7 @@ class Effect(Exception):  # noqa: N818 - a judgement on a function, not an error
 
 
 class CodeLine(NamedTuple):
-    """A line of a student's that runs."""
+    """A running line of a student's code."""
 
     path: str
     line: int
@@ -58,12 +58,12 @@ class CodeLine(NamedTuple):
 
 
 def copied(arguments: Sequence[Any]) -> tuple[Any, ...]:
-    """Arguments that a function may change."""
+    """Copies of arguments, which a function may change."""
     return tuple(copy_of(argument) for argument in arguments)
 
 
 def copy_of(value: Any) -> Any:
-    """A value that a function may change."""
+    """Copy of a value, which a function may change."""
     if isinstance(value, list | tuple):
         return type(value)(copy_of(part) for part in value)
     return value.copy() if isinstance(value, np.ndarray) else value
@@ -73,7 +73,7 @@ def watched(
     function: Callable[..., Any], modules: Sequence[ModuleType], arguments: Sequence[Any], folder: Path, anew: Anew,
     *, twice: bool,
 ) -> Any:  # fmt: skip
-    """The result of a function at these arguments. Raises Effect where it has a side effect.
+    """The result of a function at these arguments. Raises Effect if it has a side effect.
 
     modules: in which it may keep something. folder: of the student's files. twice: also compare a second call with
     equal arguments.
@@ -153,12 +153,12 @@ def state_effect(
 
 
 def turns(alternates: bool) -> str:
-    """Words for results that take turns."""
+    """Words for alternating results."""
     return ", in turns from call to call" if alternates else ""
 
 
 def in_line(function: Callable[..., Any], place: CodeLine | None) -> str:
-    """The line of an effect in words, and the function in it where that is another one."""
+    """The line of an effect in words, and its function if that is another one."""
     if place is None:
         return ""
     statement = statement_at(place)
@@ -174,7 +174,7 @@ def file_and_line(place: CodeLine | None) -> tuple[str, int | None]:
 
 
 def statement_at(place: CodeLine | None) -> ast.stmt | None:
-    """The innermost statement on a line; None where it holds others, or the file cannot be read."""
+    """The innermost statement on a line; None if it holds others, or the file cannot be read."""
     if place is None:
         return None
     try:
@@ -213,7 +213,7 @@ def alike(one: Any, other: Any) -> bool:
 
 
 def digest(value: Any, depth: int = MAX_DEPTH) -> Any:
-    """A value that differs once another one has been changed."""
+    """A value that differs after a change of another one."""
     if isinstance(value, np.ndarray) and value.dtype.kind != "O":
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, type | ModuleType | types.BuiltinFunctionType) or depth == 0:
@@ -290,7 +290,7 @@ def restored() -> Iterator[None]:
 
 
 def shake() -> None:
-    """Draw random numbers, so that a function that sets their seed changes their state once more."""
+    """Draw random numbers, so that a function that sets their seed changes their state again."""
     for name in ("numpy.random", "random"):
         if (module := sys.modules.get(name)) is not None:
             module.random()
@@ -299,7 +299,7 @@ def shake() -> None:
 def traced(
     function: Callable[..., Any], arguments: tuple[Any, ...], folder: Path, has_changed: Callable[[Sequence[Any]], bool]
 ) -> CodeLine | None:
-    """The line of a student's that changes something, by a call at these arguments; None where it is not found.
+    """The line of a student's code that changes something in a call at these arguments; None if not found.
 
     has_changed: from the arguments.
     """
@@ -323,7 +323,7 @@ def traced(
     sys.settrace(lambda frame, event, arg: trace if is_own(frame) else None)
     try:
         function(*arguments)
-    except Exception:  # it is called once more, in another state
+    except Exception:  # it is called again, in another state
         pass
     finally:
         sys.settrace(before)
@@ -339,7 +339,7 @@ Written: TypeAlias = list[tuple[str, CodeLine | None]]
 
 
 class WrittenFiles:
-    """Notes the files that a student's function writes, by an audit hook, which stays once it is there."""
+    """Notes the files that a student's function writes, by a permanent audit hook."""
 
     def __init__(self) -> None:
         self.found: Written | None = None

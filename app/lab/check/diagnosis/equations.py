@@ -1,8 +1,8 @@
-"""A tableau as equations, each beside that of the method that was asked for.
+"""A tableau as equations, each beside that of the required method.
 
-An equation names the positions and velocities of the stages where the method does: "x + h v3" rather than
-"x + h v + h²/2 a2". That of a student is written with the terms of the right one as far as possible, so that the terms
-in which they differ are few.
+An equation names the positions and velocities of the stages as the method does: "x + h v3" rather than
+"x + h v + h²/2 a2". A student's equation is written with the terms of the right one as far as possible, so that few
+terms differ.
 """
 
 import itertools
@@ -22,7 +22,7 @@ MOST_VELOCITIES = 4  # of an expression of the right method
 SUPERSCRIPTS = {1: "", 2: "²", 3: "³", 4: "⁴"}
 NEW = "new"
 SAME_COEFFICIENT = 1e-6
-SINGULAR = 1e-9  # share of the largest determinant, below which terms are no basis
+SINGULAR = 1e-9  # fraction of the largest determinant, below which terms are no basis
 
 Monomial = tuple[str, int]  # a symbol, and the power of h before it
 Expression = dict[Monomial, float]  # a sum of terms with coefficients
@@ -66,7 +66,7 @@ def symbols_of(tableau: StepTableau, line: TableauRow) -> dict[str, np.ndarray]:
 
 
 def distinct(terms: Mapping[Monomial, np.ndarray]) -> list[Monomial]:
-    """The terms without those that stand for the same as one before."""
+    """The terms without duplicates."""
     names = list(terms)
     rows = np.array([terms[name].ravel() for name in names])
     alike = np.abs(rows[:, None] - rows[None]).max(axis=2) <= SAME_COEFFICIENT
@@ -98,7 +98,7 @@ def terms_for(line: TableauRow, symbols: Mapping[str, np.ndarray]) -> dict[Monom
 
 
 def evaluated(expression: Expression, terms: Mapping[Monomial, np.ndarray], like: np.ndarray) -> np.ndarray | None:
-    """An expression as a vector; None where it has a term that there is not."""
+    """An expression as a vector; None if it has an unknown term."""
     if any(term not in terms for term in expression):
         return None
     return sum((c * terms[term] for term, c in expression.items()), np.zeros_like(like))
@@ -123,7 +123,7 @@ def plain_expression(tableau: StepTableau, line: TableauRow) -> Expression:
 
 
 def short_expression(tableau: StepTableau, line: TableauRow) -> Expression:
-    """A row with few terms: of the velocities of the stages rather than of accelerations, from x or v if it can be."""
+    """A row with few terms: velocities of the stages rather than accelerations, from x or v if possible."""
     symbols = symbols_of(tableau, line)
     terms = terms_for(line, symbols)
     own = "x" if line.is_position else "v"
@@ -145,7 +145,7 @@ def short_expression(tableau: StepTableau, line: TableauRow) -> Expression:
 
 
 def nearest_expression(tableau: StepTableau, line: TableauRow, right: Expression) -> Expression:
-    """A row with as few changes of the right expression as it can be written with."""
+    """A row with the fewest possible changes of the right expression."""
     terms = terms_for(line, symbols_of(tableau, line))
     start = {term: c for term, c in right.items() if term in terms}
     value = evaluated(start, terms, line.vector)
@@ -194,7 +194,7 @@ def nonzero(expression: Expression, tolerance: float) -> Expression:
 
 
 def rank(expression: Expression, right: Expression) -> tuple[int, int, int]:
-    """Order of expressions: first those with few terms, then those like the right one, then round coefficients."""
+    """Sort key of expressions: few terms, then likeness to the right one, then round coefficients."""
     denominators = [Fraction(c).limit_denominator(10**6).denominator for c in expression.values()]
     return len(expression), len(differing(expression, right, SAME_COEFFICIENT)), sum(denominators)
 
@@ -218,7 +218,7 @@ def method_of(tableau: StepTableau) -> RightMethod:
 
 
 class ComparedRow(NamedTuple):
-    """A row of a tableau beside that of the method that was asked for."""
+    """A row of a tableau beside that of the required method."""
 
     name: str
     found: Expression
@@ -233,7 +233,7 @@ class ComparedRow(NamedTuple):
 def compared(tableau: StepTableau, method: RightMethod) -> list[ComparedRow]:
     """The rows of a tableau beside those of a method with as many stages.
 
-    Those of a stage at x and v in both are left out.
+    Rows of a stage at x and v in both are left out.
     """
     tolerance = max(tableau.tolerance, method.tableau.tolerance)
     rows = []
@@ -338,6 +338,6 @@ def fraction_of(c: float, tolerance: float) -> Fraction | None:
 
 
 def number_text(c: float, tolerance: float) -> str:
-    """A coefficient: a fraction where it is one."""
+    """A coefficient, as a fraction if it is one."""
     fraction = fraction_of(c, tolerance)
     return f"{c:.6g}" if fraction is None else str(fraction)

@@ -14,7 +14,7 @@ class Piece(NamedTuple):
 class Equation(NamedTuple):
     """One equation of a function.
 
-    name: its left side, as "x3" or "new x". found: the student's right side, in pieces. right: the right one; "" where
+    name: its left side, as "x3" or "new x". found: the student's right side, in pieces. right: the right one; "" if
     both agree.
     """
 
@@ -31,12 +31,12 @@ class Equation(NamedTuple):
 class Explanation(NamedTuple):
     """mistake: its name in a few words. text: the sentence for the student. form: the function that it states.
 
-    line: in the student's file, 0 where it is not known.
+    line: in the student's file, 0 if unknown.
     """
 
     mistake: str
     text: str
     equations: tuple[Equation, ...] = ()
     form: Callable[..., Any] | None = None
-    is_vague: bool = False  # it says little of what to change
+    is_vague: bool = False  # it says little about the correction
     line: int = 0

@@ -31,7 +31,7 @@ def factor_text(factor: float) -> str:
 
 
 def is_simple(factor: float) -> bool:
-    """True for a factor that a person can have left out: a small fraction, a power of 2 or 10, one with pi."""
+    """True for a factor that a person may omit: a small fraction, a power of 2 or 10, one with pi."""
     size = abs(factor)
     if size == 0.0 or not math.isfinite(size):
         return False
@@ -42,5 +42,5 @@ def is_simple(factor: float) -> bool:
 
 
 def is_same(one: float, other: float) -> bool:
-    """True if two factors agree as far as results tell."""
+    """True if two factors agree within the accuracy of results."""
     return abs(one - other) <= SAME * abs(other)

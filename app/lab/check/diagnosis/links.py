@@ -1,4 +1,4 @@
-"""Forms in which the force of a damped spring is written wrongly, for all tasks with springs.
+"""Wrong forms of the force of a damped spring, for all tasks with springs.
 
 A law gives the force on the first end of each link, (..., 3), from r (..., 3), from the first end to the second, its
 length s (..., 1), dv = v1 - v2 (..., 3), k, b and the rest length d.
@@ -70,8 +70,8 @@ def both(*arguments: Any) -> Any:
 def terms_of_net(of_law: Callable[..., Any], per: str = "") -> tuple[Term, ...]:
     """The terms of a net of links: spring and damping on both ends of each.
 
-    of_law(law, first=1.0, second=-1.0): what a law gives as a function of the task's arguments, with factors of the
-    force on the two ends. per: what forces are divided by, as " / m".
+    of_law(law, first=1.0, second=-1.0): a law as a function of the task's arguments, with factors of the
+    force on the two ends. per: divisor of forces, such as " / m".
     """
     return (
         Term("the spring on the first end", f"{SPRING}{per}", of_law(spring, second=0.0)),
@@ -82,7 +82,7 @@ def terms_of_net(of_law: Callable[..., Any], per: str = "") -> tuple[Term, ...]:
 
 
 def groups_of_net(of_law: Callable[..., Any], per: str = "", forms: tuple[Form, ...] = ()) -> tuple[Group, ...]:
-    """The terms of `terms_of_net` that one line of a program makes.
+    """The terms of `terms_of_net` that one line of a program computes.
 
     of_law: as there, with `chosen`, a slice of the links. forms: more wrong forms of the force of all links.
     """

@@ -14,9 +14,9 @@ PARTS = {f"{NEW} x": "The new position is", f"{NEW} v": "The new velocity is"}
 def explain_step(
     student: Callable[..., Any], methods: Sequence[Callable[..., Any]], *, with_velocity: bool
 ) -> Explanation | None:
-    """Explain how a step differs from its method; None if it does not, or if it has no tableau.
+    """Explain the difference of a step from its method; None without a difference or a tableau.
 
-    methods: right solutions that differ, the usual one first. with_velocity: whether the acceleration depends on the
+    methods: different right solutions, the usual one first. with_velocity: whether the acceleration depends on the
     velocity.
     """
     try:
@@ -63,7 +63,7 @@ def explain_stages(found: StepTableau, reference: StepTableau) -> Explanation:
 
 
 def order_sentence(found: StepTableau, reference: StepTableau) -> str:
-    """The order of a method where it is lower than it must be."""
+    """A sentence on an order of a method that is too low."""
     has, needs = order_of(found), order_of(reference)
     if has >= needs:
         return ""
@@ -93,12 +93,12 @@ def said_of(row: ComparedRow) -> str:
 
 
 def is_reversed(row: ComparedRow) -> bool:
-    """True if each term has the other sign."""
+    """True if each term has the opposite sign."""
     return set(row.found) == set(row.right) and all(abs(c + row.right[term]) < 1e-9 for term, c in row.found.items())
 
 
 def is_chained(row: ComparedRow) -> bool:
-    """True if a row starts from a stage in place of the start of the step."""
+    """True if a row starts from a stage instead of the start of the step."""
     own = row.name.removeprefix(f"{NEW} ")[0]
     return (
         (own, 0) in row.right
@@ -108,7 +108,7 @@ def is_chained(row: ComparedRow) -> bool:
 
 
 def weights_of(row: ComparedRow) -> float | None:
-    """The sum of the weights of a result with the right terms; None where it is 1, or a term is another one."""
+    """The sum of the weights of a result with the right terms; None if it is 1, or a term is another one."""
     if row.name not in PARTS or set(row.found) != set(row.right) or len(row.right) < 3:
         return None
     total = sum(c for (_, power), c in row.found.items() if power == 1)

@@ -1,8 +1,8 @@
-"""The tableau of a step: the states at which it computes the acceleration, and how it combines the results.
+"""The tableau of a step: the states at which it computes the acceleration, and the combination of the results.
 
 A step of a general one-step method takes combinations of x, v and the accelerations so far, with powers of h as
-coefficients. It is called with an acceleration that answers each state with a vector of an orthogonal basis, so that
-the coefficients are scalar products, and with several steps h, so that each is a polynomial in h.
+coefficients. It is called with an acceleration that returns a vector of an orthogonal basis for each state, so that the
+coefficients are scalar products, and with several steps h, so that each is a polynomial in h.
 """
 
 import functools
@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-POINTS = 8  # of the rope that is moved: 24 dimensions
+POINTS = 8  # of the moved rope: 24 dimensions
 MOST_STAGES = 12
 # [s], of the calls: where the polynomials of h between 0.15 and 2.5 are known best.
 STEPS = tuple(1.325 - 1.175 * np.cos(np.pi * (np.arange(8) + 0.5) / 8))
 POWERS = np.arange(-1, 5)  # of h
-LINEAR = 1e-5  # share of a vector that no combination explains, above which a step is not one of these methods
+LINEAR = 1e-5  # fraction of a vector that no combination explains, above which a step is not one of these methods
 ROUNDING = 1e-9  # of a coefficient in double precision
 AMPLIFIED = 120.0  # ratio of the error of a coefficient to that of the results, with these steps and powers
 FIRST_ACCELERATION = 2  # column of a tableau
@@ -58,11 +58,11 @@ class StepTableau(NamedTuple):
 
 
 class NoTableau(Exception):  # noqa: N818 - a property of a step, not an error
-    """A step is no combination of x, v and accelerations with powers of h."""
+    """Raised for a step that is no combination of x, v and accelerations with powers of h."""
 
 
 class Oracle:
-    """An acceleration that answers each call with the next vector of a basis, and keeps the states."""
+    """An acceleration that returns the next vector of a basis at each call, and keeps the states."""
 
     def __init__(self, basis: np.ndarray) -> None:
         self.basis = basis
@@ -176,7 +176,7 @@ def merged(tableau: StepTableau) -> StepTableau:
 
 
 def order_of(tableau: StepTableau) -> int:
-    """The order of a method: half the step leaves a 2^(order + 1)-th of the error of a step; 0 for one of none."""
+    """The order of a method: half the step leaves 2^-(order + 1) of the error of a step; 0 without one."""
     x, v = np.array([0.7, -0.4]), np.array([0.3, 0.9])
 
     def acceleration(x: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Names the mistake of a force or another sum: a term that is missing, or that has a wrong form.
+"""Names the mistake of a force or another sum: a missing term, or one of a wrong form.
 
 The student's results, less the right terms, are compared with one term in many forms: each is computed from changed
 arguments, times a power of one, or by a formula that its task lists. A form that leaves nothing, with one factor for
@@ -16,10 +16,10 @@ from app.lab.check.diagnosis.explanation import Equation, Explanation, Piece
 from app.lab.check.diagnosis.factors import factor_text, is_simple
 
 TOLERANCE = 2e-5  # of the largest part of a result at an input: single precision is right too
-SMALL_CHANGE = 0.02  # of a constant, which is told in per cent
+SMALL_CHANGE = 0.02  # of a constant, which is given in per cent
 EXPONENTS = (1.0, -1.0, 2.0, -2.0, 0.5, -0.5)
 FACTORS = {2.0: "twice {}", 0.5: "half of {}", -1.0: "-{}"}
-FAR_FETCHED = 3.0  # cost of a change of the whole result, from which an edit of the student's function is likelier
+FAR_FETCHED = 3.0  # cost of a change of the whole result, above which an edit of the student's function is likelier
 AXES = "xyz"
 UNUSED = "does not use "
 IGNORED = "The result does not change with "
@@ -52,7 +52,7 @@ class Term(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Terms that one line of a program makes, so that they are wrong together. terms: their names."""
+    """Terms that one line of a program computes, so that they are wrong together. terms: their names."""
 
     name: str
     formula: str
@@ -67,11 +67,11 @@ class ChangedForm(NamedTuple):
     vector: np.ndarray  # values at all inputs, one after the other
     cost: float
     apply: Apply
-    form: Form | None = None  # where it is one of a list
+    form: Form | None = None  # if it is one of a list
 
 
 class Unit(NamedTuple):
-    """One or more terms that are looked at together. members: those that it stands for; none of a further term."""
+    """One or more terms considered together. members: the terms; none for a further term."""
 
     name: str
     formula: str
@@ -113,7 +113,7 @@ class Inputs:
         return np.concatenate([value.ravel() / scale for value, scale in zip(values, self.scales, strict=True)])
 
     def vector(self, function: Function, change: Rearrangement | None = None) -> np.ndarray:
-        """The values of a function at all inputs, as `joined`; NaN where it has none. change: of the arguments."""
+        """The values of a function at all inputs, as `joined`; NaN if it has none. change: of the arguments."""
         values = []
         with np.errstate(all="ignore"):
             for sample, shape in zip(self.samples, self.shapes, strict=True):
@@ -148,7 +148,7 @@ def explain_terms(
     student: Function, terms: Sequence[Term], groups: Sequence[Group], names: Sequence[str],
     samples: Sequence[tuple[Any, ...]],
 ) -> Explanation | None:  # fmt: skip
-    """The difference of a function from a sum of terms; None where no change of one or two of them explains it.
+    """The difference of a function from a sum of terms; None if no change of one or two of them explains it.
 
     student: a function of the arguments. terms: what its result must add up, at all samples. names: of the arguments.
     """
@@ -185,7 +185,7 @@ def explain_terms(
 
 
 def stated(findings: Sequence[Finding], terms: Sequence[Term]) -> Function:
-    """The function that findings say the student has written."""
+    """The function that the student has written, according to findings."""
     changed = {i for finding in findings for i in finding.unit.members}
 
     def value(i: int, arguments: tuple[Any, ...]) -> np.ndarray:
@@ -306,7 +306,7 @@ def of_value(change: Callable[[np.ndarray], np.ndarray]) -> Apply:
 
 
 def exponent_in(values: np.ndarray, doubled: np.ndarray) -> float | None:
-    """The power of an argument in values, a multiple of 1/2; None where they are no power of it.
+    """The power of an argument in values, a multiple of 1/2; None if they are no power of it.
 
     doubled: the values with twice the argument.
     """
@@ -318,7 +318,7 @@ def exponent_in(values: np.ndarray, doubled: np.ndarray) -> float | None:
 def power_text(name: str, has: float | None, exponent: float, *, whole: bool) -> str:
     """Words for a term that has another power of an argument.
 
-    has: the right one; None where it is no power. whole: there is no other term.
+    has: the right one; None if it is no power. whole: there is no other term.
     """
     now = exponent if has is None else has + exponent
     if now == 0.0 and whole:
@@ -430,7 +430,7 @@ def one_change(
 def one_more(
     y: np.ndarray, right: np.ndarray, units: Sequence[Unit], changes: Sequence[Sequence[ChangedForm]]
 ) -> Finding | None:
-    """A term that is there beside the right ones, or None."""
+    """An additional term beside the right ones, or None."""
     left, best = y - total_of(right, set(range(len(right)))), None
     for unit, forms in zip(units, changes, strict=True):
         for form in forms:
@@ -482,7 +482,7 @@ def factor_between(left: np.ndarray, form: ChangedForm) -> float:
 
 
 def may_be_told(unit: Unit, form: ChangedForm, factor: float) -> bool:
-    """True for a factor that names the mistake: a simple one, or a constant that is slightly off."""
+    """True for a factor that identifies the mistake: a simple one, or a constant that is slightly off."""
     return is_simple(factor) or (unit.name == WHOLE and not form.text and abs(factor - 1.0) <= SMALL_CHANGE)
 
 
@@ -515,7 +515,7 @@ def factor_cost(factor: float) -> float:
 
 
 def rounded(factor: float) -> float:
-    """A factor, which is a small fraction where it is near one."""
+    """A factor, rounded to a small fraction if it is near one."""
     for denominator in (1, 2, 3, 4, 6):
         nearest = round(factor * denominator) / denominator
         if abs(nearest - factor) <= 10 * TOLERANCE * max(1.0, abs(factor)):

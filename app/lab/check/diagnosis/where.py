@@ -8,7 +8,7 @@ import numpy as np
 from app.lab.check.diagnosis.explanation import Explanation
 
 AXES = "xyz"
-MAX_NUMBERS = 4  # of an argument or a result that are shown
+MAX_NUMBERS = 4  # of an argument or a result, shown at most
 FIGURES = 4
 TOLERANCE = 1e-4  # of the largest value of a result, as in `comparing.py`
 
@@ -63,7 +63,7 @@ def explain_where(
 
 
 def case_of(trials: Sequence[Difference], cases: Sequence[Case]) -> str:
-    """The case that all wrong inputs are of, where some are not of it."""
+    """The case of all wrong inputs, if some inputs are not of it."""
     for case in cases:
         holds = [bool(case.holds(*trial.arguments)) for trial in trials]
         if not all(holds) and all(of_case or not trial.is_wrong for of_case, trial in zip(holds, trials, strict=True)):
@@ -72,7 +72,7 @@ def case_of(trials: Sequence[Difference], cases: Sequence[Case]) -> str:
 
 
 def part_of(wrong: Sequence[Difference], parts: Sequence[str]) -> str:
-    """The part of a result that is wrong, where others are right."""
+    """The only wrong part of a result, if others are right."""
     found = {i for trial in wrong for i, part in enumerate(trial.wrong) if part.any()}
     return f"in the {parts[found.pop()]}" if len(parts) > 1 and len(found) == 1 else ""
 
@@ -106,7 +106,7 @@ def entries_of(wrong: Sequence[Difference]) -> str:
 
 
 def is_held(wrong: Sequence[Difference]) -> bool:
-    """True if the first point has nothing to be wrong: it is held."""
+    """True if the first point cannot be wrong, as it is held."""
     return all(not part[0].any() for trial in wrong for part in trial.right)
 
 

@@ -1,9 +1,9 @@
-// The address of the page, made right before viser's client reads it.
+// Corrects the address of the page before viser's client reads it.
 //
-// The client connects to a websocket at the page's own address without its last slash. Below a path that a proxy shows,
-// this would not be the lab's path, so there the page names its file. The client would also connect to, or play, what a
-// link names in "websocket" or "playbackPath", and run the JavaScript that it gets from there. And where the page has a
-// path, the client would write its websocket into the address bar.
+// The client connects to a websocket at the page's address without its last slash. Below the path of a proxy this is not the
+// lab's path, so there the page adds its file name. The client would also connect to, or play, the address that a link
+// names in "websocket" or "playbackPath", and run the JavaScript from there. And if the page has a path, the client
+// would write its websocket into the address bar.
 
 (() => {
   "use strict";

@@ -1,9 +1,9 @@
-// Words of the page where it cannot start: on the cover, in a sentence, with advice. Written for old browsers too.
+// The message on the cover if the page cannot start: one sentence with advice. Written for old browsers too.
 
 (function () {
   "use strict";
   var OLDEST = "Chrome or Edge 120, Firefox 121, Safari 17.4"; // as in docs/platforms.md
-  var PATIENCE = 8000; // [ms] after which a page without a panel says which error it met
+  var PATIENCE = 8000; // [ms] after which a page without a panel shows the error
   var springtide = (window.__springtide = window.__springtide || {});
   var began = Date.now(), error = "";
 
@@ -23,7 +23,7 @@
     try {
       var gl = document.createElement("canvas").getContext("webgl2");
       var release = gl && gl.getExtension("WEBGL_lose_context");
-      if (release) release.loseContext(); // a browser has few contexts
+      if (release) release.loseContext(); // browsers allow few contexts
       return Boolean(gl);
     } catch (refused) {
       return false;
@@ -37,7 +37,7 @@
     return !has || !maps || !Element.prototype.checkVisibility || !("ariaPressed" in Element.prototype);
   }
 
-  // viser's client ends where the browser names an unknown language, as with LANG=C.
+  // viser's client fails if the browser names an unknown language, as with LANG=C.
   function mendLanguage() {
     try {
       new Intl.NumberFormat(navigator.language);

@@ -1,8 +1,8 @@
-// A page that is left lets go of the lab at once, so that the lab counts no browser that nobody sees.
+// A page that the user leaves disconnects at once, so that the lab counts no hidden browser.
 //
-// A browser may keep a page that was left, to show it again when the user goes back. It keeps the worker too in which
-// viser's client holds its connection, and the connection stays open though nothing reads it. Ending the worker closes
-// the connection, also while the page is being frozen. A page that is shown again loads anew.
+// A browser may cache such a page for the way back, with the worker that holds viser's connection, which then stays open
+// though nothing reads it. Terminating the worker closes it, even while the page is being frozen. A page that is shown again
+// reloads.
 
 (() => {
   "use strict";

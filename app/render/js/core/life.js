@@ -1,4 +1,4 @@
-// An owner of what a part of the scripts makes: listeners, timers, observers, and all else that its end disposes of.
+// An owner of listeners, timers, observers and other resources, which its end disposes of.
 
 export class Life {
   #controller = new AbortController();

@@ -1,5 +1,5 @@
-// Calls parts before each frame that three draws of viser's scene, so that a new material of viser's never shows without its
-// shader, and the camera stands above the water of the frame.
+// Calls parts before three draws a frame of viser's scene, so that a new material never shows without its shader, and the
+// camera is above the water of the frame.
 
 import { page } from "./life.js";
 import { viewer } from "./viewer.js";
@@ -16,10 +16,10 @@ export function beforeRender(stage, part) {
 }
 
 /** @type {three.Scene | null} */
-let hooked = null; // viser makes another one with a new canvas
+let hooked = null; // viser makes a new one with a new canvas
 onFrame(() => {
   const now = viewer(), own = now?.scene;
-  if (!own || !now.nodeRefFromName) return wake(); // its first frame is to find the parts
+  if (!own || !now.nodeRefFromName) return wake(); // the first frame should find the parts
   if (hooked === own) return;
   hooked = own;
   const earlier = own.onBeforeRender;

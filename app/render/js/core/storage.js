@@ -12,7 +12,7 @@ export function stored(key) {
   }
 }
 
-// False where the browser refuses: it holds until the page is left.
+// False if the browser refuses: the value then holds until the page is left.
 /** @param {string} key @param {string} text */
 export function store(key, text) {
   try {

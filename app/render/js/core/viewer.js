@@ -6,9 +6,9 @@ export const viewer = () => window.__viserMutable;
 export const startedViewer = () => /** @type {viser.Started} */ (viewer());
 
 /** @type {object[]} */
-const waiting = []; // messages that the server would not take yet
+const waiting = []; // messages that the server does not accept yet
 
-// Set the value of an element of viser's panel. False where there is no connection, or no such element.
+// Set the value of an element of viser's panel. False without a connection or such an element.
 /** @param {string | undefined} uuid @param {unknown} value */
 export function send(uuid, value) {
   if (!uuid || !viewer()?.sendMessage) return false;
@@ -47,12 +47,12 @@ let connection = 0;
 /** @type {viser.Mutable["sendMessage"]} */
 let sender = null;
 
-// The number of the connection to the server. viser makes the function that sends anew with each. What mirrors the
-// server's knowledge of this browser holds for one connection: the next one is another client to the server.
+// The number of the connection to the server, for which viser makes a new send function. State that mirrors the server's
+// knowledge of this browser holds for one connection: on the next one it is a new client.
 export function connectionNumber() {
   const now = viewer()?.sendMessage ?? null;
   if (now !== sender) [sender, connection] = [now, connection + 1];
   return connection;
 }
 
-export const PAGE = Math.random().toString(36).slice(2, 10); // tells this page from others; viser passes on changes only
+export const PAGE = Math.random().toString(36).slice(2, 10); // distinguishes this page from others; viser passes on changes only

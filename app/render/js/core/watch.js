@@ -1,15 +1,16 @@
 // One observer of the page and one clock for all parts.
 //
-// While a scene runs, viser writes the status line and the state of the time line anew in each frame. Parts that dress
-// controls do not look at the page for that.
+// While a scene runs, viser rewrites the status line and the state of the time line in each frame. Parts that change controls
+// ignore these.
 
 import { page } from "./life.js";
 
-const STATUS = ".springtide-panel, [data-springtide-time]"; // written anew in each frame
-const CONTROL = "button, label, [role]"; // elements with the words that parts read
+const STATUS = ".springtide-panel, .springtide-figures, .springtide-readings, [data-springtide-time]"; // rewritten in each frame
+const CONTROL = "button, label, [role]"; // elements whose words are read
+const OWN = "springtide-"; // prefix of the identifiers of our own elements, some of them moved in each frame
 const LOOK_INTERVAL = 200; // [ms] between two looks at where things are
 const REST_INTERVAL = 1000; // [ms] the same once nothing has changed for SETTLING
-const SETTLING = 2000; // [ms] after a change, in which what it moves has arrived
+const SETTLING = 2000; // [ms] after a change until everything that it moves stands still
 
 /** @typedef {(now: number) => void} Part */
 /** @type {{ any: Part[], controls: Part[], values: Part[], frame: Part[], look: Part[] }} */
@@ -20,7 +21,7 @@ const isElement = (node) => node.nodeType === Node.ELEMENT_NODE;
 /** @type {(node: Node) => boolean} */
 const isStatus = (node) => isElement(node) && node.matches(STATUS);
 
-// True if a change may be one of controls.
+// True if a change may concern controls.
 /** @param {MutationRecord} change */
 function isOfControls({ type, target, addedNodes, removedNodes }) {
   const at = isElement(target) ? target : target.parentElement;
@@ -36,11 +37,11 @@ function call(names, now = 0) {
 }
 
 const observer = new MutationObserver((changes) => {
-  const structural = changes.filter(({ type }) => type !== "attributes");
-  if (structural.some(isOfControls)) call(["any", "controls"]);
-  else if (structural.length) call(["any"]);
-  if (changes.length > structural.length) call(["values"]);
-  wake();
+  const structural = changes.filter(({ type }) => type !== "attributes"), isOfControl = structural.some(isOfControls);
+  const hasValues = changes.some(({ type, target }) => type === "attributes" && isElement(target) && !target.id.startsWith(OWN));
+  if (structural.length) call(isOfControl ? ["any", "controls"] : ["any"]);
+  if (hasValues) call(["values"]);
+  if (isOfControl || hasValues) wake(); // other words move nothing
 });
 observer.observe(document.documentElement, {
   childList: true, subtree: true, characterData: true, attributes: true,
@@ -48,9 +49,9 @@ observer.observe(document.documentElement, {
 });
 page.own(() => observer.disconnect());
 
-// Frames are asked for only where something may have changed: a page at rest costs nearly nothing.
-let isAsked = false; // whether the next frame of the browser is asked for
-let changed = performance.now(), looked = -Infinity; // [ms] when something has, and when it was looked last
+// Frames are requested only if something may have changed: a page at rest costs nearly nothing.
+let isAsked = false; // true if the next frame of the browser is requested
+let changed = performance.now(), looked = -Infinity; // [ms] time of the last change, and of the last look
 
 function askForFrame() {
   if (isAsked || page.signal.aborted) return;
@@ -61,7 +62,7 @@ function askForFrame() {
   });
 }
 
-// Something has changed: have the parts called before the next frame of the browser.
+// Something has changed: call the parts before the next frame of the browser.
 export function wake() {
   changed = performance.now();
   askForFrame();
@@ -90,7 +91,7 @@ export function onChange(part) {
   part();
 }
 
-// The same after those that may be changes of controls.
+// The same after changes that may concern controls.
 /** @param {() => void} part */
 export function onControls(part) {
   subscribe("controls", part);

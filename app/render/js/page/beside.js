@@ -1,7 +1,7 @@
-// A lab that is shown beside others: its page is a frame of the page with the panes (beside.html).
+// A lab beside others: its page is a frame in the page of the comparison (beside.html).
 //
-// A page that stands alone goes there as soon as the lab says that it has others beside it. In a frame the panel is hidden
-// until it is asked for, and the picture takes the whole frame, so that all frames show the same part at the same scale.
+// A page on its own goes there as soon as its lab is compared with others. In a frame the panel is hidden until the user opens
+// it, and the picture fills the frame, so that all frames show the same part at the same scale.
 
 import { page } from "../core/life.js";
 import { onControls } from "../core/watch.js";
@@ -12,12 +12,12 @@ const framed = (() => {
   try {
     return window.parent !== window && window.parent.__springtide?.beside === true;
   } catch {
-    return false; // a page of another address shows this one
+    return false; // embedded in a page of another origin
   }
 })();
 if (framed) {
   document.documentElement.classList.add("springtide-framed", "springtide-bare");
-  // viser connects again only while its page has the focus, which one frame has at most: all have it with their page.
+  // viser reconnects only while its page has the focus, and only one frame can have it: here all have it with their page.
   const hasFocus = () => window.parent.document.hasFocus();
   let had = hasFocus();
   document.hasFocus = hasFocus;

@@ -1,9 +1,10 @@
-// The camera of the page: it stays above floor and water, and the picture stands in the middle of what panels leave free.
+// The camera of the page: it stays above floor and water, and the picture is centred in the part that panels leave free.
 //
 // Of viser this file uses window.__viserMutable: cameraControl (the camera-controls library), camera, scene (its
 // onBeforeRender runs before every frame), nodeRefFromName and requestRender; and the boxes of its panels.
 // three's world has y up; the frame of a node has z up.
 
+import { PANEL } from "../core/marks.js";
 import { beforeRender } from "../core/render_hook.js";
 import { startedViewer, viewer } from "../core/viewer.js";
 import { onLook } from "../core/watch.js";
@@ -12,11 +13,9 @@ import { waterHeight } from "./water_height.js";
 
 const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor
 const WATER_CLEARANCE = 0.25; // [m] of the camera above the water
-const MAX_WAVE_HEIGHT = 40; // [m] above the mean water, from which on no wave is looked for
-const MIN_ASPECT = 1.05; // width over height of what the field of view shows at least: that of all presets
-const PANELS =
-  "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root), " +
-  ".mantine-Tabs-root:has(> [aria-label=\"Collapse panel Plots\"])";
+const MAX_WAVE_HEIGHT = 40; // [m] above the mean water; higher cameras need no look at waves
+const MIN_ASPECT = 1.05; // least width over height of the field of view, enough for all presets
+const OPEN_BAR = '[data-springtide-is-bar] > [aria-label="Collapse panel Plots"]'; // on a phone
 
 /** @type {(keyof Box)[]} */
 const SIDES = ["x", "y", "width", "height"];
@@ -29,7 +28,8 @@ function measure() {
   const canvas = drawn.getBoundingClientRect();
   let box = { x: canvas.left, y: canvas.top, width: canvas.width, height: canvas.height };
   const framed = document.documentElement.classList.contains("springtide-framed"); // beside.js
-  for (const panel of framed ? [] : document.querySelectorAll(PANELS)) box = without(box, panel.getBoundingClientRect());
+  const bar = document.querySelector(OPEN_BAR)?.parentElement, panels = [...document.querySelectorAll(PANEL), ...(bar ? [bar] : [])];
+  for (const panel of framed ? [] : panels) box = without(box, panel.getBoundingClientRect());
   const found = { x: box.x - canvas.left, y: box.y - canvas.top, width: box.width, height: box.height };
   const earlier = free;
   if (earlier && SIDES.every((key) => Math.abs(earlier[key] - found[key]) < 1)) return;
@@ -62,7 +62,7 @@ const shownNode = (name) => {
   return node || null;
 };
 
-// The lowest height that the camera may have: { always, now }, for good and above the wave that is there now.
+// The least height of the camera: { always, now }, in any sea and above the present wave.
 /** @param {three.Camera} camera */
 function lowest(camera) {
   const floor = shownNode("/floor"), sea = shownNode("/sea");
@@ -91,7 +91,7 @@ function keepAbove(camera, controls) {
     const moved = lastTarget && lastTarget.distanceTo(target) > 1e-6 * controls.distance;
     const cosine = (always - target.y) / controls.distance;
     if (!moved && cosine < 1) {
-      // A turn slides along the floor.
+      // A turn of the camera slides along the floor.
       const polar = Math.acos(Math.max(cosine, -1));
       const azimuth = controls.azimuthAngle;
       controls.rotatePolarTo(polar, false);
@@ -108,7 +108,7 @@ function keepAbove(camera, controls) {
       camera.position.y = always;
       target.y += lift;
     }
-    now = lowest(camera).now; // of the place that it has now
+    now = lowest(camera).now; // at its new place
   }
   lastTarget = target;
   // Above a crest the camera is lifted for this frame only, so that it comes down again behind the crest.
@@ -116,7 +116,7 @@ function keepAbove(camera, controls) {
   camera.updateMatrixWorld();
 }
 
-// Before each frame: a canvas or a scene of viser's may be another one than before.
+// Before each frame: viser may have replaced the canvas or the scene.
 /** @param {three.Camera} camera */
 function placeCamera(camera) {
   const { cameraControl: controls, camera: own, canvas } = startedViewer();
@@ -127,7 +127,7 @@ function placeCamera(camera) {
   splats?.material.uniforms.projectionMatrixCustom.value.copy(camera.projectionMatrix);
 }
 
-// viser's splats have a projection of their own, which knows nothing of the shift: they get that of the camera.
+// viser's splats have a projection of their own, without the shift: they get the camera's.
 /** @type {three.Mesh | null} */
 let splats = null; // the mesh of all splats
 

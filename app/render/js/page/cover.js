@@ -1,28 +1,28 @@
 // Words of the page while nothing is drawn, and after the server has ended.
 //
-// The cover is there from the first bytes of the page. It goes when the whole picture of the scene is drawn (frames.js);
-// while a scene is compiled it shows what the panel says of that (an element of class "springtide-progress"). It comes
-// back when the server does not answer.
-// Where the page cannot start it says why (before/failures.js).
+// The cover is shown from the first bytes of the page until the picture of the scene is complete (frames.js). While a scene is
+// compiled it shows the panel's progress (an element of class "springtide-progress"). It returns when the server does not
+// answer. If the page cannot start, it shows the reason (before/failures.js).
 
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
+import { viewer } from "../core/viewer.js";
 import { onChange, onLook } from "../core/watch.js";
 
-const ALIVE_INTERVAL = 2000; // [ms] between two questions whether the server is still there
-const RETRY_INTERVAL = 1000; // [ms] the same after a question without an answer
-const ANSWER_TIME = 5000; // [ms] after which a question counts as not answered
-const MAX_UNANSWERED = 3; // questions in a row: a laptop that wakes, or changes its network, misses one
-const SETTLING = 300; // [ms] after a panel, in which the things of its scene come
-const UNDRAWN = 10_000; // [ms] after which the cover goes where no frame has begun
+const ALIVE_INTERVAL = 2000; // [ms] between two checks that the server answers
+const RETRY_INTERVAL = 1000; // [ms] the same after a check without an answer
+const ANSWER_TIME = 5000; // [ms] after which a check has failed
+const MAX_UNANSWERED = 3; // failed checks in a row: a laptop that wakes up, or changes its network, misses one
+const SETTLING = 300; // [ms] after a panel, in which the objects of its scene arrive
+const UNDRAWN = 10_000; // [ms] after which the cover goes if no frame has begun
 const PATIENCE = 60_000; // [ms] after which it goes in any case
 const cover = /** @type {HTMLElement} */ (document.getElementById("springtide-cover"));
 const words = /** @type {HTMLElement} */ (document.getElementById("springtide-cover-words"));
-// A path is that of a proxy, such as a JupyterHub, or of a pane of several.
+// A path belongs to a proxy, such as a JupyterHub, or to a pane of a comparison.
 const path = location.pathname.replace(/(pane\/\d+\/)?(index\.html)?$/, "");
 const restart = path === "/" ? "Start it again with the command: springtide" : "Reload this page to start it again.";
 let unanswered = 0;
-let server = ""; // name of the server: another one has another name
+let server = ""; // name of the server, which differs for each server
 
 /** @param {string | null} text @param {boolean} hidden */
 function say(text, hidden) {
@@ -33,18 +33,21 @@ function say(text, hidden) {
 /** @type {string | null} */
 let opened = null; // the panel whose picture is awaited, by its field for reports
 let openedAt = 0; // [ms] since when
-let pictured = ""; // the panel whose picture was whole
+let pictured = ""; // the panel whose picture was complete
 
-// True if the picture of the panel's scene is still to come. A lab that draws by viser's public interface has no such field,
-// and another one has it after its status line.
+// True if the picture of the panel's scene is not complete yet. A lab that draws by viser's public interface has no such field;
+// otherwise it follows the status line.
 function awaitsPicture() {
-  const field = document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "";
+  const { springtideShaders: field = "", springtideNodes: nodes = "" } =
+    document.querySelector("[data-springtide-shaders]")?.dataset ?? {};
   if (field && field === pictured) return false;
   const now = performance.now();
   if (field !== opened) [opened, openedAt] = [field, now];
   const since = now - openedAt, { showsWhole } = springtide;
   if (!field) return since < SETTLING;
-  if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;
+  const isHere = (/** @type {string} */ name) => Boolean(viewer()?.nodeRefFromName[name]);
+  const isWhole = () => showsWhole?.() && nodes.split("\n").filter(Boolean).every(isHere);
+  if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !isWhole())) return true;
   pictured = field;
   return false;
 }
@@ -58,14 +61,14 @@ function update() {
     return say(waiting, false);
   }
   if (document.querySelector(".springtide-panel")) {
-    waiting = "Opening the scene …"; // the page is connected from now on
+    waiting = "Opening the scene …"; // the page is connected now
     const isAwaited = awaitsPicture();
     return say(isAwaited && !pictured ? "Preparing the picture …" : null, !isAwaited);
   }
   return say(springtide.failure || waiting, false);
 }
 
-// Name of the server; "" where it does not answer.
+// Name of the server; "" if it does not answer.
 async function askServer() {
   try {
     const answer = await fetch("springtide-alive", { cache: "no-store", signal: AbortSignal.timeout(ANSWER_TIME) });
@@ -80,7 +83,7 @@ async function ask() {
   if (name !== null) {
     unanswered = name ? 0 : unanswered + 1;
     server ||= name;
-    // Another server knows nothing of this page. What is being recorded is lost with a reload.
+    // A new server does not know this page: reload, unless a clip is being recorded.
     if (name && name !== server && !springtide.isRecording) return void location.reload();
     update();
   }

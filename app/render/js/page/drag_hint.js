@@ -1,4 +1,4 @@
-// "Drag me" below the free end of the rope, for the first seconds of a page, in a browser that has not dragged a rope yet.
+// "Drag me" below the free end of the rope, in the first seconds of a page, until this browser has dragged a rope.
 //
 // Of viser this file uses window.__viserMutable: nodeRefFromName, camera and canvas.
 
@@ -8,10 +8,10 @@ import { viewer } from "../core/viewer.js";
 import { onFrame } from "../core/watch.js";
 
 const KEY = "springtide-dragged"; // of the local storage
-const ROPE = "/rope", PULL = "/pull"; // nodes; the second is the line from what is dragged to the mouse
+const ROPE = "/rope", PULL = "/pull"; // nodes; PULL is the line from the dragged point to the mouse
 const SHOWN = 10_000; // [ms] after the first picture of a rope
-const GAP = 14, ROOM = 44; // [pixels] below the end of the rope, and to the edges of the picture
-const BEYOND = 0.2; // of half the picture: so far outside the end may be
+const GAP = 14, ROOM = 44; // [pixels] from the end of the rope, and least distance from the edges of the picture
+const BEYOND = 0.2; // the end may be this far outside the picture, in halves of its size
 /** @type {HTMLElement | null} */
 let hint = null;
 let ended = stored(KEY) !== null, since = 0, isPressed = false;
@@ -20,7 +20,7 @@ function makeHint() {
   const made = document.createElement("div");
   made.id = "springtide-drag-me";
   made.textContent = "Drag me";
-  made.setAttribute("aria-hidden", "true"); // it names what only a pointer can do
+  made.setAttribute("aria-hidden", "true"); // only a pointer can drag
   made.style.cssText =
     "position:fixed;top:0;left:0;z-index:1;pointer-events:none;padding:2px 10px;border-radius:12px;white-space:nowrap;" +
     "font:600 14px/1.5 system-ui,sans-serif;color:#fff;background:rgba(16,30,46,0.85)";
@@ -33,7 +33,7 @@ function remove() {
   hint?.remove();
 }
 
-// Where the rope ends on the page [pixels]; null where it is not in the picture.
+// Position of the rope's end on the page [pixels]; null if it is outside the picture.
 /** @param {viser.Started} view */
 function freeEnd({ nodeRefFromName, camera, canvas }) {
   const mesh = nodeRefFromName[ROPE]?.children.find((child) => child.isMesh);

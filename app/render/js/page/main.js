@@ -1,8 +1,9 @@
-// Starts the parts of the page. One that does not load, or ends with an error, is named; the others work.
+// Starts the parts of the page. If one fails to load or to start, a notice names it, and the others work.
 
 /** @type {Record<string, () => Promise<object>>} */
 const PARTS = {
   cover: () => import("./cover.js"),
+  marks: () => import("../core/marks.js"),
   scene: () => import("../scene/main.js"),
   camera: () => import("./camera.js"),
   fields: () => import("../panel/fields.js"),

@@ -1,8 +1,8 @@
-// A press near a rope or a cloth takes it and not the camera: it is thin, and moves while a hand aims at it.
+// A press near a rope or a cloth grabs it instead of the camera: it is thin, and moves while the user aims.
 //
 // viser's client asks each mesh that can be dragged whether the ray of the pointer meets it (three's Mesh.raycast). The
-// meshes named here also say so where a vertex is near the pointer on the screen, or was a moment before. They say that
-// they are far away, so that arrows and beads under the pointer come first. A ring marks what a press would take.
+// meshes named here also report a hit if a vertex is near the pointer on the screen, or was just before. They report a large
+// distance, so that arrows and beads under the pointer come first. A ring marks what a press would grab.
 //
 // Of viser this file uses window.__viserMutable: nodeRefFromName, camera and canvas.
 
@@ -12,8 +12,8 @@ import { onFrame } from "../core/watch.js";
 
 const NAMES = /^\/(rope|cloth|race\/rope_\d+)$/;
 const REACH = 25, TOUCH_REACH = 50; // [pixels]
-const MEMORY = 200; // [ms] for which a vertex is still taken where it was: a hand is that late
-const INTERVAL = 30; // [ms] between two moments that are remembered
+const MEMORY = 200; // [ms] for which a vertex can still be grabbed where it was: the user reacts that late
+const INTERVAL = 30; // [ms] between two remembered positions
 const FAR = 1e9; // [m]
 /** @type {WeakMap<three.Mesh, { until: number, version: number, points: Float32Array }[]>} */
 const moments = new WeakMap(); // the latest first
@@ -49,8 +49,8 @@ function remember(mesh, now) {
   while (kept[kept.length - 1].until < now - MEMORY) kept.pop();
 }
 
-// The vertex nearest to the pointer, now or else a moment before: { place, rank }, its place in the world [m] and its
-// distance on the screen [pixels], later where it was longer ago; null where none is within reach.
+// The vertex nearest to the pointer, now or just before: { place, rank }, its place in the world [m] and its
+// distance on the screen [pixels], increased with its age; null if none is within reach.
 /** @param {three.Mesh} mesh @param {{ x: number, y: number, reach: number }} pointer */
 function nearest(mesh, pointer) {
   const { camera, canvas } = startedViewer(), now = mesh.geometry.attributes.position.array;
@@ -81,7 +81,7 @@ function frame(now) {
   const all = meshes();
   for (const mesh of all) remember(mesh, now);
   const at = pointer, near = at ? all.map((mesh) => nearest(mesh, at)).filter((one) => one !== null) : [];
-  ring.hidden = !near.length;
+  if (ring.hidden === near.length > 0) ring.hidden = !ring.hidden; // a write is a change, of the same value too
   if (near.length) {
     const { camera, canvas } = startedViewer(), box = canvas.getBoundingClientRect();
     const { place } = near.reduce((best, one) => (one.rank < best.rank ? one : best));
@@ -91,7 +91,7 @@ function frame(now) {
   }
 }
 
-// Before viser's client hears of it.
+// Before viser's client handles it.
 /** @param {PointerEvent} event */
 function follow(event) {
   const canvas = viewer()?.canvas, moved = event.type === "pointermove" && event.buttons;

@@ -1,10 +1,10 @@
-// Additions to viser's panel for those who use the keyboard or listen: folders and sliders that Tab reaches, and names.
+// Additions to viser's panel for keyboards and screen readers: folders and sliders that Tab reaches, and names.
 
 import { page } from "../core/life.js";
 import { onControls, onValues } from "../core/watch.js";
 
 const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:first-child"; // the title of a folder
-// The button of viser's settings is hidden until they are shown; then it leads back.
+// The button of viser's settings is hidden until these are shown; then it leads back.
 /** @type {Record<string, string>} */
 const ICON_NAMES = { "list-search": "Commands", "adjustments": "Back to the panel", "x": "Close", "maximize": "Enlarge" };
 
@@ -18,7 +18,9 @@ function describeFolder(title) {
   if (!title.querySelector("svg")) return;
   set(title, "role", "button");
   set(title, "tabindex", "0");
-  set(title, "aria-expanded", String(title.querySelector(".tabler-icon-chevron-up") !== null));
+  const isOpen = title.querySelector(".tabler-icon-chevron-up") !== null;
+  set(title, "aria-expanded", String(isOpen));
+  title.parentElement?.toggleAttribute("data-springtide-is-closed", !isOpen);
 }
 
 // The text field of a slider: in the row before its own.
@@ -68,7 +70,7 @@ page.listen(document, "keydown", (event) => {
   const at = event.target;
   if (!(at instanceof HTMLElement)) return;
   const presses = event.key === " " || event.key === "Enter";
-  // A key that presses a button must not be a key of the lab as well: Space would play and pause at once.
+  // A key that presses a button must not also act as a key of the lab: Space would play and pause at once.
   if (presses && at.matches("button, [role=button], [role=slider], input[type=checkbox]")) event.stopPropagation();
   if (presses && at.matches(FOLDER)) {
     event.preventDefault();

@@ -1,11 +1,11 @@
 // Gaps in the charts: uPlot leaves a gap at null only, and viser sends arrays of numbers, in which NaN means no value.
 // On a logarithmic scale uPlot takes NaN for its lowest value.
 // Crosses at the upper edge, with their words, at the values of the series of the class "springtide-cross".
-// The time axis: viser keeps the part of it that is shown, and on a slow page loses it when a chart is made anew. Here all
-// of it is shown again, unless it was zoomed by hand.
+// The time axis: viser keeps its visible part, and on a slow page loses it when a chart is remade. Here the whole axis is shown
+// again, unless the user has zoomed.
 // The name of the first axis, at its end (page.css). The height of the charts: a whole number of them fills their pane.
-// The size of the type and the lines: by "Large text", and in a lecture hall by the height of the window (hall.js).
-// A line in the charts over time, where the recording is shown: the time line says the time (timeline.js).
+// The size of type and lines: by "Large text", and in a lecture hall by the height of the window (hall.js).
+// A line in charts over time, at the moment of the recording that the time line shows (timeline.js).
 //
 // Of viser this file uses window.__viserTestpoints.uplots, the charts of the page.
 
@@ -17,7 +17,7 @@ const BELOW = 4; // [pixels] of a pane below its charts
 const MIN_HEIGHT = 150; // [pixels] of a chart with its title, or as high as its pane
 const MIN_CANVAS = 70; // [pixels] of a chart without its title
 const PANES = ".mantine-ScrollArea-viewport:has(.uplot):not(:has(.springtide-panel))";
-const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = '.mantine-Tabs-root:has(> [aria-label$=" panel Plots"])';
+const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = "[data-springtide-is-bar]";
 const PHONE_SHARE = 0.32; // of the window's height, for the plots on a phone (page.css)
 const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
 const CROSS = "springtide-cross", PLACED = "springtide-placed-cross";
@@ -28,7 +28,7 @@ const LINE_STYLE = "position:absolute;top:0;bottom:0;width:0;border-left:2px sol
 // The charts of the page.
 export const chartsOfPage = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map(({ chart }) => chart);
 
-// Have uPlot see null where a column has NaN, before it makes the path of a line.
+// Pass null to uPlot for each NaN of a column, before it makes the path of a line.
 const isWatched = new WeakSet(); // series
 /** @param {uplot.Chart} chart */
 function leaveGaps(chart) {
@@ -76,7 +76,7 @@ function placeCrosses(chart) {
 
 // A drag across a chart zooms it, a double click ends that.
 /** @type {{ over: HTMLElement, x: number } | null} */
-let pressed = null; // where in a chart the mouse was pressed
+let pressed = null; // place in a chart where the mouse was pressed
 /** @param {uplot.Chart} chart */
 function watchZoom({ over }) {
   page.listen(over, "mousedown", (event) => (pressed = { over, x: event.clientX }));
@@ -97,7 +97,7 @@ function showWholeAxis(chart) {
   if (max > min && (x.min !== min || x.max !== max)) chart.setScale("x", { min, max });
 }
 
-// Put the line of a chart where the moment is [s]; NaN, and a moment that the chart does not show, have none.
+// Place the line of a chart at the moment [s]; none for NaN or a moment outside the chart.
 /** @param {uplot.Chart} chart @param {number} moment */
 function placeMoment(chart, moment) {
   const { min, max } = chart.scales.x;
@@ -117,7 +117,7 @@ function placeMoment(chart, moment) {
   if (line.style.left !== left) line.style.left = left;
 }
 
-// As many charts as fit share the height of a pane; one more is seen by scrolling.
+// As many charts as fit share the height of a pane; the others are reached by scrolling.
 /** @param {uplot.Chart[]} charts */
 function fillPanes(charts) {
   if (!charts.length) return;
@@ -155,8 +155,8 @@ const widths = new WeakMap();
 /** @type {WeakMap<uplot.Chart, number>} */
 const sizedAs = new WeakMap(); // chart -> its factor
 
-// Give the numbers and the lines of a chart their size. uPlot keeps the font of an axis as [CSS, size in pixels of the canvas,
-// size]; where another version has something else, the numbers keep their size.
+// Set the size of a chart's numbers and lines. uPlot keeps the font of an axis as [CSS, size in pixels of the canvas, size]; if
+// another version differs, the numbers keep their size.
 /** @param {uplot.Chart} chart */
 function sizeType(chart) {
   const factor = typeFactor();
@@ -189,7 +189,7 @@ function nameAxis({ over, series }) {
   if (over.dataset.springtideAxis !== series[0].label) over.dataset.springtideAxis = series[0].label;
 }
 
-let moment = ""; // [s] of the recording that is shown, as the time line says it
+let moment = ""; // [s] of the recording, as the time line gives it
 
 function look() {
   const charts = chartsOfPage();
@@ -211,5 +211,5 @@ onFrame(() => {
   look();
 });
 onLook(look);
-// A chart that is made anew is prepared before it is first drawn: viser makes it, and uPlot draws a moment later.
+// A new chart is prepared before it is first drawn: viser makes it, and uPlot draws a moment later.
 onControls(look);

@@ -1,7 +1,7 @@
 // Display settings of this browser: light or dark, and the size of its text. Each browser remembers its own.
 //
-// Without a choice the panel is as dark as the system asks for. The server is told, which gives this browser viser's dark
-// theme and a dark floor; the colour scheme is set here at once, so that nothing flashes in between.
+// Without a choice the panel follows the system. The server gives this browser viser's dark theme and a dark floor; the colour
+// scheme is set here at once, so that nothing flashes in between.
 
 import { page } from "../core/life.js";
 import { store, stored } from "../core/storage.js";
@@ -29,14 +29,14 @@ function apply() {
     if (button.getAttribute("aria-pressed") !== pressed) button.setAttribute("aria-pressed", pressed);
   }
   for (const label of document.querySelectorAll(".mantine-Switch-label")) {
-    // viser's own, which would do nothing here.
+    // viser's own switch, which would do nothing here.
     if (label.textContent === "Dark Mode") label.closest(".mantine-Switch-root")?.style.setProperty("display", "none");
   }
   tellServer();
 }
 
 // The server draws the floor for each browser: light, or dark.
-let told = ""; // the connection, the panel's hidden button, and the scheme that was sent last
+let told = ""; // the connection, the panel's hidden button, and the scheme, as sent last
 function tellServer() {
   const holder = document.querySelector("[data-springtide-dark]");
   if (!holder) return;
@@ -49,7 +49,7 @@ function tellServer() {
 
 page.listen(document, "click", (event) => {
   if (event.target instanceof Element && event.target.closest("[data-springtide-display]")) {
-    document.querySelector("button:has(.tabler-icon-adjustments)")?.click(); // viser's own settings
+    document.querySelector("[data-springtide-is-settings]")?.click(); // viser's own settings
     return;
   }
   const button = event.target instanceof Element && event.target.closest("[data-springtide-switch]");

@@ -1,8 +1,8 @@
 // Fields and lists of the panel, on top of what viser's client does with them.
 //
 // viser sends a text field at each keystroke. Here a text is sent once it is complete: on Enter or when the field is left.
-// Escape brings the value back; the arrows change its second digit. A list or button that was used gives up the focus, so
-// that the keys of the lab (space, N, R, digits) never type into a list or press a button a second time.
+// Escape restores the value; the arrows change its second digit. A list or button loses the focus after use, so that
+// the keys of the lab (space, N, R, digits) never type into a list or press a button a second time.
 
 import { page } from "../core/life.js";
 import { send as sendToLab } from "../core/viewer.js";
@@ -14,10 +14,10 @@ const NAMED = `${FIELD}, textarea, .mantine-Slider-thumb, .mantine-NumberInput-i
 const ofValue = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value");
 const { set: setText } = /** @type {{ set(text: string): void }} */ (ofValue);
 /** @type {WeakMap<HTMLInputElement, string>} */
-const before = new WeakMap(); // its text when it was entered
+const before = new WeakMap(); // its text when it got the focus
 /** @type {WeakMap<HTMLInputElement, string>} */
 const drafts = new WeakMap(); // text typed since
-const DRAGGED = 4; // [pixels] from which on a press with the mouse is a drag
+const DRAGGED = 4; // [pixels] of motion from which a press of the mouse is a drag
 let sending = false;
 
 /** @param {Event} event */
@@ -39,11 +39,11 @@ function send(field, text) {
 function commit(field) {
   const draft = drafts.get(field);
   if (draft === undefined) return;
-  // viser sends nothing where the text is what it last showed, so a space is added: it may follow a text that was refused.
+  // viser sends nothing if the text equals the last one shown, even after a refused text: so a space is added.
   send(field, draft === before.get(field) ? `${draft} ` : draft);
 }
 
-// viser sends nothing where the preset that is shown is chosen again: the scene begins again by the panel's buttons.
+// viser sends nothing if the shown preset is chosen again: here buttons of the panel restart the scene.
 page.listen(document, "click", ({ target }) => {
   const option = target instanceof Element && target.closest('[role="option"][aria-selected="true"]');
   const list = option && option.closest('[role="listbox"]');
@@ -65,10 +65,10 @@ page.listen(document, "focusin", (event) => {
   before.set(field, field.value);
   field.select();
 });
-// WebKit puts the caret where the mouse is released in a field that it has just entered, so that what is typed would be added
-// to the old text. A text that the mouse was drawn over stays selected as it is.
+// In a field that just got the focus, WebKit puts the caret where the mouse is released, so that typing would add to the old
+// text. A selection made with the mouse stays.
 /** @type {{ field: HTMLInputElement, x: number } | null} */
-let entered = null; // the field that the press under way has brought the focus to, and where the press was
+let entered = null; // the field that got the focus by the present press, and its place
 page.listen(document, "pointerdown", (event) => {
   const field = fieldOf(event);
   entered = field && field !== document.activeElement ? { field, x: event.clientX } : null;
@@ -118,7 +118,7 @@ page.listen(document, "click", (event) => {
   if (used && event.detail > 0) /** @type {HTMLElement | null} */ (document.activeElement)?.blur();
 });
 
-// All values of a slider until it is let go are one change for Undo: the lab is told when it is held, and when no longer.
+// All values of a slider until its release are one change for Undo: the lab learns when it is held and released.
 let held = false;
 /** @param {boolean} now */
 function tellHeld(now) {
@@ -141,7 +141,7 @@ function nameFields() {
   }
 }
 
-// The block that stays in sight: the folder that says whether the lab plays. The tabs stand below it.
+// The block that stays visible: the folder with the state of the lab. The tabs are below it.
 /** @type {Record<string, string>} */
 const HINTS = {
   Play: "Play (space)", Pause: "Pause (space)", Step: "One step (N)", Reset: "Back to the start (R)",
@@ -165,6 +165,7 @@ const sizes = new ResizeObserver(([{ target }]) => {
   const above = row ? row.getBoundingClientRect().top - target.getBoundingClientRect().top : 0;
   document.documentElement.style.setProperty("--springtide-above", `${Math.floor(above)}px`);
 });
+page.own(() => sizes.disconnect());
 function markLab() {
   const status = document.querySelector(".springtide-panel[data-state]"), lab = status?.closest(".mantine-Paper-root");
   if (!status || !lab) return;
@@ -184,7 +185,7 @@ function markLab() {
   }
 }
 
-// One stop of Tab for the buttons of the block, and one for the tabs: the arrows go on from there. A single tab is not a stop.
+// One Tab stop for the buttons of the block, and one for the tabs: arrows move on from there. A single tab is no stop.
 function roveStops() {
   for (const alone of document.querySelectorAll('[role="tab"]:only-child')) if (!alone.tabIndex) alone.tabIndex = -1;
   const groups = [
@@ -207,7 +208,7 @@ page.listen(document, "keydown", (event) => {
   event.stopPropagation();
 }, { capture: true });
 
-// C goes to the first control of the tab that is shown.
+// C goes to the first control of the shown tab.
 const CONTROL = "input, textarea, .mantine-Slider-thumb, button";
 page.listen(document, "keydown", (event) => {
   const typing = event.target instanceof Element && event.target.matches("input, textarea, select");

@@ -1,9 +1,9 @@
 // The foot of the scene, where the time line stands: as wide as panels leave it.
 
-const NEAR = 12; // [pixels] above a bar, up to which a panel is in its way
+const NEAR = 12; // [pixels] above a bar within which a panel is in its way
 const MIN_WIDTH = 160; // [pixels] of a bar
 
-// The edges of the foot of a canvas that panels leave for a bar of this height: above a sheet at its foot, else beside them.
+// The edges that panels leave at the foot of a canvas for a bar of this height: above a sheet at its foot, else beside them.
 /** @param {Edges} canvas @param {Edges[]} panels @param {number} height */
 export function footOf(canvas, panels, height) {
   let { left, right, bottom } = canvas;
@@ -12,7 +12,7 @@ export function footOf(canvas, panels, height) {
     if (box.right === box.left || box.bottom < bottom - height - NEAR || box.top > bottom) continue;
     if (box.right <= left || box.left >= right) continue;
     const isSheet = box.left < middle && box.right > middle;
-    // A panel that reaches up to the edge of the window has no room above it.
+    // There is no space above a panel that reaches the edge of the window.
     if (isSheet && box.top - height >= Math.max(canvas.top, 0)) bottom = Math.min(bottom, box.top);
     else if (isSheet ? box.left - left >= right - box.right : box.left >= middle) right = Math.min(right, box.left);
     else left = Math.max(left, box.right);

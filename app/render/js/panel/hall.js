@@ -1,16 +1,15 @@
-// The lab in a lecture hall: one chart that fills the window, and the picture with the charts below it, without the panel.
+// The lab in a lecture hall: one chart that fills the window, or the picture above the charts, without the panel.
 //
-// The button at the corner of a chart makes it fill the window. viser would show a copy of it in a dialog, with a height and
-// type of its own. L, or "Projector" in the tab View, hides the panel, puts the charts along the lower third, and says
-// the state of the run in the picture. Both are classes of the page (page.css); type and lines are as large as the height
-// of the window asks for (charts.js).
+// The button at the corner of a chart makes it fill the window; viser alone would open a copy in a dialog of fixed height and
+// type size. L, or "Projector" in the tab View, hides the panel, puts the charts along the lower third, and shows the state of
+// the run in the picture. Both are classes of the page (page.css). Type and lines grow with the height of the window (charts.js).
 
 import { page } from "../core/life.js";
 import { onChange, onLook } from "../core/watch.js";
 
 const ENLARGED = "springtide-enlarged", PROJECTING = "springtide-projecting"; // classes of the page
-const CHART = ".uplot-container", MARK = "springtideFillsWindow"; // of the chart that does
-const DOCKED = "[data-dock-region]"; // where a chart can fill the window: elsewhere, as on a phone, viser shows its copy
+const CHART = ".uplot-container", MARK = "springtideFillsWindow"; // data attribute of the chart that fills the window
+const DOCKED = "[data-dock-region]"; // charts that can fill the window; of others, as on a phone, viser opens its copy
 const TICK = 12; // [pixels] of the numbers of a chart
 const HALL_TICK = 22 / 800; // the same in a hall, over the height of the window
 const LARGE = 1.3; // factor of "Large text" (page.css)
@@ -53,16 +52,17 @@ function show() {
   const size = `${tickSize()}px`;
   if (root.style.getPropertyValue("--springtide-tick") !== size) root.style.setProperty("--springtide-tick", size);
   sayState();
-  dispatchEvent(new Event("resize")); // viser measures its picture, and the charts their pane
+  dispatchEvent(new Event("resize")); // viser measures its canvas, and the charts their pane
 }
 
-// The state of the run in the picture, as the panel says it.
+// The state of the run in the picture, in the panel's words.
 function sayState() {
-  words.hidden = !(isIn(PROJECTING) || isIn(ENLARGED));
+  const isHidden = !(isIn(PROJECTING) || isIn(ENLARGED));
+  if (words.hidden !== isHidden) words.hidden = isHidden;
   const status = document.querySelector(".springtide-panel");
   if (words.hidden || !status) return;
   const said = /** @type {HTMLElement} */ (words.firstElementChild);
-  if (said.innerHTML !== status.innerHTML) said.innerHTML = status.innerHTML; // a change is a change of the page
+  if (said.innerHTML !== status.innerHTML) said.innerHTML = status.innerHTML; // writing it would count as a change of the page
 }
 
 page.listen(document, "click", ({ target }) => {
@@ -70,7 +70,7 @@ page.listen(document, "click", ({ target }) => {
   if (target.closest("[data-springtide-projector]")) project(!isIn(PROJECTING));
   if (target.closest("#springtide-words button")) end();
 }, { capture: true });
-// Before viser hears of it.
+// Before viser handles it.
 page.listen(window, "click", (event) => {
   const button = event.target instanceof Element ? event.target.closest(`${CHART} button`) : null;
   const chart = button?.closest(CHART);
@@ -79,7 +79,7 @@ page.listen(window, "click", (event) => {
   fill(chart === filling() ? null : chart);
 }, { capture: true });
 
-// End what is shown last.
+// End the view that was opened last.
 function end() {
   if (filling()) fill(null);
   else project(false);
@@ -92,7 +92,7 @@ page.listen(document, "keydown", (event) => {
   else if (event.key.toLowerCase() === "l") project(!isIn(PROJECTING));
 });
 onChange(sayState);
-// A chart that is closed fills the window no longer; "Large text" is chosen elsewhere.
+// A closed chart no longer fills the window, and "Large text" may have changed.
 onLook(() => {
   if (isIn(ENLARGED) !== (filling() !== null) || root.style.getPropertyValue("--springtide-tick") !== `${tickSize()}px`) show();
 });

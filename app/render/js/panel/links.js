@@ -7,7 +7,7 @@ const VISER_NAMES = new Set([
   "initialCameraLookAt", "initialCameraPosition", "initialCameraUp", "logCamera", "playbackPath", "showStats", "websocket",
 ]);
 
-// The part of an address that is for the lab: what viser's client itself takes from it is not.
+// The part of an address for the lab, without the names that viser's client reads.
 /** @param {string} search */
 export function ofLab(search) {
   const found = new URLSearchParams(search);
@@ -15,11 +15,11 @@ export function ofLab(search) {
   return `?${found}`;
 }
 
-// The address of the lab where this is the page's: a pane of several is below it.
+// The address of the lab from that of the page; a pane of a comparison is below it.
 /** @param {{ origin: string, pathname: string }} page */
 export const labAt = ({ origin, pathname }) => origin + pathname.replace(/pane\/\d\/[^/]*$/, "");
 
-// The set-up file that a replay holds; null where it holds none.
+// The set-up file in a replay; null without one.
 /** @param {string} replay */
 export function setupIn(replay) {
   const start = replay.lastIndexOf(BLOCK);

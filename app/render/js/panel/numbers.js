@@ -1,6 +1,6 @@
-// Numbers as they are typed into fields: 0.5, 0,5, 1/60.
+// Numbers as typed into fields: 0.5, 0,5, 1/60.
 
-// The number that a text says; null where it says none.
+// The number in a text; null if it is none.
 /** @param {string} text */
 export function parse(text) {
   const [above, below, more] = text.replace(",", ".").split("/");
@@ -8,8 +8,8 @@ export function parse(text) {
   return text.trim() === "" || more !== undefined || !Number.isFinite(value) ? null : value;
 }
 
-// The text of the next number up or down, by one in its second digit; of a whole number by one at least. null where the
-// text says no number.
+// The text of the next number up or down, by one in its second digit, but at least by one for a whole number. null if the text is
+// no number.
 /** @param {string} text @param {boolean} up */
 export function stepped(text, up) {
   const value = parse(text);

@@ -1,4 +1,4 @@
-// Words in rows, as in a text: what does not fit into a row begins the next one.
+// Words in rows, as in a text: a word that does not fit into a row begins the next one.
 
 // The row and left end of each of things with these widths, in rows that begin at `start` and end at `end`.
 /** @param {number[]} widths @param {number} start @param {number} end */

@@ -1,4 +1,4 @@
-// The pictures of the scenes: a press chooses the scene in the list of scenes, which is a control of the panel.
+// The pictures of the scenes: a press on one chooses it in the panel's list of scenes.
 
 import { page } from "../core/life.js";
 import { send } from "../core/viewer.js";

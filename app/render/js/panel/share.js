@@ -1,6 +1,6 @@
-// Links and set-ups: what stands in the address of this page is sent to the lab once, and a file that is chosen is read
-// here and sent as text: of a replay, the set-up file that it holds. The lab checks both. A link that the lab has made
-// is shown with this page's own address. Of a change of a shared lab, the page that made it shows its own sentence.
+// Links and set-ups: the query of this page's address is sent to the lab once, and a chosen file is read here and sent as text;
+// of a replay, the set-up file in it. The lab checks both. A link from the lab is shown with this page's own address. After a
+// change of a shared lab, the page that made it shows its own sentence.
 // Clips are recorded here from the canvas of the view, and plots are saved as one picture.
 //
 // Of viser this file uses window.__viserMutable.canvas and the charts of the page.
@@ -16,12 +16,12 @@ import { rowsOf } from "./rows.js";
 import { withDuration } from "./webm.js";
 
 const MAX_LENGTH = 5000; // [characters] that the lab takes
-const MAX_REPLAY = 2e8; // [bytes] of a replay that is read
+const MAX_REPLAY = 2e8; // [bytes] of a replay
 const CLIP_TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/webm"];
-const CLIP_RATE = 30; // [1/s] pictures of a clip
+const CLIP_RATE = 30; // [1/s] frames of a clip
 const CLIP_BITS = 12e6; // [bit/s]
 const MAX_CLIP = 300; // [s] after which a clip ends by itself
-const ASKED = 3000; // [ms] after a press of "Copy link" within which a link is copied to the clipboard
+const ASKED = 3000; // [ms] after a press of "Copy link" for the link to arrive
 const asked = new URLSearchParams(location.search);
 let query = ["scene", "task", "compare"].some((name) => asked.has(name)) ? location.search : "";
 let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
@@ -32,7 +32,7 @@ function send(text) {
   return sendToLab(document.querySelector("[data-springtide-inbox]")?.dataset.springtideInbox, `${PAGE}\n${text}`);
 }
 
-// Have the server make a file, by a hidden button of the panel.
+// Request a file from the server, by a hidden button of the panel.
 /** @param {string} value */
 function make(value) {
   sendToLab(document.querySelector("[data-springtide-makers]")?.dataset.springtideMakers, value);
@@ -43,7 +43,7 @@ sentences.textContent =
   `${own} .springtide-others, [data-springtide-changer]:not(${own}) .springtide-own { display: none; }`;
 document.head.append(sentences);
 
-// Copy a link to the clipboard. A browser that refuses, or a page without encryption, has it selected.
+// Copy a link to the clipboard, or select it if the browser refuses or the page has no encryption.
 /** @param {HTMLAnchorElement} link */
 async function copy(link) {
   try {
@@ -90,7 +90,7 @@ function download(content, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-// Save a clip of this length [s].
+// Save a clip of a duration [s].
 /** @param {Blob} made @param {number} seconds */
 async function saveClip(made, seconds) {
   const { type } = made;
@@ -100,7 +100,7 @@ async function saveClip(made, seconds) {
 }
 
 /** @type {MediaRecorder | null} */
-let clip = null; // the recorder of the clip that is being made
+let clip = null; // the recorder of the clip under way
 /** @param {HTMLElement} button */
 function toggleClip(button) {
   if (clip) {
@@ -124,7 +124,7 @@ function toggleClip(button) {
     button.textContent = `Stop clip (${seconds.toFixed(0)} s)`;
     if (seconds >= MAX_CLIP) made.stop();
   };
-  springtide.isRecording = true; // the quality of the picture stays while it is recorded
+  springtide.isRecording = true; // the quality stays constant during the recording
   const timer = setInterval(show, 500);
   made.ondataavailable = (event) => parts.push(event.data);
   made.onstop = () => {
@@ -215,7 +215,7 @@ page.listen(document, "change", async (event) => {
   if (text.trimStart().startsWith("<") && file.size <= MAX_REPLAY) {
     text = setupIn(await file.text()) ?? text;
   }
-  // A text that is too long is sent as far as the lab reads, so that the lab gives the error.
+  // A text that is too long is sent up to the lab's limit, so that the lab reports the error.
   send(text.slice(0, MAX_LENGTH) || " ");
   field.value = "";
 });

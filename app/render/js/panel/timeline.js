@@ -1,16 +1,17 @@
-// The time line along the foot of the scene: a bar as wide as the scene, with the recording and its moment that is shown.
+// The time line along the foot of the scene: a bar as wide as the scene, with the recording and its shown moment.
 //
-// The panel says the state in `data-springtide-time`, and takes actions through the hidden field that is named there. The
-// bar stands beside the panel, or above it where the panel is a sheet at the foot; what else stands at the foot of the
-// scene has its place from `--springtide-left`, `--springtide-right` and `--springtide-foot`, the bar's distances from the edges
-// of the window, and `--springtide-bar`, its height.
-//
+// The panel gives the state in `data-springtide-time`, and receives actions through the hidden field named there. The bar is
+// beside the panel, or above it if the panel is a sheet at the foot. Other elements at the foot of the scene are placed by
+// `--springtide-left`, `--springtide-right` and `--springtide-foot`, the bar's distances from the edges of the window, and
+// `--springtide-bar`, its height.
+
+import { page } from "../core/life.js";
+import { PANEL } from "../core/marks.js";
 import { PAGE, send as sendToLab } from "../core/viewer.js";
-import { onChange, onLook } from "../core/watch.js";
+import { onChange, onLook, wake } from "../core/watch.js";
 import { footOf, wordsOf } from "./foot.js";
 
-const SEND_INTERVAL = 40; // [ms] between two moments that are sent while a hand moves along the bar
-const PANELS = "[data-floating-window], .mantine-Paper-root:has(> * > .mantine-ScrollArea-root)";
+const SEND_INTERVAL = 40; // [ms] between two moments sent during a drag along the bar
 const bar = document.createElement("div");
 bar.id = "springtide-time";
 bar.setAttribute("role", "group");
@@ -27,7 +28,7 @@ const back = part("output"), speed = part("select"), line = part("input"), momen
 /** @param {string} act @returns {HTMLButtonElement} */
 const button = (act) => /** @type {HTMLButtonElement} */ (bar.querySelector(`[data-act=${act}]`));
 /**
- * What the panel says: times are in seconds; shown: null at the present.
+ * The panel's state: times are in seconds; shown: null at the present.
  * @typedef {{ inbox: string, run: number, low: number, high: number, shown: number | null, rate: number,
  *   rates: number[], loops: boolean, playing: boolean, resumable: boolean, size: string }} State
  */
@@ -47,7 +48,7 @@ function put(element, text) {
   if (element.textContent !== text) element.textContent = text;
 }
 
-// Say the moment that the bar shows: under a hand it is the hand's.
+// Show the moment of the bar; during a drag, the one under the pointer.
 /** @param {boolean} isPast */
 function say(isPast) {
   const words = wordsOf(Number(line.value), state.high, isPast);
@@ -64,7 +65,11 @@ function update() {
   if (!now) return;
   state = JSON.parse(now);
   const isPast = state.shown !== null;
-  bar.dataset.moment = String(state.shown ?? ""); // for the charts
+  const shown = String(state.shown ?? "");
+  if (bar.dataset.moment !== shown) {
+    bar.dataset.moment = shown; // for the charts
+    wake();
+  }
   bar.classList.toggle("springtide-is-past", isPast);
   if (speed.options.length !== state.rates.length) {
     speed.replaceChildren(...state.rates.map((rate) => new Option(`×${rate}`, String(rate))));
@@ -89,23 +94,23 @@ function sendMoment() {
   sentAt = performance.now();
   send("show", line.value);
 }
-line.addEventListener("input", () => {
+page.listen(line, "input", () => {
   held = true;
   say(true);
   if (!waiting) waiting = setTimeout(sendMoment, Math.max(0, sentAt + SEND_INTERVAL - performance.now()));
 });
-line.addEventListener("change", () => {
+page.listen(line, "change", () => {
   clearTimeout(waiting);
   sendMoment();
   held = false;
 });
-line.addEventListener("pointerup", () => setTimeout(() => line.blur())); // the keys go to the lab again
-speed.addEventListener("change", () => send("rate", speed.value));
-bar.addEventListener("click", (event) => {
+page.listen(line, "pointerup", () => setTimeout(() => line.blur())); // so that keys go to the lab again
+page.listen(speed, "change", () => send("rate", speed.value));
+page.listen(bar, "click", (event) => {
   const act = event.target instanceof Element && event.target.closest("button")?.dataset.act;
   if (act) send(act, act === "loop" ? Number(!state.loops) : line.value);
 });
-bar.addEventListener("keydown", (event) => {
+page.listen(bar, "keydown", (event) => {
   if (!/^(Arrow|Page|Home|End)/.test(event.key)) return;
   event.stopPropagation(); // they would move the camera
   const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[event.key];
@@ -117,7 +122,7 @@ bar.addEventListener("keydown", (event) => {
 function place() {
   const canvas = document.querySelector("canvas[data-engine]");
   if (bar.hidden || !canvas) return;
-  const panels = [...document.querySelectorAll(PANELS)].map((one) => one.getBoundingClientRect());
+  const panels = [...document.querySelectorAll(PANEL)].map((one) => one.getBoundingClientRect());
   const high = bar.offsetHeight;
   const { left, right, bottom } = footOf(canvas.getBoundingClientRect(), panels, high);
   const edges = { left, right: innerWidth - right, foot: innerHeight - bottom, bar: high };

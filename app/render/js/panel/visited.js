@@ -1,17 +1,16 @@
 // Back and Forward of the browser go through the scenes and presets that this page has shown.
 //
-// An entry of the browser's history holds the query of a scene and preset, which the lab is asked for as for that of a
-// link. The address stays as it is: a page that is loaded again shows what the lab shows. A lab within another page leaves
-// that page's history alone.
+// Each entry of the browser's history holds the query of a scene and preset. Going back sends it to the lab as a link would.
+// The address does not change, so that a reload shows the present lab. A lab embedded in another page adds no entries.
 
 import { page } from "../core/life.js";
 import { PAGE, send } from "../core/viewer.js";
 import { onChange } from "../core/watch.js";
 
-const PATIENCE = 10_000; // [ms] for what was asked for to be shown
-let here = ""; // the query of what is shown
+const PATIENCE = 10_000; // [ms] for the lab to show the requested scene
+let here = ""; // the query of the scene and preset shown
 /** @type {{ query: string, until: number } | null} */
-let asked = null; // by Back or Forward
+let asked = null; // requested by Back or Forward
 
 function follow() {
   const query = document.querySelector("[data-springtide-here]")?.dataset.springtideHere;

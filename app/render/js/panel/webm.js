@@ -4,13 +4,13 @@
 // an element of the segment's information, in units of its timestamp scale.
 
 const EBML = 0x1a45dfa3, SEGMENT = 0x18538067, INFO = 0x1549a966, SCALE = 0x2ad7b1, DURATION = 0x4489;
-const UNIT = 1e6; // [ns] of the timestamps, if nothing is said of them
+const UNIT = 1e6; // [ns] default unit of the timestamps
 const ADDED = 11; // bytes of a duration: identifier, size, and a number of double precision
 
 /** @typedef {{ id: number, at: number, data: number, end: number, width: number }} Element */
 
-// The element at a place: { id, at: of its size, data: where its data begins, end, width: bytes of its size }. A size that is not
-// known ends with the bytes. Null past the last one.
+// The element at a place: { id, at: of its size, data: start of its data, end, width: bytes of its size }. An unknown size
+// extends to the last byte. Null after the last element.
 /** @param {Uint8Array} bytes @param {number} start @returns {Element | null} */
 function elementAt(bytes, start) {
   const long = Math.clz32(bytes[start]) - 23, at = start + long, width = Math.clz32(bytes[at]) - 23;
@@ -28,7 +28,7 @@ function elementAt(bytes, start) {
 /** @param {Uint8Array<ArrayBuffer>} bytes @param {number} seconds */
 export function withDuration(bytes, seconds) {
   const head = elementAt(bytes, 0), segment = head?.id === EBML ? elementAt(bytes, head.end) : null;
-  // Its size has to be unknown, and no table of places may come before the information: both would no longer be true.
+  // The segment's size has to be unknown, and no table of places may precede the information: both would become wrong.
   const info = segment?.id === SEGMENT && segment.end === bytes.length ? elementAt(bytes, segment.data) : null;
   if (info?.id !== INFO || info.end > bytes.length) return bytes;
   let scale = UNIT;

@@ -2,8 +2,8 @@
 // pixel in the photograph of the sky: these are a quarter of the cost of a cloth. Spherical harmonics: R. Ramamoorthi,
 // P. Hanrahan, "An efficient representation for irradiance environment maps", SIGGRAPH 2001.
 //
-// The photograph is read once, beside the page: to wait for it would be to wait for all that is drawn before. Without float
-// targets, or if the program does not link, three's own lookups stay.
+// The photograph is read once, asynchronously: waiting would mean waiting for all earlier drawing. Without float targets, or if
+// the program does not link, three's own lookups stay.
 
 import { startedViewer } from "../core/viewer.js";
 import { drawTable, makeTable, TARGET_VERTEX } from "../sea/sky_table.js";
@@ -13,7 +13,7 @@ import { insertAfter, replaceShader } from "../shading/shaders.js";
 import { FLOAT, NEAREST, RGBA } from "../shading/three.js";
 
 const AMBIENT = "springtide-ambient"; // key of viser's shader with this light
-const ROUGH = 0.9; // roughness, from which on a reflection is as blurred as this light
+const ROUGH = 0.9; // roughness above which a reflection is as blurred as this light
 const DIRECTIONS = 256, GOLDEN_ANGLE = Math.PI * (3 - Math.sqrt(5)); // evenly over all directions, along a spiral
 const MEAN_SQUARES = [1, 1 / 3, 1 / 3, 1 / 3, 1 / 15, 1 / 15, 1 / 15, 4 / 15, 4 / 5]; // of the terms below
 const SKY_SAMPLES_FRAGMENT = `
@@ -41,7 +41,7 @@ export const AMBIENT_GLSL = `
   #define getIBLIrradiance(normal) (PI * envMapIntensity * skyLight(normal))
   #define getIBLRadiance(view, normal, roughness) (envMapIntensity * skyLight(normal))`;
 
-// At the lowest quality nothing mirrors: suns and sky light matt surfaces, and of the sky the first four terms do.
+// At the lowest quality nothing mirrors: suns and the first four terms of the sky light matt surfaces.
 const MATT_GLSL = `
   #undef STANDARD
   #define LAMBERT
@@ -58,7 +58,7 @@ export const skyTerms = { value: null }; // the nine terms, and the least light 
 const LIKELY_SKY = [0.7, 0.75, 0.8]; // until the photograph is read
 export let skiesRead = 0; // frames.js draws when it changes
 let isReading = false; // true while the photograph is on its way from the graphics card
-// True if rough surfaces still have a light that is not of the visible sky.
+// True if the light of rough surfaces is not that of the visible sky yet.
 export const awaitsLight = () => isReading;
 /** @type {Float32Array | null} */
 let photographed = null; // the light of the photograph in DIRECTIONS, red, green, blue and one more number each
@@ -109,15 +109,15 @@ function readSky(renderer, scene, mesh) {
     take();
   } else {
     isReading = true;
-    renderer.readRenderTargetPixelsAsync(...asked).then(take, () => (isReading = false)); // it fails where the context is lost
+    renderer.readRenderTargetPixelsAsync(...asked).then(take, () => (isReading = false)); // it fails if the context is lost
   }
 }
 
-const CLEAR_OF_LAND = 0.5; // sine of the elevation from which on land has no share in the light of the photograph
-const SEA_LIGHT = 0.3; // of the sky that comes back from the sea
+const CLEAR_OF_LAND = 0.5; // sine of the elevation above which land does not contribute to the photograph's light
+const SEA_LIGHT = 0.3; // fraction of the sky's light that the sea returns
 
-// The light in DIRECTIONS on what stands in a sea, from that of the photograph, which was taken on land: below a grey sky it is
-// grey, and where land would be it is that of sky and sea. uniforms: of the sea.
+// The light in DIRECTIONS on bodies in a sea, from that of the photograph, which was taken on land: sky and sea replace the
+// land, and under a grey sky the light is grey. uniforms: of the sea.
 /** @param {Float32Array} numbers @param {three.Uniforms} uniforms */
 export function overSea(numbers, { skyTint, clouds }) {
   /** @type {number[]} */
@@ -172,11 +172,11 @@ export function setTerms(numbers) {
   least.max(color.set(0, 0, 0));
 }
 
-// True if a material is lit so. At the lowest quality everything is.
+// True if a material has this light. At the lowest quality all have.
 /** @param {three.Material} material */
 export const isRough = ({ roughness }) => roughness >= ROUGH || QUALITY.details() === 0;
 
-// Light viser's own meshes so; those with a shader of ours ask for it themselves. uniforms: of the sea that is drawn, or null.
+// Give viser's own meshes this light; those with our shaders request it themselves. uniforms: of the sea that is drawn, or null.
 /** @param {three.Renderer} renderer @param {three.Scene} scene @param {three.Uniforms | null} uniforms */
 export function lightMeshes(renderer, scene, uniforms) {
   /** @type {three.Material[]} */

@@ -1,5 +1,5 @@
-// The contact shadow of "<name>" where there is a "<name>/contact_shadow": its mesh once more, flattened on the floor and
-// dark where it is near to it. The floor's own shadow is equally dark at every height.
+// The contact shadow of "<name>" if there is a "<name>/contact_shadow": a copy of its mesh, flattened on the floor and dark where
+// the mesh is near it. The floor's own shadow is equally dark at every height.
 
 import { startedViewer } from "../core/viewer.js";
 import { meshOf, replaceShader } from "../shading/shaders.js";
@@ -19,7 +19,7 @@ const CONTACT_FRAGMENT = `
   void main() { gl_FragColor = vec4(0.0, 0.0, 0.0, vDark); }`;
 
 /** @type {Map<string, { mesh: three.Mesh, shadow: three.Mesh }>} */
-const contacts = new Map(); // name of the node -> { mesh, shadow }: viser's mesh and the one on the floor
+const contacts = new Map(); // name of the node -> { mesh, shadow }: viser's mesh and its copy on the floor
 
 /** @param {string} base @param {three.Mesh} shadow */
 function removeContact(base, shadow) {

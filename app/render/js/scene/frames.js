@@ -1,8 +1,8 @@
 // Draws a frame only if something in it has changed since the last one, and one frame at a time.
 //
 // viser draws once a second in any case, and for a quarter of a second after each request. Here `render` of its renderer
-// compares what the frame is made of with the last one, and returns early if both are equal: the canvas keeps its pixels.
-// Frames for clips and for images that the server asks for are always drawn.
+// compares the inputs of the frame with those of the last one, and returns early if they are equal: the canvas keeps its
+// pixels. Frames for clips and for images for the server are always drawn.
 //
 // Of three this file uses the renderer's render and setSize, the versions of attributes, materials and textures, and the
 // values of materials and uniforms. Anything that it cannot compare counts as changed.
@@ -17,9 +17,9 @@ import { BOTH_SIDES } from "../shading/three.js";
 import { wrapMethod } from "../shading/wrap.js";
 import { awaitsLight, skiesRead } from "./ambient.js";
 
-const SMALL = 16384; // numbers up to which a texture is compared itself: viser counts that of labels on in each frame
-const LONG_FRAME = 100; // [ms] from which on a frame leaves time for the panel
-const FRAMES_LEFT = 2; // to the panel after its user has pressed something in it
+const SMALL = 16384; // size up to which a texture's numbers are compared: viser increments the version of labels in each frame
+const LONG_FRAME = 100; // [ms] of a frame, above which time is left for the panel
+const FRAMES_LEFT = 2; // left to the panel after a press in it
 
 /** @typedef {unknown[] & { textures: Set<object> }} Inputs */
 
@@ -33,7 +33,7 @@ function addValue(list, value) {
     if (list.textures.has(value)) return; // labels share one
     list.textures.add(value);
     if (numbers?.length <= SMALL) for (const number of numbers) list.push(number);
-    else list.push(value.enqueueUpdate ? {} : value.version, numbers); // of instances: its version does not tell
+    else list.push(value.enqueueUpdate ? {} : value.version, numbers); // of instances: its version does not change
   } else if (value?.toArray) for (const number of value.toArray()) list.push(number);
   else if (Array.isArray(value) || (isNumbers(value) && value.length <= SMALL)) {
     for (const one of value) addValue(list, one);
@@ -50,7 +50,7 @@ function addAttribute(list, attribute) {
 
 /** @param {Inputs} list @param {any} object of any class */
 function addObject(list, object) {
-  if (object.userData.springtideDerived) return; // it follows from the others
+  if (object.userData.springtideDerived) return; // derived from the others
   const { geometry, material } = object;
   list.push(object, object.visible, object.renderOrder, geometry);
   if (object.matrixAutoUpdate) for (const part of ["position", "quaternion", "scale"]) addValue(list, object[part]);
@@ -70,14 +70,14 @@ function addObject(list, object) {
     addAttribute(list, geometry.index);
     list.push(geometry.drawRange.start, geometry.drawRange.count, geometry.instanceCount, object.count);
     for (const name of ["instanceMatrix", "instanceColor"]) {
-      // viser counts its version on in each frame
+      // viser increments its version in each frame
       if (object[name]?.array.length <= SMALL) addValue(list, object[name].array);
       else addAttribute(list, object[name]);
     }
     for (const name of ["matricesTexture", "colorsTexture", "uniformsTexture"]) addValue(list, object[name]);
   }
   for (const one of material ? [material].flat() : []) {
-    // three itself counts on the version of a material that it draws in two passes.
+    // three increments the version of a material that it draws in two passes.
     const unread = one.transparent && one.side === BOTH_SIDES && !one.forceSinglePass ? ["uniforms", "version"] : ["uniforms"];
     for (const name in one) {
       if (!unread.includes(name) && typeof one[name] !== "function") addValue(list, one[name]);
@@ -87,7 +87,7 @@ function addObject(list, object) {
   }
 }
 
-// All that a frame of the page depends on, as a list of numbers and objects.
+// All inputs of a frame, as a list of numbers and objects.
 /** @param {three.Renderer} renderer @param {three.Scene} scene @param {three.Camera} camera */
 function inputsOf(renderer, scene, camera) {
   const { domElement: canvas, toneMapping, toneMappingExposure, outputColorSpace, shadowMap } = renderer;
@@ -114,15 +114,15 @@ function inputsOf(renderer, scene, camera) {
 export function paceFrames(renderer, life) {
   const gl = renderer.getContext(), keepsPixels = gl.getContextAttributes()?.preserveDrawingBuffer;
   /** @type {Inputs | null} */
-  let last = null; // the inputs of the frame that the canvas shows
+  let last = null; // the inputs of the frame on the canvas
   /** @type {{ fence: WebGLSync | null, compiled: boolean } | null} */
-  let drawing = null; // of that frame while it is being drawn: its fence, and whether it had a new program
+  let drawing = null; // of that frame until it is drawn: its fence, and whether it has a new program
   let isWhole = false; // true if that frame has its sky, its light, and all of its shaders
-  let finishedWhole = false; // true if the last drawn frame had, and none has begun without since
+  let finishedWhole = false; // true if the last drawn frame had, and no frame without them has begun since
   let length = 0; // [ms] of it
-  let started = 0, pressed = 0, left = 0; // when it began, when something in the panel was pressed, frames left to the panel
+  let started = 0, pressed = 0, left = 0; // time of its start, time of the last press in the panel, frames left to the panel
 
-  // True if the last frame is drawn. Its length is the time until the page gets its next one.
+  // True if the last frame is drawn. Its length is the time until the browser's next frame.
   function isDrawn() {
     if (!drawing) return true;
     const { fence, compiled } = drawing;
@@ -135,7 +135,7 @@ export function paceFrames(renderer, life) {
     return true;
   }
 
-  // The graphics process draws on its own: without waiting for it, the panel would stand behind several frames.
+  // The graphics process draws by itself: without this wait, the panel would queue behind several frames.
   /** @param {boolean} compiled */
   function awaitEnd(compiled) {
     if (drawing) gl.deleteSync(drawing.fence); // a new size is drawn at once
@@ -147,7 +147,7 @@ export function paceFrames(renderer, life) {
     requestAnimationFrame(look);
   }
 
-  // True if the next frame has to wait: for the last one, or for the panel to show what was pressed in it.
+  // True if the next frame has to wait, for the last one or for the panel to respond to a press.
   function hasToWait() {
     if (!isDrawn()) return true; // in some frames this comes before `look`
     if (length < LONG_FRAME || pressed < started || left >= FRAMES_LEFT) return false;
@@ -155,7 +155,7 @@ export function paceFrames(renderer, life) {
     return true;
   }
 
-  // The cover goes then. In software a frame is being drawn at nearly every moment.
+  // The cover then goes. In software a frame is nearly always being drawn.
   springtide.showsWhole = () => (drawing ? finishedWhole : isWhole);
   let knownPrograms = ""; // with the last frame
   const programs = () => `${renderer.info.programs?.at(-1)?.id} ${programsReady}`;
@@ -197,7 +197,7 @@ export function paceFrames(renderer, life) {
   life.listen(document, ["pointerdown", "keydown", "input"], press, { capture: true, passive: true });
 }
 
-// viser fades the canvas in over the first frames after its sky is there: many seconds where frames are slow.
+// viser fades the canvas in over the first frames with its sky, which takes many seconds if frames are slow.
 /** @param {three.Renderer} renderer @param {three.Scene} scene */
 export function makeOpaque(renderer, scene) {
   if (scene.environment) renderer.domElement.style.opacity = "1";

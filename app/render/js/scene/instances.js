@@ -1,6 +1,5 @@
-// The instances of a mesh after the graphics context was lost. viser's class for them makes a buffer of indices, and remembers
-// programs of materials, by itself, so that three does not know that they are gone. Where a new viser has other names, nothing
-// is done.
+// Restores the instances of a mesh after a lost graphics context. viser's class for them makes its own buffer of indices and
+// remembers programs of materials, whose loss three does not notice. If a new viser has other names, nothing is done.
 
 import { contextNumber } from "../shading/context.js";
 

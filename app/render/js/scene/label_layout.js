@@ -1,7 +1,7 @@
 // Places of labels: one that would cover another is raised above it.
 
 const GAP = 0.15; // between two labels, in heights of a label
-const MAX_RAISE = 12; // [heights of a label] by which one is raised: one that had to be higher is hidden
+const MAX_RAISE = 12; // [heights of a label] by which one is raised at most; a label that needs more is hidden
 
 // The shift of each label upwards, in label heights, so that no two overlap; null for a hidden label.
 // labels: the lowest first; in coordinates of the picture.

@@ -1,12 +1,12 @@
 // Labels on a separate canvas over the picture: at the full resolution of the screen at every quality, without overlaps.
 //
-// A label that would cover another is raised above it, and a line leads down to its place. Pictures and clips
-// contain the labels, and so does the page if this script does not run.
+// A label that would cover another is raised above it, with a line down to its place. Images and clips contain the labels, and
+// so does the page without this script.
 //
 // Of viser this file uses the meshes of its labels, which stand in one group: those with the uniform uLabelData, a texture
 // of four numbers for each label, its place and whether it is visible; and of the mesh of their backgrounds the attributes
-// aLabelIndex, aRect and aParams, which its vertex shader explains. Labels with a size in the scene stay where they are:
-// they shrink with what they stand at.
+// aLabelIndex, aRect and aParams, which its vertex shader explains. Labels with a size in the scene stay in place: they shrink
+// with their objects.
 
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
@@ -32,9 +32,9 @@ let labelGroup = null; // of viser's meshes
 /** @type {three.Mesh | null} */
 let leaders = null; // the mesh of all lines
 /** @type {three.Renderer | false | null} */
-let overlay = null; // the renderer of the canvas over the picture; false where the browser gives none
+let overlay = null; // the renderer of the canvas over the picture; false if the browser refuses one
 /** @type {Map<number, [from: number[], to: number[]]>} */
-let raised = new Map(); // index of a raised label -> where viser has it, and where it is drawn, [x, y, z] each
+let raised = new Map(); // index of a raised label -> its place in viser, and its drawn place, [x, y, z] each
 
 /** @param {three.Scene} scene */
 function findLabels(scene) {
@@ -72,7 +72,7 @@ function labelBoxes({ geometry, material }, camera) {
   for (let k = 0; k < geometry.instanceCount; k++) {
     const index = aLabelIndex.getX(k), at = 4 * index, [from, to] = raised.get(index) ?? [];
     if (!numbers[at + 3] || aParams.getX(k) < 0.5) continue;
-    // Where viser has not written since, the label is still where it was raised to.
+    // Unless viser has written since, the label is still at its raised place.
     if (to?.every((number, axis) => number === numbers[at + axis])) numbers.set(from, at);
     const place = camera.position.clone().fromArray(numbers, at), { x, y } = place.clone().project(camera);
     const depth = -place.clone().applyMatrix4(camera.matrixWorldInverse).z;
@@ -135,7 +135,7 @@ function drawLeaders({ geometry, material, renderOrder, constructor }, lines) {
   for (const attribute of [aLabelIndex, aParams, aRect]) attribute.needsUpdate = true;
 }
 
-// The renderer of the canvas over the picture, of the same size; null where the browser gives none.
+// The renderer of the canvas over the picture, of the same size; null if the browser refuses one.
 /** @param {three.Renderer} renderer */
 function overlayOf(renderer) {
   const picture = renderer.domElement, { clientWidth: width, clientHeight: height } = picture;
@@ -161,7 +161,7 @@ function makeOverlay(renderer) {
   } catch {
     return false;
   }
-  canvas.removeAttribute("data-engine"); // by which one finds the canvas of the picture
+  canvas.removeAttribute("data-engine"); // which identifies the canvas of the picture
   canvas.springtideRenderer = made;
   followContext(made, page);
   return made;
@@ -172,7 +172,7 @@ function makeOverlay(renderer) {
 export function dressLabels(renderer, scene, camera) {
   const meshes = findLabels(scene);
   if (!labelGroup || !meshes.length) return;
-  // A smaller texture (Firefox that resists fingerprinting) is shrunk by three, and labels would stand anywhere.
+  // three shrinks the texture if the browser allows only small ones (Firefox resisting fingerprinting): labels would be wrong.
   labelGroup.visible = renderer.capabilities.maxTextureSize >= LABEL_TEXTURE;
   if (!labelGroup.visible) return;
   darkenLabels(meshes);

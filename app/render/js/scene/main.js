@@ -1,9 +1,9 @@
-// Draws the scene: replaces the shaders of stock viser's meshes, once per frame, for every node that asks for it.
+// Draws the scene: replaces the shaders of viser's meshes, once per frame, for every node that requests it.
 //
-// A node asks by a hidden child mesh with the suffix of a shader: "/rope" has a colour at each vertex if there is a
-// "/rope/vertex_colors". Everything that changes travels as vertices, so that new scenes, browsers that connect later
-// and recordings need no further script. A lab that draws by viser's public interface alone has a panel without the field
-// for reports: there nothing is replaced.
+// A node requests a shader by a hidden child mesh with its suffix: "/rope" has a colour at each vertex if there is a
+// "/rope/vertex_colors". All data travels as vertices, so that new scenes, browsers that connect later and recordings need no
+// further script. A lab that draws by viser's public interface alone has a panel without the field for reports: there
+// nothing is replaced.
 
 import { Life, page } from "../core/life.js";
 import { beforeRender } from "../core/render_hook.js";
@@ -29,7 +29,7 @@ import { vertexColors } from "./vertex_colors.js";
 
 // Each shader: { suffix, unpack(node), update(context), removeUnused() }. `unpack` (optional) brings the vertices up to
 // date before the camera of the frame is placed. `update` is called for each node with that suffix. It
-// returns the material that has the shader, or null. `removeUnused` (optional) disposes of what removed nodes left.
+// returns the material that has the shader, or null. `removeUnused` (optional) disposes of the resources of removed nodes.
 /** @type {NodeShader[]} */
 const SHADERS = [vertexColors, openWater, contact, water, rain];
 
@@ -37,14 +37,14 @@ let drawn = "", reported = "";
 const field = () => document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders;
 const isPlain = () => !field() && document.querySelector(".springtide-panel[data-state]") !== null;
 
-// Report the names of the nodes that are drawn with their shader, once to each field of each connection and whenever they
-// change. Each scene has its own field.
+// Report the names of the nodes that are drawn with their shader, once to each field of each connection and after each change.
+// Each scene has its own field.
 function report() {
   const now = `${connectionNumber()} ${field()}\n${drawn}`;
   if (field() && reported !== now && send(field(), `${PAGE}\n${drawn}`)) reported = now;
 }
 
-// Call a function for each shader and node that asks for it: { base, mesh, data }.
+// Call a function for each shader and each node that requests it: { base, mesh, data }.
 /** @param {(shader: NodeShader, node: ShadedNode) => void} call */
 function forEachShaded(call) {
   const nodes = startedViewer().nodeRefFromName;
@@ -58,7 +58,7 @@ function forEachShaded(call) {
 }
 
 /** @type {{ renderer: three.Renderer, life: Life } | null} */
-let current = null; // the renderer, and the life of what is made for it
+let current = null; // the renderer, and the life of its resources
 
 /** @param {three.Renderer} renderer @param {three.Scene} scene */
 function follow(renderer, scene) {

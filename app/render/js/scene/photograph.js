@@ -1,9 +1,9 @@
-// The photograph of the sky: a smaller copy without a graphics card, another one after the graphics context was lost, and a
-// sky by formula where the browser does not draw into floats, as viser does with the photograph.
+// The photograph of the sky: a smaller copy without a graphics card, a new one after a lost graphics context, and a sky by
+// formula if the browser cannot draw into floats, as viser does with the photograph.
 //
 // Before three draws with a photograph, it blurs it for reflections. In software this takes four seconds for 1024 x 512
-// pixels, and half a second for the copy. viser draws the photograph once, so that it is lost with the context: its numbers
-// are read once, beside the page, and it is made of them again.
+// pixels, and half a second for the copy. viser draws the photograph only once, and a lost context takes it away: so its
+// numbers are read once, asynchronously, to restore it from them.
 
 import { toHalf } from "../sea/half_floats.js";
 import { contextNumber, drawsFloats } from "../shading/context.js";
@@ -12,19 +12,19 @@ import { BLURRED_CUBE, FLOAT, HALF_FLOAT, LINEAR } from "../shading/three.js";
 import { blurredCube, ROOM } from "./formula_sky.js";
 
 const SMALL_SKY = 256; // [pixels] width of the copy; the table of the sky has as many columns
-const KEPT_SKY = 512; // [pixels] width, at most, of what is made again
+const KEPT_SKY = 512; // [pixels] greatest width of the restored photograph
 /** @type {WeakMap<three.Texture, three.Texture | null>} */
-const smallerCopies = new WeakMap(); // photograph or copy -> copy of half its width; null where it cannot be made
+const smallerCopies = new WeakMap(); // photograph or copy -> copy of half its width; null if it cannot be made
 /**
- * Of a photograph or copy. context: number of the one that it was drawn in; again: the texture made of what is kept.
+ * Of a photograph or copy. context: number of the context that it was drawn in; again: the restored texture.
  * @typedef {{ numbers: Uint16Array, width: number, height: number }} Kept
  * @typedef {{ context: number, kept: Kept | null, again: three.Texture | null }} State
  */
 /** @type {WeakMap<three.Texture, State>} */
 const known = new WeakMap();
 
-// A copy of half the width, in another target. Of three this uses the frame buffer of a target, which is missing if another
-// renderer has drawn it: then it is null.
+// A copy of half the width, in another target. Of three this uses the frame buffer of the target; null if it is missing because
+// another renderer has drawn it.
 /** @param {three.Renderer} renderer @param {three.Texture} larger @param {number} type */
 function halve(renderer, larger, type = larger.type) {
   const { renderTarget, image, mapping, format } = larger, gl = renderer.getContext();
@@ -41,7 +41,7 @@ function halve(renderer, larger, type = larger.type) {
   renderer.state.bindFramebuffer(gl.READ_FRAMEBUFFER, null);
   renderer.setRenderTarget(before);
   larger.addEventListener("dispose", () => {
-    texture.dispose(); // and what is made of it
+    texture.dispose(); // and the textures derived from it
     target.dispose();
   });
   return texture;
@@ -61,7 +61,7 @@ function keepNumbers(renderer, photograph, state) {
     state.kept = { numbers: Uint16Array.from(floats, toHalf), width, height };
     target.dispose();
   };
-  // It fails where the context is lost.
+  // It fails if the context is lost.
   renderer.readRenderTargetPixelsAsync(target, 0, 0, width, height, floats).then(take, () => {});
 }
 
@@ -75,7 +75,7 @@ function textureOf(photograph, { numbers, width, height }) {
   return made;
 }
 
-// Put one texture in the place of another wherever the scene has it.
+// Replace a texture by another throughout the scene.
 /** @param {three.Scene} scene @param {three.Texture} photograph @param {three.Texture} other */
 function replace(scene, photograph, other) {
   if (scene.environment === photograph) scene.environment = other;
@@ -90,7 +90,7 @@ function stateOf(renderer, photograph) {
     state = { context: contextNumber(), kept: null, again: null };
     const own = state, { renderTarget } = photograph;
     known.set(photograph, state);
-    // viser disposes of the texture only, which leaves the target that it has drawn it into.
+    // viser disposes only of the texture, not of the target that it was drawn into.
     photograph.addEventListener("dispose", () => {
       renderTarget?.dispose();
       own.again?.dispose();
@@ -101,7 +101,7 @@ function stateOf(renderer, photograph) {
 }
 
 /** @type {{ key: string, texture: three.Texture } | null} */
-let formed = null; // the sky by formula that is shown
+let formed = null; // the sky by formula in use
 
 // The sky by formula in the place of a photograph, or of the last one.
 /** @param {three.Texture} photograph @param {SkyColors} sky */
@@ -114,8 +114,8 @@ function formSky(photograph, sky) {
   return formed.texture;
 }
 
-// Give the scene the smaller copy, the same at all qualities, since another size would need other programs; and the one that
-// is made again where the photograph is lost.
+// Give the scene the smaller copy, the same at all qualities since another size would need other programs, or the restored
+// photograph if it was lost.
 /** @param {three.Renderer} renderer @param {three.Scene} scene @param {SkyColors | null} sky */
 export function preparePhotograph(renderer, scene, sky) {
   if (scene.environment && !drawsFloats(renderer)) {

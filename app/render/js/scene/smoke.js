@@ -1,8 +1,8 @@
 // Smoke and flames with rough edges: viser's splats, eroded by noise of two sizes, and smoke with a sunny side.
 //
-// viser draws all splats of a scene as one mesh, made when the first come and made anew when their number changes. Of
-// that material this file uses the names of some uniforms and variables, the varyings vRgba and vPosition, and the lines
-// that make place, opacity and colour; where a new viser has other ones, splats are drawn as viser draws them.
+// viser draws all splats of a scene as one mesh, which it makes anew when their number changes. Of its material this file uses
+// the names of some uniforms and variables, the varyings vRgba and vPosition, and the lines that compute place, opacity and
+// colour. If a new viser differs, splats are drawn as viser draws them.
 
 import { uniformsByName } from "../sea/water.js";
 import { keyWithDetails, QUALITY } from "../shading/quality.js";

@@ -1,14 +1,14 @@
-// One light with one shadow for each sun. viser makes three for it, whose shadows reach to different distances, and
-// every pixel is lit by all three: a frame of the rope takes nearly twice as long. The middle one, which reaches about
-// 15 m around, is enough for a rope or a cloth.
+// One light with one shadow for each sun. viser makes three of them, with shadows to different distances, and all three light
+// every pixel: a frame of the rope takes nearly twice as long. The middle one, which reaches about 15 m around, is enough
+// for a rope or a cloth.
 //
-// Of viser this file uses that the lights of one sun are children of the scene and share one colour object; where a new
-// viser makes others, they are drawn as viser draws them.
+// Of viser this file uses that the lights of one sun are children of the scene and share one colour object. If a new viser
+// differs, its lights stay.
 
 /** @param {three.Scene} scene */
 export function drawOneLightOfEachSun(scene) {
   /** @type {Map<three.Color, three.Light[]>} */
-  const suns = new Map(); // colour object -> its lights, from the one of the nearest shadow
+  const suns = new Map(); // colour object -> its lights, the one with the nearest shadow first
   for (const light of /** @type {three.Light[]} */ (/** @type {three.Object3D[]} */ (scene.children))) {
     if (!light.isDirectionalLight || !light.castShadow || !light.visible) continue;
     suns.set(light.color, [...(suns.get(light.color) ?? []), light]);

@@ -1,4 +1,4 @@
-// Meshes that are drawn for a sea beside viser's own.
+// Meshes drawn for a sea in addition to viser's own.
 
 // A triangle that covers the view.
 /** @param {Beside} sea */

@@ -1,9 +1,9 @@
-// Half-precision numbers, which the graphics processor takes as they are: half the bytes, and nothing for the driver to do.
+// Half-precision numbers, which the graphics processor reads directly: half the bytes, and no work for the driver.
 
 const oneFloat = new Float32Array(1), itsBits = new Uint32Array(oneFloat.buffer);
 const SMALLEST_NORMAL = 2 ** -14, SUBNORMAL_STEP = 2 ** -24, LARGEST_HALF = 0x7bff; // 65504
 
-// The bits of the half-precision number next to a number, of two the even one. Larger numbers become the largest.
+// The bits of the nearest half-precision number, the even one of two. Larger numbers become the largest.
 /** @param {number} number */
 export function toHalf(number) {
   oneFloat[0] = number;
@@ -15,14 +15,14 @@ export function toHalf(number) {
   return sign | Math.min((size - 0x38000000 + 0x0fff + ((size >>> 13) & 1)) >>> 13, LARGEST_HALF);
 }
 
-// The number of such bits, which are not of an infinite one.
+// The number for such bits, which must be finite.
 /** @param {number} half */
 export function fromHalf(half) {
   const exponent = (half >>> 10) & 0x1f, digits = half & 0x3ff, sign = half & 0x8000 ? -1 : 1;
   return sign * (exponent > 0 ? 2 ** (exponent - 25) * (1024 + digits) : SUBNORMAL_STEP * digits);
 }
 
-// The means of 2 x 2 texels of four numbers each: the next smaller copy of a texture.
+// The means of 2 x 2 texels of four numbers each: the next mipmap of a texture.
 /** @param {Uint16Array} halves @param {number} width @param {number} height */
 export function halvedTexture(halves, width, height) {
   const [wide, high] = [Math.max(width >> 1, 1), Math.max(height >> 1, 1)], small = new Uint16Array(4 * wide * high);

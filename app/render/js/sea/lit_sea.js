@@ -1,9 +1,9 @@
 // The light of a sea, found once for each pixel of the canvas.
 //
 // A graphics processor shades at least 2 x 2 pixels for each triangle, and also waves that nearer ones hide later. So the
-// polar grid first writes which place of the sea each pixel shows, tiles of the canvas find the light of these places, and the
-// grid is drawn once more with these colours, with all samples of the canvas along its edges. This needs the table of the
-// sky (sky_table.js), which shows that the browser draws into floats; elsewhere the grid itself is shaded.
+// polar grid first writes the place of the sea in each pixel, tiles of the canvas compute the light of these places, and the
+// grid is drawn again with these colours, with all samples of the canvas along its edges. This needs the table of the
+// sky (sky_table.js), which shows that the browser can draw into floats; otherwise the grid itself is shaded.
 
 import { keyWithDetails } from "../shading/quality.js";
 import { disposeMaterials, dress, isLinked } from "../shading/shaders.js";
@@ -15,8 +15,8 @@ import { POLAR_GLSL, TILE, TILE_GLSL, WATER_GLSL, WATER_LIGHT, WATER_PLACE, WATE
 
 export const PLACED = "#define PLACED\n"; // for WATER_VERTEX
 
-// The vertices of the polar grid, once for both times that it is drawn. Of the columns, even ones have where a vertex is, and
-// odd ones where it rests.
+// The vertices of the polar grid, computed once for both drawings. Even columns hold the place of a vertex, odd ones its place at
+// rest.
 const VERTICES_FRAGMENT = `
   ${POLAR_GLSL}
   void main() {
@@ -101,7 +101,7 @@ function makeLit(sea) {
   return { corners, grid, triangle, light, tiles: null, ...targets, size: "" };
 }
 
-// Two triangles for each tile: its column, its row, and which of its corners.
+// Two triangles for each tile: its column, its row, and a number for each corner.
 /** @param {Sea} sea @param {number} columns @param {number} rows */
 function makeTiles(sea, columns, rows) {
   const count = columns * rows, numbers = new Float32Array(12 * count), index = new Uint32Array(6 * count);
@@ -151,7 +151,7 @@ function resizeLit(base, sea, lit, width, height) {
   [uniforms.seaTiles.value, uniforms.seaLight.value] = [lit.counts.texture, lit.lights.texture];
 }
 
-// Find the light of every pixel of the sea: false where this browser cannot, null while it compiles the programs.
+// Compute the light of every pixel of the sea: false if this browser cannot, null while it compiles the programs.
 /**
  * @param {string} base @param {GriddedSea} sea @param {three.Renderer} renderer
  * @param {three.Scene} scene @param {three.Camera} camera @param {Variant} shape @param {Variant} light

@@ -1,8 +1,9 @@
-// Open water around what is seen through its surface, for a mesh of the surface with a child "<name>/open_water": sky, sea
-// to the horizon and deep water behind everything; the surface, which mirrors the sky the more the flatter one looks at
-// it, with foam around a body; and on the bed (underwater.js) the shadow of that body, and dark water at its ends.
+// Open water around a scene seen through its surface, for a mesh of the surface with a child "<name>/open_water": sky, sea to
+// the horizon and deep water behind everything; the surface, which mirrors more of the sky at grazing angles, with foam
+// around a body; and on the bed (underwater.js) the shadow of that body, and dark water at its ends.
 //
-// The child's vertices are the uniform below, in the frame of the nodes, z up. The colours are those of the screen.
+// The child's vertices are the uniform below, but with the body in the frame of the nodes, z up. The colours are those of
+// the screen.
 
 import { insertAfter, meshOf, replaceShader } from "../shading/shaders.js";
 import { makeDome } from "./dome.js";
@@ -17,9 +18,9 @@ const OPEN_VERTEX = `
   }`;
 const OPEN_GLSL = `
   uniform float openTime;
-  // Half side of the surface, depth, size of the scene [m]; x, y, heading of the body; its half sides, corner.
+  // Half side of the surface, depth, size of the scene [m]; x, z, heading of the body; its half sides, corner.
   uniform vec3 openWater[3];
-  const vec3 DEEP = vec3(0.035, 0.165, 0.255), LIT = vec3(0.36, 0.62, 0.70), SUN = vec3(-0.50, 0.30, -0.81);
+  const vec3 DEEP = vec3(0.035, 0.165, 0.255), LIT = vec3(0.36, 0.62, 0.70), SUN = vec3(-0.89, 0.30, 0.34);
   // Noise of mean 1/2 between random numbers at whole places, and its two slopes.
   vec3 noiseAndSlope(vec2 p) {
     vec2 i = floor(p), f = p - i, u = f * f * (3.0 - 2.0 * f), du = 6.0 * f * (1.0 - f);
@@ -53,14 +54,20 @@ const OPEN_GLSL = `
   // The normal of the surface with ripples, which are lost in the distance [m].
   vec3 rippled(vec3 normal, vec2 p, float away, float t) {
     vec2 q = 40.0 * p / openWater[0].z;
-    vec2 slope = 0.8 * noiseAndSlope(0.7 * q + 0.7 * t).yz + 0.5 * noiseAndSlope(1.3 * q.yx - vec2(0.7, -0.8) * t).yz;
-    return normalize(normal + 0.22 * exp(-away / (4.0 * openWater[0].z)) * vec3(slope.x, 0.0, slope.y));
+    // Turned against each other, so that their squares are not seen.
+    const mat2 TURN = mat2(0.84, 0.54, -0.54, 0.84), TURN_2 = mat2(0.26, 0.97, -0.97, 0.26);
+    vec2 slope = 0.8 * TURN * noiseAndSlope(0.7 * q * TURN + 0.7 * t).yz
+      + 0.5 * TURN_2 * noiseAndSlope(1.3 * q * TURN_2 - vec2(0.7, -0.8) * t).yz;
+    return normalize(normal + 0.22 * exp(-away / (2.5 * openWater[0].z)) * vec3(slope.x, 0.0, slope.y));
   }
-  // The sky in the surface, seen along d from above, and the share of light that is mirrored.
+  // Sky and sun in the surface, seen along d from above, and how much they hide of what is below it.
   vec4 seaColor(vec3 d, vec3 normal) {
     vec3 up = reflect(d, normal);
     up.y = abs(up.y);
-    return vec4(mirroredSky(normalize(up)), min(mirrored(dot(-d, normal)), 0.75));
+    // Not quite edge on, or each crest would be a bright line.
+    float sky = min(mirrored(max(dot(-d, normal), -0.6 * d.y)), 0.75);
+    float glint = min(9.0 * sky * pow(max(dot(up, SUN), 0.0), 400.0), 0.9 - sky);
+    return vec4((sky * mirroredSky(up) + glint * vec3(1.0, 0.96, 0.86)) / (sky + glint), sky + glint);
   }
   // Visible part along d of a colour under water, through the level sea where its mesh does not draw it.
   vec3 seenThrough(vec3 color, vec3 d) {
@@ -74,9 +81,9 @@ const OPEN_GLSL = `
   }
   // Distance [m] of a level place to the outline of the body.
   float toBody(vec2 p) {
-    vec2 r = p - vec2(openWater[1].x, -openWater[1].y);
+    vec2 r = p - openWater[1].xy;
     float c = cos(openWater[1].z), s = sin(openWater[1].z);
-    r = abs(vec2(c * r.x - s * r.y, s * r.x + c * r.y)) - openWater[2].xy;
+    r = abs(vec2(c * r.x + s * r.y, c * r.y - s * r.x)) - openWater[2].xy;
     return length(max(r, 0.0)) + min(max(r.x, r.y), 0.0) - openWater[2].z;
   }`;
 const OPEN_FRAGMENT = `
@@ -99,17 +106,21 @@ const OPEN_SURFACE = `
   float size = openWater[2].y + openWater[2].z, beside = abs(toBody(vPlace.xz)) / size;
   float bubbles = noise(14.0 * vPlace.xz / size + 0.3 * openTime) + 0.5 * exp(-24.0 * beside);
   float foam = exp(-8.0 * beside) * smoothstep(0.3, 0.8, bubbles);
-  gl_FragColor = vec4(mix(sea.rgb, vec3(0.95, 0.97, 0.98), foam), max(sea.a, 0.9 * foam) * meshedShare);`;
+  // A slope that faces away is hidden behind its crest.
+  float faces = cameraPosition.y > vPlace.y ? smoothstep(0.0, 0.03, -dot(d, upwards)) : 1.0;
+  gl_FragColor = vec4(mix(sea.rgb, vec3(0.95, 0.97, 0.98), foam), max(sea.a, 0.9 * foam) * meshedShare * faces);`;
 // The same of the bed.
 const OPEN_BED = `
   vec2 sunwards = 0.35 * SUN.xz * openWater[0].y; // light under water falls steeply
   float shade = 1.0 - smoothstep(-0.02 * openWater[0].y, 0.10 * openWater[0].y, toBody(vPlace.xz + sunwards));
   gl_FragColor.rgb *= 1.0 - 0.55 * shade;
-  gl_FragColor.rgb = mix(gl_FragColor.rgb, DEEP, smoothstep(0.6, 0.98, length(vPlace.xz) / openWater[0].x));
+  // Lost in the water with the distance, sooner here and later there.
+  float off = length(vPlace.xz) / openWater[0].x + 0.22 * (noise(5.0 * vPlace.xz / openWater[0].x + 3.0) - 0.5);
+  gl_FragColor.rgb = mix(gl_FragColor.rgb, DEEP, smoothstep(0.30, 0.94, off));
   gl_FragColor.rgb = seenThrough(gl_FragColor.rgb, normalize(vPlace - cameraPosition));`;
 
-// Their shaders without three's lights, which cost more than all of this: the surface mirrors and does not use them, and on
-// the bed, which is level, they are one factor.
+// Their shaders without three's lights, which would cost more than everything here: the mirroring surface does not use them, and
+// on the level bed they are one factor.
 export const OPEN_BASE = {
   surface: `
   #include <common>
@@ -170,6 +181,10 @@ export const openWater = {
     const numbers = data.geometry.attributes.position.array;
     const vectors = (openUniforms.openWater.value ??= [0, 1, 2].map(() => mesh.position.clone()));
     vectors.forEach((vector, k) => vector.fromArray(numbers, 3 * k));
+    const [x, y, heading] = vectors[1].toArray(), { position } = mesh;
+    const at = mesh.localToWorld(position.clone().set(x, y, 0));
+    const ahead = mesh.localToWorld(position.clone().set(x + Math.cos(heading), y + Math.sin(heading), 0));
+    vectors[1].set(at.x, at.z, Math.atan2(ahead.z - at.z, ahead.x - at.x));
     openUniforms.openTime.value = WEB_STEP * mesh.geometry.attributes.position.version;
     openUniforms.farDepth.value = renderer.state.buffers.depth.getReversed() ? 0 : 1;
     if (openDome?.mesh !== mesh) {
@@ -181,6 +196,6 @@ export const openWater = {
       shader.vertexShader = `uniform float farDepth;\n${OPEN_VERTEX}`;
       shader.fragmentShader = OPEN_FRAGMENT;
     });
-    return null; // the surface has its colours by another child
+    return null; // the surface gets its colours from another child
   },
 };

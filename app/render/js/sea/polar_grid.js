@@ -4,14 +4,14 @@
 // level, and its rings double up to the horizon. The vertices are numbers of rings and spokes, which the shader places
 // (WATER_VERTEX). Rings are ordered from near to far, so that near waves hide far ones before these are shaded.
 
-const MAX_WAVES = 3000; // [m] from the eye up to which waves move vertices
+const MAX_WAVES = 3000; // [m] from the eye, within which waves move vertices
 const MAX_REACH = 2e5; // [m] of the last ring
 export const DOUBLED = 8; // rings from MAX_WAVES on
 const EDGE_SAMPLES = 8; // of each side of the view
 const HIGHEST = 0.05; // [rad] over the horizon up to which there may be waves
 const MIN_HALF = 0.2, MAX_HALF = 1.35; // [rad] half the angle of the fan
-const LEAST_STEP = 0.3; // step between the nearest rings, in cells of the simulated grid, if the eye is low
-const MANY_PIXELS = 600_000; // of a canvas, from which on triangles are smaller
+const LEAST_STEP = 0.3; // step between the nearest rings, in cells of the simulated grid, for a low eye
+const MANY_PIXELS = 600_000; // of a canvas, above which triangles are smaller
 // Rings with waves, spokes, and the step between rings over the distance from the eye, by `finenessOf`.
 export const POLAR = [
   { rings: 80, spokes: 40, step: 0.08 },
@@ -19,14 +19,14 @@ export const POLAR = [
   { rings: 240, spokes: 72, step: 0.03 },
 ];
 
-// Fineness of the grid for a canvas and details of the shaders, 0 to 2: a triangle of a few pixels costs as much as one of many.
+// Fineness of the grid for a canvas and details of the shaders, 0 to 2: a small triangle costs as much as a large one.
 /** @param {WebGL2RenderingContext} canvas @param {number} details */
 export function finenessOf({ drawingBufferWidth, drawingBufferHeight }, details) {
   if (details === 0) return 0;
   return drawingBufferWidth * drawingBufferHeight > MANY_PIXELS ? 2 : 1;
 }
 
-// Make the mesh of a sea as coarse or fine as this.
+// Set the fineness of a sea's mesh.
 /** @param {GriddedSea} sea @param {number} fineness */
 export function setFineness(sea, fineness) {
   const { rings, spokes } = POLAR[fineness], rows = rings + DOUBLED;
@@ -48,7 +48,7 @@ export function setFineness(sea, fineness) {
   sea.polar.userData.fineness = fineness;
 }
 
-// The border of what a camera sees as directions in the frame of the sea, up to HIGHEST, and where it meets the horizon.
+// The border of a camera's view as directions in the frame of the sea, up to HIGHEST, and its points on the horizon.
 /** @param {Sea} sea @param {three.Camera} camera */
 function viewBorder(sea, camera) {
   const v = sea.mesh.position.clone(), border = [], found = [];
@@ -69,7 +69,7 @@ function viewBorder(sea, camera) {
   return found;
 }
 
-// Place the grid for a camera, and draw as many of its rings as are needed.
+// Place the grid for a camera, and draw only the rings needed.
 /** @param {GriddedSea} sea @param {three.Camera} camera */
 export function aimPolar(sea, camera) {
   const { polar, uniforms } = sea, { rings, spokes, step } = POLAR[polar.userData.fineness ?? 0];
@@ -79,9 +79,9 @@ export function aimPolar(sea, camera) {
   /** @type {(x: number, y: number, z: number) => number[]} */
   const turned = (x, y, z) => v.set(x, y, z).transformDirection(uniforms.toSea.value).toArray();
   const up = turned(e[4], e[5], e[6]), ahead = turned(-e[8], -e[9], -e[10]);
-  // Ahead, and where the camera looks steeply up or down, what is up in its picture.
+  // Ahead, or if the camera looks steeply up or down, upwards in its picture.
   const middle = Math.atan2(ahead[1] - ahead[2] * up[1], ahead[0] - ahead[2] * up[0]);
-  // Where the border meets the highest and the lowest waves: [distance, angle from the middle].
+  // Intersections of the border with the highest and the lowest waves: [distance, angle from the middle].
   const points = [];
   for (const [x, y, z] of viewBorder(sea, camera)) {
     const flat = Math.hypot(x, y), turn = Math.atan2(y, x) - middle;
@@ -108,7 +108,7 @@ export function aimPolar(sea, camera) {
   const wide = Math.max(step, span / (rings - 2));
   const first = wide * Math.floor(ringOf(nearest) / wide), count = Math.ceil((ringOf(withWaves) - first) / wide);
   const isFar = Math.max(...radii) > back + MAX_WAVES;
-  // Spokes are apart by one of few angles, and turn by whole ones, so that they stand still where the camera turns.
+  // The angle between spokes has few values, and spokes turn by multiples of it, so that they stand still while the camera turns.
   const between = 2 ** (Math.ceil(8 * Math.log2((2 * half) / (spokes - 3))) / 8);
   const direction = middle + axis;
   uniforms.polarPlace.value = [eye[0] - back * Math.cos(direction), eye[1] - back * Math.sin(direction), back, height];

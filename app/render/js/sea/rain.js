@@ -79,7 +79,7 @@ export const rain = {
   update({ base, mesh, data }) {
     const [sea] = seas.values(); // its sky lights the drops
     if (!sea) return null;
-    mesh.frustumCulled = false; // drops around the camera are nowhere else
+    mesh.frustumCulled = false; // the drops surround the camera, wherever it is
     const uniforms = (mesh.userData.rain ??= makeUniforms(mesh, RAIN_UNIFORMS));
     readUniforms(uniforms, RAIN_UNIFORMS, data);
     const edit = (/** @type {three.Shader} */ shader) => {

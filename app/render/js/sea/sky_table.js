@@ -1,7 +1,7 @@
 // The photograph of the sky as a table by azimuth, elevation and blur, which the shaders of water, sky and rain look up.
-// It is drawn anew when the photograph or a uniform that it depends on changes. A browser that cannot draw into half
-// floats, or does not link the table's program, has no table: there each pixel looks at the photograph itself, or
-// at the sky in its place (scene/photograph.js).
+// It is redrawn when the photograph or a uniform that it depends on changes. A browser that cannot draw into half floats, or
+// does not link the table's program, has no table: each pixel then reads the photograph itself, or its substitute
+// (scene/photograph.js).
 
 import { startedViewer } from "../core/viewer.js";
 import { contextNumber } from "../shading/context.js";
@@ -12,7 +12,7 @@ import { makeDome } from "./dome.js";
 import { SKY_BLUR, SKY_COLUMNS, SKY_ROWS, SKY_TABLE, WATER_GLSL } from "./water_shader.js";
 
 const SKY_UNIFORMS = ["skyline", "skyFold", "skyTint", "sunDirection"]; // its arguments
-// Of a triangle that covers what it is drawn into.
+// Of a triangle that covers its target.
 export const TARGET_VERTEX = "void main() { gl_Position = vec4(position.xy, 0.5, 1.0); }";
 const SKY_TABLE_FRAGMENT = `
   ${SKY_TABLE.replace("#define SKY_TABLE", "")}
@@ -38,10 +38,10 @@ const SKY_TABLE_FRAGMENT = `
     gl_FragColor = vec4(c, 1.0);
   }`;
 
-const SKY_PATIENCE = 3000; // [ms] for which a sea waits for its photograph
+const SKY_PATIENCE = 3000; // [ms] for a sea to wait for its photograph
 let skyWanted = Infinity; // [ms] when it began to
 
-// True if a sea still waits for the photograph of the sky: without it its programs are others, which compile for seconds.
+// True if a sea still waits for the photograph of the sky: without it, other programs would be compiled, for seconds.
 /** @param {three.Scene} scene */
 export function awaitsSky(scene) {
   return !scene.environment && performance.now() < skyWanted + SKY_PATIENCE;
@@ -54,10 +54,10 @@ export function wantSky() {
 }
 
 /** @type {Map<string, Table>} */
-export const skyTables = new Map(); // name of the node -> { target, dome, key }, kept for good as its uniforms
+export const skyTables = new Map(); // name of the node -> { target, dome, key }, kept permanently like its uniforms
 export let skiesDrawn = 0; // tests read it
 
-// Let the materials of an object that is drawn outside of the scene have its photograph of the sky.
+// Give the materials of an object outside the scene its photograph of the sky.
 /** @param {three.Mesh} object @param {three.Scene} scene */
 export function litBy(object, { environment, environmentIntensity, environmentRotation }) {
   for (const material of object.userData.materials?.values() ?? [object.material]) {
@@ -75,8 +75,8 @@ export function makeTable(sea, target) {
   return { target, dome, key: "" };
 }
 
-// Draw a table if it is not the one with this key, with the shader that `edit` makes. Returns whether it is drawn: false if
-// it did not link, null while its program is not compiled.
+// Draw a table with the shader that `edit` makes, unless it already has this key. True if it is drawn, false if the program did
+// not link, null until it is compiled.
 /**
  * @param {three.Renderer} renderer @param {three.Scene} scene @param {Table} table
  * @param {string} key @param {string} name @param {(shader: three.Shader) => void} edit
@@ -96,7 +96,7 @@ export function drawTable(renderer, scene, table, key, name, edit) {
   return isLinked(renderer, dome.material);
 }
 
-// Draw the table of the sea `base` if it is not that of this photograph and these uniforms. False while it is not compiled.
+// Draw the table of the sea `base`, unless it already shows this photograph and these uniforms. False until it is compiled.
 /** @param {string} base @param {Sea} sea @param {three.Renderer} renderer @param {three.Scene} scene */
 export function drawSkyTable(base, sea, renderer, scene) {
   const photograph = scene.environment, Target = photograph?.renderTarget?.constructor;

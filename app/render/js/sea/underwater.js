@@ -36,11 +36,11 @@ export const UNDERWATER_GLSL = `
   }`;
 
 /** @type {Map<string, three.Uniform<three.Vector3>>} */
-const underwaters = new Map(); // name of the node -> its uniform, kept for good as those of seas
+const underwaters = new Map(); // name of the node -> its uniform, kept permanently like those of seas
 
-export const WEB_STEP = 1 / 30; // [s] by which the webs move on with each frame of the water
+export const WEB_STEP = 1 / 30; // [s] by which the webs advance with each frame of the water
 
-// The uniform of a node that has the child, else null.
+// The uniform of a node with the child, otherwise null.
 /** @param {string} base @param {three.Mesh} mesh */
 export function underwaterOf(base, mesh) {
   const data = meshOf(`${base}/underwater`);

@@ -1,7 +1,7 @@
 // The shader of water, for "<name>" where there is a "<name>/water_material".
 //
 // "<name>/water_surface" carries displacement, slope x, slope y and foam of each vertex, packed (packed.js), and
-// "<name>/water_rest" where the vertices rest; "<name>/water_lines" what stands in the water. The vertices of
+// "<name>/water_rest" the places of the vertices at rest; "<name>/water_lines" objects in the water. The vertices of
 // "<name>/water_material" are the uniforms, in the order of WATER_UNIFORMS (app/render/material.py). "Sea" in a name means
 // the frame of the node, z up; three's world is rotated against it. viser's own mesh is not drawn: its vertices fill
 // textures, which the polar grid (polar_grid.js) and the fragment shader read.
@@ -19,19 +19,19 @@ import { awaitsSky, drawSkyTable, wantSky, withSky } from "./sky_table.js";
 import { DOME_FRAGMENT, DOME_VERTEX, PLAIN_FRAGMENT, WATER_FRAGMENT, WATER_VERTEX } from "./water_shader.js";
 
 /** @type {Map<string, Sea>} */
-export const seas = new Map(); // name of the node -> what this file has made for it
-// Name of the node -> its uniforms. They are kept for good, because viser may keep a material for a new geometry.
+export const seas = new Map(); // name of the node -> resources of its sea
+// Name of the node -> its uniforms, kept permanently because viser may reuse a material for a new geometry.
 /** @type {Map<string, three.Uniforms>} */
 export const uniformsByName = new Map();
 
-// The colours of the sky of the sea that is there, by which a photograph is replaced, or null.
+// The sky colours of the present sea, which can replace a photograph, or null.
 /** @returns {SkyColors | null} */
 export function seaSky() {
   const [sea] = seas.values();
   return sea ? { low: sea.uniforms.skyLow.value.toArray(), high: sea.uniforms.skyHigh.value.toArray() } : null;
 }
 
-// The uniforms of the sea that is drawn, or null: what stands in it is lit by its sky.
+// The uniforms of the drawn sea, or null: its sky lights the objects in it.
 export const drawnSea = () => [...seas.values()].find(({ isReady }) => isReady)?.uniforms ?? null;
 
 // Uniforms of three numbers each. three's classes are not in scope, therefore vectors are copied from the mesh.
@@ -86,7 +86,7 @@ function filledTexture(renderer, texture, width, height, halves, repeats) {
   texture ??= { isTexture: true, version: 0, size: "" };
   const kept = renderer.properties.get(texture), isNew = texture.size !== size || !kept.__webglTexture;
   if (isNew) {
-    gl.deleteTexture(kept.__webglTexture ?? null); // its size is for good
+    gl.deleteTexture(kept.__webglTexture ?? null); // its size is immutable
     kept.__webglTexture = gl.createTexture();
     texture.size = size;
   }
@@ -114,8 +114,8 @@ function filledTexture(renderer, texture, width, height, halves, repeats) {
   return texture;
 }
 
-// The waves as the textures that the shader reads (WATER_GLSL.waves), where they have changed. The vertices of a tile are
-// rows and columns, and the last ones close it; those of rings are the rings one after the other, and the middle.
+// Update the textures of the waves that the shader reads (WATER_GLSL.waves), if they have changed. The vertices of a tile are
+// rows and columns, closed by the last ones; those of rings are the rings in order, then the middle.
 /** @param {Sea} sea @param {three.Renderer} renderer @param {Float32Array} rest */
 function fillWaves(sea, renderer, rest) {
   const { position, slopeAndFoam } = sea.geometry.attributes;
@@ -170,7 +170,7 @@ function disposeSea(sea) {
   sea.polar = sea.plain = sea.dome = sea.triangle = null;
 }
 
-// Give plain water its program: it is drawn while the browser compiles those of the sea. Returns whether it has one.
+// Give plain water its program: it is drawn while the browser compiles those of the sea. True if it has one.
 /**
  * @param {Sea} sea @param {three.Renderer} renderer @param {three.Camera} camera @param {three.Scene} scene
  * @param {Variant} shape
@@ -186,7 +186,7 @@ function dressPlain(sea, renderer, camera, scene, shape) {
 
 const IN_TILES = " in tiles"; // in the name of a shader of the sky
 
-// Give a sea and its sky their programs. Returns whether they have them.
+// Give a sea and its sky their programs. True if they have them.
 /**
  * @param {string} base @param {GriddedSea} sea @param {Pick<ShadedContext, "renderer" | "camera" | "scene">} context
  * @param {{ shape: Variant, light: Variant, whole: Variant }} variants
@@ -211,25 +211,25 @@ function dressSea(base, sea, { renderer, camera, scene }, { shape, light, whole 
     shader.vertexShader = isLit === false ? DOME_VERTEX : `#define TILES\n${DOME_VERTEX}`;
     shader.fragmentShader = withSky(DOME_FRAGMENT, sea.uniforms);
   }, camera, scene);
-  // It keeps the shader that it has until another one is compiled.
+  // It keeps its shader until the new one is compiled.
   const drawn = sea.dome.material.userData.springtide?.includes(IN_TILES) ? sea.lit?.tiles : sea.triangle;
   if (drawn) sea.dome.geometry = drawn;
   return hasTable && isLit !== null && hasSurface && hasDome;
 }
 
-// Until a sea's programs are compiled, and where its mesh is made anew, the photograph behind it would show its land. The
-// page's own sky is seen there instead. Without the shader the photograph is the sky.
+// Until a sea's programs are compiled, and while its mesh is remade, the photograph behind it would show its land. The page's own
+// sky is shown there instead. Without the shader the photograph is the sky.
 /** @param {three.Scene} scene @param {boolean} shown */
 function showPhotograph(scene, shown) {
   if (!shown && scene.background) [scene.userData.photograph, scene.background] = [scene.background, null];
   if (shown && !scene.background) scene.background = scene.userData.photograph || null;
 }
 
-const SKY = "--springtide-sky"; // of the page (page.css): what is seen behind a sea without a sky
+const SKY = "--springtide-sky"; // of the page (page.css): background of a sea without a sky
 const OVERCAST = 0.5; // light of a grey sky over that of a clear one
 const UNTONED = 0.8; // light over that of a colour of the page
 
-// Until its sky is ready, its mean colour stands in: that of the haze, which the server sets for each sky, grey below clouds.
+// Until the sky is ready, its mean colour is shown: that of the haze, which the server sets for each sky, grey under clouds.
 /** @param {Sea} sea @param {three.Scene} scene */
 function standIn({ uniforms }, scene) {
   if (!scene.fog) return;
@@ -262,7 +262,7 @@ export const water = {
       const earlier = seas.get(base);
       if (earlier) disposeSea(earlier);
       mesh.layers.mask = 1;
-      Reflect.deleteProperty(mesh.geometry, "computeVertexNormals"); // that of its class again
+      Reflect.deleteProperty(mesh.geometry, "computeVertexNormals"); // restores that of its class
       showPhotograph(scene, true);
       return null;
     }
@@ -283,7 +283,7 @@ export const water = {
     const lines = meshOf(`${base}/water_lines`);
     if (lines) sea.uniforms.waterlines.value = lines.geometry.attributes.position.array;
     const { shown, ringLaw, cutout, slick, waterlines } = sea.uniforms, [drawSky, wireframe] = shown.value.toArray();
-    // Compiling takes seconds: a sea keeps the programs for oil and hulls when they have gone.
+    // Compiling takes seconds: a sea keeps the programs for oil and hulls after these are removed.
     sea.hasOil ||= slick.value.z > 0;
     sea.hasHulls ||= waterlines.value[6] > 0; // the corner of the first one
     const parts = { RINGS: ringLaw.value.y, CUTOUT: cutout.value.z, WIRE: wireframe, OIL: sea.hasOil, HULLS: sea.hasHulls };
@@ -302,7 +302,7 @@ export const water = {
     if (polar.userData.fineness !== fineness) setFineness(gridded, fineness);
     aimPolar(gridded, camera);
     const isInView = polar.visible;
-    // Where only one program is compiled in a frame, that of plain water comes first.
+    // If only one program is compiled in a frame, that of plain water comes first.
     const hasPlain = sea.isReady || dressPlain(sea, renderer, camera, scene, shape);
     sea.isReady = !awaitsSky(scene) && dressSea(base, gridded, { renderer, camera, scene }, { shape, light, whole });
     if (sea.isReady && isLinked(renderer, polar.material) === false) {

@@ -1,11 +1,11 @@
-// The number of the graphics context. What was drawn into a texture is lost with it, and every cache of such a texture has
-// the number in its key.
+// The number of the graphics context. Textures drawn into are lost with their context, so every cache of such a texture has the
+// number in its key.
 
 import { notice } from "../core/notice.js";
 import { springtide } from "../core/springtide.js";
 import { viewer } from "../core/viewer.js";
 
-const PATIENCE = 5000; // [ms] after which a lost context is spoken of: most come back at once
+const PATIENCE = 5000; // [ms] after which a lost context is reported: most return at once
 const LOST = "springtide-lost"; // identifier of that sentence
 let number = 0;
 
@@ -15,7 +15,7 @@ function next() {
   springtide.contexts = number += 1;
 }
 
-// True if a renderer can draw into textures of floats, and the browser make smaller copies of these.
+// True if a renderer can draw into float textures, and the browser can make their mipmaps.
 /** @param {three.Renderer} renderer */
 export const drawsFloats = ({ extensions }) =>
   extensions.has("EXT_color_buffer_float") || extensions.has("EXT_color_buffer_half_float");

@@ -1,4 +1,4 @@
-// Unpacks what app/formats/packing.py packs, and gives it to a mesh as attributes of its vertices.
+// Unpacks the data of app/formats/packing.py into attributes of a mesh's vertices.
 
 const BLOCK = 16, WIDTH_BITS = 5, WORD_BITS = 30; // as in app/formats/packing.py
 
@@ -44,9 +44,9 @@ export function unpack(numbers) {
   return found;
 }
 
-// Write the first three fields into the positions of a mesh's vertices, added to where they rest (an array; null: 0), and
-// the next three into another attribute of three numbers. Does nothing where that has been done with this data.
-// False where the data is of another mesh. viser may at any time exchange the array of positions: then it is done again.
+// Write the first three fields into the positions of a mesh's vertices, added to their places at rest (an array; null: 0),
+// and the next three into another attribute of three numbers, once for each data. False if the data belongs to another mesh.
+// viser may replace the array of positions at any time: then it is written again.
 /**
  * @param {three.Mesh} mesh @param {three.Mesh} data @param {string} attribute @param {Float32Array | null} rest
  */
@@ -74,7 +74,7 @@ export function applyPacked(mesh, data, attribute, rest) {
       own.array[k] = others[i] + offsets[axis + 3];
     }
   }
-  position.needsUpdate = own.needsUpdate = true; // counts their versions on
+  position.needsUpdate = own.needsUpdate = true; // increments their versions
   position.springtideWrites = (position.springtideWrites ?? 0) + 1; // frames.js does not count them as changes
   own.springtide = { packed: packed.array, version: packed.version, written: position.version };
   mesh.geometry.computeVertexNormals();

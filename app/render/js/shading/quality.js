@@ -1,10 +1,9 @@
-// Drawing quality of this browser: its share of the screen's pixels, and how much detail the shaders of water and rain have.
+// Drawing quality of this browser: the fraction of the screen's pixels, and the detail of the shaders of water and rain.
 //
-// "Automatic" starts at the last step without a graphics card, else where this browser was when it last had the lab open.
-// It measures how long frames take while the picture moves (frames.js), and goes down step by step if they are slow, at
-// once if one is very slow, and up again with care. The choice belongs to the browser: it is kept in its local storage and is part of no link, preset
-// or set-up. A page with viser's "fixedDpr" in its address wants a picture that does not change: it is drawn as it says.
-// Pictures that the server asks for have all pixels and details.
+// "Automatic" starts at the lowest step without a graphics card, else at the step that this browser had last. It measures
+// the frame time while the picture moves (frames.js). Slow frames take it down step by step, a very slow one at once, and fast
+// frames cautiously up. The choice is stored in this browser and is part of no link, preset or set-up. A page with
+// viser's "fixedDpr" in its address is drawn at that ratio throughout. Images for the server have all pixels and details.
 
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
@@ -23,7 +22,7 @@ const isFixed = new URLSearchParams(location.search).has("fixedDpr");
 let current = STEPS[0], dismissed = false, choice = "automatic";
 /** @type {HTMLElement | null} */
 let line = null;
-let rendererName = "", valid = 0; // since when [ms] lengths of frames count
+let rendererName = "", valid = 0; // time [ms] from which frame times count
 
 function readChoice() {
   const kept = stored(KEY);
@@ -81,7 +80,7 @@ function makeLine() {
   const made = document.createElement("div");
   made.id = "springtide-slow";
   made.setAttribute("role", "status");
-  // Written here, because a replay has no style sheet of ours.
+  // Styled here, because a replay lacks our style sheet.
   made.style.cssText =
     "position:fixed;bottom:calc(8px + var(--springtide-foot, 0px) + var(--springtide-bar, 0px));z-index:8;padding:4px 10px;" +
     "left:calc(8px + var(--springtide-left, 0px));border-radius:6px;background:rgba(16,30,46,0.85);color:#fff;" +
@@ -140,14 +139,14 @@ page.listen(window, "storage", (event) => {
 export const QUALITY = {
   choice: () => choice,
   now: () => ({ ...current, step: STEPS.indexOf(current), steps: STEPS.length }),
-  isCapturing, // a picture that the server asked for
+  isCapturing, // an image for the server
   isSoftware: () => isSoftware(rendererName),
-  // True if this frame has to be as it says, however long that takes: it does not change afterwards.
+  // True if this frame needs its full quality, however long it takes, since it is kept.
   isWhole: () => isFixed || isCapturing() || springtide.isRecording === true,
   // Details of the shaders of this frame: 2 all, 1 less, 0 least.
   details: () => (isFixed || isCapturing() ? 2 : current.details),
-  // Begin with a renderer: at the step that it had when the page was last open, and at the last one if it has no
-  // graphics card. The pixels are set here alone: viser's own monitor and its resizing set others.
+  // Begin with a renderer: at the step that it had last, or at the lowest without a graphics card. The pixel ratio is set
+  // only here: viser's own monitor and its resizing would set others.
   /** @param {three.Renderer} renderer @param {import("../core/life.js").Life} life */
   start(renderer, life) {
     rendererName = nameOf(renderer);
@@ -164,10 +163,10 @@ export const QUALITY = {
     if (isFixed) return;
     if (Math.abs(renderer.getPixelRatio() - ratio()) > 1e-3) renderer.setPixelRatio(ratio());
   },
-  // A frame took so long [ms] from the time when it began; compiled: whether programs were made for it.
+  // Record the length of a frame [ms], when it began, and whether it compiled programs.
   /** @param {number} length @param {number} began @param {boolean} compiled */
   take(length, began, compiled) {
-    // A clip whose pictures change their size in the middle cannot be played.
+    // A clip whose frames change their size cannot be played.
     const measured = !isFixed && choice === "automatic" && document.visibilityState === "visible" && !springtide.isRecording;
     if (!measured) judge.forget();
     if (!measured || began < valid) return;
@@ -179,7 +178,7 @@ export const QUALITY = {
     startedViewer().requestRender();
   },
 };
-// The control comes with each scene.
+// Each scene has its own control.
 onControls(show);
 
 // The text of a fragment shader, and the name of its program, with the details of this frame.

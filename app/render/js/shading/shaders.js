@@ -1,4 +1,4 @@
-// Programs and materials: another shader for a mesh of viser's, once it is compiled.
+// Programs and materials: a new shader for a mesh of viser's, once it is compiled.
 //
 // Of three this file uses Material.onBeforeCompile and the renderer's property map, to see whether a program linked.
 
@@ -8,7 +8,7 @@ import { QUALITY } from "./quality.js";
 /** @typedef {(shader: three.Shader) => void} Edit */
 
 /** @type {WeakSet<three.Material>} */
-export const refused = new WeakSet(); // materials with a program that did not link: they keep viser's own shader
+export const refused = new WeakSet(); // materials whose program did not link: they keep viser's own shader
 
 // The mesh of a node is the first child of its group; shadow meshes and child nodes come after it.
 /** @param {string} name @returns {three.Mesh | null} */
@@ -17,8 +17,8 @@ export function meshOf(name) {
   return (group && group.children && group.children.find((child) => child.isMesh)) || null;
 }
 
-// Give a material another shader; false where its program did not link. viser makes a new material when wireframe,
-// opacity, flat shading or side change, so this is done in every frame. key: of the shader; edit(shader): changes it.
+// Give a material another shader; false if its program did not link. Called in every frame, because viser makes a new material
+// when wireframe, opacity, flat shading or side change. key: of the shader; edit(shader): changes it.
 /** @param {three.Material} material @param {string} key @param {Edit} edit */
 export function replaceShader(material, key, edit) {
   if (refused.has(material)) return false;
@@ -31,13 +31,13 @@ export function replaceShader(material, key, edit) {
   return true;
 }
 
-// Programs that the browser is still compiling. It does so beside the page where it has KHR_parallel_shader_compile.
+// Programs that the browser is still compiling, in the background if it has KHR_parallel_shader_compile.
 /** @type {Set<three.Program>} */
 const awaited = new Set();
-const LOOK_INTERVAL = 30; // [ms] between two looks at them
-export let programsReady = 0; // counts on with each of them; frames.js draws when it changes
-export let lacksPrograms = false; // true if something in this frame has another shader than it is to have
-let isCompiling = false; // true if this frame has begun to use a program, in a browser that compiles while the page waits
+const LOOK_INTERVAL = 30; // [ms] between two checks of them
+export let programsReady = 0; // number of compiled programs; frames.js draws when it changes
+export let lacksPrograms = false; // true if something in this frame does not have its final shader
+let isCompiling = false; // true if this frame has compiled a program while the page waited
 
 // A new frame: the page may wait for one more program.
 export function beginFrame() {
@@ -47,7 +47,7 @@ export function beginFrame() {
 function lookForPrograms() {
   const before = programsReady;
   for (const program of awaited) {
-    if (program.program && program.isReady?.() === false) continue; // one that is gone has none
+    if (program.program && program.isReady?.() === false) continue; // a deleted one has none
     awaited.delete(program);
     programsReady += 1;
   }
@@ -55,9 +55,9 @@ function lookForPrograms() {
   if (programsReady > before) startedViewer().requestRender();
 }
 
-// Give an object a material with another shader as soon as its program is compiled; until then it keeps the one that it has.
-// Where the page waits for a program, only one is compiled in each frame. key: of the shader; edit(shader): changes it; scene:
-// whose lights it has. Returns whether the object has a material with some shader.
+// Give an object a material with another shader once its program is compiled; until then it keeps its own. If the page waits for
+// compiling, each frame compiles one program. key: of the shader; edit(shader): changes it; scene: has the lights. True if
+// the object has a material with any of our shaders.
 /**
  * @param {three.Renderer} renderer @param {three.Mesh} object @param {string} key @param {Edit} edit
  * @param {three.Camera} camera @param {three.Object3D} scene
@@ -90,8 +90,8 @@ export function disposeMaterials(object) {
   for (const material of object.userData.materials?.values() ?? [object.material]) material.dispose();
 }
 
-// True if the program of a material linked; null where it has none yet. If a driver refuses it, the material gets viser's shader back, so that the
-// mesh is still drawn, and the server is not told that the shader is active.
+// True if the program of a material linked; null if it has none yet. If a driver refuses it, the material gets viser's shader
+// back, so that the mesh is still drawn, and the server does not learn of an active shader.
 /** @param {three.Renderer} renderer @param {three.Material} material */
 export function isLinked(renderer, material) {
   const program = renderer.properties.get(material).currentProgram;

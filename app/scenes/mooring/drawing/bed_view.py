@@ -6,6 +6,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from app.messages import Vector
 from app.render.coloured_mesh import ColouredMesh
 from app.render.injection import add_data_mesh, injector_of
 from app.scenes.mooring.arrangement import depth_of, extent
@@ -14,11 +15,11 @@ from app.scenes.mooring.frame import MooringFrame
 
 SHALLOW_BED, DEEP_BED = (108, 132, 124), (22, 60, 80)  # sand in the light near the surface, and where little is left
 LOST_COLOUR = (9, 42, 65)  # of water without light
-CELL_COLOUR, SECTION_COLOUR = (58, 92, 106), (36, 68, 84)
+CELL_COLOUR, SECTION_COLOUR = (88, 122, 134), (58, 92, 106)
 LIGHT_REACH = 40.0  # [m] of water that leave 1/e of the light of the sun
 BED_ROWS, BED_STEP = 33, 2.0**-7  # points along a side of the bed, and [m] to which they are rounded for the page
 BED_MOTTLE = 0.10  # standard deviation of the brightness of the sand
-BED_LIT = 0.6, 1.1  # distances from the middle, in half sides, at which the bed begins to be lost in the water, and is
+BED_LIT = 0.5, 1.15  # distances from the middle, in half sides, at which the bed begins to be lost in the water, and is
 GRID_SIDE = 0.56  # of the side of the bed, where its lines are lost
 GRID_ABOVE = 0.0008  # [`extent`s] that the lines of the bed lie above it
 WEB_SIZE, MAX_WEB_SIZE = 0.6, 12.0  # of the webs of light that waves focus: in depths, and the largest [m]
@@ -53,7 +54,8 @@ def bed_colours(depth: float) -> NDArray[np.float64]:
 class DrawnBed:
     """The bed."""
 
-    def __init__(self, server: viser.ViserServer, frame: MooringFrame) -> None:
+    def __init__(self, server: viser.ViserServer, frame: MooringFrame, label: Vector) -> None:
+        """label: place [m] of the depth in words."""
         p = frame.params
         depth, far = depth_of(p), extent(p)
         cell = cell_of(far)
@@ -69,8 +71,7 @@ class DrawnBed:
             bed_colours(depth), columns=BED_ROWS, step=BED_STEP, color=DEEP_BED, side="double",
             cast_shadow=False, receive_shadow=False,
         )  # fmt: skip
-        behind = -0.35 * far, 0.65 * far, -depth  # as first seen
-        self.label = server.scene.add_label("/depth", f"{depth:g} m deep", position=behind, anchor="bottom-center")
+        self.label = server.scene.add_label("/depth", f"{depth:g} m deep", position=label, anchor="center-center")
         if injector_of(server) is not None:
             webs = np.array([[1.0, min(WEB_SIZE * depth, MAX_WEB_SIZE), 0.0]])  # as `js/sea/underwater.js` reads it
             add_data_mesh(server, f"{self.sand.name}/underwater", webs)

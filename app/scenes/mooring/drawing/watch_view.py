@@ -1,4 +1,4 @@
-"""The watch circle, and the path of the body: on the water, and once more on the bed, where the body hides nothing."""
+"""The watch circle, and the path of the body: on the water, and again on the bed, where the body hides nothing."""
 
 import numpy as np
 import viser

@@ -31,7 +31,7 @@ def numbers(params: MooringParams) -> dict[str, dict[str, float]]:
 
 
 def changed(params: MooringParams, thing: str, values: Mapping[str, float]) -> MooringParams:
-    """The parameters with other numbers of a line. Raises ValueError where the file cannot have them."""
+    """The parameters with other numbers of a line. Raises ValueError if the file cannot have them."""
     line = lines_of(params)[thing]
     changes = {(what, of): value for what, of, value in params.file_changes}
     if values[LENGTH] != line.length:

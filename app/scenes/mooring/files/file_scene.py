@@ -1,61 +1,29 @@
 """The mooring of a MoorDyn file: all coupled points are one vessel, which the user drags and the waves move."""
 
 import dataclasses
-import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.messages import SceneCommand, Vector, vector_of
-from app.scenes.mooring.arrangement import extent, sea_of
-from app.scenes.mooring.files.from_file import Changes, mooring_of, opened, slack_of
+from app.scenes.mooring.arrangement import at_most, extent, sea_of
+from app.scenes.mooring.files.from_file import opened, slack_of
 from app.scenes.mooring.frame import MooringFrame
 from app.scenes.mooring.line_scene import LineScene, fade_at
 from app.scenes.mooring.parameters import MooringParams
-from app.scenes.mooring.readings.restoring import LEAST_REACH, REACH
+from app.scenes.mooring.readings.restoring import CurveInputs
 from app.scenes.mooring.start_check import Fault, fault_of_file
 from app.scenes.springs.tracking import CriticallyDampedTracker
-from sim.interruption import raise_if_stopped
-from sim.mooring import System, at_rest
+from sim.mooring import System
 from sim.mooring.motion import cubic
-from sim.validation import ConvergenceError
 from sim.waves import Waves
 
 VESSEL_SPEED = 0.005  # largest speed of a dragged vessel, in `extent`s [1/s]
 FARTHEST = 10.0  # in `extent`s, beyond which a run has diverged
-CURVE_POINTS = 17  # offsets at which the statics of all lines are solved
 CHANGING = (
     "state", "system", "tensions", "excursion", "start", "vessel", "sea", "step_modes", "moved_by",
 )  # fmt: skip
-
-
-class FileInputs(NamedTuple):
-    """Everything that the restoring curve depends on."""
-
-    path: str
-    changes: Changes
-    wave: tuple[float, float]  # unit vector along the waves
-    far: float  # [m] offset to which the curve goes at least
-
-    def curve(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Offsets [m] of the vessel along the waves, and the force [N] of all lines against each; NaN without rest."""
-        file = mooring_of(self.path, self.changes)
-        slack = slack_of(file.system)
-        end = max(REACH * slack[0] if slack else 0.0, LEAST_REACH * file.extent, self.far)
-        offset = np.linspace(-end, end, CURVE_POINTS)
-        force = np.full(len(offset), math.nan)
-        for i, one in enumerate(offset):
-            raise_if_stopped()
-            away = np.array([one * self.wave[0], one * self.wave[1], 0.0])
-            placed = {p.id: np.add(p.position, away) for p in file.system.points if p.kind == "coupled"}
-            try:
-                rest = at_rest(file.system, placed)
-            except ConvergenceError:
-                continue
-            tension = np.concatenate([rest.tension[line.id] for line in file.system.lines])[file.rows.links]
-            force[i] = -float(file.rows.level_force(file.rows.points(rest.nodes), tension) @ self.wave)
-        return offset, force
 
 
 class FileScene(LineScene):
@@ -89,7 +57,7 @@ class FileScene(LineScene):
         return dataclasses.replace(self.file.system, waves=self.sea, current=(x, y, 0.0))
 
     def change_forces(self, params: MooringParams) -> None:
-        """Take parameters; the motion goes on."""
+        """Take parameters; the motion continues."""
         self.params = params
         self.sea = sea_of(params)
         self.take_system()
@@ -97,7 +65,7 @@ class FileScene(LineScene):
         self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
-        """Go on with the water as it is now."""
+        """Continue with the water as it is now."""
         self.system = self.arranged()
 
     @property
@@ -109,8 +77,7 @@ class FileScene(LineScene):
         """Carry out a command of the mouse, or begin the statistics again: a vessel follows as far as lines reach."""
         super().handle(command)
         if self.grabbed is not None:
-            away = np.subtract(self.grabbed[1], self.middle)[:2]
-            away *= min(1.0, self.file.farthest / max(float(np.linalg.norm(away)), 1e-9))
+            away = at_most(self.file.farthest, np.subtract(self.grabbed[1], self.middle)[:2])
             self.vessel.target = vector_of(np.append(away, 0.0))
 
     def body_place(self) -> NDArray[np.float64]:
@@ -158,10 +125,11 @@ class FileScene(LineScene):
         movable = [*self.file.vessel, *self.file.others]
         return found._replace(anchors=x[anchors], uplift=lifted[anchors], fairleads=x[movable])
 
-    def static_inputs(self, far: float = 0.0) -> FileInputs:
+    def curve_inputs(self, far: float = 0.0) -> CurveInputs:
         """Everything that the restoring curve depends on."""
+        slack, _ = slack_of(self.file.system) or (0.0, 0.0)
         x, y = self.wave_direction.tolist()
-        return FileInputs(self.params.moordyn_file, self.params.file_changes, (x, y), far)
+        return CurveInputs(self.file.system, (x, y), slack, self.file.extent, far)
 
     def arrays(self) -> dict[str, tuple[NDArray[Any], str]]:
         """The state for a file: name -> (array, unit)."""

@@ -183,7 +183,7 @@ class Walls:
     def show(self, frame: RadialFrame, keel: float | None) -> None:
         """Draw the walls as they are now, or hide them; call it where a picture is handed over as one.
 
-        keel: height [m] of the lowest point of the body before the far wall; None where there is no body.
+        keel: height [m] of the lowest point of the body before the far wall; None if there is no body.
         """
         cutaway, column = frame.cutaway, frame.column
         visible = cutaway is not None

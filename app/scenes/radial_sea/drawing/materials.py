@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from app.render.colormap import rgb
 from app.render.material import MAX_WATERLINES, RGB, Cutout, Material, Oil, SlickRegion, Waterline, blend
 from app.scenes.radial_sea.frame import RadialFrame
 from app.scenes.radial_sea.oil.well_blowout import FIRE, FIRE_WIDTH, RIG, Slick
@@ -16,13 +17,13 @@ from sim.floating.motion.rotation import heading_angle
 from sim.ocean.fluids.fluid_column import FluidColumn
 from sim.particles.plume import flame_height, radiated_light
 
-LAB_SPECULAR = 0.4  # share of oil's reflection that is drawn with optics "lab"
+LAB_SPECULAR = 0.4  # fraction of oil's reflection that is drawn with optics "lab"
 RIPPLE_LENGTH = 0.9  # [m] of the wave that stands for all ripples of the material, in how they decay under oil
 CALM_SLOPE, MAX_SLOPE = 0.02, 0.24  # rms slope of the ripples without wind, and the greatest
 MIN_RIPPLE_SHARE = 0.12  # of the ripples' slope that oil leaves at least, so that the sea does not turn into a mirror
 MIXTURE_SCATTER: RGB = (0.80, 0.47, 0.22)  # light that an emulsion scatters
 MIXTURE_ROUGHNESS = 0.12
-MIXTURE_BASE_SHARE = 0.5  # share of oil's colours in a mixture with hardly any oil; it grows with the fraction
+MIXTURE_BASE_SHARE = 0.5  # fraction of oil's colours in a mixture with hardly any oil; it grows with the fraction
 MIXTURE_THICKNESS = 1e-3  # [m] of a film that shows as much of its colour as a mixture does: all
 FIRE_COLOUR = (1.0, 0.45, 0.12)  # of the light of flames, linear
 VISIBLE_SHARE = 0.02  # of what a flame radiates
@@ -41,7 +42,7 @@ THICKNESS_RATIO = 1.01  # of two thicknesses of a slick for which the decay of r
 
 def rgb_of(colour: str) -> np.ndarray:
     """(3,) sRGB in 0..1 of "#rrggbb"."""
-    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
+    return np.array(rgb(colour)) / 255.0
 
 
 @functools.cache
@@ -77,12 +78,12 @@ def ripple_slope(p: RadialSeaParams, column: FluidColumn, age: float) -> float:
 
 @functools.lru_cache(maxsize=4)
 def ripple_decay(column: FluidColumn) -> float:
-    """Decay rate [1/s] of a wave of RIPPLE_LENGTH; kept, as it is asked for in each picture."""
+    """Decay rate [1/s] of a wave of RIPPLE_LENGTH; cached, as each picture needs it."""
     return float(column.roots(np.array([2.0 * math.pi / RIPPLE_LENGTH]))[1][0])
 
 
 def mixture_share(column: FluidColumn) -> float:
-    """Share of oil's colours in those of a mixture."""
+    """Fraction of oil's colours in those of a mixture."""
     return min(1.0, MIXTURE_BASE_SHARE + column.fraction)
 
 

@@ -13,7 +13,7 @@ from app.scenes.radial_sea.frame import RadialFrame
 
 SKIN = 1.015  # width of the stain over that of the hull, so that it lies outside of it
 STAIN_SHADE = 0.55  # of the oil's colour: a film on paint is darker than the oil in the sea
-MIN_STAIN, STAIN_STEP = 0.01, 0.005  # [m] smallest that is drawn, and by how much it must grow to be drawn anew
+MIN_STAIN, STAIN_STEP = 0.01, 0.005  # [m] smallest that is drawn, and by how much it must grow to be redrawn
 
 
 class Stains:

@@ -51,7 +51,7 @@ class OilBudget(NamedTuple):
     hits: int  # parcels that have
     radius: float  # [m] of the slick
     thickness: float  # [m] of the slick
-    # share of its height that a wave of `CROSSING_WAVE` keeps across the slick; NaN where none calms the sea
+    # fraction of its height that a wave of `CROSSING_WAVE` keeps across the slick; NaN where none calms the sea
     wave_left: float = math.nan
 
 
@@ -190,7 +190,7 @@ class WellBlowout:
 
 @functools.lru_cache(maxsize=2)
 def spread_radius(volume: float, age: float, column: FluidColumn) -> float:
-    """Radius [m] of the slick of so much oil [m3] after `age` [s]; kept, as a frame asks for it several times."""
+    """Radius [m] of the slick of this much oil [m3] after `age` [s]; cached, as a frame needs it several times."""
     oil, water = column.oil, column.water
     return slick_radius(
         volume,
@@ -222,5 +222,5 @@ def crossing_loss(inside: FluidColumn, outside: FluidColumn) -> float:
 
 
 def wave_left(cover: SlickCover | None, outside: FluidColumn) -> float:
-    """Share of its height that a wave of `CROSSING_WAVE` keeps across a slick; NaN without one."""
+    """Fraction of its height that a wave of `CROSSING_WAVE` keeps across a slick; NaN without one."""
     return math.nan if cover is None else math.exp(-2.0 * cover.radius * crossing_loss(cover.column, outside))

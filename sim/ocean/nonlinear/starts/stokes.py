@@ -65,7 +65,7 @@ def stokes_wave(
 ) -> StokesWave:
     """The wave of this height [m] and wavelength [m] on water of this depth [m] or inf; order: Fourier terms, 1 to 60.
 
-    Raises ValueError for a value that is not allowed, as a height that no wave has, and ConvergenceError where Newton's
+    Raises ValueError for a value that is not allowed, as a height that no wave has, and ConvergenceError if Newton's
     method finds none: near the highest wave more terms are needed.
     """
     height = check_positive("height", height, "m")

@@ -202,7 +202,7 @@ def accelerate_span(xs, vs, p, f, first, n, M, inner, count, k, o, N):
     )  # fmt: skip
     for e in range(3):
         b, of = np.uint64(e) * M + inner, np.uint64(e) * F
-        # Beyond the rope's ends there is no link; of other ends the point there is not asked for.
+        # Beyond the rope's ends there is no link, and the point there is not read.
         f[of], f[of + n] = 0.0, 0.0
         load = p.mass * (p.gx if e == 0 else p.gy if e == 1 else p.gz)
         set_differences(

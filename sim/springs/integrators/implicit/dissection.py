@@ -20,16 +20,16 @@ from sim.jit import kernel
 
 TILE = 256  # rows and columns
 LEAF = 16  # most particles of a rectangle that no line separates
-LANES = 16  # numbers that rows of a front are a multiple of, so that no loop over a row has a rest
+LANES = 16  # the length of a front's rows is a multiple of this, so that no loop over a row has a remainder
 PANEL = 12  # rows of the factor that are subtracted at once
-LEAST_PIVOT = 0.5  # of the least mass: no pivot is smaller but by round-off
+LEAST_PIVOT = 0.5  # of the least mass; smaller pivots come from round-off
 
 # (rows, columns) to the neighbours after a particle, in the order of the blocks of `beside`
 DIRECTIONS = ((0, 1), (1, 0), (1, 1), (1, -1))
 
 
 class Dissection(NamedTuple):
-    """The order of elimination of a grid, and room for its factors."""
+    """The order of elimination of a grid, and storage for its factors."""
 
     rows: int
     cols: int
@@ -60,13 +60,13 @@ def around(r0, r1, c0, c1, rows, cols):
 
 @kernel(inline=True)
 def rest_size(count):
-    """Numbers in the rest of a front, of `count` particles that are not eliminated."""
+    """Numbers in the rest of a front with `count` particles not yet eliminated."""
     return 9 * count * count
 
 
 @kernel
 def stack_size(nodes):
-    """The highest that the stack of rests grows: each part takes its children's rests and leaves its own."""
+    """Greatest size of the stack of rests: each part pops its children's rests and pushes its own."""
     parts = nodes.shape[0]
     depth, deepest, held, top = 0, 0, np.zeros(parts, np.int64), 0
     for q in range(parts - 1, -1, -1):
@@ -447,7 +447,7 @@ def solve_up(nodes, fronts, u, b, t):
 
 @kernel(allocates=False)
 def solve(grid, r, z):
-    """Solve A z = r by the factors; r, z: (3 n,), all x, then all y, then all z. z is 0 where r is and A is a pin's."""
+    """Solve A z = r by the factors; r, z: (3 n,), all x, then all y, then all z. z is 0 at pins with r = 0."""
     n, b = grid.rows * grid.cols, grid.vector
     for j in range(n):
         for e in range(3):

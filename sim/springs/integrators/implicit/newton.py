@@ -1,9 +1,9 @@
 """Newton's method for a stage of an implicit step: v = v0 + g a(x0 + g v, v, t).
 
-Every diagonally implicit method here asks for such stages: implicit Euler with g = h, the midpoint with g = h/2,
-TR-BDF2 with g = (1 - 1/sqrt 2) h. A correction d of a rope solves (M + g D + g^2 K) d = M (v0 + g a - v) directly. One
-of a net is that of a quasi-Newton method: it takes the factors of an earlier, simpler matrix, corrected
-by the changes of force along the last corrections.
+Every diagonally implicit method here has such stages: implicit Euler with g = h, the midpoint with g = h/2,
+TR-BDF2 with g = (1 - 1/sqrt 2) h. A correction d of a rope solves (M + g D + g^2 K) d = M (v0 + g a - v) directly. A
+net uses a quasi-Newton method: the factors of an earlier, simpler matrix, corrected by the changes of force along
+the last corrections.
 """
 
 import math
@@ -40,7 +40,7 @@ ROUND_OFF = 4e-15  # and to the farthest position over g, below which correction
 
 
 class Exactness(NamedTuple):
-    """Exactness with which a method has its stages solved. A rope has them solved to round-off, which costs little."""
+    """Exactness of the solution of a method's stages. Those of a rope are solved to round-off at little cost."""
 
     share: float  # of the change of velocity in a stage that corrections may leave, apart from round-off
     usable: float  # the last correction, relative to velocity and its change, of a stage that may be taken unsettled
@@ -103,7 +103,7 @@ def forget_factors_of_net(solver, p):
     solver.kept[0] = 0.0
 
 
-# Let a step begin without factors, so that it does not depend on the steps before it in the same call.
+# Begin a step without factors, so that it does not depend on earlier steps in the same call.
 forget_factors = by_net(rope=kernel(lambda solver, p: None, inline=True), grid=forget_factors_of_net)
 
 
@@ -167,7 +167,7 @@ def correct_rope(p, work):
 
 @kernel
 def factorise_net(g, p, work):
-    """Factors of the blocks, without links that pass over particles but do not lie on the grid's lines."""
+    """Factors of the blocks, without links that skip particles off the grid's lines."""
     solver = work.solver
     set_near_blocks(p, work.links, work.points, solver.diagonal, solver.beside)
     factorise(solver.diagonal, solver.beside, p.inverse_masses, solver.grid)
@@ -176,7 +176,7 @@ def factorise_net(g, p, work):
 
 @kernel(inline=True)
 def largest(u):
-    """Largest magnitude, NaN where there is one."""
+    """Largest magnitude, NaN if there is one."""
     found = 0.0
     for j in range(u.shape[0]):
         size = abs(u[j])
@@ -210,7 +210,7 @@ def set_blocks(x0, g, t, p, x, v, work):
         set_link_blocks(x, g, p, work.links)
 
 
-# Corrections a stage: one that has not settled by then is taken as it is.
+# Corrections a stage: one that has not settled by then is taken unsettled.
 most_of = by_net(
     rope=kernel(lambda p, exactness: exactness.most_of_rope, inline=True),
     grid=kernel(lambda p, exactness: exactness.most, inline=True),
@@ -228,7 +228,7 @@ def solve_rope_stage(x0, v0, g, t, exactness, p, x, v, work):
         add_scaled(v, 1.0, work.u)
         taken += 1
         last, size = size, largest(work.u)
-        # The rest is the sum of further corrections, each smaller than the one before by the same ratio.
+        # The remainder is the sum of further corrections, each smaller than the last by the same ratio.
         rest = size * size / (last - size) if size < last < np.inf else size
         noise = ROUND_OFF * largest(x) / g
         settled = rest <= SETTLED * largest(v) + noise or size <= noise
@@ -321,10 +321,10 @@ def remaining(size, last, before):
 
 @kernel
 def solve_net_stage(x0, v0, g, t, exactness, p, x, v, work):
-    """`solve_stage` of a net, by a quasi-Newton method: as exact as `exactness` asks, in the norm of their energy.
+    """`solve_stage` of a net, by a quasi-Newton method: to `exactness`, in the norm of the energy.
 
-    The factors are those of an earlier stage or of the first guess, until FEW corrections were not enough. Along each
-    correction velocities go to where the forces along it are nearly 0: buckling is not linear.
+    The factors are those of an earlier stage or of the first guess, until FEW corrections were not enough. A line
+    search along each correction finds where the forces along it are nearly 0: buckling is not linear.
     """
     solver = work.solver
     taken, evals, count, settled, usable = 0, 0, 0, False, False
@@ -366,7 +366,7 @@ def solve_net_stage(x0, v0, g, t, exactness, p, x, v, work):
             length = part
         taken += 1
         count = remember(solver.memory, count, work.u, length, solver.before, work.r)
-        # A correction that was cut tells nothing of how near the end is.
+        # A shortened correction says nothing about the distance to the solution.
         size, last, before = max(1.0, length) * norm(work.u, p), size, last
         noise = ROUND_OFF * largest(x) / g * math.sqrt(total_mass(p))
         change = change_norm(v, v0, p)

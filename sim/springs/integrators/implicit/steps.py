@@ -1,10 +1,10 @@
 """The steps of the implicit methods: implicit Euler, the midpoint and TR-BDF2, in one kernel.
 
-Nearly all of such a kernel is Newton's method, which is the same for the three, so it is compiled once for each kind of
-net and not once for each method. Stages are solved in one place of the loop, so that the solver is expanded there: a
-call would copy hundreds of numbers, a tenth of the time that a rope of ten points takes.
+Nearly all of the kernel is Newton's method, the same for all three, so it is compiled once for each kind of net instead
+of once for each method. Stages are solved at one place in the loop, so that the solver is inlined there: a call would
+copy hundreds of numbers, a tenth of the time of a rope of ten points.
 
-A step that Newton's method cannot take whole is taken in halves, quarters, ..., and in longer parts again after an
+A step that Newton's method cannot solve is split into halves, quarters, ..., and into longer parts again after an
 easy one.
 """
 
@@ -28,7 +28,7 @@ from sim.springs.points.arrays import by_net
 
 EULER, MIDPOINT, TR_BDF2 = 0, 1, 2
 
-FINEST = 16  # parts of a step, which are taken as they are
+FINEST = 16  # parts of a step, taken even if unsettled
 FINEST_MIDPOINT = 64
 # Of the solver. Implicit Euler damps the rest of an error most, TR-BDF2 less; halves of a midpoint are quicker than
 # more corrections.
@@ -39,7 +39,7 @@ OF_TR_BDF2 = Exactness(share=5e-4, usable=1e-3, most=60, most_of_rope=25)
 OF_MIDPOINT = Exactness(share=2e-3, usable=1.0, most=36, most_of_rope=12)
 OF_CONSERVING_MIDPOINT = Exactness(share=0.0, usable=0.0, most=60, most_of_rope=12)
 is_conserving = by_net(rope=kernel(lambda p: True, inline=True), grid=kernel(lambda p: p.is_conserving, inline=True))
-GAMMA = 2.0 - math.sqrt(2.0)  # part of a step of TR-BDF2 that its first stage takes
+GAMMA = 2.0 - math.sqrt(2.0)  # fraction of a step of TR-BDF2 in its first stage
 W = math.sqrt(2.0) / 4.0  # weights of the quadrature of TR-BDF2: W, W, GAMMA/2
 
 

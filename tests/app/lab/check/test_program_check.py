@@ -100,7 +100,10 @@ def test_a_right_result_is_right_in_any_form_and_in_another_hand(desk: Desk, nam
 CASES = [(name, mistake, body) for name, cases in WRONG.items() for mistake, body in cases]
 
 
-@pytest.mark.parametrize(("name", "mistake", "body"), CASES, ids=[f"{case[0]}-{i}" for i, case in enumerate(CASES)])
+@pytest.mark.parametrize(
+    ("name", "mistake", "body"),  # every other one in a plain run
+    [pytest.param(*case, id=f"{case[0]}-{i}", marks=() if i % 2 else pytest.mark.long) for i, case in enumerate(CASES)],
+)
 def test_a_wrong_solution_is_refused_and_its_mistake_named(desk: Desk, name: str, mistake: str, body: str) -> None:
     verdict = verdict_of(desk, TASKS[name], with_body(TASKS[name], body))
     assert verdict.state == "wrong", verdict
@@ -109,7 +112,11 @@ def test_a_wrong_solution_is_refused_and_its_mistake_named(desk: Desk, name: str
 
 
 @pytest.mark.parametrize(
-    ("name", "words", "body"), MISTAKES, ids=[f"{name}-{i}" for i, (name, *_) in enumerate(MISTAKES)]
+    ("name", "words", "body"),  # two of three in a plain run
+    [
+        pytest.param(*case, id=f"{case[0]}-{i}", marks=() if i % 3 else pytest.mark.long)
+        for i, case in enumerate(MISTAKES)
+    ],
 )
 def test_a_mistake_as_students_make_it_is_named(desk: Desk, name: str, words: str, body: str) -> None:
     verdict = verdict_of(desk, TASKS[name], "KEPT = {}\n\n" + with_body(TASKS[name], body))
@@ -199,7 +206,10 @@ TWICE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", TWICE)
+@pytest.mark.parametrize(
+    "case",  # a wrong function is explained, which takes seconds
+    [pytest.param(case, marks=pytest.mark.long if "wrong" in TWICE[case] else ()) for case in TWICE],
+)
 def test_the_last_definition_of_a_name_counts(desk: Desk, case: str) -> None:
     source, state, mark = TWICE[case]
     verdict = verdict_of(desk, TASKS["spring_force"], source)
@@ -275,7 +285,7 @@ def test_an_endless_file_is_run_once_for_all_its_functions(tmp_path: Path) -> No
     assert {verdict.sentence for verdict in verdicts} == {said}
 
 
-# Bytes of a file -> what Python says of it, or "" where it runs.
+# Bytes of a file -> what Python says of it, or "" if it runs.
 ENCODINGS = {
     b"# gr\xf6\xdfe\n": r"line 1: SyntaxError: Non-UTF-8 code starting with '\xf6', but no encoding declared",
     b"\n\n\n# gr\xf6\xdfe\n": r"line 4: SyntaxError: Non-UTF-8 code starting with '\xf6', but no encoding declared",

@@ -156,9 +156,10 @@ def edited_trees(source: str, line: int, before: str, after: str) -> Iterator[st
 
 
 NAMES = sorted({name for name, *_ in MISTAKES})
+SLOW = {"cloth_forces", "cloth_links", "rope_acceleration", "sphere_force"}  # tasks whose mistakes take seconds
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.long if name in SLOW else ()) for name in NAMES])
 def test_mistakes_are_named_so_that_one_knows_what_to_change(runner: Runner, name: str) -> None:
     task = TASKS[name]
     for words, body in [(words, body) for other, words, body in MISTAKES if other == name]:

@@ -17,10 +17,7 @@ from app.lab.student.live_net import COMPILE_AFTER, MAX_REST, REST_RATIO, ROPE, 
 from app.lab.student.versions import Versions
 from tests.waiting import wait_for
 
-FORCES = Forces(
-    1.0, 800.0, 7.0, 1.0, 0.2, 10.0, -np.inf, 0.4, (9.0, 0.0, 3.0), (-20.0, 0.0, 0.0), 800.0, 5.0, 0.3, False, -1,
-    (0.0, 0.0, 0.0), 0.0, 0.0, 1.0,
-)  # fmt: skip
+FORCES = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, sr=0.4, sx=9.0, sz=3.0, svx=-20.0, friction=0.3)
 
 
 def test_nan_is_said_of_the_force_of_a_sphere_that_has_come_near() -> None:
@@ -229,9 +226,9 @@ def test_friction_on_the_student_s_sphere_acts_against_the_motion_along_it() -> 
     module = types.ModuleType("rope")
     module.sphere_force = sphere_force  # type: ignore[attr-defined]
     functions = Functions(module, ("sphere_force",), "step_euler", {})
-    forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, radius=1.0, contact_stiffness=50.0, friction=0.3)
+    forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, sr=1.0, contact_k=50.0, friction=0.3)
     functions.segment = Segment(1, 1e-3, forces, np.zeros((0, 4, 3)))
     for v in (np.array([2.0, 0.0, 0.0]), np.array([0.0, -3.0, 1.0])):
-        force = functions.sphere(np.array([0.0, 0.0, 0.9]), v, np.zeros(3), 0.9, 1.0)
+        force = functions.sphere(np.array([0.0, 0.0, 0.9]), v, 1)
         assert force[2] == pytest.approx(5.0)
         assert force[:2] == pytest.approx(-0.3 * 5.0 * v[:2] / np.linalg.norm(v[:2]))

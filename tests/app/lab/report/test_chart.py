@@ -10,7 +10,7 @@ from app.lab.check.program_check import Points, draw
 from app.lab.course.task import Task, load_tasks
 from app.lab.process.runner import Runner
 from app.lab.report.chart import chart
-from app.render.markup.line_chart import BOTTOM, LEFT, MAX_TICKS, PLOT_HEIGHT, RIGHT, TOP, WIDTH, ticks
+from app.render.markup.line_chart import BOTTOM, LEFT, PLOT_HEIGHT, RIGHT, TOP, WIDTH
 
 X = np.linspace(0.0, 3.0, 7)
 
@@ -53,13 +53,6 @@ def test_points_far_from_the_reference_are_marks_at_the_edge_and_the_right_ones_
 
 def test_a_curve_without_a_finite_value_is_left_out() -> None:
     assert chart(Points("x", "y", X, np.full(7, np.nan), None)) == ""
-
-
-@pytest.mark.parametrize(("low", "high"), [(0.0, 1.0), (-3.7, 12.0), (1e-9, 2e-9), (1e8, 1.1e8), (2.0, 2.0)])
-def test_ticks_are_round_and_few(low: float, high: float) -> None:
-    found = ticks(low, high)
-    assert 1 <= len(found) <= MAX_TICKS + 1
-    assert all(low <= tick <= high for tick in found)
 
 
 def fresnel(angle: np.ndarray, n: float) -> np.ndarray:

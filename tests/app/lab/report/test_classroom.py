@@ -85,7 +85,7 @@ def save(folder: Path, sign: str, more: str = "") -> None:
     ("code", "text", "poses"),
     [
         (FORCE.format("-"), "Matches the reference.", 5),
-        (FORCE.format("- 0.9 *"), " m from the reference.", 5),
+        (FORCE.format("- 0.9 *"), "m from the reference.", 5),
         (FORCE.format("+"), "Flies apart within ", None),
         (FORCE.format("- nothing *"), "Does not run.", 0),
         ("import numpy as np\n\n\ndef spring_force(x1):\n    ...\n", "", 0),

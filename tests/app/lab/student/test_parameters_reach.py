@@ -47,9 +47,16 @@ BASES = {"rope": (ROPE, dataclasses.replace(ROPE, units="material")), "cloth": (
 SCENES: dict[str, Any] = {"rope": RopeScene, "cloth": ClothScene}
 HELD = {"rope": 5, "cloth": 22}  # point that the hand pulls
 FILES = {"rope": "rope.py", "cloth": "cloth.py"}
-ALONE = {("cloth", "law")}  # for which kernels are compiled that no other test runs
+# For these kernels are compiled that no other test runs.
+ALONE = {("cloth", "law"): pytest.mark.stress, ("rope", "law"): pytest.mark.long}
+# The parameters of the cloth that a plain run tries; each takes a third of a second.
+SAMPLE = {"integrator", "pinned", "start", "density", "thickness", "friction", "wind", "sphere_radius"}
 CASES = [
-    pytest.param(name, parameter, marks=pytest.mark.stress if (name, parameter) in ALONE else ())
+    pytest.param(
+        name,
+        parameter,
+        marks=ALONE.get((name, parameter), pytest.mark.long if name == "cloth" and parameter not in SAMPLE else ()),
+    )
     for name, bases in BASES.items()
     for parameter, declared in parameters_of(bases[0]).items()
     if declared.affects != "look"

@@ -1,4 +1,4 @@
-"""A student's folder while the lab is served: what is saved runs, what is wrong is named, and the lab goes on."""
+"""A student's folder while the lab is served: what is saved runs, what is wrong is named, and the lab continues."""
 
 import contextlib
 import dataclasses
@@ -148,13 +148,13 @@ def test_the_headline_tells_whether_a_net_or_a_table_runs(version: int, running:
 def test_the_course_of_the_difference_ends_at_the_edge_of_its_chart() -> None:
     report = StudentReport(times=np.array([1.0, 2.0, 4.0]), differences=np.array([0.0, 0.1, 0.2]))
     chart = difference_chart(report, "cloth")
-    assert "Distance from the program's cloth [m]</text>" in chart
+    assert "Distance from the program&#39;s cloth [m]</text>" in chart
     (line,) = re.findall(r'<polyline points="([^"]+)"', chart)
     places = np.array([[float(one) for one in place.split(",")] for place in line.split()])
     parts = np.array([0.0, 1 / 3, 1.0])
     assert places[:, 0] == pytest.approx(CHART_LEFT + parts * (CHART_WIDTH - CHART_LEFT - 4), abs=0.06)
     assert (np.diff(places[:, 1]) < 0.0).all()
-    assert re.findall(r">([\d.]+ s)</text>", chart) == ["1.0 s", "4.0 s"]
+    assert re.findall(r">([\d.]+)</text>", chart)[:4] == ["1", "2", "3", "4"]
 
 
 def test_functions_of_the_open_scene_stand_before_the_others_of_their_state() -> None:
@@ -369,7 +369,7 @@ def test_files_that_cannot_be_checked_are_taken_up_later(right: Session) -> None
 
 def test_files_that_stay_as_they_are_are_not_read_again(right: Session, monkeypatch: pytest.MonkeyPatch) -> None:
     looks, reads = [], []
-    wait_for(lambda: time.monotonic() > right.versions.files.sure_at)
+    right.versions.files.sure_at = time.monotonic()  # not only seconds after the last change
     monkeypatch.setattr("app.lab.student.versions.stamps", lambda *of: looks.append(1) or stamps(*of))
     monkeypatch.setattr("app.lab.student.versions.read_files", lambda folder: reads.append(1) or read_files(folder))
     wait_for(lambda: len(looks) >= 2)

@@ -228,7 +228,7 @@ def test_a_run_that_goes_on_from_earlier_replaces_what_came_later(filled: Record
     assert number_of(filled) is None
     assert [kept.time for kept in filled.frames] == [n * INTERVAL for n in (*range(21), 23)]
     assert filled.memory.bytes == size * 22 // 100
-    filled.note(snapshot(12, RunIdentity(3, 3, before=1, since=10 * INTERVAL)), 5.2)  # of the first run once more
+    filled.note(snapshot(12, RunIdentity(3, 3, before=1, since=10 * INTERVAL)), 5.2)  # of the first run again
     assert [kept.time for kept in filled.frames] == [n * INTERVAL for n in (*range(11), 12)]
 
 

@@ -19,6 +19,7 @@ from app.scenes.mooring.files.from_file import mooring_of
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import MooringParams, hidden
 from app.scenes.mooring.readings.report import notes_of
+from app.scenes.mooring.readings.restoring import CurveInputs
 from app.scenes.quantities import measured
 from app.scenes.setups import described, missing_files, read_file, read_setup_text, write_file
 from app.server.loop.sim_loop import SimLoop
@@ -134,7 +135,7 @@ def test_the_mouse_drags_the_vessel_no_farther_than_its_lines_reach():
 
 def test_the_restoring_curve_is_the_force_of_the_lines_on_the_vessel():
     scene = scene_of("shared_line", wave_height=0.0, plot_restoring=True)
-    offset, force = scene.static_inputs(2.0).curve()
+    offset, force = scene.curve_inputs(2.0).curve(scene.rows)
     assert np.isfinite(force).all()
     assert (np.diff(force) > 0.0).all()
     middle = len(offset) // 2
@@ -148,6 +149,18 @@ def test_the_restoring_curve_is_the_force_of_the_lines_on_the_vessel():
     assert scene.rows.level_force(scene.rows.points(rest.nodes), tension) == pytest.approx(pull[:2], rel=1e-6)
     chart = (scene.curves() or {})["plot_restoring"]
     assert len(chart.columns) == 3
+
+
+def test_the_restoring_curve_of_a_file_with_a_body_is_kept_and_found_again_when_it_is_read_again(monkeypatch):
+    scene, found, curve = scene_of("buoy", plot_restoring=True), [], CurveInputs.curve
+    monkeypatch.setattr(CurveInputs, "curve", lambda *given: found.append(curve(*given)) or found[-1])
+    for _ in range(2):
+        scene.curves()
+        scene.curves()
+        mooring_of.cache_clear()
+        scene.reset()
+    assert len(found) == 2
+    np.testing.assert_array_equal(*found)
 
 
 def test_water_numbers_and_texts_are_those_of_the_file():
@@ -188,7 +201,7 @@ def test_a_file_without_coupled_points_has_no_vessel(tmp_path):
     scene.advance(400)
     assert scene.readings().most_offset == 0.0
     assert np.isfinite(scene.frame().points).all()
-    assert (scene.static_inputs(1.0).curve()[1] == 0.0).all()
+    assert (scene.curve_inputs(1.0).curve(scene.rows)[1] == 0.0).all()
 
 
 def test_a_setup_holds_the_name_of_the_file_only():

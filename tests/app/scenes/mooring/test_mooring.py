@@ -29,7 +29,6 @@ from app.scenes.mooring.drawing.bed_view import BED_ROWS, bed_colours
 from app.scenes.mooring.line_scene import FADE
 from app.scenes.mooring.parameters import PRESETS, MooringParams
 from app.scenes.mooring.readings.excursion import MAX_PATH, PATH_INTERVAL
-from app.scenes.mooring.readings.restoring import static_curve
 from app.scenes.mooring.readings.tensions import Tensions
 from app.scenes.mooring.start import NO_REST
 from app.scenes.mooring.view import MooringView
@@ -177,7 +176,7 @@ def test_dragging_an_anchor_a_fairlead_and_the_body():
 
 def test_the_restoring_curve_goes_through_the_state_of_rest_and_through_a_pushed_one():
     pushed, free = (MooringScene(MooringParams(segments=20, wave_height=0.0, steady_force=f)) for f in (15.0, 0.0))
-    offset, force = static_curve(free.static_inputs())
+    offset, force = free.curve_inputs().curve(free.rows)
     assert np.interp(0.0, offset, force) == pytest.approx(0.0, abs=400.0)
     assert (np.diff(force) > 0.0).all()
     moved = float(pushed.body_place()[0] - free.body_place()[0])
@@ -201,9 +200,10 @@ def test_the_chart_of_the_restoring_force_marks_the_state():
 def test_the_gauge_is_that_of_the_library_and_a_longer_step_diverges():
     scene = MooringScene(MooringParams(**SMALL))
     assert scene.stability.critical_step == pytest.approx(critical_step(scene.system, "leapfrog"), rel=1e-9)
-    long = MooringScene(MooringParams(**{**SMALL, "time_step": 1.5 * scene.stability.critical_step}))
+    # Not far beyond the limit, links that go slack keep the growth bounded.
+    long = MooringScene(MooringParams(**{**SMALL, "time_step": 2.0 * scene.stability.critical_step}))
     with pytest.raises(DivergenceError, match="became unstable"):
-        run(long, 60.0)
+        run(long, 5.0)
     kind = scene_named("mooring")
     assert kind.remedy is not None
 
@@ -276,7 +276,7 @@ def test_the_restoring_curve_is_that_of_the_rest_now(changed):
     charts = scene.curves()
     assert charts is not None
     offset, static, _ = charts["plot_restoring"].columns
-    expected = static_curve(scene.static_inputs(2.0 ** math.ceil(math.log2(max(scene.excursion.largest, 1e-3)))))
+    expected = scene.curve_inputs(2.0 ** math.ceil(math.log2(max(scene.excursion.largest, 1e-3)))).curve(scene.rows)
     assert np.interp(expected[0], offset, static) == pytest.approx(1e-3 * expected[1], abs=1e-6)
 
 
@@ -374,6 +374,7 @@ def corrections_of(params: MooringParams) -> int:
         return len(done)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", [100, pytest.param(2000, marks=pytest.mark.stress)])
 def test_random_moorings_rest(count):
     rng = random.Random(4)

@@ -13,14 +13,14 @@ from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.drawing.body_view import DrawnBody
 from app.scenes.mooring.drawing.square import square_faces, square_points
 from app.scenes.mooring.drawing.water_view import SeenWater
-from app.scenes.mooring.files.file_scene import FileInputs
-from app.scenes.mooring.files.from_file import mooring_of
+from app.scenes.mooring.files.from_file import mooring_of, slack_of
 from app.scenes.mooring.frame import EndStatistics
 from app.scenes.mooring.parameters import MooringParams
 from app.scenes.mooring.readings.excursion import Excursion
 from app.scenes.mooring.readings.report import tension_table
-from app.scenes.mooring.readings.restoring import level_tension, static_curve
+from app.scenes.mooring.readings.restoring import CurveInputs
 from app.scenes.mooring.scene import needs
+from sim.mooring import Line, Point, System
 from sim.mooring.rest.statics import at_rest
 
 FILES = Path(__file__).parents[3] / "sim" / "mooring" / "moordyn" / "files"
@@ -51,21 +51,34 @@ def test_the_ends_of_the_floats_begin_on_the_straight_line_from_anchor_to_fairle
             assert points[first + j] == pytest.approx(points[first] + j / 3 * (points[first + 9] - points[first]))
 
 
-def test_only_lines_of_one_type_and_rise_share_their_statics(scene):
-    inputs = scene.static_inputs()
-    deep = tuple((x, y, z - 2.0 * i) for i, (x, y, z) in enumerate(inputs.places.anchors))
-    inputs = inputs._replace(places=inputs.places._replace(anchors=deep), depth=inputs.depth + 2.0)
-    offset, force = static_curve(inputs)
+def level_tension(lines: tuple[Line, ...], span: float, rise: float, depth: float) -> float:
+    """Horizontal part [N] of a line's tension at the fairlead, `rise` [m] over its anchor and `span` [m] away."""
+    first, last = lines[0].start, lines[-1].end
+    points = [Point(first, "fixed", (0.0, 0.0, -depth)), Point(last, "coupled", (span, 0.0, rise - depth))]
+    points += [Point(line.end, "free", (0.5 * span, 0.0, 0.5 * rise - depth)) for line in lines[:-1]]
+    rest = System(lines, tuple(points), depth).at_rest()
+    way = rest.x[lines[-1].id][-1] - rest.x[lines[-1].id][-2]
+    return float(rest.tension[lines[-1].id][-1] * way[0] / np.linalg.norm(way))
+
+
+@pytest.mark.parametrize("floats", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_the_curve_is_the_sum_of_the_lines_each_by_itself(floats):
+    scene = MooringScene(MooringParams(**{**SMALL, "floats": floats, "direction": 30.0}))
+    moved = scene.attached.anchors[0]
+    moved.position = moved.target = tuple(np.add(moved.position, (0.0, 5.0, 0.0)).tolist())
+    scene.take_system()
+    inputs = scene.curve_inputs()
+    offset, force = inputs.curve(scene.rows)
     wave = np.array(inputs.wave)
-    for i in range(0, len(offset), 10):
+    for i in range(0, len(offset), 4):
         alone = 0.0
-        for k, (anchor, fairlead) in enumerate(zip(deep, inputs.places.fairleads, strict=True)):
-            x, y, rise = np.add(inputs.rest_place, fairlead) - anchor
+        for k, (anchor, fairlead) in enumerate(zip(*scene.attached.places, strict=True)):
+            x, y, rise = np.add(scene.excursion.rest, fairlead) - anchor
             away = -np.array([x, y]) - offset[i] * wave
-            parts = tuple(line for line in inputs.lines if line.id // 10 == k + 1)
+            parts = tuple(line for line in inputs.system.lines if line.id // 10 == k + 1)
             span = float(np.linalg.norm(away))
-            alone -= level_tension(inputs, parts, span, float(rise)) * float(away @ wave) / span
-        assert force[i] == pytest.approx(alone, rel=0.02, abs=0.01 * np.abs(force).max())
+            alone -= level_tension(parts, span, float(rise), scene.params.depth) * float(away @ wave) / span
+        assert force[i] == pytest.approx(alone, rel=1e-4, abs=1e-4 * np.abs(force).max())
 
 
 def test_the_curve_of_a_file_goes_as_far_as_its_line_and_along_the_waves():
@@ -75,7 +88,8 @@ def test_the_curve_of_a_file_goes_as_far_as_its_line_and_along_the_waves():
     ends = {point.id: point.position for point in mooring.system.points}
     x, y, z = np.subtract(ends[line.end], ends[line.start])
     straight = math.sqrt(line.length**2 - z * z)
-    offset, force = FileInputs(str(path), (), (0.6, 0.8), 0.0).curve()
+    inputs = CurveInputs(mooring.system, (0.6, 0.8), slack_of(mooring.system)[0], mooring.extent, 0.0)
+    offset, force = inputs.curve(mooring.rows)
     assert offset[-1] == pytest.approx(1.05 * (straight - math.hypot(x, y)), rel=0.2)
     assert offset[0] == -offset[-1]
     for i in (5, len(offset) // 2, len(offset) - 6):

@@ -99,7 +99,7 @@ def test_a_line_that_is_too_soft_for_its_load_is_advised_the_stiffness_that_its_
     assert scene.start.fault.advice is not None
     assert 1.0 < scene.start.fault.advice.value / (load / MAX_REST_STRETCH) < 1.4
     scene.change_forces(dataclasses.replace(scene.params, axial_stiffness=scene.start.fault.advice.value))
-    assert scene.start.fault is None  # at once, as the motion goes on
+    assert scene.start.fault is None  # at once, as the motion continues
     scene.change_forces(dataclasses.replace(scene.params, axial_stiffness=2e6))
     assert scene.start.fault is not None
     scene.change_forces(dataclasses.replace(scene.params, steady_force=10.0))

@@ -110,6 +110,7 @@ def test_bodies_of_their_own_densities_float_at_their_own_drafts() -> None:
     assert scene.bodies.fleet.mass[0] == pytest.approx(450.0 * scene.bodies.hulls["buoy_red"].volume)
 
 
+@pytest.mark.long
 def test_the_slick_of_the_jet_counts_at_rest() -> None:
     scene = scene_with(waves=False, ripples=False, jet=True, bodies=1)
     scene.well_blowout.closed_jets_total = JetTotal(2000.0, 2000.0, 100)
@@ -128,7 +129,7 @@ def test_the_slick_of_the_jet_counts_at_rest() -> None:
 
 
 def test_a_body_in_the_slick_is_predicted_in_its_oil() -> None:
-    """And in the mixture alone where there is one: it takes the oil up."""
+    """And in the mixture alone if there is one: it takes the oil up."""
     for changes, is_layered in (({}, True), ({"spill": "layer"}, True), ({"spill": "mixed"}, False)):
         bodies = scene_with(**CALM, bodies=2, **changes).bodies
         column, before = bodies.column, [bodies.prediction(i).draft for i in range(2)]

@@ -130,7 +130,7 @@ def test_a_body_held_by_one_browser_is_not_taken_over_by_another() -> None:
     scene.handle(GrabTo(0, (9.0, 0.0, 0.0), client=2))
     scene.handle(GrabTo(1, (2.0, 0.0, 0.0), client=2))
     assert [target for _, target in scene.frame().grabs] == [(1.0, 0.0, 0.0), (2.0, 0.0, 0.0)]
-    scene.handle(GrabTo(0, (1.5, 0.0, 0.0), client=1))  # its own body goes on being dragged
+    scene.handle(GrabTo(0, (1.5, 0.0, 0.0), client=1))  # its own body stays dragged
     assert scene.frame().grabs[0][1] == (1.5, 0.0, 0.0)
 
 

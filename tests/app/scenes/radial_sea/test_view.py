@@ -77,7 +77,7 @@ def test_the_larger_the_bodies_the_farther_is_the_camera(follow: str) -> None:
 
 @pytest.mark.parametrize("name", ["radial_sea", "square_sea"])
 def test_the_lights_of_a_sea_cast_no_shadows(server: viser.ViserServer, name: str) -> None:
-    """Each shadow would draw all bodies once more in every frame, and the water shows none."""
+    """Each shadow would draw all bodies again in every frame, and the water shows none."""
     kind = scene_named(name)
     view = view_named(name)(server, lambda _: None)
     view.show(kind.make(kind.params()).frame())

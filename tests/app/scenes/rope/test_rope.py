@@ -126,7 +126,10 @@ def test_grabbing_what_is_not_there_does_nothing(particle: int) -> None:
     scene.advance(5)
 
 
-@pytest.mark.parametrize("name", list(parameters_of(RopeParams)))
+@pytest.mark.parametrize(
+    "name",  # each law has a kernel of its own, which takes seconds to compile
+    [pytest.param(name, marks=pytest.mark.long if name == "law" else ()) for name in parameters_of(RopeParams)],
+)
 def test_both_ends_of_every_parameter_survive_two_seconds(name: str) -> None:
     parameter = parameters_of(RopeParams)[name]
     ends = parameter.choices or ((False, True) if parameter.kind is bool else (parameter.low, parameter.high))

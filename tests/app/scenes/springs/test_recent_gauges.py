@@ -1,4 +1,4 @@
-"""The share of the largest stable step that the panel shows: the worst of the last seconds, in plain words."""
+"""The fraction of the largest stable step that the panel shows: the worst of the last seconds, in plain words."""
 
 import html
 import re

@@ -224,7 +224,7 @@ def test_the_panel_compares_crests_with_theory_and_says_what_broke() -> None:
     for _ in range(30):
         loop.tick(1 / 30)
     text = str(report.readout(loop.latest))
-    for words in ("crest over significant height", "skewness", "kurtosis", "Forristall", "Breaking has taken"):
+    for words in ("crest over significant height", "skewness", "kurtosis", "Forristall", "Breaking has dissipated"):
         assert words in text
     highest = loop.latest.frame.highest
     assert f"Highest crest: {number(highest.place[2])} m" in report.marks(loop.latest)["order"]
@@ -303,7 +303,7 @@ def ends() -> list[tuple[str, object]]:
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize("order", [3, 7])
 def test_steep_seas_at_the_ends_of_all_sliders_go_on_or_stop_with_words(order: int) -> None:
-    """Each slider at each end on a steep sea, 20 s: the run goes on, or halts with a reason; the loss is shown."""
+    """Each slider at each end on a steep sea, 20 s: the run continues, or halts with a reason; the loss is shown."""
     steep = STEEP | {"order": order, "hs": 3.0, "statistics": True}
     stopped = []
     for name, value in ends():

@@ -17,7 +17,7 @@ from app.scenes.square_sea.statistics import theory
 from app.server.loop.sim_loop import SimLoop
 from sim.ocean import Sea
 from sim.ocean.spectra import SPECTRA
-from sim.ocean.statistics.foam import pace, whitecaps
+from sim.ocean.statistics.foam import slope_and_frequency, whitecaps
 from sim.parameters import effect_of_change, parameters_of
 
 Scene: Any = SquareSeaScene  # its frames and readings have more than every scene has
@@ -181,20 +181,20 @@ def test_slope_and_frequency_of_waves_that_stay_the_same_are_found_once() -> Non
     for _ in range(100):
         scene.advance(4)
         scene.frame()
-    assert scene.counts["paces"] == 1
+    assert scene.counts["slopes"] == 1
     before = scene.waves.slope, scene.waves.frequency
     scene.change_forces(SquareSeaParams(size="64", mesh="64", viscosity=0.0, wind_speed=20.0, transition=0.2))
     for _ in range(120):  # 8 s, or 40 transition times: the last are steady again
         scene.advance(4)
         scene.frame()
     assert (scene.waves.slope, scene.waves.frequency) != before
-    assert 3 <= scene.counts["paces"] < 14
-    assert (scene.waves.slope, scene.waves.frequency) == pace(scene.sea, scene.time)
+    assert 3 <= scene.counts["slopes"] < 14
+    assert (scene.waves.slope, scene.waves.frequency) == slope_and_frequency(scene.sea, scene.time)
     decaying = Scene(SquareSeaParams(size="64", mesh="64", viscosity=1e-3))
     for _ in range(60):  # 4 s, every half of one
         decaying.advance(4)
         decaying.frame()
-    assert decaying.counts["paces"] >= 7
+    assert decaying.counts["slopes"] >= 7
 
 
 def test_the_rain_that_is_counted_is_the_rain_that_theory_has():

@@ -40,13 +40,14 @@ FORCES = {
 }  # fmt: skip
 STARTS = {"cloth": "gather", "race": "length", "square_sea": "length", "mooring": "length"}
 PRESETS = 3
+SLOW = ("mooring", "radial_sea")
 
 
 @dataclasses.dataclass
 class RunSeen:
-    """A run of the model, as it was seen last."""
+    """A run of the model, as last seen."""
 
-    time: float | None = 0.0  # [s]; None: it goes on from somewhere, and was not seen yet
+    time: float | None = 0.0  # [s]; None: it resumes from somewhere, and was not seen yet
     arrays: dict[str, np.ndarray] | None = None  # None: changed since it was seen
     running: bool = False
     act: int = 0  # the program's number of it; 0: not seen
@@ -84,7 +85,7 @@ class Model:
         )
 
     def undo(self) -> None:
-        """The screen before the last act; a run goes on from where it is, or from where it was left."""
+        """The screen before the last act; a run continues from where it is, or from where it was left."""
         if not self.before:
             return
         now, self.screen = self.screen, self.before.pop()
@@ -96,7 +97,7 @@ class Model:
 
 
 class Compiler(Compiling):
-    """What runs without a grid is compiled anew after each `finish`."""
+    """A compiler for which everything without a grid is missing again after each `finish`."""
 
     def __init__(self) -> None:
         super().__init__(1)
@@ -235,7 +236,7 @@ class Lab:
         self.model.screen.running = not self.model.screen.running
 
     def settle(self) -> None:
-        """All that waits is compiled and handled."""
+        """Compile and handle everything that waits."""
         for _ in range(5):
             self.loop.tick(0.0)
             self.compiler.settled.add(Job(self.kind.name, f"kernel {self.compiler.epoch}", False))
@@ -244,7 +245,7 @@ class Lab:
         self.compiler.epoch += 1
 
     def see(self) -> None:
-        """The screen is that of the model."""
+        """Compare the screen with that of the model."""
         self.settle()
         screen, loop, settings = self.model.screen, self.loop, self.settings
         run, scene, status = screen.run, loop.scene, loop.run.snapshots.status()
@@ -294,8 +295,14 @@ def play_sequence(name: str, seed: int, *, compiles: bool) -> None:
     lab.see()
 
 
-@pytest.mark.parametrize("compiles", [False, True], ids=["", "compiled"])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    ("name", "compiles"),
+    [
+        pytest.param(name, compiles, marks=pytest.mark.long if name in SLOW and not compiles else ())
+        for name in NAMES
+        for compiles in (False, True)
+    ],
+)
 def test_the_screen_after_acts_and_undos_is_that_of_the_act_before(name: str, compiles: bool) -> None:
     for seed in range(8):
         play_sequence(name, seed, compiles=compiles)

@@ -1,4 +1,4 @@
-"""Parameters that need what is not compiled yet wait for it; the scene goes on with the old ones."""
+"""Parameters that need what is not compiled yet wait for it; the scene continues with the old ones."""
 
 from concurrent.futures import Future
 
@@ -10,7 +10,7 @@ from app.server.loop.commands import CompileGate, Record
 
 
 class Queue(Compiling):
-    """All but leapfrog is missing until it is said to be there; nothing is compiled."""
+    """A queue in which everything but leapfrog is missing until it is reported; nothing is compiled."""
 
     def __init__(self) -> None:
         super().__init__(1)
@@ -25,7 +25,7 @@ class Queue(Compiling):
         self.wanted += [job.piece for job in jobs]  # type: ignore[attr-defined]
 
     def finish(self, piece: str) -> None:
-        """Say that a piece is there, as a worker does."""
+        """Report a piece as compiled, as a worker does."""
         self.there.add(piece)
         self.settled.add(Job("rope", piece, False))
 
@@ -42,7 +42,7 @@ def test_a_method_that_is_not_compiled_waits_and_starts_by_itself() -> None:
     assert "rk4" in gate.notice
     assert queue.wanted == ["rk4"]
     assert gate.admit([]) == []
-    assert queue.wanted == ["rk4"]  # asked for once
+    assert queue.wanted == ["rk4"]  # requested once
     queue.finish("rk4")
     assert gate.admit([]) == [chosen]
     assert gate.admit([]) == []

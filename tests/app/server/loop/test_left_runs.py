@@ -1,4 +1,4 @@
-"""Undo across a preset, a reset or a new start: the run goes on as if nothing had happened."""
+"""Undo across a preset, a reset or a new start: the run continues as if nothing had happened."""
 
 from collections.abc import Callable
 
@@ -15,6 +15,7 @@ from tests.waiting import wait_for
 
 TICKS = 12
 TICK = 1 / 30  # [s]
+SLOW = ("cloth", "mooring", "radial_sea")
 
 
 def begun(name: str) -> SimLoop:
@@ -42,8 +43,14 @@ def check_same(loop: SimLoop, arrays: dict[str, np.ndarray]) -> None:
         np.testing.assert_array_equal(array, arrays[name], err_msg=name)
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("change", ["preset", "reset", "moment"])
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        pytest.param(name, change, marks=pytest.mark.long if name in SLOW and change == "preset" else ())
+        for name in NAMES
+        for change in ("preset", "reset", "moment")
+    ],
+)
 def test_a_run_that_was_left_comes_back_and_goes_on_to_the_last_bit(name: str, change: str) -> None:
     kind = scene_named(name)
     loop, undisturbed = begun(name), begun(name)

@@ -1,4 +1,4 @@
-"""Commands that wait for one tick: merged, they do what all of them do in order."""
+"""Commands that wait for one tick: merged, they have the effect of all in order."""
 
 import dataclasses
 import functools
@@ -50,7 +50,7 @@ class Params:
 
 
 class Scene:
-    """A scene with a memory: what is done to it, and in which order, shows in `state`."""
+    """A scene with a memory: `state` shows all commands and their order."""
 
     step = 0.01
     faster = ""
@@ -71,7 +71,7 @@ class Scene:
         self.params, self.time, self.made_of, self.motion, self.hold, self.places, self.points, self.answers = state
 
     def reset(self) -> None:
-        """A start depends on all parameters; two things stay where they were put, as the camera of a sea does."""
+        """A start depends on all parameters; two objects stay in place, as the camera of a sea does."""
         self.made_of = self.params.points, self.params.stiffness
         self.time, self.hold, self.motion = 0.0, None, ()
         self.places: tuple[tuple[str, object], ...] = tuple(p for p in getattr(self, "places", ()) if p[0] == "camera")
@@ -124,7 +124,7 @@ class Scene:
 
 
 class Lane:
-    """A loop whose whole state is a value: what one command makes of one state is worked out once."""
+    """A loop whose whole state is a value: the effect of a command on a state is computed once."""
 
     def __init__(self) -> None:
         self.scene = Scene()
@@ -211,7 +211,7 @@ def test_all_sequences_of_commands_do_the_same_merged_as_in_order(length: int, l
 
 
 def test_grabs_of_one_particle_by_one_browser_are_one() -> None:
-    """Another browser takes nothing that is held, and another particle is grabbed anew."""
+    """Another browser cannot take a grabbed particle, and another particle is a new grab."""
     first, second = GrabTo(1, (1.0, 0.0, 0.0), 7), GrabTo(1, (2.0, 0.0, 0.0), 7)
     assert merged([first, second], Record(Params(), 1)) == [second]
     for other in (GrabTo(2, (2.0, 0.0, 0.0), 7), GrabTo(1, (2.0, 0.0, 0.0), 8)):
@@ -219,7 +219,7 @@ def test_grabs_of_one_particle_by_one_browser_are_one() -> None:
 
 
 def sequences(most: int) -> Iterable[tuple[Command, ...]]:
-    """Of at most so many commands."""
+    """All sequences up to a number of commands."""
     return itertools.chain.from_iterable(itertools.product(COMMANDS, repeat=length) for length in range(1, most + 1))
 
 

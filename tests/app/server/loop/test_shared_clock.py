@@ -77,14 +77,14 @@ def test_where_one_asks_for_slow_motion_all_have_it():
 def test_where_one_cannot_keep_up_all_slow_down_and_no_step_is_lost():
     group = of_steps(1 / 240, 1 / 60)
     slow = group.loops[0]
-    slow.run.pacer.learn = lambda steps, seconds: None  # type: ignore[method-assign]
-    slow.run.pacer.cost_unknown = False
-    slow.run.pacer.cost = FRAME_INTERVAL / 2  # a frame takes one of its steps, of four that are due
+    slow.run.fixed_step.learn = lambda steps, seconds: None  # type: ignore[method-assign]
+    slow.run.fixed_step.cost_unknown = False
+    slow.run.fixed_step.cost = FRAME_INTERVAL / 2  # a frame takes one of its steps, of four that are due
     group.run(2.0)
     assert group.times[1] == pytest.approx(0.5, abs=0.1)
     assert group.spread() < LEAD + 2 / 60
-    assert slow.run.pacer.dropped == 0
-    assert slow.run.pacer.capped
+    assert slow.run.fixed_step.dropped == 0
+    assert slow.run.fixed_step.capped
     assert slow.scene.time == pytest.approx(slow.run.counts["steps"] / 240)
 
 

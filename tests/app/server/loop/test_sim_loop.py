@@ -45,7 +45,7 @@ class Params:
 
 
 class Clock:
-    """Wall time that only moves when the test or a step moves it."""
+    """Wall time that moves only with the test or a step."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -94,7 +94,7 @@ class Scene:
         self.fails = None
 
     def handle(self, command: object) -> None:
-        """No command means anything to it."""
+        """Ignore all commands."""
 
     def keep(self) -> float:
         return self.time
@@ -152,16 +152,16 @@ def test_slow_motion_that_a_scene_asks_for_takes_the_same_steps_in_more_time() -
 
 
 def test_steps_are_whole_and_owe_less_than_one() -> None:
-    pacer = FixedStep()
-    taken = sum(pacer.steps(0.007, 1.0, 0.01) for _ in range(1000))
-    assert taken == 700 or (taken == 699 and pacer.debt < 0.01 * (1 + 1e-9))
+    fixed_step = FixedStep()
+    taken = sum(fixed_step.steps(0.007, 1.0, 0.01) for _ in range(1000))
+    assert taken == 700 or (taken == 699 and fixed_step.debt < 0.01 * (1 + 1e-9))
 
 
 def test_a_sleep_that_ended_late_is_made_up_for_up_to_half_a_second() -> None:
     for wall, steps in ((0.4, 40), (5.0, 50)):
-        pacer = FixedStep()
-        assert pacer.steps(wall, 1.0, 0.01) == steps
-        assert not pacer.capped
+        fixed_step = FixedStep()
+        assert fixed_step.steps(wall, 1.0, 0.01) == steps
+        assert not fixed_step.capped
 
 
 def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
@@ -169,36 +169,36 @@ def test_time_that_cannot_be_made_up_is_dropped_and_shown() -> None:
     for _ in range(100):
         loop.tick(FRAME_INTERVAL)
     assert loop.latest.status.capped
-    assert loop.run.pacer.debt <= scene.step
+    assert loop.run.fixed_step.debt <= scene.step
     assert scene.time <= 100 * scene.step * 1.01
     scene.cost = 0.0
-    loop.run.pacer.cost = 0.0
+    loop.run.fixed_step.cost = 0.0
     before = scene.time
     loop.tick(FRAME_INTERVAL)
     assert scene.time - before <= 2 * scene.step  # no catching up
 
 
 def test_the_next_part_of_a_frame_has_the_steps_that_there_is_time_for() -> None:
-    pacer, budget = FixedStep(), SOLVE_SHARE * FRAME_INTERVAL
-    assert pacer.next_part(4, 0.5 * budget) > 4  # at a cost that is not known
-    pacer.cost = 0.01 * budget
-    assert pacer.next_part(100, 0.8 * budget) in (19, 20)
+    fixed_step, budget = FixedStep(), SOLVE_SHARE * FRAME_INTERVAL
+    assert fixed_step.next_part(4, 0.5 * budget) > 4  # at an unknown cost
+    fixed_step.cost = 0.01 * budget
+    assert fixed_step.next_part(100, 0.8 * budget) in (19, 20)
     for spent in (budget, 2.0 * budget):
-        assert pacer.next_part(4, spent) == 0
+        assert fixed_step.next_part(4, spent) == 0
 
 
 def test_steps_that_a_frame_has_no_time_for_are_counted_as_dropped() -> None:
     loop, scene = make(cost=1.0)
     loop.run.advance_within_budget(10)
-    assert (scene.time, loop.run.pacer.dropped, loop.run.pacer.capped) == (scene.step, 9, True)
+    assert (scene.time, loop.run.fixed_step.dropped, loop.run.fixed_step.capped) == (scene.step, 9, True)
 
 
 @pytest.mark.parametrize(("wall", "frame"), [(FRAME_INTERVAL, FRAME_INTERVAL), (0.25, MAX_LONG_FRAME)])
 def test_a_frame_never_solves_longer_than_its_budget_allows(wall: float, frame: float) -> None:
-    pacer = FixedStep()
-    pacer.learn(10, 0.01)
-    steps = pacer.steps(wall, 8.0, 1e-5)
-    assert pacer.capped
+    fixed_step = FixedStep()
+    fixed_step.learn(10, 0.01)
+    steps = fixed_step.steps(wall, 8.0, 1e-5)
+    assert fixed_step.capped
     assert steps == int(SOLVE_SHARE * frame / 0.001)
 
 
@@ -455,7 +455,7 @@ def test_a_coarse_timer_costs_neither_frames_nor_speed(cost: float) -> None:
     contextvars.copy_context().run(loop.tick_until, stop)
     assert len(shown) / clock.now == pytest.approx(1.0 / FRAME_INTERVAL, rel=0.02)
     assert scene.time / clock.now == pytest.approx(1.0, abs=0.01)
-    assert not loop.run.pacer.capped
+    assert not loop.run.fixed_step.capped
 
 
 @pytest.mark.parametrize("seconds", [IDLE_INTERVAL, 4 * FRAME_INTERVAL])
@@ -594,7 +594,7 @@ def test_without_an_audience_a_program_does_not_wait_for_the_clock() -> None:
     loop.commands.put(Advance(1.0, answer))
     loop.tick(FRAME_INTERVAL)
     assert loop.scene.time >= 0.5  # 100 steps take 10 ms
-    assert loop.run.pacer.dropped == 0
+    assert loop.run.fixed_step.dropped == 0
 
 
 def test_for_a_program_that_waits_there_is_a_snapshot_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:

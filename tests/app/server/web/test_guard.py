@@ -1,6 +1,7 @@
 """What a hostile page or program can say to the server, and what becomes of it."""
 
 import asyncio
+import contextlib
 import errno
 import http.client
 import math
@@ -80,9 +81,9 @@ async def say(port: int, messages: list[dict[str, Any]], origin: str | None = No
 
 
 def test_the_page_is_served_and_let_in_and_no_other(lab: Viewer) -> None:
-    connection = http.client.HTTPConnection("127.0.0.1", lab.port)
-    connection.request("GET", "/")
-    assert connection.getresponse().status == 200
+    with contextlib.closing(http.client.HTTPConnection("127.0.0.1", lab.port)) as connection:
+        connection.request("GET", "/")
+        assert connection.getresponse().status == 200
     coroutines.run(say(lab.port, [], f"http://127.0.0.1:{lab.port}"))
     with pytest.raises(websockets.exceptions.InvalidStatus) as refusal:
         coroutines.run(say(lab.port, [], "http://evil.example"))

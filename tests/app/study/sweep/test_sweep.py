@@ -115,6 +115,7 @@ def test_a_random_design_has_a_dimension_of_cases_and_its_seed(here, tmp_path):
         assert np.isfinite(data.tip_height).all()
 
 
+@pytest.mark.long
 @needs_signals
 @pytest.mark.parametrize(
     "how",
@@ -199,6 +200,7 @@ def test_a_failing_case_is_recorded_and_does_not_end_the_sweep(here, tmp_path, c
         assert np.isfinite(data.tip_height.values).tolist() == [True, False]
 
 
+@pytest.mark.long
 @needs_pools
 def test_a_case_that_kills_its_process_fails_and_all_others_are_finished(monkeypatch):
     monkeypatch.setattr(workers, "run_case", counted)
@@ -210,6 +212,7 @@ def test_a_case_that_kills_its_process_fails_and_all_others_are_finished(monkeyp
     assert {outcome.end for outcome in outcomes.values()} == {FAILED, FINISHED}
 
 
+@pytest.mark.long
 @needs_signals
 @pytest.mark.parametrize(
     ("command", "delays"),

@@ -1,6 +1,7 @@
 """Submerged volume, centre of buoyancy, waterplane and pressure in any pose, against slicing and closed forms."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,7 +32,12 @@ def random_case(seed):
     return hull, position, rotation, place, heights
 
 
-@pytest.mark.parametrize("seed", range(60))
+def seeds(start: int, end: int) -> list[Any]:
+    """Seeds of random hulls; a plain run takes every other one."""
+    return [pytest.param(seed, marks=pytest.mark.long if seed % 2 else ()) for seed in range(start, end)]
+
+
+@pytest.mark.parametrize("seed", seeds(0, 60))
 def test_volume_and_centre_match_slicing(seed):
     hull, position, rotation, place, heights = random_case(seed)
     below = submerged(hull, position, rotation, heights)
@@ -43,7 +49,7 @@ def test_volume_and_centre_match_slicing(seed):
         assert volume * (below.centre - moment / volume)[:2] == pytest.approx(0, abs=1e-9 * hull.volume * size)
 
 
-@pytest.mark.parametrize("seed", range(100, 140))
+@pytest.mark.parametrize("seed", seeds(100, 140))
 def test_centre_of_buoyancy_under_a_level_surface_matches_slicing(seed):
     hull, position, rotation, place, _ = random_case(seed)
     below = submerged(hull, position, rotation, surface=0.1)

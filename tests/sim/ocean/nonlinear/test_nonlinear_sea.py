@@ -119,7 +119,7 @@ def test_a_frame_inside_a_step_is_on_the_way():
 
 
 def test_a_wave_in_any_direction_is_the_same_wave():
-    """Along y and obliquely, on rectangles: as far as along x, where the one row of waves is a simpler case."""
+    """Along y and obliquely, on rectangles, as exact as along x, a simpler case with one row of waves."""
     wave, sea, _ = steep(0.2, 4, 16, step=0.1)
     sea.advance(5.0)
     wanted, potential = sea.height[:, 0], sea.potential[:, 0]
@@ -211,7 +211,7 @@ def test_times_and_points_that_are_refused():
 
 
 def test_the_energy_account_of_a_linear_start():
-    """The fade-in brings what bound waves carry, of second order; afterwards breaking accounts for the rest."""
+    """The fade-in adds the energy of bound waves, of second order; afterwards breaking accounts for the rest."""
     linear = Sea(32, 120.0, "sea_state", hs=1.6, tp=5.0, precision="double")
     sea = NonlinearSea(start=linear, order=3, fade=8.0)
     begun = sea.energy
@@ -236,7 +236,7 @@ def test_the_energy_account_of_a_linear_start():
 
 
 def test_breaking_takes_what_is_too_steep():
-    """A sea of k_p Hs/2 = 0.45, which cannot be: it loses energy until it can; the account holds."""
+    """A sea of k_p Hs/2 = 0.45, which is impossible, loses energy until it is possible; the account holds."""
     linear = Sea(32, 160.0, "sea_state", hs=8.0, tp=6.0, precision="double")
     sea = NonlinearSea(start=linear, order=3, fade=6.0, rtol=1e-4)
     steepest = np.abs(sea.slope).max()

@@ -1,4 +1,4 @@
-"""Foam: the measured cover, the pace of a sea, and the threshold that gives a Gaussian sea this cover."""
+"""Foam: the measured cover, the slope of a sea, and the threshold that gives a Gaussian sea this cover."""
 
 import math
 from statistics import NormalDist
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import Sea
-from sim.ocean.statistics.foam import pace, threshold, whitecaps
+from sim.ocean.statistics.foam import slope_and_frequency, threshold, whitecaps
 
 
 def test_the_cover_is_that_of_monahan_and_o_muircheartaigh():
@@ -19,11 +19,11 @@ def test_the_cover_is_that_of_monahan_and_o_muircheartaigh():
 
 def test_the_pace_of_one_wave_is_its_steepness_and_frequency():
     sea = Sea(64, 100.0, "regular", wave_height=1.0, wave_period=4.0)
-    slope, frequency = pace(sea, 0.0)
+    slope, frequency = slope_and_frequency(sea, 0.0)
     k = (2.0 * math.pi / 4.0) ** 2 / 9.81
     assert slope == pytest.approx((0.5 * k) ** 2 / 2.0, rel=0.05)  # its wavelength fits the tile
     assert frequency == pytest.approx(2.0 * math.pi / 4.0, rel=0.02)
-    assert pace(Sea(16, 50.0, wind_speed=0.0), 0.0) == (0.0, 0.0)
+    assert slope_and_frequency(Sea(16, 50.0, wind_speed=0.0), 0.0) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("cover", [0.001, 0.05, 0.5])

@@ -86,9 +86,20 @@ def stretched(law: str, damped: bool) -> tuple[Net, np.ndarray, tuple[np.ndarray
     return net, v0, exact(net, 0.1, v0)
 
 
+def slow_to_compile(name: str, law: str) -> bool:
+    """True if a method and a law need a kernel that takes seconds to compile, and that no other test runs."""
+    return law != "spring" and (INTEGRATORS[name].implicit or INTEGRATORS[name].adaptive)
+
+
 @pytest.mark.parametrize("damped", [False, True])
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("name", INTEGRATORS)
+@pytest.mark.parametrize(
+    ("name", "law"),
+    [
+        pytest.param(name, law, marks=pytest.mark.long if slow_to_compile(name, law) else ())
+        for name in INTEGRATORS
+        for law in LAWS
+    ],
+)
 def test_every_method_follows_every_law_at_its_order(name, law, damped):
     record = INTEGRATORS[name]
     if damped and record.undamped_only:

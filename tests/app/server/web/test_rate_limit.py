@@ -35,7 +35,7 @@ class Hurried(asyncio.SelectorEventLoop):
 
 
 class Jump(selectors.SelectSelector):
-    """Waits for nothing: the clock goes on instead."""
+    """Waits for nothing: the clock continues instead."""
 
     def __init__(self, loop: Hurried) -> None:
         super().__init__()

@@ -1,0 +1,57 @@
+// Marks on elements of viser's page that have no name of their own, for page.css and for the parts that measure panels.
+//
+// The selectors say by `:has` what an element holds. In a style sheet the browser would check them again, and with them the
+// style of the whole panel, each time that the panel says another number, which is many times a second.
+
+import { onControls } from "./watch.js";
+
+export const PANEL = "[data-floating-window], [data-springtide-is-sheet]"; // the panel in a window, or on a phone
+const ROW = "> .mantine-Flex-root"; // of a control of viser's: its name and its field
+const RESULT = ":is(.springtide-verdict, .springtide-refusal)"; // of a check in the lab
+// Name of the mark -> selector. Marks are attributes, as React writes the classes of its elements anew.
+const MARKS = {
+  // Panels
+  alone: "[data-floating-window]:not(:has([data-floating-divider]))", // a window with one panel
+  sheet: ".mantine-Paper-root:has(> * > .mantine-ScrollArea-root)", // the panel on a phone
+  bar: '.mantine-Tabs-root:has(> [aria-label$=" panel Plots"])', // the plots on a phone
+  scrolled: "[data-floating-window] div:has(> div > .mantine-ScrollArea-root)",
+  docked: "[data-dock-root]:has(> [data-dock-region])", // it has panels at its edges
+  charted: "[data-dock-root]:has(> [data-dock-region] .uplot)", // these have charts
+  "charted-left": '[data-dock-root]:has(> [data-dock-region="left"] .uplot)',
+  before: "[data-dock-root] > :has(+ [data-dock-region])",
+  "before-left": '[data-dock-root] > :has(+ [data-dock-region="left"] .uplot)',
+  charts: ":is([data-floating-window], [data-dock-region], .mantine-Paper-root, .mantine-Tabs-root):has(.uplot)",
+  single: ".u-legend:not(:has(.u-series + .u-series))", // the key of a chart with one line
+  settings: ".mantine-ActionIcon-root:has(.tabler-icon-adjustments)",
+  // Rows of controls
+  name: ".mantine-Flex-root > div:first-child:has(> p > label)",
+  nameless: ".mantine-Flex-root > div:first-child:has(label:empty)",
+  text: ".mantine-Flex-root:has(textarea)",
+  list: ".mantine-Flex-root:has(.mantine-Select-root)",
+  choice: `div:has(${ROW} .mantine-Select-root)`,
+  row: `div:has(${ROW})`,
+  button: "div:has(> .mantine-Button-root)",
+  // A number in two rows: those of its field and of its slider.
+  sliders: `div:has(> div ${ROW} > div > div > .multi-slider)`, // holds such rows
+  field: `div:has(${ROW} .mantine-TextInput-root):has(+ div .multi-slider)`,
+  slider: `div:has(${ROW} .mantine-TextInput-root) + div:has(${ROW} .multi-slider)`,
+  plots: ".springtide-switches:has([data-springtide-plots], .springtide-load)",
+  // The lab of a course
+  lab: ".mantine-ScrollArea-content div:has(.mantine-Paper-root .springtide-panel[data-state])", // holds the first block
+  task: "div:has(> div > .springtide-note > .springtide-guide)",
+  tasks: "div:has(+ div + div > .springtide-note > .springtide-guide)",
+  guide: ".springtide-note:has(> .springtide-guide)",
+  readings: "div:has(> .springtide-readings)",
+  result: `div:has(> ${RESULT}):has(+ div ${ROW} button)`,
+  check: `div:has(> ${RESULT}) + div:has(${ROW} button)`,
+};
+
+function mark() {
+  for (const [name, selector] of Object.entries(MARKS)) {
+    const attribute = `data-springtide-is-${name}`, found = new Set(document.querySelectorAll(selector));
+    for (const one of document.querySelectorAll(`[${attribute}]`)) if (!found.delete(one)) one.removeAttribute(attribute);
+    for (const one of found) one.setAttribute(attribute, "");
+  }
+}
+
+onControls(mark);

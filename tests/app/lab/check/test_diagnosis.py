@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.lab.check.comparing import reproduces
 from app.lab.check.diagnosis.edits import edits_of
 from app.lab.check.diagnosis.equations import equations_of, written
 from app.lab.check.diagnosis.steps import explain_step
@@ -386,3 +387,10 @@ def test_of_a_wrong_factor_of_the_step_no_term_in_its_bracket_is_marked() -> Non
     pieces = [piece for piece in written(other, 1e-9, {("v2", 1)}, right) if piece.text]
     assert "".join(piece.text for piece in pieces) == "x + h/6 (v + 3 v2 + 2 v3 + v4)"
     assert [piece.text for piece in pieces if piece.wrong] == ["3 v2"]
+
+
+def test_a_form_may_differ_by_the_rounding_of_the_right_results() -> None:
+    """What a student computes as a small difference of large numbers has their rounding."""
+    form, found = np.array([1e-7 / 3.0]), np.array([2e-7 / 3.0])
+    assert reproduces(form, found, np.array([1e6]))
+    assert not reproduces(form, found, np.array([1.0]))

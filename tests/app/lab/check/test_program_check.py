@@ -111,6 +111,13 @@ def test_a_wrong_solution_is_refused_and_its_mistake_named(desk: Desk, name: str
     assert len(verdict.sentence) > 20
 
 
+def test_a_wrong_function_is_placed_where_it_begins(desk: Desk) -> None:
+    source = with_body(TASKS["net_buoyancy"], "return fluid_density * gravity * volume")
+    places = (verdict_of(desk, TASKS["net_buoyancy"], before + source).place for before in ("", "# a comment\n\n"))
+    first, second = (int(place.partition(":")[2]) for place in places)
+    assert second == first + 2
+
+
 @pytest.mark.parametrize(
     ("name", "words", "body"),  # two of three in a plain run
     [

@@ -156,6 +156,13 @@ def test_a_limit_is_one_of_processor_time_and_on_a_busy_machine_ten_times_as_lon
     assert (0.75 < seconds < 0.95, state) == (True, ASLEEP)
 
 
+def test_what_a_process_has_computed_before_a_call_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(call_limit, "processor_time", lambda _: (False, 7.0))
+    monkeypatch.setattr(call_limit, "sys", SimpleNamespace(platform="linux"))
+    limit = CallLimit(0, 0.5)
+    assert (limit.look(), limit.taken) == (COMPUTING, 0.0)
+
+
 def test_a_process_that_tells_nothing_is_no_endless_loop(monkeypatch: pytest.MonkeyPatch) -> None:
     """On a busy machine neither the function nor the thread that tells its time gets the processor."""
     clock = [100.0]

@@ -209,7 +209,7 @@ def damp_limited(link, law, x, v, s, decay, p, reverse):
     n, a, b, share = p.rows * p.cols, link.a, link.b, decay[link.family, link.a]
     wa, wb = p.inverse_masses[a], p.inverse_masses[b]
     if acting != link.damping:
-        share = lost_share(link.damping, acting, rate, wa + wb, s)
+        share = lost_share(link.damping, acting, wa + wb, s)
     dx, dy, dz = span(v, n, a, b)
     if p.axial:
         dx, dy, dz = rate * rx / length, rate * ry / length, rate * rz / length

@@ -108,7 +108,7 @@ def damp(link, x, v, t, s, p, reverse):
     length, rate, damping = lengthening(x, v, p, link)
     rx, ry, rz = rx / length, ry / length, rz / length
     both = mobility(p, link.a, rx, ry, rz) + mobility(p, link.b, rx, ry, rz)
-    impulse = lost_share(link.damping, damping, rate, both, s) * rate
+    impulse = lost_share(link.damping, damping, both, s) * rate
     if impulse != 0.0:
         kick(p, v, link.a, impulse * rx, impulse * ry, impulse * rz)
         kick(p, v, link.b, -impulse * rx, -impulse * ry, -impulse * rz)

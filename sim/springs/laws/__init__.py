@@ -82,18 +82,12 @@ over_step = chosen({numbers: law.over_step or general_over_step for numbers, law
 
 
 @kernel(inline=True)
-def is_limited(law, k, b, rest, length, rate):
-    """True if damping takes all of the tension: neither depends on small changes of length and rate."""
-    return damping(law, k, b, rest, length, rate) < damping(law, k, b, rest, length, 0.0)
-
-
-@kernel(inline=True)
-def lost_share(b, acting, rate, both, s):
+def lost_share(b, acting, both, s):
     """Share of the relative velocity that a damping b [N s/m] takes in a time s [s], over `both` [1/kg].
 
-    acting: the part of b that acts at first, at `rate` [m/s]. If it is less than b it takes the constant force of the
-    tension, acting |rate|, until the rate is so small that b takes no more; from then on the rate decays exponentially.
-    both: the sum of the inverse masses of both ends.
+    acting: the part of b that acts at first. If it is less than b, the force is that of the tension, constant until the
+    velocity is so small that b takes no more; from then on the velocity decays exponentially. both: the sum of the
+    inverse masses of both ends.
     """
     if both == 0.0 or acting == 0.0:
         return 0.0

@@ -23,6 +23,6 @@ class Law(NamedTuple):
     energy: Callable[..., Any]  # (numbers, k, rest, length) -> stored energy [J]
     length: Callable[..., Any]  # (numbers, k, rest, tension) -> length [m] at a tension above 0 [N], of arrays
     # (numbers, k, b, rest, length, rate) -> the part of a damping b [N s/m] that acts where the length grows by `rate`
-    # [m/s]. Where that is less than at rate 0, it takes all of the tension.
+    # [m/s].
     damping: Callable[..., Any] = always_whole
     over_step: Callable[..., Any] | None = None  # the function of this name in `sim.springs.laws`, where it is simpler

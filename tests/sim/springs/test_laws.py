@@ -230,25 +230,25 @@ def test_a_mass_comes_back_from_a_damped_line_at_the_closed_form_s_speed(method,
 
 
 @kernel
-def set_lost_shares(b, acting, rate, both, times, out):
+def set_lost_shares(b, acting, both, times, out):
     for j in range(times.shape[0]):
-        out[j] = lost_share(b, acting, rate, both, times[j])
+        out[j] = lost_share(b, acting, both, times[j])
 
 
 def test_the_share_that_limited_damping_takes_is_the_solution_of_its_equation():
     b, pull, both, rate = 12.0, 30.0, 1.5, -9.0
     times = np.array([0.01, 0.1, 0.14, 0.15, 0.2, 1.0])
     shares = np.empty_like(times)
-    set_lost_shares(b, pull / -rate, rate, both, times, shares)
+    set_lost_shares(b, pull / -rate, both, times, shares)
     found = solve_ivp(
         lambda t, r: both * np.minimum(pull, -b * r), (0.0, 1.0), [rate], rtol=1e-10, atol=1e-13, max_step=1e-3,
         t_eval=times,
     )  # fmt: skip
     assert (1.0 - shares * both) * rate == pytest.approx(found.y[0], rel=1e-6)
-    set_lost_shares(b, b, 5.0, both, times, shares)
+    set_lost_shares(b, b, both, times, shares)
     assert shares * both == pytest.approx(1.0 - np.exp(-b * both * times))
     for acting, sum_of_both in ((0.0, both), (b, 0.0), (2.0, 0.0)):
-        set_lost_shares(b, acting, rate, sum_of_both, times, shares)
+        set_lost_shares(b, acting, sum_of_both, times, shares)
         assert not shares.any()
 
 

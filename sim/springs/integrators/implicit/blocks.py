@@ -11,8 +11,7 @@ import math
 
 from sim.jit import kernel
 from sim.springs.forces import each
-from sim.springs.forces.links import lengthening, linearised
-from sim.springs.laws import is_limited
+from sim.springs.forces.links import linearised
 from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.each_link import acting_damping, each_link, stretch
 
@@ -31,34 +30,20 @@ def least_of_rope(p, a, b):
 least_across = by_net(rope=least_of_rope, grid=kernel(lambda p, a, b: 0.0, inline=True))
 
 
-@kernel(inline=True)
-def damping_of_rope(x, v, p, link):
-    length, rate, acting = lengthening(x, v, p, link)
-    return acting, is_limited(link.law, link.stiffness, link.damping, link.rest, length, rate)
-
-
-@kernel(inline=True)
-def damping_of_net(x, v, p, link):
-    return acting_damping(link, stretch(x, p, link)[3], 0.0), False
-
-
-# The damping [N s/m] of a link that counts, and whether it takes all of the tension, so that nothing resists along the
-# link. Of a net, whose factors serve many corrections, that is left out: the matrix resists no less than the forces.
-resisting = by_net(rope=damping_of_rope, grid=damping_of_net)
-
-
 @each_link()
-def set_link_blocks(link, x, v, g, p, links):
-    """H = g b (I or n n^T) + g^2 [T' n n^T + T/l (I - n n^T)] of every link, at its first end."""
+def set_link_blocks(link, x, g, p, links):
+    """H = g b (I or n n^T) + g^2 [T' n n^T + T/l (I - n n^T)] of every link, at its first end.
+
+    Damping that its tension limits counts whole: the matrix resists no less than the forces do, and such a link costs a
+    few corrections more.
+    """
     rx, ry, rz, length = stretch(x, p, link)
-    damping, takes_all = resisting(x, v, p, link)
+    damping = g * acting_damping(link, length, 0.0)
     along, turning = linearised(link.law, link.stiffness, link.rest, length)
-    along, across = g * g * along + g * damping, max(g * g * turning, least_across(p, link.a, link.b))
-    if takes_all:
-        along = across = 0.0
+    across = max(g * g * turning, least_across(p, link.a, link.b))
     if not p.axial:
-        across += g * damping
-    s = math.sqrt(max(0.0, along - across)) / length
+        across += damping
+    s = math.sqrt(max(0.0, g * g * along + damping - across)) / length
     n = p.rows * p.cols
     at = SYMMETRIC * n * link.family + link.a
     links[at], links[at + n], links[at + 2 * n], links[at + 3 * n] = across, s * rx, s * ry, s * rz

@@ -13,10 +13,10 @@ spring the first factor is the tension at l, and where it does not turn F is the
 import math
 
 from sim.jit import kernel
-from sim.springs.integrators.implicit.blocks import least_across, resisting, set_link_blocks
+from sim.springs.integrators.implicit.blocks import least_across, set_link_blocks
 from sim.springs.laws import force_density, over_step
 from sim.springs.points.arrays import by_net, push
-from sim.springs.points.each_link import TINY, each_link, stretch
+from sim.springs.points.each_link import TINY, acting_damping, each_link, stretch
 
 
 @kernel(inline=True)
@@ -41,24 +41,21 @@ def add_mean_lengths(link, x0, x, p, a):
 
 
 @each_link(noalias=True)
-def set_rope_mean_blocks(link, x0, x, v, g, p, links):
+def set_rope_mean_blocks(link, x0, x, g, p, links):
     """H = g b (I or n n^T) + g^2 [S I + 2 dS/dl1 r_m n1^T] of every link, F = S r_m and n1 its direction at the end."""
     n, j = p.cols, link.number
     rx, ry, rz, length = stretch(x, p, link)
     before, after, ex, ey, ez = before_and_after(x0, x, p, link)
     rx, ry, rz = rx / length, ry / length, rz / length
     pull, rise = over_step(link.law, link.stiffness, link.rest, before, after)
-    damping, takes_all = resisting(x, v, p, link)
-    whole, parallel = g * g * pull, g * damping
-    if takes_all:
-        whole = rise = parallel = 0.0
+    whole, damping = g * g * pull, g * acting_damping(link, length, 0.0)
     across = max(whole, least_across(p, link.a, link.b))
     # Along the link nothing is cut off.
     along = whole - across
     if p.axial:
-        along += parallel
+        along += damping
     else:
-        across += g * damping
+        across += damping
     s = g * g * rise * length
     links[j] = across
     links[j + n], links[j + 2 * n], links[j + 3 * n] = s * ex + along * rx, s * ey + along * ry, s * ez + along * rz
@@ -66,5 +63,5 @@ def set_rope_mean_blocks(link, x0, x, v, g, p, links):
 
 
 # A net takes the symmetric blocks of the tension at the midpoint: its quasi-Newton method learns the rest.
-set_net_blocks = kernel(lambda x0, x, v, g, p, links: set_link_blocks(x, v, g, p, links), inline=True)
+set_net_blocks = kernel(lambda x0, x, g, p, links: set_link_blocks(x, g, p, links), inline=True)
 set_mean_blocks = by_net(rope=set_rope_mean_blocks, grid=set_net_blocks)

@@ -205,9 +205,9 @@ def set_blocks(x0, g, t, p, x, v, work):
     """The blocks of the matrix about x, v."""
     set_point_blocks(x, v, t, g, p, work.points)
     if work.mean:
-        set_mean_blocks(x0, x, v, g, p, work.links)
+        set_mean_blocks(x0, x, g, p, work.links)
     else:
-        set_link_blocks(x, v, g, p, work.links)
+        set_link_blocks(x, g, p, work.links)
 
 
 # Corrections a stage: one that has not settled by then is taken unsettled.

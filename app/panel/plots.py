@@ -26,7 +26,7 @@ MAX_ROWS = 5400  # kept: three minutes of a scene that adds 30 a second
 SHOWN_ROWS = 900  # in a chart: half a minute of them
 CHART_HEIGHT, TALL_CHART_HEIGHT = 180, 220  # [pixels] of a chart, and of one with a logarithmic scale, at first
 PADDING = (8, 16, 0, 0)  # [pixels] above, right, below, left: room for half of the highest tick's words
-DIGIT_WIDTH, TICK_ROOM = 7.5, 16.0  # [pixels] of a digit of a tick, and beside the words
+LETTER_WIDTH, TICK_ROOM = 8.7, 16.0  # [pixels] of a letter of a tick in a wide font, and beside the words
 LOGARITHMIC_TICK_WIDTH = 66.0  # [pixels] for the words at a logarithmic scale
 FIRST_AXIS_HEIGHT = 28  # [pixels] of its ticks and their words
 KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a hexadecimal byte, [pixels]
@@ -275,7 +275,7 @@ def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | Non
 
     width: [pixels] for the words.
     """
-    size = width or TICK_ROOM + DIGIT_WIDTH * max(map(len, words))
+    size = width or TICK_ROOM + LETTER_WIDTH * max(map(len, words))
     return uplot.Axis(size=FIRST_AXIS_HEIGHT, gap=2), uplot.Axis(splits=ticks, values=words, size=size)
 
 

@@ -11,7 +11,10 @@ SOURCES = sorted(path for top in ("app", "sim") for path in (ROOT / top).rglob("
 
 def threads_of(path: Path) -> list[ast.Call]:
     """The calls in a source that make a thread."""
-    calls = [node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Call)]
+    text = path.read_text("utf-8")
+    if "Thread(" not in text:
+        return []
+    calls = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
     return [call for call in calls if ast.unparse(call.func) in ("threading.Thread", "Thread")]
 
 

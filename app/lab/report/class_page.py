@@ -35,6 +35,11 @@ td.text { overflow-wrap: anywhere; width: 50%; }
 svg.rope { display: block; overflow: hidden; }
 .small { font-size: 13px; } .away { color: #b51d1d; font-weight: 600; } .away:empty { display: none; }
 @media (max-width: 70em) { .wide { display: none; } }
+@media (max-width: 40em) {
+  body { margin: 0.5em; } .class thead { display: none; } .strip { white-space: normal; }
+  .class tr { display: block; border-bottom: 1px solid #ccd3da; }
+  .class td:not(.wide) { display: block; width: auto; border: 0; padding: 0.1em 0; text-align: left; }
+}
 """
 SCRIPT = """
 "use strict";

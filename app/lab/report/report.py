@@ -43,7 +43,8 @@ pre { background: #f3f5f7; padding: 0.7em; overflow-x: auto; font-size: 13px; } 
 .faint { color: #4d5560; }
 .springtide-equations { border-left: 3px solid #ccd3da; padding-left: 1em; }
 .springtide-equations .right { padding-left: 1.5em; }
-.overview td { padding: 0.1em 0.5em; } figure { margin: 1em 0; } figcaption { color: #4d5560; font-size: 14px; }
+.overview td { padding: 0.1em 0.5em; } .overview td:first-child { white-space: nowrap; }
+figure { margin: 1em 0; } figcaption { color: #4d5560; font-size: 14px; }
 """
 
 

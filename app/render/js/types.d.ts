@@ -182,6 +182,9 @@ declare namespace uplot {
     font: [css: string, onCanvas: number, onPage: number];
     size: Size;
     space: Size;
+    scale: string;
+    filter(chart: Chart, splits: number[]): number[];
+    values(chart: Chart, splits: number[], ...rest: unknown[]): string[];
   }
   interface Series {
     class?: string;

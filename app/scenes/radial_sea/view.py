@@ -41,7 +41,7 @@ GLOW_INTENSITY = 900.0  # of the lamp in the fire
 CAMERA_INTERVAL = 0.2  # [s] between two messages to the scene about where the camera is
 VIEWS = {  # position and target [m] of the camera when one of them is chosen to be followed
     "rig": ((RIG[0] - 62.0, RIG[1] - 84.0, 40.0), (RIG[0] + 10.0, RIG[1] - 4.0, 16.0)),
-    "from above": ((-9.5, -11.0, 8.5), (6.0, 3.6, -1.0)),
+    "from above": ((-9.5, -11.0, 7.0), (6.0, 3.6, 2.6)),
 }
 BODY_VIEW = (-5.2, -6.2, 2.4), (0.0, 0.0, 0.0)  # [m] of camera and target from a followed body at VIEW_SIZE
 CUTAWAY_VIEW = (

@@ -193,13 +193,13 @@ PRESETS: dict[str, dict[str, Any]] = {
         "spread_exponent": 25.0, "wind_speed": 20.0, "deep": False, "depth": 70.0, "length": 1200.0, "size": "128",
         "seed": 1, "foam_by_wind": False, "foam_threshold": 0.3, "foam_fade": 1.0, "speed": 2.0, "view": "gauge",
         "plot_wave_gauge": True,
-        "clouds": 1.0, "daylight": 1.0, "visibility": 3000.0,
+        "clouds": 1.0, "daylight": 1.7, "visibility": 3000.0,
     },
     "Steep storm": {
         "order": 3, "spectrum": "jonswap", "wind_speed": 25.0, "fetch": 60e3, "length": 512.0, "size": "128",
         "start": "rogue", "plot_wave_gauge": True,
         "foam_by_wind": False, "foam_threshold": 0.57, "foam_fade": 2.0, "view": "gauge", "clouds": 0.9,
-        "daylight": 0.8, "visibility": 2000.0,
+        "daylight": 1.1, "visibility": 2000.0,
     },
 }  # fmt: skip
 

@@ -1,5 +1,6 @@
 """Charts and pictures for a lecture hall, in a real browser."""
 
+import itertools
 from collections.abc import Iterator
 from typing import Any
 
@@ -38,6 +39,13 @@ def hall(shown: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
     tab.page.set_viewport_size(size)
 
 
+# Makes a chart low, and gives the places of its ticks with words [pixels].
+LOW = """async () => { const { chart } = Object.values(window.__viserTestpoints.uplots)[0], [, axis] = chart.axes;
+    chart.setSize({ width: chart.width, height: 80 });
+    await new Promise(queueMicrotask); // uPlot draws then, and the page gives the chart its height again later
+    return axis._splits.filter((_, k) => axis._values[k]).map((value) => chart.valToPos(value, axis.scale)); }"""
+
+
 def charts(tab: Tab) -> list[dict[str, Any]]:
     return tab.page.evaluate(CHARTS)
 
@@ -53,6 +61,15 @@ def enlarge(tab: Tab) -> None:
     container = tab.page.locator(".uplot-container:visible").first
     container.hover()
     container.get_by_role("button").click()
+
+
+def test_the_words_of_ticks_do_not_overlap_in_a_low_chart(hall: tuple[Viewer, Tab]) -> None:
+    _, tab = hall
+    tab.page.keyboard.press("l")
+    tab.wait(lambda: charts(tab)[0]["ticks"] == [22, 22], 20)
+    places = tab.page.evaluate(LOW)
+    assert len(places) >= 1
+    assert all(abs(one - other) >= 22 for one, other in itertools.pairwise(places))
 
 
 def test_an_enlarged_chart_fills_the_window_and_its_type_follows(hall: tuple[Viewer, Tab]) -> None:

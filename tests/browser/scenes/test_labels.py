@@ -88,6 +88,23 @@ def test_no_label_covers_another_however_far_the_camera_is(race: tuple[Viewer, A
     assert min(found[1:]) > 0.97 * found[0]
 
 
+def test_labels_keep_their_size_where_panels_leave_less_of_the_picture(race: tuple[Viewer, Any]) -> None:
+    _, page = race
+    page.evaluate(CHOOSE, "high")
+    whole = steady(page)
+    page.evaluate(
+        """() => { const panel = document.body.appendChild(document.createElement("div"));
+        Object.assign(panel, { id: "test-panel" }).dataset.floatingWindow = "";
+        panel.style.cssText = "position: fixed; bottom: 0; width: 100%; height: 170px; opacity: 0"; }"""
+    )
+    page.wait_for_timeout(1500)
+    smaller = steady(page)
+    page.evaluate("document.getElementById('test-panel').remove()")
+    assert (smaller != whole).any()
+    assert smaller[260:].max() < BRIGHT
+    assert area(smaller) == pytest.approx(area(whole), rel=0.05)
+
+
 def test_a_picture_has_the_labels(race: tuple[Viewer, Any]) -> None:
     lab, page = race
     page.evaluate(CHOOSE, "low")

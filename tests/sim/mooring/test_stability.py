@@ -2,6 +2,7 @@
 
 import functools
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -14,24 +15,30 @@ from tests.sim.mooring.dense import Array, frequencies_squared, longest_steps, u
 from tests.sim.mooring.systems import chain_on_bed, taut_rope
 
 FILES = sorted((Path(__file__).with_name("moordyn") / "files").glob("*.txt"))
-SYSTEMS = {
-    **{f"chain of {n}": chain_on_bed(n) for n in (2, 5, 20, 80)},
-    **{f"taut rope of {n}": taut_rope(n) for n in (2, 20)},
-    **{path.stem: read_moordyn(path) for path in FILES},
+SYSTEMS: dict[str, Callable[[], System]] = {
+    **{f"chain of {n}": functools.partial(chain_on_bed, n) for n in (2, 5, 20, 80)},
+    **{f"taut rope of {n}": functools.partial(taut_rope, n) for n in (2, 20)},
+    **{path.stem: functools.partial(read_moordyn, path) for path in FILES},
 }
 TOLERANCES = {"rk4": 1e-3, "dopri5": 1e-3, "dop853": 1e-3, "symplectic_euler": 5e-3}
 
 
 @functools.cache
+def system_of(name: str) -> System:
+    """A system at rest, made when a test asks for it: its kernels take seconds to compile."""
+    return SYSTEMS[name]()
+
+
+@functools.cache
 def matrices(name: str) -> tuple[Array, Array]:
     """`unit_mass_matrices` of a system at rest."""
-    system = SYSTEMS[name]
+    system = system_of(name)
     return unit_mass_matrices(system, State.at_rest(system).x)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_longest_step_is_that_of_all_damped_modes(name):
-    system = SYSTEMS[name]
+    system = system_of(name)
     state = State.at_rest(system)
     *exact, undamped = longest_steps(*matrices(name), [INTEGRATORS[one] for one in (*TOLERANCES, "leapfrog")])
     for (method, tolerance), step in zip(TOLERANCES.items(), exact, strict=True):
@@ -43,7 +50,7 @@ def test_the_longest_step_is_that_of_all_damped_modes(name):
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_longest_step_of_rkn8_is_not_only_that_of_the_stiffest_mode(name):
     """Its limit falls and rises with the damping: that of each undamped mode, with the damping of its shape."""
-    system = SYSTEMS[name]
+    system = system_of(name)
     state = State.at_rest(system)
     K, D = matrices(name)
     squares, shapes = np.linalg.eigh(K)

@@ -20,6 +20,7 @@ const PANES = ".mantine-ScrollArea-viewport:has(.uplot):not(:has(.springtide-pan
 const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = "[data-springtide-is-bar]";
 const PHONE_SHARE = 0.32; // of the window's height, for the plots on a phone (page.css)
 const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
+const TICK_HEIGHT = 1.1; // of the words of a tick, in sizes of their type
 const CROSS = "springtide-cross", PLACED = "springtide-placed-cross";
 const CROSS_HEIGHT = 14, CROSS_WIDTH = 8; // [pixels] of a cross in type of 12 pixels; its words stand to its right
 const CROSS_STYLE = "position:absolute;white-space:nowrap;pointer-events:none";
@@ -184,6 +185,26 @@ function sizeType(chart) {
   chart.setSize({ width: chart.width, height: chart.height });
 }
 
+const isThinned = new WeakSet(); // axes
+
+// Leave out the words of a tick that would stand in those of the one before: a chart may be low.
+/** @param {uplot.Chart} chart */
+function thinTicks({ axes: [, axis] }) {
+  if (!axis || isThinned.has(axis) || typeof axis.values !== "function") return;
+  const { values } = axis;
+  axis.filter = (chart, splits) => splits; // uPlot leaves out ticks of a logarithmic axis, but not their words
+  axis.values = (chart, splits, ...rest) => {
+    let last = Infinity;
+    return values(chart, splits, ...rest).map((word, k) => {
+      const at = chart.valToPos(splits[k], axis.scale);
+      if (!word || Math.abs(at - last) < TICK_HEIGHT * tickSize()) return "";
+      last = at;
+      return word;
+    });
+  };
+  isThinned.add(axis);
+}
+
 /** @param {uplot.Chart} chart */
 function nameAxis({ over, series }) {
   if (over.dataset.springtideAxis !== series[0].label) over.dataset.springtideAxis = series[0].label;
@@ -193,6 +214,7 @@ let moment = ""; // [s] of the recording, as the time line gives it
 
 function look() {
   const charts = chartsOfPage();
+  charts.forEach(thinTicks);
   charts.forEach(sizeType);
   fillPanes(charts);
   for (const chart of charts) {

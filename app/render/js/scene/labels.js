@@ -62,6 +62,15 @@ function darkenLabels(meshes) {
   }
 }
 
+// Keep the size of letters on the screen: viser's own shrinks with the part of the picture that panels leave free (camera.js).
+/** @param {three.Mesh[]} meshes @param {three.Camera} camera */
+function keepSize(meshes, { projectionMatrix: { elements } }) {
+  const isPerspective = elements[15] === 0;
+  for (const { material: { uniforms } } of isPerspective ? meshes : []) {
+    if (uniforms.uFovScale) uniforms.uFovScale.value = 1 / elements[5];
+  }
+}
+
 // The rectangles of the visible labels with a size on the screen, in coordinates from -1 to 1 across the picture.
 /** @param {three.Mesh} mesh @param {three.Camera} camera */
 function labelBoxes({ geometry, material }, camera) {
@@ -176,6 +185,7 @@ export function dressLabels(renderer, scene, camera) {
   labelGroup.visible = renderer.capabilities.maxTextureSize >= LABEL_TEXTURE;
   if (!labelGroup.visible) return;
   darkenLabels(meshes);
+  keepSize(meshes, camera);
   const backgrounds = meshes.find(({ material }) => !material.uniforms.uAtlas && !material.depthTest);
   if (backgrounds?.geometry.attributes.aRect) arrangeLabels(backgrounds, camera);
   labelGroup.visible = true;

@@ -7,7 +7,7 @@
 
 import { insertAfter, meshOf, replaceShader } from "../shading/shaders.js";
 import { makeDome } from "./dome.js";
-import { addPlace, WEB_STEP } from "./underwater.js";
+import { WEB_STEP } from "./underwater.js";
 
 const OPEN_VERTEX = `
   varying vec3 vRay;
@@ -16,10 +16,14 @@ const OPEN_VERTEX = `
     vec4 view = inverse(projectionMatrix) * vec4(position.xy, 0.5, 1.0);
     vRay = inverse(mat3(viewMatrix)) * (view.xyz / view.w);
   }`;
-const OPEN_GLSL = `
-  uniform float openTime;
+const MESHED = `
   // Half side of the surface, depth, size of the scene [m]; x, z, heading of the body; its half sides, corner.
   uniform vec3 openWater[3];
+  // Where the surface is drawn by its mesh, 1, and where behind everything, 0; p from the middle [m].
+  float meshed(vec2 p) { vec2 a = abs(p) / openWater[0].x; return 1.0 - smoothstep(0.7, 0.97, max(a.x, a.y)); }`;
+const OPEN_GLSL = `
+  ${MESHED}
+  uniform float openTime;
   const vec3 DEEP = vec3(0.035, 0.165, 0.255), LIT = vec3(0.36, 0.62, 0.70), SUN = vec3(-0.89, 0.30, 0.34);
   // Noise of mean 1/2 between random numbers at whole places, and its two slopes.
   vec3 noiseAndSlope(vec2 p) {
@@ -49,8 +53,6 @@ const OPEN_GLSL = `
   // In moving water, small clouds are not seen.
   vec3 mirroredSky(vec3 d) { return withClouds(clearSky(d), d, 0.6 * noise(cloudPlace(d)) + 0.2); }
   float mirrored(float cosine) { return 0.02 + 0.98 * pow(1.0 - clamp(cosine, 0.0, 1.0), 5.0); }
-  // Where the surface is drawn by its mesh, 1, and where behind everything, 0.
-  float meshed(vec2 p) { vec2 a = abs(p) / openWater[0].x; return 1.0 - smoothstep(0.7, 0.97, max(a.x, a.y)); }
   // The normal of the surface with ripples, which are lost in the distance [m].
   vec3 rippled(vec3 normal, vec2 p, float away, float t) {
     vec2 q = 40.0 * p / openWater[0].z;
@@ -94,21 +96,25 @@ const OPEN_FRAGMENT = `
     if (cameraPosition.y < 0.0) color = mix(DEEP, LIT, 0.8 * smoothstep(-0.15, 0.9, d.y));
     gl_FragColor = vec4(color, 1.0);
   }`;
+// The place that is drawn of the surface, which is level where its mesh ends: a trough there would be a hole in the sea.
+const OPEN_PLACE = `
+  transformed.z *= meshed(position.xy);
+  vPlace = (modelMatrix * vec4(transformed, 1.0)).xyz;`;
 // At the end of the shader of the surface.
 const OPEN_SURFACE = `
   vec3 d = normalize(vPlace - cameraPosition), upwards = inverseTransformDirection(normalize(vNormal), viewMatrix);
   upwards *= sign(upwards.y);
   float meshedShare = meshed(vPlace.xz), away = distance(vPlace, cameraPosition);
-  vec3 n = rippled(normalize(mix(vec3(0, 1, 0), upwards, meshedShare)), vPlace.xz, away, openTime);
+  // A slope that faces away, behind its crest or at the end of the mesh, mirrors as level water does.
+  float faces = cameraPosition.y > vPlace.y ? smoothstep(0.0, 0.05, -dot(d, upwards)) : 1.0;
+  vec3 n = rippled(normalize(mix(vec3(0, 1, 0), upwards, meshedShare * faces)), vPlace.xz, away, openTime);
   // From below: a window to the sky, and around it the deep mirrored.
   vec3 window = mix(LIT, vec3(0.93), 0.5), deep = mix(DEEP, LIT, 0.5 * exp(-away / openWater[0].z));
   vec4 sea = cameraPosition.y > vPlace.y ? seaColor(d, n) : vec4(mix(deep, window, smoothstep(0.45, 0.85, dot(d, n))), 0.85);
   float size = openWater[2].y + openWater[2].z, beside = abs(toBody(vPlace.xz)) / size;
   float bubbles = noise(14.0 * vPlace.xz / size + 0.3 * openTime) + 0.5 * exp(-24.0 * beside);
   float foam = exp(-8.0 * beside) * smoothstep(0.3, 0.8, bubbles);
-  // A slope that faces away is hidden behind its crest.
-  float faces = cameraPosition.y > vPlace.y ? smoothstep(0.0, 0.03, -dot(d, upwards)) : 1.0;
-  gl_FragColor = vec4(mix(sea.rgb, vec3(0.95, 0.97, 0.98), foam), max(sea.a, 0.9 * foam) * meshedShare * faces);`;
+  gl_FragColor = vec4(mix(sea.rgb, vec3(0.95, 0.97, 0.98), foam), max(sea.a, 0.9 * foam) * meshedShare);`;
 // The same of the bed.
 const OPEN_BED = `
   vec2 sunwards = 0.35 * SUN.xz * openWater[0].y; // light under water falls steeply
@@ -160,7 +166,11 @@ export function openPartOf(base, underwater) {
 export function addOpenWater(shader, part) {
   Object.assign(shader.uniforms, openUniforms);
   insertAfter(shader, "fragmentShader", "common", OPEN_GLSL);
-  if (part === "surface") addPlace(shader);
+  if (part === "surface") {
+    insertAfter(shader, "vertexShader", "common", `varying vec3 vPlace;${MESHED}`);
+    insertAfter(shader, "fragmentShader", "common", "varying vec3 vPlace;");
+    insertAfter(shader, "vertexShader", "begin_vertex", OPEN_PLACE);
+  }
   insertAfter(shader, "fragmentShader", "dithering_fragment", part === "bed" ? OPEN_BED : OPEN_SURFACE);
 }
 

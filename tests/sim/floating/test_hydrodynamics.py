@@ -333,3 +333,19 @@ def test_a_long_hull_does_not_feel_short_waves_along_it_and_feels_them_across() 
     i = int(np.argmin(np.abs(linear.frequency - math.sqrt(2 * math.pi / 10))))
     ahead, abeam = np.abs(linear.excitation[i, 0, 2]), np.abs(linear.excitation[i, 9, 2])
     assert abeam > 5 * ahead
+
+
+@pytest.mark.parametrize(("axis", "partner"), [(3, 1), (4, 0)])
+def test_a_free_body_rolls_and_pitches_with_the_sway_and_surge_that_come_with_it(axis, partner):
+    """The frequency at which the two motions together are free, by the eigenvalues of their matrices."""
+    hull = Hull.box(60.0, 16.0, 6.0)
+    linear = linear_hull(hull, 3.0)
+    inertia, stiffness = 30.0 * linear.volume, 2.0 * linear.volume
+    for added in (1.0, 0.5):
+        own = natural_frequency(linear, axis, inertia, stiffness, added)
+        a, _ = linear.at(own)
+        pair = np.ix_((axis, partner), (axis, partner))
+        mass = np.diag([inertia, linear.volume]) + added * a[pair]
+        rates = np.linalg.eigvals(np.linalg.solve(mass, np.diag([stiffness, 0.0])))
+        assert own**2 == pytest.approx(rates.real.max(), rel=1e-6)
+        assert added * a[partner, partner] > 0.05 * linear.volume

@@ -20,7 +20,6 @@ import psutil
 import pytest
 
 from app.messages import Pause
-from app.server.loop.clock import TickClock
 from app.server.viewer import Viewer
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -90,7 +89,6 @@ NO_FLOATS = """for (const name of ["getExtension", "getSupportedExtensions"]) {
 LOADING_ERRORS = "renderTarget is not in UnsignedByteType"
 HOLD_TIME = 5.0  # [s] after which a drag that holds nothing is tried again
 STUCK = 0.6  # of the time of a test, after which its browser is ended
-FRAME = 1 / 20  # [s] between frames of the lab, as on a busy hub: more frames take a third more processor time
 
 
 def new_page(chromium: Any, width: int, height: int, drawn: bool | str, flat: str = "") -> Any:
@@ -137,14 +135,6 @@ def released_where_it_waits(request: pytest.FixtureRequest) -> Iterator[None]:
     timer.start()
     yield
     timer.cancel()
-
-
-@pytest.fixture(autouse=True)
-def few_frames(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The lab has as few frames as on a busy hub, but in the tests of water."""
-    if "water" not in request.path.parts:
-        asked = TickClock.frame_interval
-        monkeypatch.setattr(TickClock, "frame_interval", lambda clock, scene: max(asked(clock, scene), FRAME))
 
 
 class Chromium:

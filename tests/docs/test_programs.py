@@ -13,7 +13,7 @@ PROGRAMS = re.findall(r"^## ([^\n]+)\n\n```python\n(.*?)^```$", text_of(ROOT / "
 MAX_LINES = 12
 OPTIONAL = {"with_dataset": "netCDF4", "import capytaine": "capytaine"}
 WARNS = "A step that is too long"
-COMPILES = "A heavy bob on a light string"  # a kernel that takes half a minute and that no other test runs
+COMPILES = "A heavy bob on a light string"  # for ten seconds, a kernel that no other test runs
 
 
 @pytest.mark.parametrize(

@@ -125,7 +125,7 @@ def test_free_decay_is_that_of_the_coefficients(name: str, axis: int) -> None:
 
 
 def marks_of(name: str, direction: float) -> list[pytest.MarkDecorator]:
-    """Each hull is tried in waves from one side; from all sides under -m stress."""
+    """The marks of a case: a plain run tries three, the long tests two more, and -m stress all others."""
     one = name, direction
     return [] if one in SAMPLE else [pytest.mark.long] if one in SECOND else [pytest.mark.stress]
 

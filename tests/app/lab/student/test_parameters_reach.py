@@ -47,7 +47,7 @@ BASES = {"rope": (ROPE, dataclasses.replace(ROPE, units="material")), "cloth": (
 SCENES: dict[str, Any] = {"rope": RopeScene, "cloth": ClothScene}
 HELD = {"rope": 5, "cloth": 22}  # point that the hand pulls
 FILES = {"rope": "rope.py", "cloth": "cloth.py"}
-# For these kernels are compiled that no other test runs.
+# Kernels are compiled for these that no other test of a plain run calls.
 ALONE = {("cloth", "law"): pytest.mark.stress, ("rope", "law"): pytest.mark.long}
 # The parameters of the cloth that a plain run tries; each takes a third of a second.
 SAMPLE = {"integrator", "pinned", "start", "density", "thickness", "friction", "wind", "sphere_radius"}

@@ -26,6 +26,28 @@ def pair() -> Iterator[Viewer]:
 
 
 @pytest.mark.long
+def test_a_pane_whose_lab_opens_late_is_loaded_again(pair: Viewer, open_tab: Any) -> None:
+    tab = open_tab(pair.port, width=900, height=500)
+    early: list[str] = []
+
+    def answer(route: Any) -> None:
+        """Refuse the first request, as the server does before the lab of the pane is open."""
+        early.append(route.request.url)
+        if len(early) > 1:
+            route.fallback()
+        else:
+            route.fulfill(status=404, content_type="text/plain", body="No second pane is open.")
+
+    tab.page.route("**/pane/2/index.html*", answer)
+    pair.comparing.begin([read_query("?scene=rope&stiffness=2000")], False)
+    tab.page.wait_for_url("**/beside")
+    assert pair.comparison is not None
+    second = pair.comparison.viewers[1]
+    tab.wait(lambda: pair.visitors() and second.visitors())
+    assert len(early) == 2
+
+
+@pytest.mark.long
 def test_two_ropes_on_one_clock_with_linked_cameras(pair: Viewer, open_tab: Any) -> None:
     tab = open_tab(pair.port, width=900, height=500)
     page = tab.page

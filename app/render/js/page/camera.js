@@ -7,8 +7,8 @@
 import { beforeRender } from "../core/render_hook.js";
 import { startedViewer, viewer } from "../core/viewer.js";
 import { onLook } from "../core/watch.js";
+import { PANEL } from "../panel/marks.js";
 import { without } from "./free_part.js";
-import { PANEL } from "./marks.js";
 import { waterHeight } from "./water_height.js";
 
 const FLOOR_CLEARANCE = 0.1; // [m] of the camera above the floor

@@ -8,8 +8,8 @@
 import { page } from "../core/life.js";
 import { PAGE, send as sendToLab } from "../core/viewer.js";
 import { onChange, onLook, wake } from "../core/watch.js";
-import { PANEL } from "../page/marks.js";
 import { footOf, wordsOf } from "./foot.js";
+import { PANEL } from "./marks.js";
 
 const SEND_INTERVAL = 40; // [ms] between two moments that are sent while a hand moves along the bar
 const bar = document.createElement("div");

@@ -15,7 +15,7 @@ from app.render import surroundings
 from app.scenes import NAMES
 from app.server.viewer import Viewer
 from app.server.web import page as served_page
-from tests.browser.conftest import Tab, new_page, vertices_of
+from tests.browser.conftest import NO_FLOATS, Tab, new_page, vertices_of
 from tests.browser.slow_line import slow_line
 
 FAST = 1e9  # [bytes/s]
@@ -78,15 +78,27 @@ def final_picture(tab: Tab) -> NDArray[np.float64]:
     return shots[-1]
 
 
-@pytest.mark.parametrize("scene", ["square_sea", pytest.param("radial_sea", marks=pytest.mark.long)])
-def test_a_lost_context_comes_back_with_its_picture(open_tab: Callable[..., Tab], scene: str) -> None:
+@pytest.mark.parametrize(
+    ("scene", "floats"),
+    [
+        ("square_sea", True),
+        pytest.param("square_sea", False, marks=pytest.mark.long),
+        pytest.param("radial_sea", True, marks=pytest.mark.long),
+    ],
+)
+def test_a_lost_context_comes_back_with_its_picture(open_tab: Callable[..., Tab], scene: str, floats: bool) -> None:
+    """floats: whether the browser draws into floats; without them the sky is a formula."""
     viewer = Viewer("127.0.0.1", 0)
     viewer.open(scene)
     viewer.loop.commands.put(Pause())
     tab = open_tab(viewer.port, width=480, height=320, drawn=True)
     try:
-        tab.wait(lambda: tab.page.evaluate("window.__springtide?.skiesDrawn"))
+        if not floats:
+            tab.page.add_init_script(NO_FLOATS)
+            tab.page.reload()
+        tab.wait(lambda: tab.page.evaluate("window.__springtide?.showsWhole?.()"))
         before = final_picture(tab)
+        assert (tab.page.evaluate("window.__springtide.skiesDrawn") > 0) is floats
         contexts = tab.page.evaluate("window.__springtide.contexts")
         tab.page.evaluate(LOSE)
         tab.page.wait_for_timeout(500)
@@ -124,6 +136,7 @@ def settled_counts(page: Any) -> dict[str, int]:
         pytest.param("square_sea", 0.0, CUTS, marks=pytest.mark.long),
         ("rope", 0.0, CUTS),
         pytest.param("rope", 10.0, 1, marks=pytest.mark.long),
+        pytest.param("rope", 60.0, 1, marks=[pytest.mark.long, pytest.mark.timeout(900)]),
     ],
 )
 def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str, seconds: float, cuts: int) -> None:

@@ -18,7 +18,7 @@ from app.render.markup.html import Html
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
 
 ROOMS = ("core", "page", "panel", "scene", "sea", "shading")
-BEFORE = ("failures.js", "address.js", "leaving.js")
+BEFORE = ("failures.js", "address.js", "connection.js")
 PAGE, SCENE = "page/main.js", "scene/main.js"  # entries: of a lab, which starts the scene too, and of a replay
 SHARED = {
     "WATER_UNIFORMS": WATER_UNIFORMS,

@@ -6,6 +6,7 @@ except Chromium, its own X server, and ends with all its processes. On Debian th
 """
 
 import abc
+import base64
 import contextlib
 import json
 import os
@@ -46,6 +47,21 @@ PREFERENCES = {
     "remote.active-protocols": 1,
     "browser.download.folderList": 2,  # the folder that is named
 }
+# Keeps the files that a page saves, as the browser would: by a link with a name, at the moment of its press.
+KEEP_FILES = """if (window.savedFiles) return;
+    window.savedFiles = [];
+    const contents = new Map(), make = URL.createObjectURL, press = HTMLAnchorElement.prototype.click;
+    URL.createObjectURL = (content) => {
+        const address = make.call(URL, content);
+        contents.set(address, content);
+        return address;
+    };
+    HTMLAnchorElement.prototype.click = function () {
+        const reader = new FileReader(), { download: name, href } = this;
+        reader.onload = () => window.savedFiles.push([name, reader.result]);
+        if (name && contents.has(href)) reader.readAsDataURL(contents.get(href));
+        press.call(this);
+    };"""
 MINI_BROWSER = next(iter(Path("/usr/lib").glob("*/webkit2gtk-4.*/MiniBrowser")), None)
 Point = Sequence[float]
 
@@ -113,6 +129,10 @@ class Engine(abc.ABC):
     @abc.abstractmethod
     def choose_file(self, selector: str, path: Path) -> None:
         """Choose a file in a field of the page."""
+
+    def files(self) -> list[Path]:
+        """The files that the page has saved."""
+        return list(self.downloads.iterdir())
 
     def move(self, *points: Point) -> None:
         """Move the mouse without a button."""
@@ -317,7 +337,14 @@ class WebKit(Engine):
 
     def open(self, address: str) -> None:
         self.send("/url", {"url": address})
-        self.run(NO_PIXELS)  # its driver has no scripts that run before a page
+        for script in (NO_PIXELS, KEEP_FILES):  # its driver has no scripts that run before a page
+            self.run(script)
+
+    def files(self) -> list[Path]:
+        """Its driver delivers no downloads: they are what the links of the page name."""
+        for name, content in self.run("return window.savedFiles.splice(0);"):
+            Path(self.downloads, name).write_bytes(base64.b64decode(content.partition(",")[2]))
+        return super().files()
 
     def run(self, body: str) -> Any:
         function = f"""const done = arguments[arguments.length - 1];

@@ -1,5 +1,6 @@
 """One visit to the lab in each browser: the panel, numbers, keys, the time line, undo."""
 
+import json
 from typing import Any
 
 import pytest
@@ -30,6 +31,16 @@ def until(engine: Engine, condition: Any, words: str) -> None:
     raise AssertionError(words)
 
 
+def enter(engine: Engine, name: str, text: str) -> None:
+    """Replace the text of a field of the panel. The next key is pressed once the page has taken the one before."""
+    field = named(FIELD, name)
+    engine.press_on(field)
+    engine.wait(f"return document.activeElement === {field};")
+    engine.type(*text)
+    engine.wait(f"return {field}.value === {json.dumps(text)};", 20.0)
+    engine.type("Enter")
+
+
 @pytest.mark.parametrize("name", VISITS)
 def test_a_visit(chromium: Any, name: str) -> None:
     viewer = Viewer("127.0.0.1", 0)
@@ -46,8 +57,7 @@ def test_a_visit(chromium: Any, name: str) -> None:
                 ("Points", "9", lambda: params().points == 9),
                 ("Stiffness", "2k", lambda: params().stiffness == 2000.0),
             ]:
-                page.press_on(named(FIELD, field))
-                page.type(*text, "Enter")
+                enter(page, field, text)
                 until(page, read, f"{field} is {params()}")
             page.type("u")
             until(page, lambda: params().stiffness == 1234.5, "undo by key")

@@ -4,10 +4,10 @@
 // onBeforeRender runs before every frame), nodeRefFromName and requestRender; and the boxes of its panels.
 // three's world has y up; the frame of a node has z up.
 
-import { PANEL } from "../core/marks.js";
 import { beforeRender } from "../core/render_hook.js";
 import { startedViewer, viewer } from "../core/viewer.js";
 import { onLook } from "../core/watch.js";
+import { PANEL } from "../panel/marks.js";
 import { without } from "./free_part.js";
 import { waterHeight } from "./water_height.js";
 

@@ -3,7 +3,7 @@
 /** @type {Record<string, () => Promise<object>>} */
 const PARTS = {
   cover: () => import("./cover.js"),
-  marks: () => import("../core/marks.js"),
+  marks: () => import("../panel/marks.js"),
   scene: () => import("../scene/main.js"),
   camera: () => import("./camera.js"),
   fields: () => import("../panel/fields.js"),

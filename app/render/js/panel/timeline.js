@@ -6,10 +6,10 @@
 // `--springtide-bar`, its height.
 
 import { page } from "../core/life.js";
-import { PANEL } from "../core/marks.js";
 import { PAGE, send as sendToLab } from "../core/viewer.js";
 import { onChange, onLook, wake } from "../core/watch.js";
 import { footOf, wordsOf } from "./foot.js";
+import { PANEL } from "./marks.js";
 
 const SEND_INTERVAL = 40; // [ms] between two moments sent during a drag along the bar
 const bar = document.createElement("div");

@@ -3,7 +3,7 @@
 // The selectors say by `:has` what an element holds. In a style sheet the browser would check them again, and with them the
 // style of the whole panel, each time that the panel says another number, which is many times a second.
 
-import { onControls } from "./watch.js";
+import { onControls } from "../core/watch.js";
 
 export const PANEL = "[data-floating-window], [data-springtide-is-sheet]"; // the panel in a window, or on a phone
 const ROW = "> .mantine-Flex-root"; // of a control of viser's: its name and its field

@@ -1,0 +1,39 @@
+// The connection to the lab, which viser's client holds in a worker.
+//
+// A page that is left lets go of the lab at once, so that the lab counts no browser that nobody sees. A browser may keep a
+// page that was left, to show it again when the user goes back. It keeps the worker too, and the connection stays open though
+// nothing reads it. Ending the worker closes the connection, also while the page is being frozen. A page that is shown again
+// loads anew.
+//
+// Without a connection viser's client has its worker try again each second, which ends the attempt under way. Chromium delays
+// attempts by up to five seconds once many have failed, so that after a minute none would succeed: here each has its time.
+// Where a new viser has other messages, they pass as they are.
+
+(() => {
+  "use strict";
+  const PATIENCE = 6000; // [ms] for an attempt, which viser's client itself ends after five seconds
+  /** @type {Worker[]} */
+  const workers = [];
+  window.Worker = class extends Worker {
+    #began = -Infinity; // [ms] the attempt under way
+
+    /** @param {ConstructorParameters<typeof Worker>} all */
+    constructor(...all) {
+      super(...all);
+      workers.push(this);
+      this.addEventListener("message", ({ data }) => {
+        if (data?.type === "closed") this.#began = -Infinity;
+      });
+    }
+
+    /** @param {any} message @param {any} [how] */
+    postMessage(message, how) {
+      const now = performance.now(), kind = message?.type;
+      if (kind === "retry" && now < this.#began + PATIENCE) return;
+      if (kind === "retry" || kind === "set_server") this.#began = now;
+      super.postMessage(message, how);
+    }
+  };
+  addEventListener("pagehide", () => workers.forEach((worker) => worker.terminate()));
+  addEventListener("pageshow", (event) => event.persisted && location.reload());
+})();

@@ -60,7 +60,7 @@ class ShaderInjector:
             self._drawn[event.client_id] = frozenset(names)
 
     def _words(self) -> str:
-        """The field of the page: where it reports to, and the nodes of a whole picture (`js/page/cover.js`)."""
+        """The field of the page: where it reports to, and the nodes of a whole picture (`js/scene/frames.js`)."""
         names = "\n".join(self._watched)
         return str(fill('<span data-springtide-shaders="{}" data-springtide-nodes="{}"></span>', self._inbox, names))
 

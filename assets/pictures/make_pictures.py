@@ -77,7 +77,7 @@ PICTURES = {
     "cloth": Picture("cloth", "Drape over the sphere", 1.9, (1000, 560)),
     "spill": Picture("radial_sea", "Light crude spill 0.2 m", 17.0, (1000, 560)),
     "breather": Picture("square_sea", "Peregrine breather", 327.0, (1100, 620)),
-    "draupner": Picture("square_sea", "Draupner", 58.6, (1100, 620)),
+    "draupner": Picture("square_sea", "Draupner", 59.4, (1100, 620)),
     "share": Picture("rope", "Over the sphere", 5.0, (1200, 760), {"plot_energy": True}, tab="Share"),
     "lab": Picture("rope", "Lab code: 10 points", 2.0, (1100, 760), RK4, NO_DAMPING),
     "lab_cloth": Picture("cloth", "Curtain", 4.0, (1100, 760), RK4, FEW_LINKS),

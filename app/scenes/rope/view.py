@@ -102,7 +102,7 @@ class Hanger:
     """
 
     def __init__(self, server: viser.ViserServer) -> None:
-        sphere, faces = ball(8)
+        sphere, faces = ball(6)
         straight = rod(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, HANGER_HEIGHT]]), HANGER_RADIUS)
         self.vertices = np.concatenate([MAX_BEAD_RATIO * ROPE_RADIUS * sphere, straight]).astype(np.float32)
         self.mesh = server.scene.add_mesh_simple(

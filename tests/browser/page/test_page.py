@@ -55,8 +55,8 @@ def test_the_cover_stays_until_all_nodes_of_the_scene_are_there(chromium: Any) -
         assert injector is not None
         injector.watch("/late")
         page.goto(f"http://127.0.0.1:{viewer.port}/?hideViserLogo&fixedDpr=0.2", wait_until="commit")
-        page.wait_for_function("window.__springtide?.showsWhole?.()")
-        page.wait_for_timeout(1000)  # longer than the things of a scene are waited for without the list
+        wait_for(page, lambda words: "Preparing the picture" in words)
+        page.wait_for_timeout(5000)  # longer than the things of a scene are waited for without the list
         assert "Preparing the picture" in shown(page)
         viewer.server.scene.add_frame("/late")
         wait_for(page, lambda words: words == "", 20.0)

@@ -6,7 +6,6 @@
 
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
-import { viewer } from "../core/viewer.js";
 import { onChange, onLook } from "../core/watch.js";
 
 const ALIVE_INTERVAL = 2000; // [ms] between two checks that the server answers
@@ -38,16 +37,13 @@ let pictured = ""; // the panel whose picture was complete
 // True if the picture of the panel's scene is not complete yet. A lab that draws by viser's public interface has no such field;
 // otherwise it follows the status line.
 function awaitsPicture() {
-  const { springtideShaders: field = "", springtideNodes: nodes = "" } =
-    document.querySelector("[data-springtide-shaders]")?.dataset ?? {};
+  const field = document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "";
   if (field && field === pictured) return false;
   const now = performance.now();
   if (field !== opened) [opened, openedAt] = [field, now];
   const since = now - openedAt, { showsWhole } = springtide;
   if (!field) return since < SETTLING;
-  const isHere = (/** @type {string} */ name) => Boolean(viewer()?.nodeRefFromName[name]);
-  const isWhole = () => showsWhole?.() && nodes.split("\n").filter(Boolean).every(isHere);
-  if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !isWhole())) return true;
+  if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;
   pictured = field;
   return false;
 }

@@ -109,6 +109,13 @@ function inputsOf(renderer, scene, camera) {
   return list;
 }
 
+// True if a node is still to come that the server counts to the picture (app/render/injection.py): on a slow page the sky is
+// there long before the vertices of a sea.
+function lacksNodes() {
+  const names = document.querySelector("[data-springtide-nodes]")?.dataset.springtideNodes ?? "";
+  return names.split("\n").some((name) => name && !viewer()?.nodeRefFromName[name]);
+}
+
 // life: of the renderer.
 /** @param {three.Renderer} renderer @param {import("../core/life.js").Life} life */
 export function paceFrames(renderer, life) {
@@ -117,7 +124,7 @@ export function paceFrames(renderer, life) {
   let last = null; // the inputs of the frame on the canvas
   /** @type {{ fence: WebGLSync | null, compiled: boolean } | null} */
   let drawing = null; // of that frame until it is drawn: its fence, and whether it has a new program
-  let isWhole = false; // true if that frame has its sky, its light, and all of its shaders
+  let isWhole = false; // true if that frame has its nodes, its sky, its light, and all of its shaders
   let finishedWhole = false; // true if the last drawn frame had, and no frame without them has begun since
   let length = 0; // [ms] of it
   let started = 0, pressed = 0, left = 0; // time of its start, time of the last press in the panel, frames left to the panel
@@ -178,7 +185,7 @@ export function paceFrames(renderer, life) {
     [started, left] = [performance.now(), 0];
     earlier.call(this, scene, camera);
     last = inputs;
-    isWhole = Boolean(own.environment) && !awaitsLight() && !lacksPrograms;
+    isWhole = Boolean(own.environment) && !awaitsLight() && !lacksPrograms && !lacksNodes();
     if (!isWhole) finishedWhole = false;
     const known = programs();
     awaitEnd(known !== knownPrograms);

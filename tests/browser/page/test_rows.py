@@ -20,6 +20,7 @@ from app.lab.course.task import load_tasks
 from app.lab.course.workbook import Workbook
 from app.lab.report.classroom import Classroom
 from app.messages import Pause, Play
+from app.render.handles.viser_inside import uuid_of
 from app.render.scripts import before_tags
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import read_query
@@ -35,6 +36,7 @@ from tests.browser.page.test_page import NO_WEBGL, REFUSED
 
 ENGINES = ["chromium", *(pytest.param(name, marks=pytest.mark.long) for name in ("firefox", "webkit"))]
 DRAWN = ("rope", "square_sea")  # scenes drawn within seconds; the long tests draw the others
+INBOX = "return document.querySelector('[data-springtide-inbox]')?.dataset.springtideInbox;"
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
 # Error messages of the page, including the end of viser's client.
 HOOK = """window.noted = [];
@@ -586,6 +588,10 @@ def test_a_set_up_is_chosen_from_a_file(visit: Visit, tmp_path: Path) -> None:
     for points in (23, 24):
         path.write_text(json.dumps({"scene": "rope", "parameters": {"points": points}}), "utf-8")
         visit.show("Share")
+        # Another scene has another panel, and what a page sends to the old one is lost.
+        visit.until(
+            lambda: visit.page.run(INBOX) == uuid_of(visit.viewer.panel.share.inbox), "the panel is the old one"
+        )
         visit.page.choose_file("[data-springtide-load]", path)
         visit.until(lambda points=points: visit.param("points") == points, "the file is not read")
 

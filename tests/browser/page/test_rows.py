@@ -83,6 +83,7 @@ class Visit:
     def __init__(self, page: Engine, viewer: Viewer, address: str) -> None:
         self.page, self.viewer, self.address = page, viewer, address
         self.marks = 0
+        self.is_shown = False  # False after a scene that the page did not show: the next try loads the page anew
 
     def open(self, query: str = "&fixedDpr=0.2") -> None:
         """Load the page of the lab."""
@@ -207,7 +208,8 @@ def visit(request: pytest.FixtureRequest, visits: Callable[[str], Visit]) -> Ite
     found = visits(request.param)
     with guarded(found.page):
         href = found.page.run("return location.href;")
-        is_usable = href.startswith(f"{found.address}?") and "without=" not in href
+        is_usable = found.is_shown and href.startswith(f"{found.address}?") and "without=" not in href
+        found.is_shown = False
         if is_usable and found.page.run("return !!window.noted;"):
             found.page.run("window.drawsPixels = false;")
             found.errors()
@@ -215,6 +217,7 @@ def visit(request: pytest.FixtureRequest, visits: Callable[[str], Visit]) -> Ite
             found.viewer.open("rope")
             found.open()
         found.follow("rope")
+        found.is_shown = True
         place, target = (np.array(at) for at in found.viewer.view.first_view(found.viewer.settings.params))
         away = pytest.approx(float(np.linalg.norm(place - target)), rel=1e-3)
         found.until(lambda: found.distance() == away, "the camera is not placed")  # later than the panel

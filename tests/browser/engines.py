@@ -71,6 +71,11 @@ def free_port() -> int:
         return probe.getsockname()[1]
 
 
+# The words of a page, and whether viser's client takes messages, for a wait that failed.
+STATE = """const { getRenderRequestState, messageQueue } = window.__viserMutable ?? {};
+    return [document.body.innerText.slice(0, 300), getRenderRequestState, messageQueue?.length, window.noted];"""
+
+
 def moves(points: Sequence[Point]) -> list[dict[str, Any]]:
     """Actions that move a pointer along these points [pixels of the page]."""
     how = {"type": "pointerMove", "duration": 40, "origin": "viewport"}
@@ -120,7 +125,8 @@ class Engine(abc.ABC):
                 if found := self.run(body):
                     return found
             time.sleep(0.2)
-        raise AssertionError(f"not within {seconds:g} s: {body}; {self.run('return document.body.innerText;')[:300]}")
+        state = self.run(STATE)
+        raise AssertionError(f"not within {seconds:g} s: {body}; {state}")
 
     @abc.abstractmethod
     def resize(self, width: int, height: int, ratio: float = 1.0) -> None:

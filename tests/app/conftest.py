@@ -1,4 +1,4 @@
-"""What tests of the program share."""
+"""Fixtures of the tests of the program."""
 
 from collections.abc import Iterator
 

@@ -462,7 +462,7 @@ class Chromium(Engine):
 
 
 def missing(name: str) -> str:
-    """What this machine lacks for a browser; "" if it lacks nothing."""
+    """Programs that a browser needs and this machine lacks; "" without any."""
     needed = {
         "firefox": ("firefox-esr", "Xvfb"),
         "webkit": ("WebKitWebDriver", "Xvfb", "dbus-run-session"),

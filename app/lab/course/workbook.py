@@ -153,7 +153,7 @@ class Workbook:
             self.refresh()
 
     def read_whole(self, folder: Path) -> Answers:
-        """The answers as they are in the file. Raises ValueError if it cannot be read."""
+        """The answers in the file. Raises ValueError if it cannot be read."""
         found = read_answers(folder)
         if found.error and (folder / FILE).exists():
             raise ValueError(f"{found.error}. Nothing is saved until you repair this.")

@@ -43,7 +43,7 @@ def read_files(folder: Path) -> dict[str, bytes]:
 
 
 def store(texts: Mapping[str, bytes], folder: Path, number: int, tasks: Iterable[Task]) -> Saved:
-    """Write the files into a folder of their own. Raises OSError if that cannot be done."""
+    """Write the files into an empty folder. Raises OSError if a file cannot be written."""
     for name, text in texts.items():
         (folder / name).write_bytes(text)
     sources = {name: read_source(text) for name, text in texts.items()}

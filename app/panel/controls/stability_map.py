@@ -154,7 +154,7 @@ class StabilityMapPanel:
                 self.problem = f"The map could not be measured: {type(error).__name__}: {error}"
 
     def draw(self) -> None:
-        """Show the map as far as it is known, with a dot at the present parameters; on the viewer thread."""
+        """Show the finished rows of the map, with a dot at the present parameters; on the viewer thread."""
         axes = self.axes
         found = picture(axes, self.rows, self.read(), uuid_of(self.click)) if axes is not None else ""
         problem = note(self.problem) if self.problem else ""

@@ -37,7 +37,7 @@ OPERATORS: dict[type[ast.operator], str] = {
 }  # fmt: skip
 
 
-# A function and the modules in which it may keep something, as they are before any call.
+# A function and the modules in which it may store state, as they are before any call.
 Anew: TypeAlias = Callable[[], tuple[Callable[..., Any], Sequence[ModuleType]]]
 
 
@@ -75,7 +75,7 @@ def watched(
 ) -> Any:  # fmt: skip
     """The result of a function at these arguments. Raises Effect if it has a side effect.
 
-    modules: in which it may keep something. folder: of the student's files. twice: also compare a second call with
+    modules: in which it may store state. folder: of the student's files. twice: also compare a second call with
     equal arguments.
     """
     given = copied(arguments)

@@ -106,7 +106,7 @@ def entries_of(wrong: Sequence[Difference]) -> str:
 
 
 def is_held(wrong: Sequence[Difference]) -> bool:
-    """True if the first point cannot be wrong, as it is held."""
+    """True if the first point cannot be wrong because it is fixed."""
     return all(not part[0].any() for trial in wrong for part in trial.right)
 
 

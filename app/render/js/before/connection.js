@@ -7,7 +7,7 @@
 //
 // Without a connection viser's client has its worker try again each second, which ends the attempt under way. Chromium delays
 // attempts by up to five seconds once many have failed, so that after a minute none would succeed: here each has its time.
-// Where a new viser has other messages, they pass as they are.
+// Messages that a newer viser adds pass unchanged.
 
 (() => {
   "use strict";

@@ -127,7 +127,7 @@ function placeCamera(camera) {
   splats?.material.uniforms.projectionMatrixCustom.value.copy(camera.projectionMatrix);
 }
 
-// viser's splats have a projection of their own, without the shift: they get the camera's.
+// viser's splats use a separate projection without the shift: they get the camera's.
 /** @type {three.Mesh | null} */
 let splats = null; // the mesh of all splats
 

@@ -1,4 +1,4 @@
-// Marks on elements of viser's page that have no name of their own, for page.css and for the parts that measure panels.
+// Marks on unnamed elements of viser's page, for page.css and for the parts that measure panels.
 //
 // The selectors say by `:has` what an element holds. In a style sheet the browser would check them again, and with them the
 // style of the whole panel, each time that the panel says another number, which is many times a second.

@@ -390,7 +390,7 @@ def test_of_a_wrong_factor_of_the_step_no_term_in_its_bracket_is_marked() -> Non
 
 
 def test_a_form_may_differ_by_the_rounding_of_the_right_results() -> None:
-    """What a student computes as a small difference of large numbers has their rounding."""
+    """A small difference of large numbers has their rounding."""
     form, found = np.array([1e-7 / 3.0]), np.array([2e-7 / 3.0])
     assert reproduces(form, found, np.array([1e6]))
     assert not reproduces(form, found, np.array([1.0]))

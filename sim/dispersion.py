@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-NEWTON_STEPS = 40  # 4 or 5 are taken, a few more between gravity waves and ripples
-CLOSE = 1e-9  # relative change of a wavenumber with which the search ends: the next would be its square
+NEWTON_STEPS = 40  # usually 4 or 5, a few more between gravity waves and ripples
+CLOSE = 1e-9  # relative change of a wavenumber at which the search ends: the next would be its square
 
 
 def tanh_depth(k: np.ndarray, depth: float) -> np.ndarray:
@@ -47,7 +47,7 @@ def group_speed(k: np.ndarray, gravity: float, depth: float, s: float = 0.0) -> 
 def wavenumber(frequency: np.ndarray, gravity: float, depth: float, s: float = 0.0) -> np.ndarray:
     """Wavenumber [rad/m] of waves of these angular frequencies [rad/s], to rounding.
 
-    By Newton's method in the logarithms of both: ln omega rises with ln k by 1/2 to 3/2, so that no step goes astray.
+    By Newton's method in the logarithms of both: ln omega rises with ln k by 1/2 to 3/2, so that every step converges.
     """
     w = np.asarray(frequency, np.float64)
     deep = np.square(w) / gravity
@@ -70,5 +70,5 @@ def wavenumber(frequency: np.ndarray, gravity: float, depth: float, s: float = 0
 
 
 def smallest(depth: float) -> float:
-    """A wavenumber that stands for 0 in speeds: the limit is reached to rounding, and nothing divides by 0."""
+    """The wavenumber used for 0 in speeds: the limit is reached to rounding, and nothing divides by 0."""
     return 1e-100 if math.isinf(depth) else 1e-10 / depth

@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def draft_of(path: Path) -> Path:
-    """The name that a file is first written to: no other thread or process of this machine uses it."""
+    """Draft name of a file, unique among the threads and processes of this machine."""
     return path.with_name(f".{path.stem}.{os.getpid()}-{secrets.token_hex(4)}{path.suffix}")
 
 

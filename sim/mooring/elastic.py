@@ -31,7 +31,7 @@ class Curves:
 
 
 class Elastic:
-    """Lengths and tensions of links that are taut; below its rest length a link pushes as it would pull near to it."""
+    """Lengths and tensions of links that are taut; a shorter link pushes by the law of a small stretch."""
 
     def __init__(self, p: LineArrays) -> None:
         self.rest, self.stiffness = p.links[:, 0], p.links[:, 1]
@@ -53,7 +53,7 @@ class Elastic:
     def on_pieces(self, value: Array, found: Array, column: int) -> tuple[Array, Array]:
         """`found` of links with a constant stiffness, with the table's numbers for `value` of all others.
 
-        column: of the table that `value` is of. The second array: derivatives [N/m] of the tensions.
+        column: of the table, to which `value` belongs. The second array: derivatives [N/m] of the tensions.
         """
         slope = self.stiffness.copy()
         for at, *columns in self.groups:

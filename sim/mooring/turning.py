@@ -29,7 +29,7 @@ def stiffness_of_turning(arm: Array, force: Array) -> Array:
 def with_turning(system: "System", rest: Rest) -> "System":
     """The system with the stiffness that the bodies have from their lines in a state of rest.
 
-    Where a body would fall over by it, it gets none in that direction: `MooredBody` allows no negative stiffness.
+    A body that it would turn over gets none in that direction: `MooredBody` allows no negative stiffness.
     """
     p = system.kernel_view(1.0)
     f = np.zeros(3 * p.cols)

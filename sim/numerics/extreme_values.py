@@ -55,7 +55,7 @@ class Peaks:
         self.peaks: list[list[float]] = [[] for _ in range(count)]
 
     def add(self, values: Array, duration: float) -> None:
-        """Take numbers (count,) that hold for `duration` [s]."""
+        """Add numbers (count,) that hold for `duration` [s]."""
         self.duration += duration
         self.mean = self.mean + (values - self.mean) * (duration / self.duration if self.duration > 0.0 else 1.0)
         is_above = values > self.mean
@@ -72,7 +72,7 @@ class Peaks:
         return np.array([len(one) for one in self.peaks], dtype=np.int64)
 
     def expected_largest(self, duration: float) -> Array:
-        """Largest value of each (count,) that is expected in `duration` [s]; NaN of too few peaks."""
+        """Largest value of each (count,) that is expected in `duration` [s]; NaN for too few peaks."""
         found = np.full(len(self.peaks), math.nan)
         for i, peaks in enumerate(self.peaks):
             heights = np.array(peaks) - self.mean[i]

@@ -1,4 +1,4 @@
-"""Random numbers inside kernels: a hash of who asks and when, so runs repeat."""
+"""Random numbers inside kernels: a hash of the caller and the time, so that runs repeat."""
 
 import numpy as np
 

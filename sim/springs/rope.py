@@ -116,7 +116,7 @@ def lab_units(
 
     axial_stiffness EA [N], mass_per_length [kg/m], axial_viscosity [N s], drag_per_length [N s/m^2].
     With n links: k = EA n / L, m = mu L / n, b = eta n / L, c = drag L / n. Of first order in 1/n only, where the last
-    point is free: it has the mass of a whole link, and stands for half of one.
+    point is free: it has the mass of a whole link instead of half.
 
     Raises ValueError, naming the argument, its value and what is allowed.
 

@@ -19,7 +19,7 @@ def is_value(word: str) -> bool:
 
 
 def number_of(word: str) -> float | None:
-    """The number that a word is, also with the D of Fortran's exponents; inf for a huge one, None for another word."""
+    """A word as a number, also with the D of Fortran's exponents; inf for a huge one, None for another word."""
     if not NUMBER.fullmatch(word):
         return None
     return float(word.replace("D", "e").replace("d", "e"))
@@ -28,7 +28,7 @@ def number_of(word: str) -> float | None:
 def values_of(words: Sequence[str], trusted: float = 0.0) -> tuple[np.ndarray, int | None]:
     """Numbers (n,) of the words of a column, nan where one is missing; and the first word that is neither, or None.
 
-    Missing are empty words, MM, nan and the like, and numbers of two or more digits of 9 that their neighbours do not
+    Missing are empty words, MM, nan and the like, and numbers of two or more nines that their neighbours do not
     come near: 99.00 among densities below 4 is missing, 99 between 95 and 104 is not. Those from 0 to `trusted` are
     values.
     """

@@ -45,7 +45,7 @@ def registry() -> Any:
 
 @functools.lru_cache(maxsize=256)
 def measure_of(text: str) -> UnitMeasure | None:
-    """The measure of a unit, None for a text that is not understood."""
+    """The measure of a unit, None for an unknown one."""
     plain = written_plainly(text)
     if len(text) > MAX_LENGTH or not FORM.fullmatch(plain):
         return None

@@ -8,7 +8,7 @@ from sim.floating.hulls.closed_mesh import ClosedMesh
 from sim.validation import argument_error
 
 WANTED_PANELS = 450  # a wet surface is divided into about as many; a solution takes 1 to 3 s a frequency
-MAX_PANELS = 3000  # of a mesh that has more itself, a solution takes minutes a frequency
+MAX_PANELS = 3000  # of the mesh itself; a solution then takes minutes per frequency
 MIN_SHARE = 1e-9  # of the wet area, below which a cut triangle is left out
 
 

@@ -3,8 +3,8 @@
 Linear theory gives a hull the force a Re(X exp(i (k.x - w t))) in a wave of height a, with X from boundary elements:
 the pressure of the undisturbed wave over the whole hull (Froude-Krylov) and the waves that the hull scatters. `step`
 applies the pressure under a plane at the height of the wave, averaged over the hull; to first order that is
-X_plane, found here from the hull itself. The difference D = X - X_plane is summed over the waves. So small motions are
-those of linear theory, whatever the length of the wave beside the hull, and large ones follow the surface.
+X_plane, found here from the hull itself. The difference D = X - X_plane is summed over the waves. Small motions are
+therefore those of linear theory, whatever the length of the wave beside the hull, and large ones follow the surface.
 """
 
 import copy
@@ -24,7 +24,7 @@ from sim.ocean.radial.gerstner import widened
 from sim.validation import argument_error
 from sim.waves import AMPLITUDE, RESPONSES, Waves, sums_at
 
-HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are taken again
+HEADING_TOLERANCE = 0.02  # [rad] that a hull turns before the directions of waves on it are updated
 LAST_RATES = (15 / 8, -10 / 8, 3 / 8)  # weights of the last three rates of change, for that half a step after them
 CREEPING = 0.1  # of sqrt(g k), below which a wave in viscous fluids only sinks away, and does nothing upward here
 
@@ -62,7 +62,7 @@ class WaveExcitation:
 
         labels (n, 2) [m]: where the bodies are on the resting surface at time t [s], the middle of the step.
 
-        The upward force is the change of the impulse sum a Re(i D/w exp(i theta)) along the body's way, and so has no
+        The upward force is the change of the impulse sum a Re(i D/w exp(i theta)) along the body's path, and so has no
         mean. In linear theory the force at a fixed place has no mean. At a place that moves with the waves its mean is
         of second order, and a small body that follows the water does not feel it.
 

@@ -53,12 +53,12 @@ def make_water(
 
     layers: one or two (density, thickness) pairs as in `equilibrium_draft`. By default the fluids are still and level,
     and the interface follows the surface at the thickness of the upper layer (its slope and rise too).
-    acceleration is worth giving: with it a small hull rides a wave exactly, without it the frequency of the wave
-    over that of heave, squared, is lost. excitation: from `WaveExcitation`, where the surface is a sum of waves: what
-    diffraction, the decay of pressure with depth and the length of the hull add to the pressure of the plane. Without
-    it that is the mass displaced and the added mass times the fluid's acceleration, as in waves long beside the hull.
-    lead [s]: how long after the beginning of the step the values hold; half of the step is best. Raises ValueError for
-    bad layers or shapes; values are checked by `step`.
+    Give acceleration if it is known: with it a small hull follows a wave exactly; without it the relative error is
+    (frequency of the wave over that of heave)^2. excitation: from `WaveExcitation`, where the surface is a sum of
+    waves: what diffraction, the decay of pressure with depth and the length of the hull add to the pressure of the
+    plane. Without it that is the mass displaced and the added mass times the fluid's acceleration, as in waves long
+    beside the hull. lead [s]: how long after the beginning of the step the values hold; half of the step is best.
+    Raises ValueError for bad layers or shapes; values are checked by `step`.
     """
     check_fleet(fleet)
     n = len(fleet.mass)

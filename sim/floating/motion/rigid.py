@@ -87,7 +87,7 @@ def add_pull(fleet, i, h, rate, factor, heading, place, change, six):
     P = -s/(1 + s) K^-1 (x' + x rate/(2 + h rate)), s = h rate (2 + h rate) (Catto, Soft Constraints, GDC 2011).
     An impulse above the limit uses (K + m)^-1 in place of K^-1, with m such that its size is the limit. The further
     above, the straighter it points to the target. An impulse that is only scaled down keeps the direction of K^-1, and
-    a body that is pulled upwards at a corner would run aside. m by the iteration of More and Sorensen 1983.
+    a body that is pulled upwards at a corner would move sideways. m by the iteration of More and Sorensen 1983.
     """
     kx = pushed(factor, (1.0, 0.0, 0.0), place, change)
     ky = pushed(factor, (0.0, 1.0, 0.0), place, change)

@@ -26,7 +26,7 @@ def axes_by_quaternion(q: Any) -> Any:
 def heading_by_axes(axes: Any) -> Any:
     """Cosine and sine of the heading of a body with these axes, whichever side of it is up.
 
-    It is that of the body's x axis, seen from above. Where that stands within 30 degrees of the vertical, its y axis is
+    It is that of the body's x axis, seen from above. If that is within 30 degrees of the vertical, its y axis is
     a quarter turn to the left of the heading.
     """
     cosine, sine = axes[0][0], axes[0][1]

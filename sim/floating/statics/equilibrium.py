@@ -78,7 +78,7 @@ def density_steps(layers: Layers) -> list[tuple[float, float]]:
 
 
 def check_layers(layers: Layers) -> tuple[tuple[float, float], ...]:
-    """`layers`, whatever holds them, as pairs of floats. Raises ValueError for bad ones."""
+    """`layers`, in any sequence, as pairs of floats. Raises ValueError for bad ones."""
     wanted = "(density, thickness) pairs from the top, densities not falling, the last thickness inf and only that"
     try:
         given = list(layers)

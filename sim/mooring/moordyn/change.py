@@ -1,4 +1,4 @@
-"""`changed_moordyn`: a MoorDyn file with other lengths of lines and diameters of line types, and all else as it was."""
+"""`changed_moordyn`: a MoorDyn file with changed line lengths and line-type diameters, and nothing else changed."""
 
 import re
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ DIAMETER = 1  # place of the word in a row of line types
 def changed_moordyn(
     content: bytes, lengths: Mapping[int, float] | None = None, diameters: Mapping[str, float] | None = None
 ) -> bytes:
-    """The content of a file with other numbers in it; each other byte stays.
+    """Content of a file with changed numbers; all other bytes stay.
 
     lengths: unstretched [m], by the ID of the line. diameters: [m], by the name of the line type. Raises ValueError for
     a line or type that the file does not have, a number that is not above 0, and a file that cannot be read.
@@ -39,7 +39,7 @@ def changed_moordyn(
 
 
 def rows_to_change(what: str, values: Mapping[K, float], numbers: Mapping[K, int]) -> list[tuple[int, float]]:
-    """Number of the row and new value of each change. numbers: of the rows there are, by line or type."""
+    """Number of the row and new value of each change. numbers: of the existing rows, by line or type."""
     for key, value in values.items():
         if key not in numbers:
             raise argument_error(what, key, f"one of {sorted(numbers)}")
@@ -48,7 +48,7 @@ def rows_to_change(what: str, values: Mapping[K, float], numbers: Mapping[K, int
 
 
 def with_word(row: str, place: int, value: float) -> str:
-    """A row with another number for one of its words; the words behind it stay in their columns where there is room."""
+    """A row with a number in place of one of its words; the words after it keep their columns if there is room."""
     word = list(WORD.finditer(row))[place]
     written, rest = repr(value), row[word.end() :]
     gap = len(rest) - len(rest.lstrip(" "))

@@ -78,14 +78,14 @@ def read_type(row: Row, folder: Path) -> LineType:
 
 
 def only_number(where: str, text: str, reason: str) -> float:
-    """The number that `text` is. Raises ValueError, for a list or the name of a file with the reason."""
+    """`text` as a number. Raises ValueError, for a list or the name of a file with the reason."""
     if "|" in text or ":" in text or re.search(r"[A-Za-z_]\w*\.\w+$", text):
         raise argument_error(where, text, f"one number: {reason}")
     return number_in(where, text)
 
 
 def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tuple[float, float], ...]]:
-    """EA [N], and the rows of a file of strain and tension, none for a number."""
+    """EA [N], and the rows of a file of strain and tension; empty for a number."""
     where = f"{where}: EA"
     if number_of(text) is not None:
         return number_in(where, text), ()
@@ -114,7 +114,7 @@ def read_stiffness(where: str, text: str, folder: Path) -> tuple[float, tuple[tu
 
 
 def check_curve_units(where: str, lines: list[str]) -> None:
-    """Raises ValueError for a line of units other than those that MoorDyn reads, which looks at no header."""
+    """Raises ValueError for a line of units other than those that MoorDyn reads, as it ignores the header."""
     for word in " ".join(lines).split():
         measure = measure_of(word.strip("[]()"))
         if measure is not None and any(factor_of(kind, measure)[0] not in (None, 1.0) for kind in (STRAIN, FORCE)):
@@ -217,7 +217,7 @@ def read_end(where: str, text: str, points: Mapping[int, Point], rod_ends: Mappi
 def ends_first(section: Section, points: Container[int]) -> bool:
     """True if the ends of a line stand before its length and segments, as in version 2, and not behind them.
 
-    The values decide. The column names do where both orders fit: some files have those of the other version.
+    The values decide. If both orders fit, the column names do: some files have those of the other version.
     """
     names = section.columns
     by_name = not any(name.startswith("unstr") for name in names[2:3])

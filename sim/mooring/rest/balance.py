@@ -3,7 +3,7 @@
 A stiff line that turns by a step of the size of a link is stretched by the second order of it, and with the tension of
 that stretch the next step would be tiny. The matrix therefore uses the tensions of the last correction, as if positions
 and tensions were both unknowns. Links that pull or not, nodes on the bed or not and volumes in, at or above the surface
-follow piecewise linear laws, and the start is near enough to tell on which piece each of them is.
+follow piecewise linear laws, and the start is near enough to show on which piece each of them is.
 """
 
 from typing import NamedTuple
@@ -25,7 +25,7 @@ SETTLED = 1e-9  # largest force left [N] over the largest on any node
 ROUND_OFF = 8.0 * np.finfo(float).eps  # the same over the largest term of a sum of forces
 LARGEST_BEND = 16.0  # eigenvalue of the bends of a line, over the stiffness of one
 RISE = 1e6  # of the largest force left by the first correction, above which the start was not near
-HOLD = 1e-8  # of slack links, over tensions and weights: no place of what lies slack is better than another
+HOLD = 1e-8  # of slack links, over tensions and weights: the position of a slack part is arbitrary
 
 
 class BalanceResult(NamedTuple):

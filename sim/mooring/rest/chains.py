@@ -1,7 +1,7 @@
 """Direct solution of a mooring's linear systems: the time grows linearly with the segments.
 
 The inner nodes of a line are a chain of 3 x 3 blocks, or a band of them if it resists bending, which is eliminated.
-A small dense system is left of the points where lines end and of the bodies. Its matrix is positive definite where
+What remains is a small dense system of the bodies and the points where lines end. Its matrix is positive definite where
 that of the whole mooring is.
 """
 

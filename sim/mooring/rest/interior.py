@@ -52,7 +52,7 @@ class InteriorState(NamedTuple):
     press: Array  # (m,) [N] of the bed on each part with a bed area
     gap: Array  # (m,) [m] to the bed, as far as it yields
     lift: Array  # (k,) [N] buoyancy of each of `Volumes`
-    spare: Array  # (k,) [N] buoyancy that is missing to that of the whole volume
+    spare: Array  # (k,) [N] missing from the buoyancy of the whole volume
     above: Array  # (k,) [m] beyond the height at which buoyancy ends
     below: Array  # (k,) [m] beyond the depth at which it is whole
 
@@ -253,7 +253,7 @@ class Near(NamedTuple):
     slack: Array  # (links,) over their lengths
     on: Pieces
     gap: float  # mean product of the pairs over the largest energy of a link
-    is_last: bool  # round-off lets no state come nearer
+    is_last: bool  # round-off prevents a closer state
 
     def guesses(self, by_place: Pieces) -> list[tuple[Array, Pieces]]:
         """Tensions (links,), 0 of links that seem slack, and pieces: one guess, or two if they differ.

@@ -1,6 +1,6 @@
 """The static state of a mooring without waves.
 
-`sim.mooring.rest.interior` comes near it from straight lines, so that one state is found from any start.
+`sim.mooring.rest.interior` approaches it from straight lines, so that any start leads to the same state.
 `sim.mooring.rest.balance` solves it to round-off.
 """
 
@@ -22,7 +22,7 @@ from sim.validation import ConvergenceError
 MAX_CORRECTIONS = 60  # of both methods together
 FINISHING, LEAST_FINISHING = 12, 2  # of them at the end, at most, and before they run out
 NEAR, NEARER = 1e-9, 1e-4  # gap at which the end is tried first, and over the last one again
-STALLED, SMALL = 0.9, 1e-6  # gap over the least before it, and gap: round-off lets the path come no nearer
+STALLED, SMALL = 0.9, 1e-6  # gap over the least before it, and gap: round-off ends the path there
 
 
 class Rest(NamedTuple):

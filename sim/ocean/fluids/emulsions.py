@@ -5,7 +5,7 @@ water in oil, the "mousse" of real spills, which is 10 to 1000 times as viscous 
 either; `mooney` is the older law for water in oil, `taylor` holds for few drops only. The laws of solutions are for
 oils among themselves, and for the lab's reading of "entirely mixed".
 
-Each law of emulsions declares the share of drops up to which it was found to hold; beyond its pole it raises.
+Each law of emulsions declares the fraction of drops up to which it was found to hold; beyond its pole it raises.
 Mooney's and Pal and Rhodes's drops are as stiff as solids, so that they resist too much where they are few and thin.
 """
 

@@ -1,8 +1,8 @@
 """Optics of an oil film on water: reflected light, and light from the water that passes through.
 
 Light from the upper and from the lower face of a thin film interferes. For three bands of light (red, green, blue) with
-a Gaussian sensitivity, the mirrored share at normal incidence is, with two beams (Born and Wolf, Principles of Optics,
-7.6; the further beams add less than 3 % of what clean water mirrors),
+a Gaussian sensitivity, the reflected fraction at normal incidence is, with two beams (Born and Wolf, Principles of
+Optics, 7.6; the further beams add less than 3 % of what clean water reflects),
 
     R = r1^2 + q^2 + 2 r1 q V cos(2 beta),    q = (1 - r1^2) r2 e^(-a d),    2 beta = 4 pi n d/lambda
 

@@ -52,7 +52,7 @@ def moments_of(
 ) -> Moments:
     """The moments of S(omega) [m2 s] from the first to the last frequency [rad/s], by trapezoids in its logarithm.
 
-    The last decades of an endless spectrum tell whether a moment converges.
+    The last decades of an endless spectrum show whether a moment converges.
     """
     omega = np.geomspace(first, last, POINTS)
     S, found = density(omega), []

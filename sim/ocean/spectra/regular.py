@@ -1,4 +1,4 @@
-"""One regular wave of given height and period. Choose it to see how a body answers a single wave."""
+"""One regular wave of given height and period. Choose it to see how a body responds to a single wave."""
 
 import dataclasses
 import math

@@ -1,4 +1,4 @@
-"""Checks of the sea in a file, by which its owner recognises it: height, period and direction, and warnings."""
+"""Summary of the sea in a file, to recognise it by: height, period and direction, and warnings."""
 
 import math
 from typing import Any
@@ -7,7 +7,7 @@ import numpy as np
 
 from sim.ocean.spectra.record import Conditions, Spectrum, SpreadConditions
 
-HIGHEST = 20.0  # [m] of Hs: above it a sea is unlikely, and a mistake of a unit is not
+HIGHEST = 20.0  # [m] of Hs: a larger one is probably in a wrong unit
 SHORTEST, LONGEST = 2.0, 30.0  # [s] of Tp
 STEEPEST = 0.1  # 2 pi Hs/(g Tp^2); the steepest seas have 0.07
 COMPASS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")

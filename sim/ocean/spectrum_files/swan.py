@@ -1,6 +1,6 @@
 """Spectral files of SWAN: one or two dimensions, several places and times (SWAN User Manual, Appendix D).
 
-A place without data, as one that is dry, is passed over.
+Places without data, such as dry ones, are skipped.
 """
 
 import datetime
@@ -74,7 +74,7 @@ class SwanHead(NamedTuple):
     places: list[list[float]]  # x, y [m], or longitude and latitude [degrees]
     frequency: np.ndarray  # (n,) [Hz]
     directions: np.ndarray | None  # (m,) [rad] where waves go to, of a file of two dimensions
-    quantities: list[tuple[str, str, float]]  # name, unit and the value that stands for none
+    quantities: list[tuple[str, str, float]]  # name, unit and the value for missing data
 
 
 def from_swan(text: str, path: Path, when: datetime.datetime | None, place: int | None) -> Spectrum[Any]:
@@ -152,7 +152,7 @@ def time_of(lines: Lines) -> datetime.datetime:
 
 
 def skip_block(lines: Lines, head: SwanHead) -> bool:
-    """Go past the spectrum of one place; True if it has data."""
+    """Skip the spectrum of one place; True if it has data."""
     if lines.next()[0].upper() in NO_DATA:
         return False
     lines.at += len(head.frequency) + (head.directions is not None)
@@ -162,7 +162,7 @@ def skip_block(lines: Lines, head: SwanHead) -> bool:
 
 
 def read_block(lines: Lines, head: SwanHead) -> np.ndarray | None:
-    """The values of one place (n, m), nan for those that stand for none, or None without data."""
+    """The values of one place (n, m), nan for missing ones, or None without data."""
     first = lines.next()[0].upper()
     if first in NO_DATA:
         return None

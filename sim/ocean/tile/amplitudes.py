@@ -71,7 +71,7 @@ def fold(h0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def with_line(S: np.ndarray, unit: np.ndarray, line: tuple[float, float, float], dk: float) -> np.ndarray:
     """Give the energy of one regular wave to the tile's wave that is nearest to it, which is drawn as high as that.
 
-    S [m4] and unit amplitudes, (size, size); S is changed, and returned are the other amplitudes. line: kx, ky [rad/m]
+    S [m4] and unit amplitudes, (size, size); S is changed, and the other amplitudes are returned. line: kx, ky [rad/m]
     and m0 [m2]. Of a wave that is longer than the tile, or too short for its grid, the nearest is the longest, or
     the shortest, of about its direction, and a UserWarning says so.
     """

@@ -1,6 +1,6 @@
 """Height of the displaced surface above a point X: find the label x with x + D(x) = X, and return its height.
 
-Newton steps from x = X, halved where they lead away. Between the points of a tile's grid fields are bicubic
+Newton steps from x = X, halved if they diverge. Between the points of a tile's grid fields are bicubic
 (Catmull-Rom), which smooths the waves of a few cells (measured: off by at most 2 % of Hs at 2 m cells under a 10 m/s
 wind); `exact` sums all waves.
 """

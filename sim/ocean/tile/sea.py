@@ -142,7 +142,7 @@ class Sea(TileSurface, AnySea):
         Its mean over the tile is that of still water, 0, see `Surface.mean_height`.
 
         The residual is the horizontal miss |x + D(x) - point| of the solution found; it is at rounding wherever the
-        surface does not fold, and where it stays large the surface above the point is folded. Between grid points
+        surface does not fold, and a large one means that the surface above the point is folded. Between grid points
         fields are bicubic; exact: the sum over all waves instead, slow. Raises ValueError for another shape.
         """
         check_kind("exact", exact, bool, "True or False")
@@ -161,8 +161,8 @@ class Sea(TileSurface, AnySea):
 
         Phases continue without a jump; amplitudes approach their new size as 1 - exp(-(time - t)/relax), at once for
         relax = 0. Losses to viscosity stay: the new size is that of the new spectrum times the fraction that is left.
-        Another spectrum takes what both use. Raises ValueError for a value that is not allowed or a condition that the
-        spectrum does not use, TypeError for an unknown name.
+        Another spectrum keeps the conditions that both use. Raises ValueError for a value that is not allowed or a
+        condition that the spectrum does not use, TypeError for an unknown name.
         """
         t, relax = self._waves.checked_time(t), check_number("relax", relax, "s", 0.0)
         waves, ripples, chosen = self._waves, self._heights.ripples, self.spectrum if spectrum is None else spectrum
@@ -232,7 +232,7 @@ class Sea(TileSurface, AnySea):
         """h0(k), complex (size, size) [m], FFT order: as large as at time t [s], with the phase of the last change.
 
         The sea is Re sum 2 h0 exp(i(k.x - omega (t - change))); without a change these are the amplitudes as drawn.
-        Raises ValueError for a time that `surface` does not take either.
+        Raises ValueError for a time that `surface` refuses.
         """
         return self._waves.amplitudes(t)
 

@@ -86,7 +86,7 @@ class TileSurface:
 
 
 def shares(k: np.ndarray, energy: np.ndarray, grid: RadialGrid) -> np.ndarray:
-    """Share (points,) float32 of the amplitude that the rings of a grid can show: root of the energy in long waves.
+    """Fraction (points,) float32 of the amplitude that the rings of a grid resolve: root of the energy in long waves.
 
     k [rad/m], energy: of n waves, (n,). Long enough are those of four cells.
     """

@@ -37,10 +37,10 @@ class Transforms:
         self.spectrum[...] = 0.0
 
     def set_grid(self, grid: np.ndarray) -> None:
-        """`spectrum` as the sum of its waves on `grid` (size, size); the spectrum is gone afterwards."""
+        """`spectrum` as the sum of its waves on `grid` (size, size); the spectrum is overwritten."""
         import pyfftw
 
-        # Planes of a size that is no multiple of 4 do not all begin where vector instructions like them to.
+        # Planes of a size that is no multiple of 4 do not all begin at the alignment of vector instructions.
         aligned = grid if pyfftw.is_byte_aligned(grid) else self.grids.take(1)[0]
         self._plan.update_arrays(self.spectrum, aligned)
         self._plan.execute()

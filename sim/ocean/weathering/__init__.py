@@ -1,7 +1,7 @@
 """Weathering of an oil spill over hours and days: spreading, evaporation, uptake of water, dispersion into drops.
 
 The laws and constants are those of NOAA's PyGNOME (and its predecessor ADIOS2): `laws.py`, each with its source. An oil
-is a mixture of pseudo-components made from its distillation: `components.py`. `spill.py` lets time pass.
+is a mixture of pseudo-components made from its distillation: `components.py`. `spill.py` steps them in time.
 """
 
 from sim.ocean.weathering.components import (

@@ -1,7 +1,7 @@
 """The laws of weathering, each on its own. Times [s], temperatures [K] unless a name says otherwise.
 
 Those that `spill.py` uses have the constants of NOAA's PyGNOME (github.com/NOAA-ORR-ERD/PyGnome, in
-py_gnome/gnome/weatherers, 2026). `fingas` and `stiver_mackay` are older laws of evaporation, kept to compare with.
+py_gnome/gnome/weatherers, 2026). `fingas` and `stiver_mackay` are older laws of evaporation, kept for comparison.
 """
 
 import math
@@ -17,7 +17,7 @@ GAS_CONSTANT = 8.314  # [J/(mol K)]
 ATMOSPHERE = 101325.0  # [Pa]
 GRAVITY = 9.80665  # [m/s2]
 WATER_VISCOSITY = 1e-6  # [m2/s] kinematic, of sea water in these laws
-MIN_WIND = 1.0  # [m/s] that oil evaporates in at least
+MIN_WIND = 1.0  # [m/s] least wind speed of the evaporation
 SCHMIDT = 1.380277  # (Schmidt number of water vapour)^(-2/3)
 WATER_MOLAR_MASS = 0.018  # [kg/mol]
 UPTAKE = 2.02e-6  # [s/m2] rate of the water uptake over the wind squared
@@ -118,7 +118,7 @@ def area_growth(area: float, volume: float, light: float) -> float:
 
 
 def least_thickness(viscosity: float) -> float:
-    """Thickness [m] at which a slick stops to spread, by the kinematic viscosity of the fresh oil [m2/s]."""
+    """Thickness [m] at which a slick stops spreading, by the kinematic viscosity of the fresh oil [m2/s]."""
     return 1e-5 + 0.9091 * (min(max(viscosity, 1e-6), 1e-4) - 1e-6)
 
 
@@ -151,9 +151,9 @@ def drift_speed(wind_speed: float) -> float:
 
 
 def fingas(distilled: float, temperature: float, minutes: float, *, is_crude: bool = True) -> float:
-    """Share evaporated by Fingas's law (2004, J. Hazard. Mater. 107:27), which knows neither wind nor thickness.
+    """Fraction evaporated by Fingas's law (2004, J. Hazard. Mater. 107:27), independent of wind and thickness.
 
-    distilled: share by mass that has boiled off at 180 C; temperature T [K]. With C = T - 273.15, in percent:
+    distilled: fraction by mass that has boiled off at 180 C; temperature T [K]. With C = T - 273.15, in percent:
     (0.165 D + 0.045 (C - 15)) ln t and, for diesel and the like, (0.0254 D + 0.01 (C - 15)) sqrt t, t in minutes, up
     to five days.
     """
@@ -170,7 +170,7 @@ def fingas(distilled: float, temperature: float, minutes: float, *, is_crude: bo
 
 
 def stiver_mackay(exposure: float, temperature: float, api: float, *, is_crude: bool = True) -> float:
-    """Share by volume evaporated by Stiver and Mackay (1984, Environ. Sci. Technol. 18:834).
+    """Fraction by volume evaporated by Stiver and Mackay (1984, Environ. Sci. Technol. 18:834).
 
     T/(B G) ln(1 + B G/T theta e^(A - B T0/T)), A = 6.3, B = 10.3; exposure theta = K A t/V with K = 0.0025 U^0.78 m/s;
     T0 and G [K], start and slope of the distillation, by degrees API (ADIOS).

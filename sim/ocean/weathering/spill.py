@@ -35,7 +35,7 @@ MOUSSE_COLOUR = np.array([0x7A, 0x42, 0x1E])  # of an emulsion with much water: 
 class Spill:
     """Oil spilled at once.
 
-    Raises ValueError for a value that is not allowed, or an oil with a record that does not tell how it evaporates.
+    Raises ValueError for a value that is not allowed, or an oil without data on evaporation in its record.
     """
 
     oil: str = "Alaska North Slope 2002"
@@ -54,7 +54,7 @@ class Spill:
 
 
 class WeatheredOil(NamedTuple):
-    """The spill at one moment. Shares are of the mass spilled; evaporated + dispersed + remaining = 1."""
+    """The spill at one moment. Fractions are of the mass spilled; evaporated + dispersed + remaining = 1."""
 
     hours: float  # [h] since the spill
     evaporated: float
@@ -96,7 +96,7 @@ class Weathering(NamedTuple):
 
     @property
     def remaining(self) -> NDArray[np.float64]:
-        """Share on the sea."""
+        """Fraction on the sea."""
         return np.maximum(1.0 - self.evaporated - self.dispersed, 0.0)
 
     def at(self, hours: float) -> WeatheredOil:
@@ -158,7 +158,7 @@ class SpillState(NamedTuple):
 
 
 def weather(spill: Spill) -> Weathering:
-    """The spill from 0 to 120 h, by exponential midpoint steps: shares within 0.1 % of the laws' solution.
+    """The spill from 0 to 120 h, by exponential midpoint steps: fractions within 0.1 % of the laws' solution.
 
     Raises ValueError if it is not a spill.
 
@@ -187,7 +187,7 @@ def weathered(spill: Spill) -> Weathering:
 
     def step(state: SpillState, rates_of: SpillState, t: float, rates_at: float, h: float) -> SpillState:
         """From `state` at t on by h [s], at the rates of another state at another time [s]."""
-        if rates_of.mass.sum() < GONE * total:  # a half step took all: the rates before it take the rest
+        if rates_of.mass.sum() < GONE * total:  # a half step used up all: the earlier rates act on the rest
             rates_of, rates_at = state, t
         left = float(rates_of.mass.sum())
         water = water_of(rates_of, rates_at)

@@ -35,9 +35,9 @@ class EnergyAccount:
         self.dissipated_before_method = state.dissipated
 
     def numerical_dissipation(self, net: Net, state: State) -> float:
-        """Energy [J] that the method of integration took since `start_method`; negative where it fed the motion."""
+        """Energy [J] dissipated by the method of integration since `start_method`; negative if it added energy."""
         return self.error_before_method - self.error(net, state)
 
     def damping_dissipation(self, state: State) -> float:
-        """Energy [J] that damping took since `start_method`."""
+        """Energy [J] dissipated by damping since `start_method`."""
         return state.dissipated - self.dissipated_before_method

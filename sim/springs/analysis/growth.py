@@ -1,4 +1,4 @@
-"""Stability measured: growth of a disturbance in a run of an integrator's kernel.
+"""Measured stability: growth of a disturbance in a run of an integrator's kernel.
 
 Beside theory (`sim.springs.stability`), which it does not use: the oscillator is a spring of no rest length, so that
 a net of two points is exactly linear, and the rope is the real one.
@@ -22,7 +22,7 @@ TALL, LOW = 30.0, 0.1  # the same of a run that was cut short: a leapfrog that h
 STIR = 1e-9  # energy of a disturbance, in parts of what is large for its net
 GROWN = 1e4  # times its energy at which a disturbance has grown: still far too small for the rope not to be linear
 LOWEST, RESOLUTION = 0.1, 1e-3  # of a limit: fraction of the first step below which it counts as 0, and relative error
-MUCH = 100.0  # parts of what is large, which no link comes back from
+MUCH = 100.0  # parts of what is large, from which no link returns
 PUSH = 1e-5  # of a link, in the differences of `step_growth`: their error is its square
 STABLE, BOUNDED_GROWTH, EXPLODING = range(3)
 

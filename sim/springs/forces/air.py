@@ -77,7 +77,7 @@ def add_quarters(f, of, cols, n, w, a, o):
 def accelerate(x, v, t, p, with_damping, f, a):
     """All of it is damping. f: scratch; its last (wind_scratch_size,) are free, but 0 where no cell is.
 
-    All cells are worked out in one loop, as the rows of most cloths are short.
+    All cells are computed in one loop, as the rows of most cloths are short.
     """
     if not with_damping:
         return

@@ -1,7 +1,7 @@
 """The forces of a cloth's six families, structural, shear and bend, row by row.
 
 The links of a row go into a buffer of the last three rows, padded with zeros to its sides, and each particle then sums
-its twelve in one loop: every link is worked out once, written once and read twice, all within the fastest cache.
+its twelve in one loop: every link is computed once, written once and read twice, all within the fastest cache.
 """
 
 from typing import NamedTuple
@@ -78,7 +78,7 @@ def sheet_of(p):
 def accelerate_rows(x, v, p, law, b, c, f, o, a, start, stop):
     """Accelerations of the rows from `start` up to `stop`; p: a `Sheet`; f: the buffer, from index o.
 
-    The links that reach in from up to two rows before are worked out here too.
+    The links that reach in from up to two rows before are computed here too.
     """
     n = np.uint64(p.rows * p.cols)
     width = p.cols + 2 * PAD

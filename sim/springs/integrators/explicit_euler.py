@@ -1,6 +1,6 @@
 """Explicit Euler, the lab text's eq. 5: x += h v, v += h a(x, v), both from the old state.
 
-Unstable without damping at every step size: a mode's energy grows by 1 + (h omega)^2 a step. Shown to be understood.
+Unstable without damping at every step size: a mode's energy grows by 1 + (h omega)^2 a step. Offered for comparison.
 """
 
 import math

@@ -1,11 +1,11 @@
 """Implicit midpoint: x+ = x + h vm, v+ = v + h a(xm, vm) with xm = (x + x+)/2, vm = (v + v+)/2, by Newton's method.
 
-A-stable: modes of any stiffness keep their energy, only their frequency is wrong, (2/h) atan(h omega/2). They keep it
-for good: damping takes next to nothing of a mode that is far too stiff for the step. So that links that turn far within
-a step keep theirs as well, their tensions are those of their mean lengths
-(`sim.springs.integrators.implicit.mean_length`): without damping and contact the energy stays to round-off at any
-stiffness, and the angular momentum too; for that the method gives up being symplectic. A step that Newton's method
-cannot take whole is taken in halves, quarters, ..., in longer parts again after an easy one.
+A-stable: modes of any stiffness keep their energy, only their frequency is wrong, (2/h) atan(h omega/2). Damping
+therefore takes next to nothing of a mode that is far too stiff for the step. Tensions are those of the mean lengths
+(`sim.springs.integrators.implicit.mean_length`), so that links that turn far within a step keep their energy as well:
+without damping and contact energy and angular momentum stay to round-off at any stiffness. For that the method gives up
+being symplectic. If Newton's method cannot solve a whole step, the step is taken in halves, quarters, ..., and in
+longer parts again after an easy one.
 """
 
 import math

@@ -2,7 +2,7 @@
 
 The stored velocity lags the position by half a step. Damping is taken with that old velocity, so with damping it is
 first order, and its limit shrinks; without, it is the second-order leapfrog.
-The step is symplectic Euler's; the half-step start is what tells them apart.
+The step is symplectic Euler's; only the half-step start differs.
 """
 
 from sim.springs.integrators import Integrator

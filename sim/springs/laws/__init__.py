@@ -1,8 +1,8 @@
-"""The interchangeable laws of a link: one file each, found by being here. Nothing else knows how a link pulls.
+"""The interchangeable laws of a link: one file each, discovered here. Nothing else knows how a link pulls.
 
 To add one, write a module in this folder with
 
-1. a NamedTuple class of the law's own numbers, which may have none. `Net.law` is one of these, and kernels take the law
+1. a NamedTuple class of the law's own numbers, if any. `Net.law` is one of these, and kernels know the law
    by its class: what runs is compiled for that law alone.
 2. kernels of one line, `force_density`, `stiffness` and `energy`, as `Law` says. A tension is proportional to k, and at
    the same strain to the rest length.
@@ -48,7 +48,7 @@ damping = by_law("damping")
 
 @kernel(inline=True)
 def tension(law, k, rest, length):
-    """[N], negative where the link is pressed."""
+    """[N], negative if the link is compressed."""
     return length * force_density(law, k, rest, length)
 
 
@@ -56,7 +56,7 @@ def tension(law, k, rest, length):
 def mean_tension(law, k, rest, before, after):
     """The mean of the tension [N] over all lengths from `before` to `after` [m]: their energies' difference quotient.
 
-    Of nearby lengths, whose energies round-off would spoil, by Gauss's three points, exact to the fifth power.
+    For nearby lengths, whose energies differ by little more than round-off, by Gauss's three points.
     """
     gap = after - before
     if abs(gap) > FAR_APART * (abs(before - rest) + abs(after - rest)):
@@ -83,7 +83,7 @@ over_step = chosen({numbers: law.over_step or general_over_step for numbers, law
 
 @kernel(inline=True)
 def lost_share(b, acting, both, s):
-    """Share of the relative velocity that a damping b [N s/m] takes in a time s [s], over `both` [1/kg].
+    """Fraction of the relative velocity that a damping b [N s/m] removes in a time s [s], over `both` [1/kg].
 
     acting: the part of b that acts at first. If it is less than b, the force is that of the tension, constant until the
     velocity is so small that b takes no more; from then on the velocity decays exponentially. both: the sum of the
@@ -110,7 +110,7 @@ def law_of(numbers: Any) -> Law:
 
 
 def check_law(law: Any) -> Any:
-    """The numbers of a law, given as its name or as they are. Raises ValueError with the names there are."""
+    """The numbers of a law, given as its name or as they are. Raises ValueError with the known names."""
     if type(law) not in BY_NUMBERS:
         return LAWS[check_choice("law", law, LAWS)].numbers
     for name, value in law._asdict().items():
@@ -119,7 +119,7 @@ def check_law(law: Any) -> Any:
 
 
 def of_arrays(function: Any) -> Any:
-    """A kernel of a law for numpy, which nothing compiles."""
+    """A kernel of a law for numpy, not compiled."""
     return np.vectorize(getattr(function, "py_func", function), otypes=[float], excluded={0})
 
 

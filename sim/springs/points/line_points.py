@@ -167,7 +167,7 @@ def mobility(p, j, x, y, z):
 
 @kernel(allocates=False)
 def kick(p, v, j, fx, fy, fz):
-    """Change the velocities by an impulse [N s] at node j; a body takes it where it carries the node."""
+    """Change the velocities by an impulse [N s] at node j; if a body carries the node, it acts on the body."""
     n = p.cols
     if p.inverse_masses[j] > 0.0:
         dx, dy, dz = over_mass(p, j, fx, fy, fz)

@@ -39,6 +39,6 @@ class PointSystem(abc.ABC, Generic[RunT]):
 
 
 def check_system(system: object) -> None:
-    """Raises ValueError if it is nothing that moves."""
+    """Raises ValueError for anything but a net or a mooring."""
     allowed = "a Net, as `rope` and `cloth` make them, or a System, as `read_moordyn` makes it"
     check_kind("system", system, PointSystem, allowed)

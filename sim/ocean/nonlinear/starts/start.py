@@ -90,7 +90,7 @@ def sides_of(length: Any) -> tuple[float, float]:
 def linear_start(waves: Waves, modes: Modes, t: float) -> np.ndarray:
     """Spectra (2, rows, columns) of elevation and potential at z = 0 of linear waves at time t [s].
 
-    Waves that the grid does not have are left out; others count for its nearest.
+    Waves outside the grid are left out; others are moved to its nearest.
     """
     n, m = modes.size
     i, j = (np.rint(k * (side / (2.0 * math.pi))).astype(int)

@@ -83,7 +83,7 @@ def energy(x, t, p):
 
 @kernel(allocates=False)
 def power(x, v, t, p, with_damping):
-    """Power that damping and friction of the bed take."""
+    """Power dissipated by damping and friction of the bed."""
     n, lost = p.cols, 0.0
     for i in range(p.places.shape[0] if with_damping else 0):
         j = p.places[i, 0]

@@ -2,7 +2,7 @@
 
 Block elimination without pivoting (Golub & Van Loan, 4.5.1), each pivot block as L U; safe where symmetric parts are
 positive definite. A block is its nine numbers side by side, row by row: a long system is read as a few streams of
-memory, where nine arrays each would be too many for the processor to foresee.
+memory, where nine arrays each would be too many for the processor to prefetch.
 """
 
 from sim.jit import kernel

@@ -2,7 +2,7 @@
 
 A particle's block is its six numbers xx, xy, xz, yy, yz, zz. A link's block H, which stands for [H -H; -H H], is
 c I + p q^T in the numbers c, q and, of a rope where it is not symmetric, p. Number e of point j is at index j + e n.
-Where links are pressed the geometric part of K is negative. Of a rope it is kept while the whole stays positive
+For compressed links the geometric part of K is negative. Of a rope it is kept while the whole stays positive
 definite by Gershgorin's discs, so that Newton's method is exact for short steps, and cut off there for long ones. Of
 other nets it is left out: the matrix resists no less than the forces do, and a quasi-Newton method learns the rest.
 """
@@ -15,7 +15,7 @@ from sim.springs.forces.links import linearised
 from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.each_link import acting_damping, each_link, stretch
 
-KEPT = 0.4  # part of the mass that pressed links may take from a particle
+KEPT = 0.4  # part of the mass that compressed links may take from a particle
 
 
 SYMMETRIC, GENERAL = 4, 7  # numbers of a link's block
@@ -34,8 +34,8 @@ least_across = by_net(rope=least_of_rope, grid=kernel(lambda p, a, b: 0.0, inlin
 def set_link_blocks(link, x, g, p, links):
     """H = g b (I or n n^T) + g^2 [T' n n^T + T/l (I - n n^T)] of every link, at its first end.
 
-    Damping that its tension limits counts whole: the matrix resists no less than the forces do, and such a link costs a
-    few corrections more.
+    Damping that is limited by the tension counts whole: the matrix resists no less than the forces do, and such a link
+    costs a few corrections more.
     """
     rx, ry, rz, length = stretch(x, p, link)
     damping = g * acting_damping(link, length, 0.0)
@@ -54,7 +54,7 @@ add_blocks = each("blocks", "x, v, t, g, p, points", "none", allocates=False)
 
 @kernel(allocates=False)
 def set_point_blocks(x, v, t, g, p, points):
-    """M + g D + g^2 K about x, v, less the share of links, of pairs that touch and of air."""
+    """M + g D + g^2 K about x, v, less the parts of links, of pairs that touch and of air."""
     n = p.rows * p.cols
     for j in range(points.shape[0]):
         points[j] = 0.0

@@ -1,4 +1,4 @@
-"""Lines of the program on the error stream, which name no control character."""
+"""Lines of the program on the error stream, without control characters."""
 
 import sys
 

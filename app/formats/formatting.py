@@ -1,4 +1,4 @@
-"""Numbers and quantities as text: significant digits, units that are easily read, and one form for all of them.
+"""Numbers and quantities as text: significant digits, readable units, and one form for all of them.
 
 Thousands are separated by a narrow no-break space, and powers of ten are written 1.3 × 10⁸, as the SI brochure asks.
 """
@@ -58,7 +58,7 @@ def fixed(value: float, decimals: int, *, sign: bool = False) -> str:
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """A share, 0 to 1, in percent, with `digits` significant digits; the space does not break."""
+    """A fraction, 0 to 1, in percent, with `digits` significant digits; the space does not break."""
     return f"{number(100.0 * share, digits)}\u00a0%" if math.isfinite(share) else NO_NUMBER
 
 

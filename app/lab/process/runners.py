@@ -1,4 +1,4 @@
-"""Processes of several folders that are checked at the same time, which can all be ended."""
+"""Processes that check several folders at the same time, and can all be ended."""
 
 import contextlib
 import threading

@@ -1,6 +1,6 @@
 """The functions in a Python file of a student's, found without running it.
 
-Of several definitions of one name the last one counts, as in Python. Of a file that cannot be parsed each function is
+Of several definitions of one name the last one counts, as in Python. If a file cannot be parsed, each function is
 read on its own, so that the others are still known.
 """
 

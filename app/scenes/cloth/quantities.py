@@ -40,7 +40,7 @@ class ClothInstant(SceneInstant):
 
     @property
     def dissipated(self) -> float:
-        """Energy [J] that damping took; NaN if no account was kept."""
+        """Energy [J] dissipated by damping; NaN if no account was kept."""
         return self.scene.state.dissipated if self.scene.account_kept else math.nan
 
 

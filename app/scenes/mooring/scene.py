@@ -50,7 +50,7 @@ def needs(params: MooringParams) -> tuple[str, ...]:
 
 
 def remedy(snapshot: Any) -> Advice | None:
-    """A value with which a run that diverged would have held; a shorter step only if the start is not at fault."""
+    """A value with which a diverged run would have stayed stable; a shorter step only if the start is not at fault."""
     now: MooringReadings = snapshot.readings
     if now.fault is not None and now.fault.is_grave:
         return now.fault.advice
@@ -58,7 +58,7 @@ def remedy(snapshot: Any) -> Advice | None:
 
 
 def advice(snapshot: Any) -> Advice | None:
-    """A value that mends the state at the start."""
+    """A value that corrects the state at the start."""
     now: MooringReadings = snapshot.readings
     return None if now.fault is None else now.fault.advice
 

@@ -63,7 +63,7 @@ class RaceMethods:
 
 @dataclasses.dataclass(frozen=True)
 class RaceParams(RaceMethods, SharedRopeParams, RaceRules):
-    """The race's parameters. A change of the compared problem starts it again; other forces do not."""
+    """The race's parameters. A change of the compared problem restarts it; other changes do not."""
 
     integrator: str = redeclare(
         SharedRopeParams, "integrator", default="explicit_euler", choices=tuple(METHODS),

@@ -34,7 +34,7 @@ LABEL_SCALE = 1.1  # of a label, over viser's own size: letters of 13 pixels
 LABEL_SHARE = 0.075  # height of a row of labels, over that of the first view: those of 200 pixels can still be read
 FIRST_LABEL, LABEL_AIR = 0.4, 1.3  # rows from a root to the lowest label, and from the highest to the picture's edge
 
-BEARING = math.cos(0.22), math.sin(0.22)  # of the first view: from the front, and as far aside as tells ropes apart
+BEARING = math.cos(0.22), math.sin(0.22)  # of the first view: far enough aside to tell the ropes apart
 ELEVATION = 0.05  # [rad] of the first view
 NEAR = 1.0  # [m] from the camera, where the picture begins: nearer, and depth is too coarse for ropes that far away
 SHOWN_SWING = 1.0  # fraction of the length of a rope to either side that the first view shows: where it starts, level

@@ -46,7 +46,7 @@ class StudentRadialSea(TableUser):
         self.numbers = StudentNumbers(None, None, None, None)  # that they come to
 
     def want(self, p: RadialSeaParams, bodies: FloatingBodies) -> None:
-        """Ask for the tables that the parameters need; tables that are no longer needed are not taken."""
+        """Request the tables that the parameters need; tables that are no longer needed are not collected."""
         column, calls, idle = column_of(p), {}, {}
         oil, water = column.oil, column.water
         if column.kind == "mixed":
@@ -73,7 +73,7 @@ class StudentRadialSea(TableUser):
         self.ask(calls, idle)
 
     def collect(self) -> set[str]:
-        """Take the tables that there are. Returns the functions with another table than before."""
+        """Collect the finished tables. Returns the functions with another table than before."""
         changed = self.take()
         if changed:
             self.numbers = numbers_of(self.taken)

@@ -37,7 +37,7 @@ def method_name(integrator: str) -> str:
 def method_that_runs(name: str, step: float, build: Callable[[], Net]) -> str:
     """Name of the method that runs where `name` is chosen.
 
-    build: makes a net with the damping and the fastest vibration of the one that moves. It is asked for only where
+    build: makes a net with the damping and the fastest vibration of the one that moves. It is called only if
     these decide which method runs: making a large one would take longer than a slider event may.
     """
     if name != AUTO and not INTEGRATORS[name].undamped_only:

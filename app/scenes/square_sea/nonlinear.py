@@ -32,7 +32,7 @@ class Heights(NamedTuple):
     skewness: float
     kurtosis: float
     theory: HighCrests
-    lost: float  # fraction of the energy at the start that breaking has taken
+    lost: float  # fraction of the initial energy lost by breaking
 
 
 def nonlinear_sea(p: SquareSeaParams, linear: Sea, t: float, place: tuple[float, float]) -> NonlinearSea:
@@ -65,7 +65,7 @@ def crest_pace(height: float, rise: float, significant_height: float, period: fl
     """Factor on the speed while a high crest passes: time slows as it rises, and nearly stands at its top.
 
     height [m] at one place, and its rise [m/s]. A wave of the peak period [s] with both has the amplitude
-    A = sqrt(height^2 + (rise/omega)^2), which tells how high the crest will be while it still rises. In slow motion
+    A = sqrt(height^2 + (rise/omega)^2), which shows how high the crest will be while it still rises. In slow motion
     such a wave takes SHOWN_PERIOD seconds of real time, and longer where it rises slowly.
     """
     if not (significant_height > 0.0 and period > 0.0):

@@ -55,7 +55,7 @@ class SeaInstant(SceneInstant):
 
     @property
     def breaking_loss(self) -> float:
-        """Energy [J/m2] that breaking has taken since the start."""
+        """Energy [J/m2] lost by breaking since the start."""
         marching = self.scene.marching
         return 0.0 if marching is None else marching.sea.energy.breaking
 

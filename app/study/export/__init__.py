@@ -1,1 +1,1 @@
-"""Sequences of files for programs of artists: the square sea as pictures that tile, the cloth as meshes."""
+"""Sequences of files for artists: the square sea as images that tile, the cloth as meshes."""

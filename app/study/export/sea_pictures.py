@@ -1,6 +1,6 @@
-"""The square sea as pictures that tile: displacement and foam, as OpenEXR in metres or as PNG with a scale.
+"""The square sea as images that tile: displacement and foam, as OpenEXR in metres or as PNG with a scale.
 
-A picture has one pixel for each point of the solved grid. Column i, counted from the left, is x = i length/size; row j,
+An image has one pixel for each point of the solved grid. Column i, counted from the left, is x = i length/size; row j,
 counted from the bottom, is y = j length/size. The point after the last is the first again.
 """
 

@@ -18,7 +18,7 @@ STEP = 1 / 300  # [s]: h omega = 0.19 of the stiffest mode, inside the limit of 
 STEPS, QUICK_STEPS = 1_000_000, 20_000
 SAMPLES = 500
 ANGLE = math.radians(5.0)  # small: in a large swing, energy moves slowly into the stiff modes
-PARTS = 5  # the course is divided into; the first and the last are compared
+PARTS = 5  # into which the time series is divided; the first and the last are compared
 
 
 class Drift(NamedTuple):
@@ -83,7 +83,7 @@ def rows(drifts: list[Drift]) -> list[dict[str, Any]]:
 
 
 def course_of(error: NDArray[np.float64]) -> str:
-    """The course in a word: "drifts" where the mean of the last fifth is outside twice the range of the first fifth."""
+    """The trend in a word: "drifts" if the mean of the last fifth is outside twice the range of the first fifth."""
     part = len(error) // PARTS
     first, last = error[:part], float(error[-part:].mean())
     if last < -0.5:

@@ -34,7 +34,7 @@ Axis = Listed | Range
 
 
 def at(axis: Axis, share: float, parameter: Parameter) -> Any:
-    """The value at `share`, 0 to 1, of the axis. Each value of a list and each whole number has an equal share."""
+    """The value at `share`, 0 to 1, of the axis. Each value of a list and each whole number has an equal part of it."""
     if isinstance(axis, Listed):
         return axis.values[min(int(share * len(axis.values)), len(axis.values) - 1)]
     low, high = axis.low, axis.high

@@ -1,4 +1,4 @@
-"""The water of the mooring, which is seen through, and is open where the body is."""
+"""The transparent water of the mooring, with an opening at the body."""
 
 import numpy as np
 import viser

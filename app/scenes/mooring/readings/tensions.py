@@ -26,7 +26,7 @@ class RunningStatistics:
         self.duration = 0.0  # [s]
 
     def add(self, values: Array, duration: float) -> None:
-        """Take numbers (count,) that hold for `duration` [s]."""
+        """Add numbers (count,) that hold for `duration` [s]."""
         self.least, self.largest = np.fmin(self.least, values), np.fmax(self.largest, values)
         self.duration += duration
         away = values - self.mean
@@ -79,12 +79,12 @@ class Tensions:
         return self.time >= self.counted_from
 
     def take_now(self, at_anchor: Array, at_fairlead: Array) -> None:
-        """Take the forces (lines, 3) at both ends [N], without the statistics."""
+        """Set the present forces (lines, 3) at both ends [N], without statistics."""
         self.anchor, self.fairlead = (np.linalg.norm(force, axis=1) for force in (at_anchor, at_fairlead))
         self.uplift = np.maximum(at_anchor[:, 2], 0.0)
 
     def measure(self, t: float, tension: Array, at_anchor: Array, at_fairlead: Array) -> None:
-        """Take the tensions (lines, segments) and the forces (lines, 3) at both ends [N], at time t [s]."""
+        """Add the tensions (lines, segments) and the forces (lines, 3) at both ends [N], at time t [s]."""
         duration, self.time = t - self.time, t
         self.take_now(at_anchor, at_fairlead)
         is_slack = tension.min(axis=1) <= 0.0

@@ -52,7 +52,7 @@ def step_mark(critical_step: float) -> str:
 
 
 def held(limit: float) -> float:
-    """A limit with two figures, rounded down: the last ones of a moving net change all the time."""
+    """A limit with two figures, rounded down, as further ones change all the time in a moving net."""
     if limit == 0.0 or math.isinf(limit):
         return limit
     unit = 10.0 ** (math.floor(math.log10(abs(limit))) - 1)

@@ -40,7 +40,7 @@ def check_answer(question: Question, answer: Value | None) -> AnswerVerdict:
         near = isinstance(answer, float) and isinstance(error.answer, int | float)
         if question.is_near(answer, float(error.answer)) if near else answer == error.answer:  # type: ignore[arg-type]
             return AnswerVerdict(question, answer, "wrong", error.text)
-    return AnswerVerdict(question, answer, "wrong", "Set the task up and measure again.")
+    return AnswerVerdict(question, answer, "wrong", "Set up the task and measure again.")
 
 
 def is_right(question: Question, answer: Value) -> bool:

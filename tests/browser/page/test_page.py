@@ -97,7 +97,7 @@ BAD_LANGUAGE = "Object.defineProperty(navigator, 'language', { value: 'C', confi
     ("script", "words"),
     [
         (NO_WEBGL, "WebGL 2 is missing or switched off. Switch on hardware acceleration"),
-        (OLD, "This browser is too old for the lab. The oldest that work are Chrome or Edge 120, Firefox 121"),
+        (OLD, "This browser is too old for the lab. The oldest supported versions are Chrome or Edge 120, Firefox 121"),
     ],
 )
 def test_a_page_that_cannot_start_says_why(chromium: Any, script: str, words: str) -> None:

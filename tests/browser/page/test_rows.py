@@ -574,7 +574,7 @@ def test_a_clip_is_recorded_or_the_page_says_that_it_cannot(visit: Visit) -> Non
     press = lambda: visit.page.press_on('document.querySelector("[data-springtide-clip]")')  # noqa: E731
     press()
     if not records:
-        visit.page.wait("return document.body.innerText.includes('This browser records no clips');")
+        visit.page.wait("return document.body.innerText.includes('This browser cannot record clips');")
         visit.page.press_on(named(BUTTON, "Close"))
         return
     visit.page.wait("return /Stop clip .[1-9]/.test(document.querySelector('[data-springtide-clip]').textContent);")

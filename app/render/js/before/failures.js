@@ -56,10 +56,10 @@
   addEventListener("unhandledrejection", note);
 
   mendLanguage();
-  if (isOld()) fail("This browser is too old for the lab. The oldest that work are " + OLDEST + ".");
+  if (isOld()) fail("This browser is too old for the lab. The oldest supported versions are " + OLDEST + ".");
   else if (!hasWebGL()) {
     fail("This browser cannot draw the scenes: WebGL 2 is missing or switched off. Switch on hardware acceleration in its " +
-         "settings and load this page again, or use another browser.");
+         "settings and reload this page, or use another browser.");
   }
   addEventListener("DOMContentLoaded", say);
   var timer = setInterval(function () {

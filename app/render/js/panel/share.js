@@ -109,7 +109,7 @@ function toggleClip(button) {
   }
   const type = CLIP_TYPES.find((one) => window.MediaRecorder?.isTypeSupported(one));
   if (!type) {
-    notice("springtide-clips", "This browser records no clips. Save a replay instead, or use another browser.");
+    notice("springtide-clips", "This browser cannot record clips. Save a replay instead, or use another browser.");
     return;
   }
   /** @type {Blob[]} */

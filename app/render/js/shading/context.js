@@ -29,7 +29,7 @@ export function followContext(renderer, life) {
   let timer;
   life.own(() => clearTimeout(timer));
   life.listen(canvas, "webglcontextlost", () => {
-    const words = "The browser has taken the graphics away from this page. Load it again if the picture does not come back.";
+    const words = "This page has lost its graphics. Reload it if the picture does not return.";
     timer = setTimeout(() => notice(LOST, words), PATIENCE);
   });
   life.listen(canvas, "webglcontextrestored", () => {

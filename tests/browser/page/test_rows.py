@@ -321,6 +321,7 @@ def test_a_point_of_the_rope_is_marked_and_pulled(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_a_point_of_the_cloth_is_pulled(visit: Visit) -> None:
     visit.follow("cloth")
     settled(visit, 0.5)
@@ -337,6 +338,7 @@ def test_the_arrows_move_the_root(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_the_arrows_move_the_sphere(visit: Visit) -> None:
     visit.viewer.settings.load("Over the sphere")
     visit.until(lambda: visit.viewer.loop.latest.frame.sphere is not None, "no sphere")
@@ -350,6 +352,7 @@ def test_the_arrows_move_the_sphere(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_the_buoy_is_pulled(visit: Visit) -> None:
     visit.follow("mooring")
     visit.viewer.settings.load("The lab's buoy")

@@ -31,7 +31,7 @@ TIME = re.compile(r"\[(s|ms|µs|ns|% of a core)\b[^\]]*\]$|^ns per ")  # in the 
 def git(root: Path, *arguments: str) -> str:
     """Output of git; raises ValueError with its message if it fails."""
     try:
-        done = subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, text=True, check=False)
+        done = subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, encoding="utf-8", check=False)
     except FileNotFoundError:
         raise ValueError("--compare: git is not installed") from None
     if done.returncode:
@@ -74,7 +74,7 @@ def measure(place: Path, names: list[str], quick: bool, out: Path) -> dict[str, 
     command = [sys.executable, "-m", "app", "bench", *names, "--out", str(out), *(["--quick"] if quick else [])]
     paths = [str(place), *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
-    done = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(command, cwd=place, env=environment, capture_output=True, encoding="locale", check=False)
     if done.returncode:
         lines = (done.stderr or done.stdout).strip().splitlines()
         raise ValueError(f"--compare: the benchmark failed at {place.name}: {lines[-1] if lines else 'no message'}")

@@ -36,7 +36,9 @@ def served(
     """
     command = [sys.executable, "-m", "app", *words, "--no-open", "--port", "0"]
     surroundings = {**os.environ, **(environment or {})}
-    server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=surroundings, start_new_session=session)
+    server = subprocess.Popen(
+        command, stdout=subprocess.PIPE, encoding="locale", env=surroundings, start_new_session=session
+    )
     try:
         assert server.stdout is not None
         address = next(word for line in server.stdout for word in line.split() if word.startswith("http"))

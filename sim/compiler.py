@@ -129,7 +129,7 @@ class KernelFiles:
 @functools.cache  # once
 def say_nothing_is_kept() -> None:
     """Warn that kernels are lost when the program ends."""
-    warnings.warn("no folder for kernels is writable: what is missing compiles at each start", stacklevel=2)
+    warnings.warn("no folder for kernels is writable: missing kernels are compiled at each start", stacklevel=2)
 
 
 def without_processor(key: Any) -> tuple[Any, Any]:

@@ -108,12 +108,20 @@ def check_number(
     number = as_float(value)
     if math.isfinite(number) and low <= number <= high and not (above and number == low):
         return number
-    words = [] if math.isfinite(number) and low > -math.inf else ["a finite number"]
-    if low > -math.inf:
-        words.append(f"{'above' if above else 'from'} {low:g}")
-    if high < math.inf:
-        words.append(f"to {high:g}" if low > -math.inf else f"up to {high:g}")
-    raise argument_error(name, value, " ".join([*words, unit]).rstrip())
+    limits = limits_text(low, high, above=above)
+    if not limits:
+        raise argument_error(name, value, f"a finite number [{unit}]" if unit else "a finite number")
+    words = [] if math.isfinite(number) else ["a finite number"] + ["of"] * limits.startswith("at")
+    raise argument_error(name, value, " ".join([*words, limits, unit]).rstrip())
+
+
+def limits_text(low: float, high: float, *, above: bool) -> str:
+    """The interval [low, high], or (low, high] with `above`, in words; "" without ends."""
+    if low == -math.inf:
+        return "" if high == math.inf else f"at most {high:g}"
+    if high == math.inf:
+        return f"above {low:g}" if above else f"at least {low:g}"
+    return f"above {low:g}, at most {high:g}" if above else f"from {low:g} to {high:g}"
 
 
 def check_positive(name: str, value: object, unit: str, *, allow_infinite: bool = False) -> float:

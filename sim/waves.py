@@ -102,7 +102,7 @@ class Waves:
         """The `count` highest of these waves; the errors then include the omitted waves. Raises ValueError for a count
         that is not whole or below 1."""
         if not is_whole_number(count) or count < 1:
-            raise argument_error("count", count, "a whole number from 1")
+            raise argument_error("count", count, "a whole number of at least 1")
         order = np.argsort(-self.amplitude, kind="stable")
         kept, left = order[:count], order[count:]
         squares = 0.5 * np.square(self.amplitude[left])

@@ -107,7 +107,7 @@ def run(copy: Path, *arguments: str, **variables: str) -> str:
     """
     environment = {**os.environ, "PYTHONPATH": str(copy), **variables}
     done = subprocess.run(
-        [sys.executable, *arguments], cwd=copy, env=environment, capture_output=True, text=True, timeout=SECONDS
+        [sys.executable, *arguments], cwd=copy, env=environment, capture_output=True, encoding="locale", timeout=SECONDS
     )
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return done.stdout + done.stderr

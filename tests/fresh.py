@@ -60,7 +60,7 @@ def noted() -> str:
 @functools.cache
 def server() -> "subprocess.Popen[str]":
     process = subprocess.Popen(
-        [sys.executable, "-c", SERVER], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-c", SERVER], cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="locale"
     )
     atexit.register(process.kill)
     return process
@@ -72,7 +72,7 @@ def python(code: str, **environment: str) -> str:
     if not hasattr(os, "fork") or any(name.startswith("NUMBA_") for name in environment):
         done = subprocess.run(
             [sys.executable, "-c", code], cwd=ROOT, env={**os.environ, **environment},
-            capture_output=True, text=True, timeout=120, check=False,
+            capture_output=True, encoding="locale", timeout=120, check=False,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
         return done.stdout.strip()
@@ -92,7 +92,7 @@ def of_each(code: str, names: tuple[str, ...], folder: Path, environment: dict[s
     for group in groups:
         done = subprocess.run(
             [sys.executable, "-c", code, *group], cwd=folder, env={**os.environ, **environment},
-            capture_output=True, text=True, timeout=280, check=True,
+            capture_output=True, encoding="locale", timeout=280, check=True,
         )  # fmt: skip
         lines += done.stdout.splitlines()
     return [line.split() for line in lines]

@@ -3,11 +3,13 @@
 import argparse
 
 from app.commands.options import add_address, say_missing_files, serving
+from app.scenes.comparisons import COMPARISONS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of the command."""
-    words = "SCENE, SCENE:PRESET, a link or a set-up file; or, on its own, the name of a ready-made comparison"
+    ready = ", ".join(COMPARISONS)
+    words = f"SCENE, SCENE:PRESET, a link or a set-up file; or a ready-made comparison on its own: {ready}"
     parser.add_argument("setups", nargs="+", metavar="SET-UP", help=words)
     add_address(parser)
 

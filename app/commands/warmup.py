@@ -18,11 +18,9 @@ from sim.validation import argument_error
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of the command."""
-    into = "compile for all users, into FOLDER, to be named by SPRINGTIDE_KERNELS (default: the installation's folder)"
+    into = "compile for all users, into FOLDER, which SPRINGTIDE_KERNELS must name (default: the installation's)"
     parser.add_argument("--into", nargs="?", const="", metavar="FOLDER", help=into)
-    level = (
-        "with --into: for all processors of a level (x86-64-v3, x86-64-v4, arm64); all: every level that this one has"
-    )
+    level = "with --into: for all processors of a level (x86-64-v3, x86-64-v4, arm64); all: each that this one has"
     parser.add_argument("--processor", default="", metavar="LEVEL", help=level)
 
 

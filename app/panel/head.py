@@ -152,7 +152,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         "{} t = {:.2f} s{}{}{}{}{}{}{}</div>",
         "running" if s.running else "paused",
         snapshot.serial,  # so that a repeated text is seen to be new
-        f"Simulated time over real time, at {s.frame_rate:.0f} pictures a second" if s.running else "",
+        f"Simulated time over real time, at {s.frame_rate:.0f} frames a second" if s.running else "",
         state,
         s.time,
         fill(' · <span class="springtide-speed">{}</span>', pace) if s.running else "",

@@ -80,6 +80,13 @@ def fit_cameras(
         place_camera(client.camera, (x, y, z), target)
 
 
+def axes_of(direction: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unit vectors (3, 3) to the right, up and ahead of a camera; its direction (3,) is not vertical."""
+    ahead = direction / np.linalg.norm(direction)
+    right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
+    return np.array([right, np.cross(right, ahead), ahead])
+
+
 def framing_view(
     points: NDArray[np.float64], bearing: float, pitch: float, field_of_view: float, frame: tuple[float, float, float]
 ) -> tuple[Vector, Vector]:
@@ -89,10 +96,9 @@ def framing_view(
     field_of_view: vertical [rad]. frame: half width, lower and upper edge of the part, in halves of the picture's
     height from its middle. The lowest point is always on the lower edge. The target is as far away as the points are.
     """
-    c, s = math.cos(bearing), math.sin(bearing)
-    ahead = np.array([-math.cos(pitch) * c, -math.cos(pitch) * s, -math.sin(pitch)])
-    right = np.array([-s, c, 0.0])
-    up = np.cross(right, ahead)
+    level = math.cos(pitch)
+    ahead = np.array([-level * math.cos(bearing), -level * math.sin(bearing), -math.sin(pitch)])
+    right, up, ahead = axes_of(ahead)
     x, y, z = points @ right, points @ up, points @ ahead
     half_width, low, high = math.tan(0.5 * field_of_view) * np.array(frame)
     # Each point keeps the camera behind four planes, one for each edge.
@@ -112,10 +118,9 @@ def point_in_view(
     in halves of the picture's height from its middle.
     """
     position, target = np.array(view)
-    ahead = (target - position) / np.linalg.norm(target - position)
-    right = np.cross(ahead, (0.0, 0.0, 1.0)) / np.hypot(*ahead[:2])
+    right, up, ahead = axes_of(target - position)
     across, upwards = math.tan(0.5 * field_of_view) * np.array(place)
-    ray = ahead + across * right + upwards * np.cross(right, ahead)
+    ray = ahead + across * right + upwards * up
     return vector_of(position + (height - position[2]) / ray[2] * ray)
 
 

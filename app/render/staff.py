@@ -8,7 +8,7 @@ import viser
 from app.render.material import as_linear_bytes
 from app.render.meshes import rod, tube_faces
 
-PLACE = (0.8, 0.8)  # x, y [m]: in the first views of rope, race and cloth, behind and beside what hangs there
+PLACE = (0.8, 0.8)  # x, y [m]: in the first views of rope, race and cloth, behind and beside the net
 HEIGHT, BANDS = 1.0, 10  # [m], and how many
 RADIUS = 0.015  # [m]
 COLOURS = (0.72, 0.13, 0.11), (0.55, 0.58, 0.62)  # sRGB of the bands, from below; white would be lost on the floor

@@ -462,16 +462,16 @@ def recorded_setup(file: BinaryIO) -> str:
     with zipfile.ZipFile(file) as parts:
         about = parts.getinfo("about.npy")
         if about.file_size > MAX_ABOUT or about.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            raise ValueError("about: too long, or not as numpy packs it")
+            raise ValueError("about: too long, or packed in another way than numpy's")
         array = io.BytesIO(parts.read(about))
     if np.lib.format.read_magic(array) != (1, 0):
-        raise ValueError("about: not as numpy writes a text")
+        raise ValueError("about: not in numpy's format")
     shape, _, dtype = np.lib.format.read_array_header_1_0(array)
     if shape != () or dtype.kind != "U":  # before an array of any size is made
         raise ValueError("about: not a text")
     content = json.loads(str(np.frombuffer(array.read(), dtype)[0]), object_pairs_hook=unique_keys)
     if not isinstance(content, dict) or not isinstance(content.get("parameters"), dict):
-        raise ValueError("about: not as a recording has it")
+        raise ValueError("about: without the parameters of a recording")
     kind = kind_named(content.get("scene"))
     others = {field.name for field in dataclasses.fields(kind.params)} - set(parameters_of(kind.params))
     values = {name: value for name, value in content["parameters"].items() if name not in others}

@@ -35,7 +35,7 @@ def peer_rows(quick: bool = False, words: Sequence[str] = ()) -> Rows:
 
 
 def ours_at(sea: Sea) -> tuple[np.ndarray]:
-    """Height and both displacements (3, N, N) [m] at the peers' time, computed anew."""
+    """Height and both displacements (3, N, N) [m] at the peers' time, recomputed."""
     sea.surface(0.0)  # the sea keeps the fields of the latest time
     surface = sea.surface(TIME)
     displacement = surface.displacement

@@ -21,7 +21,7 @@ HELD = 1e-6  # of the stiffness of heave, for surge and sway, and of roll, for y
 def moored(
     id: int, body: floating.Body, frequency: float, waves: "Waves | None" = None, water: Water | None = None
 ) -> MooredBody:
-    """The body at its place of rest without lines, upright in water, its axes along x and y.
+    """The body at its rest position without lines, upright in water, its axes along x and y.
 
     frequency: [rad/s] of the added mass and the radiation damping, which are taken as constant; that of the highest
     waves is a good one. waves: those of the system, which push it by `linear_forces` of `sim.floating` [N, N m].

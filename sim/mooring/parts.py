@@ -42,7 +42,7 @@ class Point(NamedTuple):
 
     id: int
     kind: str
-    position: Vector  # [m]; of a body's, at the body's place of rest
+    position: Vector  # [m]; of a body's, at the body's rest position
     mass: float = 0.0  # [kg]
     volume: float = 0.0  # [m^3]
     drag_area: float = 0.0  # C_d A [m^2]
@@ -66,7 +66,7 @@ class Line(NamedTuple):
 
 
 class MooredBody(NamedTuple):
-    """A floating body of linear theory about its place of rest without lines: M q'' + B q' + C q = forces.
+    """A floating body of linear theory about its rest position without lines: M q'' + B q' + C q = forces.
 
     q: displacement [m] and small rotation [rad] about `place`. mass holds the added mass. `moored` makes it of a hull.
     """

@@ -69,7 +69,7 @@ class Fire:
         power, diameter = check_positive("power", power, "W"), check_positive("diameter", diameter, "m")
         life = check_positive("life", life, "s")
         if not is_whole_number(count) or count < 1:
-            raise argument_error("count", count, "a whole number from 1")
+            raise argument_error("count", count, "a whole number of at least 1")
         self.place, self.wind = check_vector("position", position, "m"), check_vector("wind", wind, "m/s", 2)
         self.diameter, self.eddies = diameter, check_number("eddies", eddies, "", 0.0)
         self.height = flame_height(power, diameter)

@@ -44,7 +44,7 @@ class Jet:
         Raises ValueError for a value that is not allowed.
         """
         if not is_whole_number(count) or count < 1:
-            raise argument_error("count", count, "a whole number from 1")
+            raise argument_error("count", count, "a whole number of at least 1")
         self.nozzle, self.axis = check_vector("nozzle", nozzle, "m"), check_vector("velocity", velocity, "m/s")
         self.flow, self.spread = check_positive("flow", flow, "m3/s"), check_number("spread", spread, "", 0.0)
         self.gravity, self.wind = check_positive("gravity", gravity, "m/s2"), check_vector("wind", wind, "m/s", 2)

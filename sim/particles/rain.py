@@ -97,7 +97,7 @@ class Rain:
         self.rate, self.length = check_positive("rate", rate, "mm/h"), check_positive("length", length, "m")
         self.ceiling, self.gravity = check_positive("ceiling", ceiling, "m"), check_positive("gravity", gravity, "m/s2")
         if not is_whole_number(count) or count < 1:
-            raise argument_error("count", count, "a whole number from 1")
+            raise argument_error("count", count, "a whole number of at least 1")
         if not is_whole_number(seed):
             raise argument_error("seed", seed, "a whole number")
         self.wind = check_vector("wind", wind, "m/s", 2)

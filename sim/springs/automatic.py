@@ -53,8 +53,8 @@ def choose_for_step(net: Net, h: float) -> Choice:
     limits = [min(record.stable_step(*mode) for mode in modes) for record in embedded]
     for record, limit in zip(embedded, limits, strict=True):
         if h <= limit:
-            return Choice(record, "it holds at this step with the fewest force evaluations")
-    return Choice(embedded[limits.index(max(limits))], "it comes nearest to holding at this step")
+            return Choice(record, "it is stable at this step with the fewest force evaluations")
+    return Choice(embedded[limits.index(max(limits))], "it comes closest to being stable at this step")
 
 
 def bounds(net: Net) -> tuple[float, float]:

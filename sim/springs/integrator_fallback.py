@@ -6,10 +6,10 @@ from sim.springs.net import Net
 
 
 def integrator_or_fallback(name: str, net: Net, h: float) -> tuple[Integrator, str]:
-    """The integrator called `name`, or its replacement where it takes no damping and `net` is damped.
+    """The integrator called `name`, or its replacement if it allows no damping and `net` is damped.
 
-    h: [s], by which "auto" chooses. Also returns the line that says why another method runs than the one called so,
-    or "". Raises ValueError for an unknown name.
+    h: [s], by which "auto" chooses. Also returns a line that says why another method runs, or "". Raises ValueError
+    for an unknown name.
     """
     if name == AUTO:
         choice = choose_for_step(net, h)
@@ -21,6 +21,6 @@ def integrator_or_fallback(name: str, net: Net, h: float) -> tuple[Integrator, s
     similar = [r for r in discover().values() if r.symplectic and not (r.undamped_only or r.implicit)]
     fallback = max(similar, key=lambda r: r.order)
     return fallback, (
-        f"{name} takes no damping, so {fallback.name} runs instead: set damping, drag and air to 0, and contact "
-        "damping and friction too where there is contact"
+        f"{name} allows no damping, so {fallback.name} runs instead: set damping, drag and air to 0, and with floor "
+        "or sphere also contact damping and friction"
     )

@@ -157,7 +157,7 @@ class Net(PointSystem[Run]):
         check_number("radius", self.radius, "m", 0)
         check_number("thickness", self.thickness, "m", 0)
         if not is_whole_number(self.threads) or self.threads < 1:
-            raise argument_error("threads", self.threads, "a whole number from 1")
+            raise argument_error("threads", self.threads, "a whole number of at least 1")
         for pinned in self.pinned:
             check_particle("pinned", pinned, rows, cols)
         for pin, path in self.pin_paths:

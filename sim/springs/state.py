@@ -162,7 +162,7 @@ def advance(
     system.check_integrator(integrator)
     check_positive("h", h, "s")
     if not is_whole_number(steps) or steps < 0:
-        raise argument_error("steps", steps, "a whole number from 0")
+        raise argument_error("steps", steps, "a whole number of at least 0")
     check_kind("with_account", with_account, bool, "True or False")
     p = view_of(system, h, driven)
     set_lag(system, state, integrator.lag * h, driven)

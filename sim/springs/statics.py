@@ -69,14 +69,14 @@ def catenary(
     -0.81
     """
     if not isinstance(points, int | np.integer) or isinstance(points, bool) or points < 2:
-        raise argument_error("points", points, "a whole number from 2")
+        raise argument_error("points", points, "a whole number of at least 2")
     check_positive("length", length, "m")
     check_number("span", span, "m")
     check_number("rise", rise, "m")
     check_positive("stiffness", stiffness, "N/m")
-    masses = as_array("mass", mass, f"a number from 0 kg, or {points} of them")
+    masses = as_array("mass", mass, f"at least 0 kg, one number or {points} of them")
     if masses.shape not in ((), (points,)) or not ((masses >= 0.0) & (masses < math.inf)).all():
-        raise argument_error("mass", mass, f"a number from 0 kg, or {points} of them")
+        raise argument_error("mass", mass, f"at least 0 kg, one number or {points} of them")
     check_number("gravity", gravity, "m/s^2")
     links = int(points) - 1
     rest = length / links

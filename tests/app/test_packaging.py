@@ -110,7 +110,7 @@ def test_the_library_reads_its_tables_without_the_rest_of_the_package(tmp_path: 
         cwd=tmp_path,
         env={"SPRINGTIDE_KERNELS": noted()},
         capture_output=True,
-        text=True,
+        encoding="locale",
         check=True,
     )
     assert done.stdout.strip() == f"[9, 9, 9] True set() {tmp_path / 'sim'}"

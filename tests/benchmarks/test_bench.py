@@ -48,7 +48,9 @@ def test_an_installed_program_says_in_one_line_where_its_benchmarks_are(tmp_path
 
 
 def test_the_module_is_the_command():
-    done = subprocess.run([sys.executable, "-m", "benchmarks", "ropes"], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-m", "benchmarks", "ropes"], capture_output=True, encoding="locale", check=False
+    )
     assert done.returncode == 2
     assert re.match(r"springtide: bench: 'ropes' is not allowed; allowed: one of .*rope", done.stderr)
 

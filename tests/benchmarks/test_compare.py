@@ -23,7 +23,7 @@ with (out / "tiny.csv").open("w", newline="") as file:
 def git(root, *arguments):
     names = ("-c", "user.name=a", "-c", "user.email=a@b.c")
     return subprocess.run(
-        ["git", "-C", str(root), *names, *arguments], check=True, capture_output=True, text=True
+        ["git", "-C", str(root), *names, *arguments], check=True, capture_output=True, encoding="locale"
     ).stdout.strip()
 
 

@@ -96,7 +96,7 @@ class Engine(abc.ABC):
 
     def start(self, *command: str, **how: Any) -> subprocess.Popen[str]:
         """Start a process that ends with the browser."""
-        self.processes.append(subprocess.Popen(command, start_new_session=True, text=True, **how))
+        self.processes.append(subprocess.Popen(command, start_new_session=True, encoding="locale", **how))
         return self.processes[-1]
 
     def open_screen(self) -> dict[str, str]:

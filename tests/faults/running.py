@@ -34,7 +34,7 @@ def copy_of_checkout(work: Path, name: str) -> Path:
     tree = work / name
     shutil.rmtree(tree, ignore_errors=True)
     listed = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=True
+        ["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, capture_output=True, encoding="utf-8", check=True
     ).stdout.split("\n")
     for path in filter(None, listed):
         if (ROOT / path).is_file():

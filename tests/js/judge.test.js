@@ -14,7 +14,7 @@ function judged(...lists) {
   });
 }
 
-test("frames of 30 pictures a second are fast enough", () => {
+test("30 frames a second are fast enough", () => {
   assert.deepEqual(judged([[FAST, 3000]], [[MIDDLING, 500]]), [0, 0]);
 });
 

@@ -28,7 +28,7 @@ WAVES = (("import sim.ocean.dispersion", {"pyfftw", "numba"}),)
 def python(code: str, *arguments: str) -> list[str]:
     """The lines that a fresh interpreter prints."""
     command = [sys.executable, "-c", f"import sys\n{code}", *arguments]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+    return subprocess.run(command, cwd=ROOT, capture_output=True, encoding="locale", check=True).stdout.splitlines()
 
 
 @pytest.mark.parametrize("parts", [PARTS, WAVES], ids=["springs", "waves"])
@@ -82,7 +82,7 @@ def test_scenes_that_are_compiled_are_not_imported_to_find_what_is_missing(monke
 
 def test_the_process_of_a_student_s_functions_imports_little() -> None:
     code = "import sys; import app.lab.process.worker; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, encoding="locale", check=True)
     loaded = done.stdout.split()
     assert {name.split(".")[0] for name in loaded} & {"numba", "scipy", "viser", "asyncio", "ssl"} == set()
     assert {name for name in loaded if name.split(".")[0] == "sim"} == {"sim", "sim.point_laws"}

@@ -22,7 +22,7 @@ COMMENT_IN_JS = re.compile(r"(?<!:)//\s*((?:What|Whether|How|Which|what|whether|
 AVOIDED = re.compile(
     r"\b(of which|[Tt]here (is|are|was|were) none|(is|are) none of|by no fault|whereof|[Bb]esides|[Hh]ence|for ever"
     r"|but for|so many|[Ww]hoever|expected (is|are) (a|an|the|two)|no longer lives|lives whatever"
-    r"|Raises \w+ where|None where|null where)\b"
+    r"|Raises \w+ where|None where|null where|places? of rest|what hangs|number from \d+(?=\")|pictures a second)\b"
 )
 PAGES = [path for path in sorted((ROOT / "docs").glob("*.md")) if path.name != "physics.md"] + [ROOT / "README.md"]
 SCRIPTS = sorted((ROOT / "app").rglob("*.js"))
@@ -91,7 +91,8 @@ def test_hints_of_controls_are_no_clauses(name):
     "text",
     [
         "a file, of which it is one", "by no fault of its own", "expected is a number", "None if there is none",
-        "Raises ValueError where it is open", "None where nothing moves",
+        "Raises ValueError where it is open", "None where nothing moves", "its place of rest",
+        "the weight of what hangs", '"a whole number from 1"',
     ],
 )  # fmt: skip
 def test_words_that_are_avoided_are_found(text):

@@ -25,7 +25,9 @@ def test_more_than_three_reruns_fail_the_suite(tmp_path, processes, reruns):
     (tmp_path / "test_second_try.py").write_text(SECOND_TRY.format(number=reruns), "utf-8")
     command = [sys.executable, "-m", "pytest", "-p", "tests.reruns", "-n", processes, "--rootdir", str(tmp_path), "."]
     paths = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
-    run = subprocess.run(command, cwd=tmp_path, env=paths, capture_output=True, text=True, timeout=100, check=False)
+    run = subprocess.run(
+        command, cwd=tmp_path, env=paths, capture_output=True, encoding="locale", timeout=100, check=False
+    )
     assert f"{reruns} passed, {reruns} rerun" in run.stdout
     assert run.returncode == (reruns > MAX_RERUNS), run.stdout
     assert ("allowed: at most 3" in run.stdout) == (reruns > MAX_RERUNS)

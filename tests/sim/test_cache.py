@@ -197,7 +197,7 @@ print([str(warning.message) for warning in said])
 
 def test_where_nothing_can_be_kept_one_line_says_so(place: Place) -> None:
     environment = {"SPRINGTIDE_CACHE": str(place.module), "PYTHONPATH": str(place.module.parent)}
-    said = "['no folder for kernels is writable: what is missing compiles at each start']"
+    said = "['no folder for kernels is writable: missing kernels are compiled at each start']"
     assert python(NOWHERE, **environment) == said
 
 
@@ -223,7 +223,7 @@ def test_a_user_without_a_home_folder_has_folders_that_cannot_be_made(place: Pla
     """As in a container that is run by a number without an entry in the list of users."""
     assert python(HOMELESS).split("\n") == ["not made", "not made"]
     environment = {"PYTHONPATH": str(place.module.parent)}
-    said = "['no folder for kernels is writable: what is missing compiles at each start']"
+    said = "['no folder for kernels is writable: missing kernels are compiled at each start']"
     assert python(HOMELESS.partition("from app")[0] + NOWHERE, **environment) == said
 
 

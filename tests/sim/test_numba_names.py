@@ -148,6 +148,6 @@ def test_without_an_inner_name_scenes_run(scene: str, tmp_path: Path) -> None:
     )
     command = [sys.executable, "-c", code, "run", scene, "--seconds", "0.05", "--out", str(tmp_path / "out.npz")]
     environment = {**os.environ, "SPRINGTIDE_CACHE": str(tmp_path)}
-    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, encoding="locale", check=True)
     assert done.stderr.count("has changed inside") == 1
     assert (tmp_path / "out.npz").exists()

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 def test_compiled_kernels_do_what_their_python_does_within_their_arrays(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tests.sim.models", str(tmp_path / "plain.npz")]
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, encoding="locale", timeout=300)
     assert done.returncode == 0, done.stderr
     compiled = results()
     with np.load(tmp_path / "plain.npz") as plain:

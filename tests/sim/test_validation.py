@@ -59,12 +59,14 @@ def test_a_number_lies_in_its_range_with_the_ends_or_without():
     assert v.check_number("a", 2.0, "m", 0.0, 2.0) == 2.0
     assert v.check_number("a", 1e-300, "m", 0.0, 2.0, above=True) == 1e-300
     assert refused(v.check_number, 2.1, "m", 0.0, 2.0) == "from 0 to 2 m"
-    assert refused(v.check_number, 0.0, "", 0.0, 2.0, above=True) == "above 0 to 2"
-    assert refused(v.check_number, -0.1, "m", 0.0) == "from 0 m"
-    assert refused(v.check_number, 3.0, "m", high=2.0) == "a finite number up to 2 m"
+    assert refused(v.check_number, 0.0, "", 0.0, 2.0, above=True) == "above 0, at most 2"
+    assert refused(v.check_number, -0.1, "m", 0.0) == "at least 0 m"
+    assert refused(v.check_number, 3.0, "m", high=2.0) == "at most 2 m"
     assert refused(v.check_number, -math.inf, "") == "a finite number"
+    assert refused(v.check_number, math.nan, "m") == "a finite number [m]"
+    assert refused(v.check_number, math.nan, "m", 1.0, 2.0) == "a finite number from 1 to 2 m"
     for value in (math.inf, "1"):
-        assert refused(v.check_number, value, "m", 0.0) == "a finite number from 0 m"
+        assert refused(v.check_number, value, "m", 0.0) == "a finite number of at least 0 m"
 
 
 def test_a_positive_number_is_above_0_and_infinite_only_where_allowed():

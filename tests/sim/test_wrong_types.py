@@ -118,8 +118,8 @@ CALLS = (
 )  # fmt: skip
 # (error's name, call, words of what is allowed) of slips that are easily made
 SLIPS: tuple[tuple[str, Callable[[], object], str], ...] = (
-    ("gravity", lambda: springs.rope(gravity=(0.0, 0.0, -9.81)), "a finite number m/s"),
-    ("stiffness", lambda: springs.rope(stiffness=[800.0] * 9), "a finite number from 0 N/m"),
+    ("gravity", lambda: springs.rope(gravity=(0.0, 0.0, -9.81)), "a finite number [m/s"),
+    ("stiffness", lambda: springs.rope(stiffness=[800.0] * 9), "a finite number of at least 0 N/m"),
     ("length", lambda: springs.rope(length="2 m"), "a finite number above 0"),
     ("mass", lambda: springs.rope(10, mass=[1.0] * 9), "or 10 of them"),
     ("end", lambda: springs.rope(end=1.0), "3 finite numbers"),

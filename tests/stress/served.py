@@ -97,7 +97,7 @@ def served(*arguments: str) -> Iterator[Served]:
         [sys.executable, "-m", "app", "--no-open", "--port", "0", *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        text=True,
+        encoding="locale",
         env=dict(os.environ),
     )
     try:

@@ -44,7 +44,7 @@ def springtide(*arguments: str, limit: int | None = None, **changes: str | None)
 
     return subprocess.run(
         [sys.executable, "-m", "app", *arguments], cwd=ROOT, env=env, preexec_fn=fill_up, capture_output=True,
-        text=True, timeout=280, check=False,
+        encoding="locale", timeout=280, check=False,
     )  # fmt: skip
 
 
@@ -123,7 +123,7 @@ def test_a_port_in_use(tally: Tally) -> None:
 def test_a_server_that_is_told_to_end_under_load(end: signal.Signals, tally: Tally) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "app", "--port", "0", "--no-open"], cwd=ROOT, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, text=True,
+        stderr=subprocess.PIPE, encoding="locale",
     )  # fmt: skip
     try:
         assert process.stdout is not None

@@ -19,7 +19,7 @@ def test_with_both_wheels_no_scene_compiles_a_kernel(tmp_path: Path) -> None:
         ["bash", str(ROOT / ".ci" / "build"), str(tmp_path)],
         env={name: value for name, value in os.environ.items() if not name.startswith("SPRINGTIDE_")},
         capture_output=True,
-        text=True,
+        encoding="locale",
         check=False,
     )
     assert done.returncode == 0, done.stderr

@@ -23,7 +23,9 @@ def test_a_compiler_killed_at_random_moments_leaves_nothing_broken(tmp_path: Pat
     whole = {**environment, "SPRINGTIDE_CACHE": str(tmp_path / "whole")}
 
     def result(of: dict[str, str]) -> str:
-        done = subprocess.run([sys.executable, "-c", CHECK], env=of, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(
+            [sys.executable, "-c", CHECK], env=of, capture_output=True, encoding="locale", timeout=300
+        )
         assert done.returncode == 0, done.stderr
         return done.stdout
 
@@ -31,7 +33,10 @@ def test_a_compiler_killed_at_random_moments_leaves_nothing_broken(tmp_path: Pat
     moments = random.Random(0)
     for _ in range(KILLS):
         worker = subprocess.Popen(
-            [sys.executable, "-m", "app.scenes.ahead.compile_worker"], stdin=subprocess.PIPE, env=environment, text=True
+            [sys.executable, "-m", "app.scenes.ahead.compile_worker"],
+            stdin=subprocess.PIPE,
+            env=environment,
+            encoding="locale",
         )
         assert worker.stdin is not None
         worker.stdin.write("rope\tleapfrog\t0\nrope\tstability gauge\t0\nrope\trk4\t0\n")

@@ -136,7 +136,7 @@ def checked_links(function: Callable[..., Any], rows: int, cols: int) -> np.ndar
     links = fitting("cloth_links", value, (count, 2), function)
     if not ((links >= 0) & (links < rows * cols) & (links == np.floor(links))).all():
         last = rows * cols - 1
-        text = f"cloth_links returns a point that is not there: a cloth of {rows} x {cols} has the points 0 to {last}"
+        text = f"cloth_links returns a point that does not exist: a cloth of {rows} x {cols} has the points 0 to {last}"
         raise Unfit("out of range", text, function)
     if (links[:, 0] == links[:, 1]).any():
         raise Unfit("out of range", "cloth_links joins a point to itself", function)

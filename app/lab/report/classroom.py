@@ -24,7 +24,7 @@ from app.lab.student.source import read_source
 from app.lab.student.versions import LOOK_INTERVAL, FileWatch, Versions
 
 WORKERS = 2  # folders that are checked at the same time
-MISSING = "The folder is not there."
+MISSING = "The folder does not exist."
 
 
 class Student(NamedTuple):

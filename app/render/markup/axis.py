@@ -9,7 +9,7 @@ from app.render.markup.html import Html, fill, join
 
 INTERVALS = 4  # approximate number of them on a scale
 MIN_SPAN = 1e-3  # of a scale, over the size of its numbers: a constant has a scale too
-MIN_FILLED = 0.3  # share of a scale that its data must fill, or the scale is made anew
+MIN_FILLED = 0.3  # fraction of a scale that its data must fill, or the scale is replaced
 TICK, SHORT_TICK = 5, 3  # [px] lengths
 GRID_OPACITY = 0.2
 NAME_ABOVE, NAME_BELOW = 12, 38  # [px] from the corner of both axes' ends to the lines of their names

@@ -83,7 +83,7 @@ class MooringScene(LineScene):
                 super().handle(command)
 
     def on_the_bed(self, place: Vector) -> Vector:
-        """The place [m] of an anchor, no farther than its line reaches from the body's place of rest."""
+        """The place [m] of an anchor, no farther than its line reaches from the body's rest position."""
         longest = math.hypot(self.params.length, self.params.depth)
         x, y = (self.excursion.rest[:2] + at_most(longest, place[:2] - self.excursion.rest[:2])).tolist()
         return x, y, -self.params.depth

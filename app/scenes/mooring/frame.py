@@ -61,7 +61,7 @@ class MooringReadings(NamedTuple):
     """Numbers for the panel."""
 
     lines: tuple[LineReading, ...]
-    offset: float  # [m] horizontal distance of the body from its place of rest
+    offset: float  # [m] horizontal distance of the body from its rest position
     most_offset: float  # [m] since the statistics began
     most_at: tuple[int, float]  # line, from 0, and time [s] of the largest tension
     stability: Gauge

@@ -23,7 +23,7 @@ class MooringParams:
     """The mooring's parameters; the defaults are a buoy on three chains."""
 
     lines: int = in_main(
-        3, 1, MAX_LINES, "", "Number of lines, spread evenly; the first leads into the waves", affects="start"
+        3, 1, MAX_LINES, "", "Number of lines, spread evenly; the first points into the waves", affects="start"
     )
     length: float = in_main(96.0, 2.0, 1000.0, "m", "Length of each line, unstretched", log_from=2.0, affects="start")
     reach: float = in_main(
@@ -64,7 +64,7 @@ class MooringParams:
     size: float = in_body(9.0, 0.5, 40.0, "m", "Width of the body", log_from=0.5, affects="start")
     density: float = in_body(450.0, 100.0, 900.0, "kg/m³", "Density of the body", affects="start")
     pull: float = in_body(
-        1.0, 0.05, 5.0, "", "Largest force with which the mouse pulls the body, in weights of the body", affects="look",
+        1.0, 0.05, 5.0, "", "Largest force with which the mouse pulls the body, over its weight", affects="look",
         title="Mouse force",
     )  # fmt: skip
 
@@ -93,7 +93,7 @@ class MooringParams:
     )
     plot_anchor: bool = in_plots(False, doc="Tension at the anchor of each line over time", title="Tension at anchors")
     plot_offset: bool = in_plots(
-        False, doc="Horizontal distance of the body from its place of rest, over time", title="Offset"
+        False, doc="Horizontal distance of the body from its rest position, over time", title="Offset"
     )
     plot_restoring: bool = in_plots(
         False, doc="Static force of all lines over the offset, and the force now", title="Restoring force"
@@ -134,7 +134,7 @@ PRESETS: dict[str, dict[str, Any]] = {
 
 ABOUT = {  # preset -> what it shows and what to try
     "Chain catenary": "A buoy on three chains: watch the touchdown points on the bed move with the waves.",
-    "Taut ropes": "Light ropes under tension hold by their stretch: compare the offset with that of chains.",
+    "Taut ropes": "Light ropes under tension hold the body by their stretch: compare the offset with that of chains.",
     "Four-point spread": "A box on four chains in a current: drag one anchor away and watch the other tensions.",
     "Snap in a storm": "One rope goes slack in high waves and snaps taut: see the peaks of its tension.",
     "Lazy wave with floats": "Floats lift a part of the line, so that the bed end hardly feels the waves.",

@@ -83,11 +83,11 @@ QUANTITIES: Quantities = {
     ),
     "lying_length": Quantity("m", "Length of all lines on the bed", over_lines(sum, lambda line: line.lying)),
     "largest_offset": Quantity(
-        "m", "Largest horizontal distance of the body from its place of rest", lambda now: now.readings.most_offset
+        "m", "Largest horizontal distance of the body from its rest position", lambda now: now.readings.most_offset
     ),
     "heave": for_sweeps(
         "m",
-        "Height of the body over its place of rest",
+        "Height of the body over its rest position",
         lambda now: float(now.scene.body_place()[2] - now.scene.middle[2]),
     ),
     "rest_stretch": for_sweeps(
@@ -108,7 +108,7 @@ QUANTITIES: Quantities = {
     "line_1_slack_fraction": for_tasks(
         "1", "Fraction of time that line 1 is slack", of_line_1(lambda line: line.slack_fraction)
     ),
-    "offset": for_tasks("m", "Horizontal distance of the body from its place of rest", lambda now: now.readings.offset),
+    "offset": for_tasks("m", "Horizontal distance of the body from its rest position", lambda now: now.readings.offset),
     "largest_tension_line": for_tasks(
         "1", "Number of the line with the largest tension", lambda now: now.readings.most_at[0] + 1
     ),

@@ -12,7 +12,7 @@ LINE_STIFFNESS = 8e3  # [N] EA of a line, per m3 of its body: an elastic rope, b
 
 
 class BodyMoorings:
-    """Four lines from each body to the bed, which do not pull at its place of rest."""
+    """Four lines from each body to the bed, which do not pull at its rest position."""
 
     def __init__(self, places: NDArray[np.float64], drafts: NDArray[np.float64], hulls: list[Hull]) -> None:
         """places: (n, 2) [m] where the bodies are held. drafts: (n,) [m] at rest."""

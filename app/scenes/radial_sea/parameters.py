@@ -53,7 +53,7 @@ class RadialSeaParams:
     )
     fraction: float = in_main(0.5, 0.01, 0.99, "", "Fraction of oil in the mixture, by volume", title="Fraction of oil")
     cutaway: bool = in_main(
-        False, doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both",
+        False, doc="Cut the sea open beside the first buoy, to see the oil, the interface, and the hull in both fluids",
         affects="look", title="Cutaway",
     )  # fmt: skip
     follow: str = in_main(
@@ -87,7 +87,7 @@ class RadialSeaParams:
     continuous: str = in_oil(
         "plentiful",
         choices={"plentiful": "The more plentiful", "water": "Water: oil in water", "oil": "Oil: water in oil"},
-        doc="Fluid of an emulsion that the drops of the other are in. Spills at sea become water in oil (mousse)",
+        doc="Fluid around the drops of an emulsion. Spills at sea form water-in-oil emulsions (mousse)",
         title="Continuous fluid",
     )  # fmt: skip
     film: bool = in_oil(False, doc="A surface film that cannot be stretched, which damps ripples", title="Surface film")
@@ -134,7 +134,7 @@ class RadialSeaParams:
         True, doc="Four elastic lines from the keel of each body to anchors on the bed, 60 m deep"
     )
     pull: float = in_bodies(
-        6.0, 0.5, 50.0, "", "Largest force with which the mouse pulls a body, in weights of the body", affects="look",
+        6.0, 0.5, 50.0, "", "Largest force with which the mouse pulls a body, over its weight", affects="look",
         title="Mouse force",
     )  # fmt: skip
 
@@ -150,8 +150,8 @@ class RadialSeaParams:
         doc="Method that computes the surface; both are drawn on the same radial grid",
     )  # fmt: skip
     centre: str = in_grid(
-        "fixed", choices={"fixed": "At the bodies", "camera": "Below the camera"}, doc="Place where the grid is dense",
-        affects="look", title="Grid centre",
+        "fixed", choices={"fixed": "At the bodies", "camera": "Below the camera"},
+        doc="Centre of the dense part of the grid", affects="look", title="Grid centre",
     )  # fmt: skip
     rings: int = in_grid(128, 16, 256, "", "Rings of the grid", affects="look")
     spokes: int = in_grid(128, 16, 256, "", "Points on a ring", affects="look")

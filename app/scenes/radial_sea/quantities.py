@@ -182,7 +182,9 @@ QUANTITIES: Quantities = {name: quantity for kind in BODY_KINDS for name, quanti
     "clean_slope": Quantity(
         "1", "Mean square slope of the waves without the oil", lambda now: now.readings.clean_slope
     ),
-    "middle_period": Quantity("s", "Period above which half of the energy is", lambda now: now.readings.middle_period),
+    "middle_period": Quantity(
+        "s", "Period above which half of the energy lies", lambda now: now.readings.middle_period
+    ),
     # As set, or as thin as the spill has spread.
     "layer_thickness": for_tasks("m", "Layer thickness", of_column(lambda column: column.thickness)),
     "water_density": for_tasks("kg/m³", "Density of the water", of_column(lambda column: column.water.density)),
@@ -239,5 +241,5 @@ QUANTITIES: Quantities = {name: quantity for kind in BODY_KINDS for name, quanti
     "inner_spacing": for_tasks("m", "Spacing in the middle", lambda now: float(now.frame.grid.spacing[0])),
     "rim_spacing": for_tasks("m", "Spacing at the rim", lambda now: float(now.frame.grid.spacing[-2])),
     "grid_radius": for_tasks("m", "Radius of the grid", lambda now: float(now.frame.grid.radii[-1])),
-    "square_points": for_tasks("1", "Points of a square grid as fine", square_points),
+    "square_points": for_tasks("1", "Points of an equally fine square grid", square_points),
 }

@@ -15,7 +15,7 @@ SLOPE_INTERVAL = 0.5  # [s] of simulated time between two calculations of the se
 
 
 class WaveSlope:
-    """Slope of the waves and the frequency at which it changes, found anew now and then."""
+    """Slope of the waves and the frequency at which it changes, recomputed now and then."""
 
     def __init__(self) -> None:
         self.slope = self.frequency = 0.0  # mean square, [rad/s]

@@ -73,7 +73,7 @@ class SquareSeaParams:
         "as set",
         choices={
             "as set": "As set here", "calm": "Calm", "storm": "Storm", "breather": "Breather",
-            "groups": "Even waves with side bands", "rogue": "Towards a rogue wave",
+            "groups": "Regular waves with side bands", "rogue": "Towards a rogue wave",
         },
         doc="The sea at the start: as set here; a calm or a storm, from which a linear sea develops; or waves that "
         "grow: long-crested ones of this significant height, or the sea as set with a high crest after 4 periods",
@@ -210,8 +210,8 @@ ABOUT = {  # preset -> a sentence: its subject and something to try
     "Light planet": "On a planet of 1/100 of the Earth's mass the same wind makes higher, longer waves.",
     "Heavy planet": "On a planet of 100 times the Earth's mass the same wind makes lower, shorter waves.",
     "Rain shower": "Rain on nearly calm water: watch the rings spread.",
-    "Peregrine breather": "Even waves gather within a minute into one that is three times as high, at the staff.",
-    "Steep waves split into groups": "Even, steep waves split into groups within a minute; at order 1 they do not.",
+    "Peregrine breather": "Regular waves gather within a minute into one that is three times as high, at the staff.",
+    "Steep waves split into groups": "Regular, steep waves split into groups within a minute; at order 1 they do not.",
     "Draupner": "A crossing sea of 11.9 m makes a crest of 18.5 m after 60 s, as was measured in 1995.",
     "Steep storm": "Steep waves of a short fetch break. After 20 s a high crest comes to the staff.",
 }

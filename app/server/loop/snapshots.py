@@ -133,7 +133,7 @@ class Snapshots:
         frame = scene.frame() if replay is None else replay.moment.frame
         where = where_not_finite(frame)
         if where:
-            raise DivergenceError(f"The picture contains NaN or infinity ({where}). Reset, or use a smaller time step.")
+            raise DivergenceError(f"The frame contains NaN or infinity ({where}). Reset, or use a smaller time step.")
         readings, curves = scene.readings(), scene.curves()
         self.hand_over(scene.take_plot_rows())
         return Snapshot(serial, frame, self.status(), readings, scene.params, curves, self.keep_state())

@@ -34,7 +34,7 @@ VERSION = 1  # of the JSON file
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of the command."""
     seconds = quantity("s")
-    parser.add_argument("scene", metavar="SCENE", help="square_sea (EXR or PNG pictures that tile) or cloth (OBJ)")
+    parser.add_argument("scene", metavar="SCENE", help="square_sea (EXR or PNG images that tile) or cloth (OBJ)")
     parser.add_argument("--seconds", type=seconds, required=True, metavar="S", help="simulated time [s]")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="a new or empty folder")
     rate = "frames a simulated second (default: 30)"

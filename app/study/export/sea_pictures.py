@@ -99,7 +99,7 @@ class SeaPictures:
     def about(self) -> dict[str, Any]:
         """Size, places and units."""
         meaning = {
-            "displacement": "x, y (horizontal) and z (up) of the water from its place at rest",
+            "displacement": "x, y (horizontal) and z (up) of the water from its rest position",
             "foam": "fraction of foam, 0 to 1",
         }
         if self.form == "png":

@@ -17,7 +17,7 @@ from sim.springs.stability import critical_step, top_modes
 from sim.springs.state import State
 
 MAX_DAMPING = 1e5  # [N s/m], the end of the slider
-REST_DAMPING = 7.0  # [N s/m] at which a network comes to rest soon; the place of rest depends on no damping
+REST_DAMPING = 7.0  # [N s/m] at which a network comes to rest soon; the rest position depends on no damping
 FIRST, LAST = 0.2, 3.0  # of critical_step, between which growth is looked for
 COARSE = 1.2  # ratio of two steps that are tried
 GROWS = 1e-7  # a step, above round-off

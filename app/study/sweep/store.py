@@ -110,7 +110,7 @@ def outcome_of(content: Any) -> Outcome:
 
 def no_store(path: Path, reason: object) -> ValueError:
     """The error for a file that is no store."""
-    return ValueError(f"--out: {path} is not the start of a sweep ({reason}); --fresh replaces it")
+    return ValueError(f"--out: {path} is not an unfinished sweep ({reason}); --fresh replaces it")
 
 
 def remove(path: Path) -> None:

@@ -39,7 +39,7 @@ class Result(NamedTuple):
     """Answers and rates that a student's client measured."""
 
     answers: list[tuple[str, float]]
-    rate: float  # pictures a second
+    rate: float  # frames a second
     pace: float  # simulated time over real time while the rope ran
 
 

@@ -30,7 +30,7 @@ def scene_rows(name: str) -> list[dict[str, Any]]:
             [sys.executable, "-c", PROGRAM, name],
             env={**os.environ, "SPRINGTIDE_CACHE": folder},
             capture_output=True,
-            text=True,
+            encoding="locale",
             check=True,
         )
     pieces = [line.split("\t") for line in done.stdout.splitlines()]

@@ -35,7 +35,7 @@ def environment(cache: str | None) -> dict[str, str]:
 def measured(code: str, cache: str | None = None) -> float:
     """Time of `code` in a new interpreter [s]."""
     command, surroundings = [sys.executable, "-c", TIMED.format(code)], {**os.environ, **environment(cache)}
-    done = subprocess.run(command, env=surroundings, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, env=surroundings, capture_output=True, encoding="locale", check=True)
     return float(done.stdout.split()[-1])
 
 

@@ -29,7 +29,7 @@ def times(level: str) -> dict[str, float]:
     """Processor time [s] of each kernel, compiled for a level."""
     processor = {} if level == HERE else level_environment(level)
     command = [sys.executable, "-c", PROGRAM]
-    done = subprocess.run(command, env={**os.environ, **processor}, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, env={**os.environ, **processor}, capture_output=True, encoding="locale", check=True)
     return json.loads(done.stdout)
 
 

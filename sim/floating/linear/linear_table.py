@@ -90,5 +90,5 @@ def read_table(path: Path, mesh: ClosedMesh) -> LinearTable:
     except Exception as error:  # numpy's reader raises errors of many types
         raise argument_error("path", str(path), f"a table made by `springtide hydrodynamics` ({error})") from error
     if made_of != fingerprint(mesh):
-        raise argument_error("path", str(path), "the table of this mesh: make it again by `springtide hydrodynamics`")
+        raise argument_error("path", str(path), "the table of this mesh: make it again with `springtide hydrodynamics`")
     return table

@@ -79,7 +79,7 @@ class FloatState:
         """Continue by `steps` steps of h [s], of 1/60 s at most. Raises FloatingPointError as `step`."""
         check_number("h", h, "s", 0, LONGEST_STEP * (1.0 + 1e-9), above=True)
         if not is_whole_number(steps) or steps < 0:
-            raise argument_error("steps", steps, "a whole number from 0")
+            raise argument_error("steps", steps, "a whole number of at least 0")
         if h != self.h:  # rates of change are those over equal steps
             self.h, self.rises = h, ()
             if self.excitation is not None:

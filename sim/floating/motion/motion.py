@@ -162,7 +162,7 @@ def step(
     elif is_whole_number(substeps) and substeps >= 1:
         counts = np.full(len(fleet.mass), int(substeps), dtype=np.int64)
     else:
-        raise argument_error("substeps", substeps, "a whole number from 1")
+        raise argument_error("substeps", substeps, "a whole number of at least 1")
     state = fleet[:9]
     before = [array.copy() for array in state]
     advance(fleet, water, MotionCoefficients(*(float(value) for value in coefficients)), counts, float(duration))

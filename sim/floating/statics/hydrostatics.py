@@ -149,7 +149,8 @@ def add_displaced(x, faces, nz, depth, out):
 def displaced(x: np.ndarray, faces: np.ndarray, nz: np.ndarray, depth: np.ndarray) -> np.ndarray:
     """The integrals (10,) of `add_displaced`, with its arguments.
 
-    A level face at the surface, within `AT_SURFACE`, is dry: the waterplane is the one just below it.
+    A level face at the surface, within `AT_SURFACE`, is dry, and the waterplane is the one just below it: hulls of
+    panel files end at the surface, and would have no waterplane.
     """
     out, near = np.zeros(10), AT_SURFACE * float(np.ptp(x[2]))
     add_displaced(x, faces, nz, np.where(np.abs(depth) <= near, 0.0, depth), out)

@@ -152,8 +152,8 @@ class March:
                 break
             if self.rtol is None or self.step < self.smallest:
                 raise DivergenceError(
-                    f"the waves cannot be followed beyond {self.end.t:.6g} s: they are too steep for this order; "
-                    "lower waves, a lower order or a coarser grid would hold"
+                    f"the solution fails after t = {self.end.t:.6g} s: the waves are too steep for this order; use "
+                    "lower waves, a lower order or a coarser grid"
                 )
         # The arrays of the old start serve the next step.
         self.start, self.end, self._new = self.end, new, self.start

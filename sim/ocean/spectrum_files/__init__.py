@@ -35,7 +35,7 @@ def read_spectrum(path: str | Path, time: str | None = None, place: int | None =
     check_kind("path", path, str | os.PathLike, "the name of a file")
     path = Path(path)
     if place is not None and not (is_whole_number(place) and place > 0):
-        raise argument_error("place", place, "a whole number, 1 or above")
+        raise argument_error("place", place, "a whole number of at least 1")
     when = None if time is None else read_time(time)
     if path.suffix.lower() in NETCDF:
         return from_wavespectra(path, when, place)

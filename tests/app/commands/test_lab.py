@@ -315,7 +315,7 @@ def test_a_check_imports_no_viewer(finished: Path) -> None:
         f"status = main(['lab', 'check', {str(finished)!r}]);"
         "print(status, sorted(n for n in sys.modules if n.split('.')[0] in ('viser', 'numba')))"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, encoding="locale", check=True)
     assert done.stdout.splitlines()[-1] == "0 []"
 
 

@@ -111,7 +111,7 @@ def test_a_lab_that_is_made_after_the_end_opens_nothing(page: Page) -> None:
 
 def test_without_numba_the_terminal_says_so() -> None:
     done = subprocess.run(
-        [sys.executable, "-c", BROKEN], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False
+        [sys.executable, "-c", BROKEN], cwd=ROOT, capture_output=True, encoding="locale", timeout=120, check=False
     )
     assert done.returncode == 1
     assert "Springtide is on http://" in done.stdout

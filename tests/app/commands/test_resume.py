@@ -83,7 +83,7 @@ def test_where_nothing_can_be_written_the_lab_goes_on(data: Path, monkeypatch: p
 @pytest.mark.skipif(os.name != "posix", reason="Windows ends a process without telling it")
 def test_a_lab_that_is_told_to_end_keeps_its_setup(data: Path) -> None:
     command = [sys.executable, "-m", "app", "--no-open", "--port", "0", "--resume", "--set", "stiffness=1234"]
-    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, encoding="locale")
     assert process.stdout is not None
     try:
         address = next(word for line in process.stdout for word in line.split() if word.startswith("http"))

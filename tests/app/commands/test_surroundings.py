@@ -28,7 +28,7 @@ def program(*arguments: str, **changes: str) -> subprocess.Popen[str]:
     """`springtide` as a process of its own, with these environment variables."""
     return subprocess.Popen(
         [sys.executable, "-m", "app", *arguments], cwd=ROOT, env={**os.environ, **changes},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="locale",
     )  # fmt: skip
 
 
@@ -39,7 +39,12 @@ def test_a_reader_that_leaves_early_is_no_error(words):
     read, write = os.pipe()
     os.close(read)
     process = subprocess.run(
-        [sys.executable, "-m", "app", *words], cwd=ROOT, stdout=write, stderr=subprocess.PIPE, text=True, check=False
+        [sys.executable, "-m", "app", *words],
+        cwd=ROOT,
+        stdout=write,
+        stderr=subprocess.PIPE,
+        encoding="locale",
+        check=False,
     )
     os.close(write)
     assert (process.returncode, process.stderr) == (141, "")
@@ -128,7 +133,7 @@ def test_the_lab_is_served_where_nothing_can_be_printed(tmp_path):
     command = [sys.executable, "-m", "app", "--port", "0", "--no-open"]
     cold = {**os.environ, "SPRINGTIDE_CACHE": str(tmp_path)}
     with open("/dev/full", "w", encoding="utf-8") as full:
-        process = subprocess.Popen(command, cwd=ROOT, env=cold, stdout=full, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(command, cwd=ROOT, env=cold, stdout=full, stderr=subprocess.PIPE, encoding="locale")
     try:
         end = time.monotonic() + 60
         while not (listening := served_ports(process.pid)) and process.poll() is None and time.monotonic() < end:

@@ -45,7 +45,7 @@ def rope(opened: Lab) -> Lab:
 
 def test_importing_the_package_imports_nothing_that_takes_time() -> None:
     code = "import sys; import app; print(sorted({'numpy', 'viser', 'IPython', 'xarray', 'numba'} & set(sys.modules)))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="locale", check=True)
     assert done.stdout == "[]\n"
 
 

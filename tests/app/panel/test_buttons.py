@@ -12,15 +12,12 @@ import pytest
 import viser
 from viser import _messages
 
-from app.lab.course.folder import make_folder
-from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
-from app.lab.student.session import Session
 from app.messages import Command
 from app.panel.sharing import share
 from app.panel.sharing.compare import ComparisonCalls
 from app.scenes import NAMES
 from app.server.viewer import Viewer
+from tests.app.student_lab import student_lab
 from tests.waiting import wait_for
 
 SAMPLE = ("rope", "radial_sea")  # whose panels are pressed in every run of the tests
@@ -121,13 +118,8 @@ class Pressed:
 @pytest.fixture
 def students_lab(tmp_path: Path) -> Iterator[Viewer]:
     """`springtide lab DIR`, which has all tabs."""
-    tasks, folder = load_tasks(), tmp_path / "mine"
-    make_folder(folder, tasks)
-    session = Session(folder, tasks)
-    viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
-    yield viewer
-    viewer.shut()
-    session.close()
+    with student_lab(tmp_path / "mine") as (viewer, _):
+        yield viewer
 
 
 @pytest.mark.parametrize("name", [pytest.param(one, marks=() if one in SAMPLE else pytest.mark.long) for one in NAMES])

@@ -11,10 +11,6 @@ from typing import Any
 import pytest
 import viser
 
-from app.lab.course.folder import make_folder
-from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
-from app.lab.student.session import Session
 from app.messages import RunOn, Take
 from app.panel.controls.readings import WITHHELD
 from app.scenes import NAMES, scene_named
@@ -23,6 +19,7 @@ from app.scenes.square_sea.parameters import SquareSeaParams
 from app.server.viewer import Viewer
 from sim.parameters import check_record
 from tests import coroutines
+from tests.app.student_lab import student_lab
 from tests.waiting import wait_for
 
 
@@ -51,13 +48,8 @@ def callbacks(viewer: Viewer) -> Iterator[Callable[..., Any]]:
 @pytest.fixture(scope="module")
 def students_lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Viewer]:
     """`springtide lab DIR`: a workbook, and the panel of a student's functions."""
-    tasks, folder = load_tasks(), tmp_path_factory.mktemp("lab") / "mine"
-    make_folder(folder, tasks)
-    session = Session(folder, tasks)
-    viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
-    yield viewer
-    viewer.shut()
-    session.close()
+    with student_lab(tmp_path_factory.mktemp("lab") / "mine") as (viewer, _):
+        yield viewer
 
 
 @pytest.mark.parametrize("name", NAMES)

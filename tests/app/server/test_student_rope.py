@@ -6,15 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from app.lab.course.folder import make_folder
-from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
 from app.lab.process.rope_march import REFERENCE
-from app.lab.student.session import Session
 from app.scenes import scene_named
 from app.scenes.race.parameters import RaceParams
 from app.server.viewer import Viewer
 from tests.app.lab.student.test_session import taken
+from tests.app.student_lab import student_lab
 from tests.waiting import wait_for
 
 RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
@@ -25,11 +22,8 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
 ) -> None:
     monkeypatch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e6)
     monkeypatch.setattr(Viewer, "audience", lambda self: 1)
-    tasks, folder = load_tasks(), tmp_path / "mine"
-    make_folder(folder, tasks)
-    session = Session(folder, tasks, time_limit=1.0)
-    viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
-    try:
+    folder = tmp_path / "mine"
+    with student_lab(folder, time_limit=1.0) as (viewer, session):
         wait_for(lambda: taken(session) == 1)  # what the new folder holds; to restart with it is no start of a run
         viewer.open("rope")
         loop = viewer.loop
@@ -51,6 +45,3 @@ def test_a_saved_function_moves_the_rope_and_an_endless_one_stops_nothing(
         (folder / "rope.py").write_text(RIGHT + "\n# once more\n", "utf-8")
         wait_for(lambda: taken(session) == 4)
         assert loop.run.identity.number == 2
-    finally:
-        viewer.shut()
-        session.close()

@@ -7,14 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.lab.course.folder import make_folder
-from app.lab.course.task import load_tasks
-from app.lab.course.workbook import Workbook
 from app.lab.process.rope_march import REFERENCE
-from app.lab.student.session import Session
 from app.messages import Pause, Play
 from app.scenes.rope.parameters import RopeParams
-from app.server.viewer import Viewer
+from tests.app.student_lab import student_lab
 
 RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
 
@@ -22,11 +18,8 @@ RIGHT = "import numpy as np\n\n" + inspect.getsource(REFERENCE["spring_force"])
 @pytest.mark.stress
 def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, open_tab) -> None:
     monkeypatch.setattr("app.lab.student.live_net.COMPILE_AFTER", 1e6)  # compiling takes seconds: see tests/stress
-    tasks, folder = load_tasks(), tmp_path / "mine"
-    make_folder(folder, tasks)
-    session = Session(folder, tasks)
-    viewer = Viewer("127.0.0.1", 0, workbook=Workbook(tasks, folder), session=session)
-    try:
+    folder = tmp_path / "mine"
+    with student_lab(folder) as (viewer, _):
         viewer.open("rope", RopeParams(integrator="rk4"))
         tab = open_tab(viewer.port)
         tab.wait(lambda: len(tab.vertices("/rope")) > 0)
@@ -47,6 +40,3 @@ def test_a_wrong_turn_and_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
         tab.wait(lambda: tab.page.locator("[data-function=spring_force][data-state=right]").count())
         assert tab.page.get_by_text("NameError").count() == 0
         assert tab.errors == []
-    finally:
-        viewer.shut()
-        session.close()

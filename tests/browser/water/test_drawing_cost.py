@@ -153,7 +153,7 @@ def graphics(chromium: Any, three: Path) -> Iterator[tuple[Any, float]]:
         page = open_ocean(browser, three, *LARGE)
         time = statistics.median(page.evaluate(TIME, PICTURES))
         page.close()
-        print(f"\n{name}, three.js's ocean: {1000 / time:.0f} pictures a second", end="")
+        print(f"\n{name}, three.js's ocean: {1000 / time:.0f} frames a second", end="")
         yield browser, time
     finally:
         browser.close()
@@ -213,6 +213,6 @@ def test_pictures_a_second_on_a_graphics_processor(name: str, graphics: tuple[An
             page.evaluate(CHOOSE, quality)
             time = statistics.median(page.evaluate(TIME, PICTURES))
             print(
-                f"\n{name}, {quality}: {1000 / time:.0f} pictures a second, {time / ocean:.2f} of three.js's ocean",
+                f"\n{name}, {quality}: {1000 / time:.0f} frames a second, {time / ocean:.2f} of three.js's ocean",
                 end="",
             )

@@ -55,7 +55,7 @@ def instructions(source: str, folder: Path) -> int:
         ["spirv-opt", "-O", code, "-o", best],
     ):
         subprocess.run(command, check=True, capture_output=True)
-    text = subprocess.run(["spirv-dis", "--no-header", best], check=True, capture_output=True, text=True).stdout
+    text = subprocess.run(["spirv-dis", "--no-header", best], check=True, capture_output=True, encoding="utf-8").stdout
     functions = text[text.index("OpFunction") :]
     return sum(not NO_INSTRUCTION.search(line) for line in functions.splitlines())
 

@@ -94,7 +94,7 @@ def test_a_pull_from_outside_presses_a_buoy_down():
     ("name", "call", "words"),
     [
         ("h", lambda s: s.advance(0.1, 1), "0.0166"),
-        ("steps", lambda s: s.advance(0.01, -1), "from 0"),
+        ("steps", lambda s: s.advance(0.01, -1), "at least 0"),
         ("step", lambda s: float_in(s.sea, [], 1.0, 3, 0.1), "0.0166"),
         ("frames", lambda s: float_in(s.sea, [], 1.0, 1), "from 2"),
         ("progress", lambda s: float_in(s.sea, [], 1.0, progress=1), "a function"),

@@ -66,6 +66,6 @@ def test_a_run_says_what_auto_took():
     assert simulate(rope(), duration=0.1, frames=2, step=1e-3, integrator=AUTO).integrator == "dopri5"
     assert simulate(rope(), duration=0.1, frames=2, integrator="rk4").integrator == "rk4"
     record, note = integrator_or_fallback(AUTO, rope(), 1e-3)
-    assert (record.name, note) == ("dopri5", "dopri5 runs: it holds at this step with the fewest force evaluations")
+    assert (record.name, note) == ("dopri5", "dopri5 runs: it is stable at this step with the fewest force evaluations")
     with pytest.raises(ValueError, match=r"rtol: .* the step is given"):
         simulate(rope(), step=1e-3, integrator=AUTO, rtol=1e-6)

@@ -3,7 +3,7 @@
 // A page that is left lets go of the lab at once, so that the lab counts no browser that nobody sees. A browser may keep a
 // page that was left, to show it again when the user goes back. It keeps the worker too, and the connection stays open though
 // nothing reads it. Ending the worker closes the connection, also while the page is being frozen. A page that is shown again
-// loads anew.
+// reloads.
 //
 // Without a connection viser's client has its worker try again each second, which ends the attempt under way. Chromium delays
 // attempts by up to five seconds once many have failed, so that after a minute none would succeed: here each has its time.

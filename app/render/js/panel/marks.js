@@ -8,7 +8,7 @@ import { onControls } from "../core/watch.js";
 export const PANEL = "[data-floating-window], [data-springtide-is-sheet]"; // the panel in a window, or on a phone
 const ROW = "> .mantine-Flex-root"; // of a control of viser's: its name and its field
 const RESULT = ":is(.springtide-verdict, .springtide-refusal)"; // of a check in the lab
-// Name of the mark -> selector. Marks are attributes, as React writes the classes of its elements anew.
+// Name of the mark -> selector. Marks are attributes, as React rewrites the classes of its elements.
 const MARKS = {
   // Panels
   alone: "[data-floating-window]:not(:has([data-floating-divider]))", // a window with one panel

@@ -1,6 +1,6 @@
 // Smoke and flames with rough edges: viser's splats, eroded by noise of two sizes, and smoke with a sunny side.
 //
-// viser draws all splats of a scene as one mesh, which it makes anew when their number changes. Of its material this file uses
+// viser draws all splats of a scene as one mesh, which it replaces when their number changes. Of its material this file uses
 // the names of some uniforms and variables, the varyings vRgba and vPosition, and the lines that compute place, opacity and
 // colour. If a new viser differs, splats are drawn as viser draws them.
 

@@ -1,4 +1,4 @@
-"""Excursion of the body or vessel: the level way from its place of rest, how far it came, and its path."""
+"""Excursion of the body or vessel: the level way from its rest position, how far it came, and its path."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ PATH_INTERVAL = 0.25  # [s]
 
 
 class Excursion:
-    """The level offset from a place of rest over time."""
+    """The level offset from a rest position over time."""
 
     def __init__(self, rest: NDArray[np.float64]) -> None:
         """rest: (3,) [m]."""

@@ -67,7 +67,7 @@ def carrier(amplitude: float, count: int, length: float, gravity: float) -> tupl
     """Wavenumber [rad/m] and frequency [rad/s]; the arguments are checked."""
     check_number("amplitude", amplitude, "m", 0.0)
     if not is_whole_number(count) or count < 1:
-        raise argument_error("count", count, "a whole number from 1")
+        raise argument_error("count", count, "a whole number of at least 1")
     k = 2.0 * math.pi * count / check_positive("length", length, "m")
     return k, math.sqrt(check_positive("gravity", gravity, "m/s2") * k)
 

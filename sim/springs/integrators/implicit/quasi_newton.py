@@ -1,8 +1,18 @@
-"""A memory of the last steps of a quasi-Newton method, which makes its next ones better (L-BFGS, Nocedal 1980).
+"""Memory of the last steps of a quasi-Newton method, which improves the next ones (L-BFGS, Nocedal 1980).
 
-Factors of an approximate matrix turn forces into steps. Each step taken tells how the forces really change along it:
-with that the product of the inverse by any vector is corrected, at the cost of two passes over the memory. Of linear
-forces the steps are those of conjugate gradients with the factors as preconditioner; others are followed as they turn.
+Factors of an approximate matrix turn forces into steps. Each step shows how the forces really change along it, and
+corrects the product of the inverse and any vector, at the cost of two passes over the memory. With linear forces the
+steps are those of conjugate gradients with the factors as preconditioner; other forces are followed as they turn.
+
+Chosen among the solvers of a curtain of 64 x 64 at 1e5 N/m, each step solved to 1 % of its change. Cores in real time:
+
+- this one, with new factors after 12 corrections: 1.2 to 1.4; with those of the step's start only: 1.5 to 1.8;
+- a start without motion, instead of the last velocities: 3.1;
+- Newton with conjugate gradients, compressed links cut off: more than 3, as it converges linearly;
+- Newton with the whole matrix, with or without larger pivots: 2.2 to 3.1, as it is quadratic only near the end.
+
+Conjugate gradients need 1 to 5 iterations with these factors, and more than 150 at 1e6 N/m with blocks of 3 x 3,
+Gauss-Seidel, geometric or algebraic multigrid. Dissection on two threads saves 9 to 17 % of the time on the wall.
 """
 
 from typing import NamedTuple

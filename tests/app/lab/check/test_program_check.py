@@ -305,7 +305,7 @@ ENCODINGS = {
 @pytest.mark.parametrize("head", ENCODINGS)
 def test_an_encoding_that_python_refuses_is_refused(tmp_path: Path, head: bytes) -> None:
     (tmp_path / "rope.py").write_bytes(head + (HEAD + FORCE).encode())
-    python = subprocess.run([sys.executable, tmp_path / "rope.py"], capture_output=True, text=True, check=False)
+    python = subprocess.run([sys.executable, tmp_path / "rope.py"], capture_output=True, encoding="locale", check=False)
     with Runner(tmp_path) as runner:
         verdict = check_program(tmp_path, runner, TASKS["spring_force"])
     assert (python.returncode == 0) == (verdict.state == "right") == (ENCODINGS[head] == "")

@@ -15,9 +15,13 @@ from app.scenes.cloth.start import build, sphere_home
 from app.scenes.springs.student_net import forces_of
 from sim.springs import Net, State, advance, rope
 from sim.springs.forces import OWN
+from sim.springs.forces.record import SPRING_NETS
 
 STEPS, H, START = 60, 1e-3, 2.0  # their number, [s], and the time [s] of the first
-OF_EACH = pytest.mark.parametrize("numbers", [pytest.param(one(), id=force.name) for one, force in OWN.items()])
+OF_EACH = pytest.mark.parametrize(
+    "numbers", [pytest.param(one(), id=force.name) for one, force in OWN.items() if set(SPRING_NETS) <= set(force.nets)]
+)
+LEAST_EFFECT = 1e-6  # [m]: much more than both may differ by; damping at its default does little to a net from rest
 NO_TASK = types.ModuleType("rope")  # of which no function is written: the reference solutions move it
 
 
@@ -45,7 +49,7 @@ def test_the_student_s_rope_moves_under_it_as_the_program_s(numbers: Any) -> Non
     net = dataclasses.replace(still, forces=(numbers,))
     x = march_by_reference(net)
     np.testing.assert_allclose(x, march_by_program(net), rtol=0.0, atol=1e-10)
-    assert np.abs(x - march_by_program(still)).max() > 1e-5
+    assert np.abs(x - march_by_program(still)).max() > LEAST_EFFECT
 
 
 @OF_EACH
@@ -59,7 +63,7 @@ def test_the_student_s_cloth_moves_under_it_as_the_program_s(numbers: Any) -> No
     net = dataclasses.replace(still, forces=(numbers,))
     x = march_by_reference(net, sheet)
     np.testing.assert_allclose(x, march_by_program(net), rtol=0.0, atol=1e-10)
-    assert np.abs(x - march_by_program(still)).max() > 1e-5
+    assert np.abs(x - march_by_program(still)).max() > LEAST_EFFECT
 
 
 def test_what_a_function_returns_passes_from_one_process_to_another() -> None:

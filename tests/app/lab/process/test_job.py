@@ -59,7 +59,9 @@ def test_children_are_killed_with_their_process(tmp_path: Path) -> None:
 
 def test_all_end_with_the_lab(tmp_path: Path) -> None:
     path = tmp_path / "dots"
-    lab = subprocess.Popen([sys.executable, "-c", LAB, *command(path)], cwd=ROOT, stdin=subprocess.PIPE, text=True)
+    lab = subprocess.Popen(
+        [sys.executable, "-c", LAB, *command(path)], cwd=ROOT, stdin=subprocess.PIPE, encoding="locale"
+    )
     assert begun(path)
     assert grows(path)
     lab.communicate("now\n", 60.0)

@@ -246,8 +246,8 @@ def test_a_rope_is_tried_at_once_and_then_yields_to_the_labs_of_a_hub(tmp_path: 
     surroundings = {key: value for key, value in os.environ.items() if key != "JUPYTERHUB_USER"}
     output = subprocess.run(
         [sys.executable, "-c", ROPE_TWICE, tmp_path],
-        env=surroundings | ({"JUPYTERHUB_USER": user} if user else {}), cwd=ROOT, capture_output=True, text=True,
-        check=True,
+        env=surroundings | ({"JUPYTERHUB_USER": user} if user else {}), cwd=ROOT, capture_output=True,
+        encoding="locale", check=True,
     )  # fmt: skip
     own = os.getpriority(os.PRIO_PROCESS, 0)
     has_sessions = Path("/proc/self/autogroup").exists()

@@ -227,7 +227,7 @@ def test_a_folder_that_is_removed_and_made_again_is_followed(folders: list[Path]
     with Classroom(folders[:1], TASKS) as classroom:
         wait_for(lambda: classroom.students[folders[0]].results)
         shutil.rmtree(folders[0])
-        wait_for(lambda: "not there" in rows(tuple(classroom.students.values())))
+        wait_for(lambda: "does not exist" in rows(tuple(classroom.students.values())))
         make_folder(folders[0], TASKS)
         wait_for(lambda: not classroom.students[folders[0]].error)
         save(folders[0], "+")

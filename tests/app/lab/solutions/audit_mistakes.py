@@ -177,7 +177,7 @@ MISTAKES: tuple[tuple[str, str, str], ...] = (
             new = x + h * v
             return new, v_half + h / 2 * acceleration(new, v)""",
     ),
-    ("step_leapfrog", "force not computed anew", changed(LEAPFROG, "(a + acceleration(new, v))", "(a + a)")),
+    ("step_leapfrog", "force not computed again", changed(LEAPFROG, "(a + acceleration(new, v))", "(a + a)")),
     ("step_leapfrog", "symplectic Euler", "v = v + h * acceleration(x, v)\nreturn x + h * v, v"),
     ("step_euler", "results swapped", "return v + h * acceleration(x, v), x + h * v"),
     (

@@ -136,7 +136,7 @@ CASES: tuple[tuple[str, str, str], ...] = (
     ),
     (
         "step_leapfrog",
-        "force not computed anew",
+        "force not computed again",
         """
             a = acceleration(x, v)
             v = v + h / 2 * a

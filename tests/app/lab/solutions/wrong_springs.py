@@ -196,7 +196,7 @@ SPRINGS: dict[str, tuple[tuple[str, str], ...]] = {
         ("second half step forgotten", """
             vh = v + 0.5 * h * acceleration(x, v)
             return x + h * vh, vh"""),
-        ("force not computed anew", """
+        ("force not computed again", """
             a = acceleration(x, v)
             v_half = v + h / 2 * a
             x = x + h * v_half

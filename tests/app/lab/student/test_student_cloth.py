@@ -32,10 +32,10 @@ ACCIDENTS = {
     "return": ("returns nothing", "last line must be return"),
 }
 WRONG_LINKS = {
-    "return np.array([[0, 999]])": "returns a point that is not there: a cloth of",
+    "return np.array([[0, 999]])": "returns a point that does not exist: a cloth of",
     "return np.array([[1, 1]])": "joins a point to itself",
     "return [[0, 1, 2]]": "expected an array of shape (1, 2)",
-    "return [[0.5, 1.0]]": "returns a point that is not there",
+    "return [[0.5, 1.0]]": "returns a point that does not exist",
     "return 3": "expected an array",
 }
 

@@ -78,7 +78,7 @@ def test_a_cloth_with_an_explicit_method_waits_for_no_implicit_solver(tmp_path: 
 @pytest.mark.long  # compiles or loads all kernels of a scene in a process of its own
 def test_each_preset_of_the_radial_sea_runs_with_what_it_says_it_needs() -> None:
     done = subprocess.run(
-        [sys.executable, "-c", PRESETS, "radial_sea"], cwd=ROOT, capture_output=True, text=True, timeout=300
+        [sys.executable, "-c", PRESETS, "radial_sea"], cwd=ROOT, capture_output=True, encoding="locale", timeout=300
     )
     assert done.returncode == 0, done.stderr
 
@@ -88,6 +88,8 @@ def test_each_preset_of_the_radial_sea_runs_with_what_it_says_it_needs() -> None
     "name", ["cloth", *(pytest.param(name, marks=pytest.mark.stress) for name in ("rope", "race"))]
 )
 def test_no_kernel_is_compiled_after_the_warm_up(name: str) -> None:
-    done = subprocess.run([sys.executable, "-c", PROGRAM, name], cwd=ROOT, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, name], cwd=ROOT, capture_output=True, encoding="locale", timeout=300
+    )
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1] == "[]"

@@ -31,7 +31,7 @@ def queue(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Compiling
 
     def start(*, ahead: bool) -> "subprocess.Popen[str]":
         return subprocess.Popen(
-            [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+            [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="locale"
         )
 
     monkeypatch.setattr(compiling, "start_process", start)
@@ -90,7 +90,7 @@ def test_a_worker_compiles_a_piece_that_the_next_process_only_loads(tmp_path: Pa
 
     def ask(line: str) -> "subprocess.CompletedProcess[str]":
         return subprocess.run(
-            worker, input=line, env=environment, capture_output=True, text=True, timeout=120, check=True
+            worker, input=line, env=environment, capture_output=True, encoding="locale", timeout=120, check=True
         )
 
     assert ask("race\tdrawing\t1\n").stdout == "\n"
@@ -107,7 +107,7 @@ def test_ctrl_c_leaves_a_worker_to_the_lab() -> None:
     code = "import signal, sys; from app.scenes.ahead.compile_worker import main; main(); "
     told = "print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN, file=sys.stderr)"
     command = [sys.executable, "-c", code + told]
-    ended = subprocess.run(command, input="", cwd=ROOT, capture_output=True, text=True, timeout=60)
+    ended = subprocess.run(command, input="", cwd=ROOT, capture_output=True, encoding="locale", timeout=60)
     assert ended.stderr.splitlines()[-1] == "True"
 
 
@@ -116,10 +116,10 @@ def test_a_killed_worker_gives_its_locks_back(tmp_path: Path) -> None:
         "from sim.files import locked; from pathlib import Path; import time\n"
         f"with locked(Path({str(tmp_path / 'lock')!r})): print('held', flush=True); time.sleep(100)"
     )
-    holder = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    holder = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, encoding="locale")
     assert holder.stdout is not None
     assert holder.stdout.readline() == "held\n"
-    waiter = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    waiter = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, encoding="locale")
     assert waiter.stdout is not None
     time.sleep(0.3)
     holder.kill()
@@ -137,7 +137,7 @@ def test_a_worker_that_starts_while_the_queue_is_closed_is_ended(monkeypatch: py
         starting.set()
         assert go_on.wait(30.0)
         command = [sys.executable, "-c", "import time; time.sleep(600)"]
-        started.append(subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+        started.append(subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, encoding="locale"))
         return started[0]
 
     monkeypatch.setattr(compiling, "start_process", start)

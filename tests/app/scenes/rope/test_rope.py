@@ -174,7 +174,7 @@ def test_where_the_chosen_method_takes_no_damping_another_runs_and_the_note_says
     scene = Rope(RopeParams(integrator="pefrl"))
     scene.advance(10)
     assert scene.motion.integrator == "leapfrog"
-    assert "pefrl takes no damping, so leapfrog runs" in scene.readings().note
+    assert "pefrl allows no damping, so leapfrog runs" in scene.readings().note
     change(scene, damping=0.0, drag=0.0, floor=False)
     scene.advance(10)
     assert (scene.motion.integrator, scene.readings().note) == ("pefrl", "")

@@ -36,17 +36,9 @@ from app.server.loop.commands import Record, merged
 from app.server.loop.replay import Replay
 from app.server.loop.run import Goal
 from app.server.loop.sim_loop import SimLoop
-from sim.parameters import parameter
+from tests.app.server.loop.test_sim_loop import Params
 
 ORIGIN = (0.0, 0.0, 0.0)
-
-
-@dataclasses.dataclass(frozen=True)
-class Params:
-    speed: float = parameter(1.0, 0.01, 8.0, affects="look")
-    stiffness: float = parameter(1.0, 0.0, 10.0, affects="forces")
-    points: int = parameter(2, 2, 10, affects="start")
-    grid: bool = parameter(True, affects="look")
 
 
 class Scene:

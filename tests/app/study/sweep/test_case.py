@@ -119,7 +119,7 @@ def test_an_integrator_that_would_be_replaced_is_a_failed_case(monkeypatch):
     @dataclasses.dataclass
     class Stub:
         params: object
-        note: str = "pefrl takes no damping, so leapfrog runs instead"
+        note: str = "pefrl allows no damping, so leapfrog runs instead"
 
     kind = dataclasses.replace(app.scenes.rope.SCENE, make=Stub)
     monkeypatch.setattr(app.scenes.rope, "SCENE", kind)

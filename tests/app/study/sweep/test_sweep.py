@@ -130,7 +130,7 @@ def test_a_sweep_that_is_stopped_goes_on_where_it_was(how, here, tmp_path, capsy
     command = [sys.executable, "-m", "app", "sweep", str(tmp_path / "s.toml"), "--out", str(out)]
     # A shell's background job ignores SIGINT, and so would what it starts.
     default_sigint = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=default_sigint) as process:
+    with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="locale", preexec_fn=default_sigint) as process:
         changes, last = 0, 0
         deadline = time.monotonic() + 200
         # Its making, and then at least two cases.
@@ -229,7 +229,7 @@ def test_ctrl_c_while_workers_start_is_quiet(command, delays, tmp_path):
     given = arguments.get(command, [command, "--quick"])
     for delay in delays:
         with subprocess.Popen(
-            [sys.executable, "-m", "app", *given], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            [sys.executable, "-m", "app", *given], stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="locale",
             start_new_session=True, preexec_fn=functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
         ) as process:  # fmt: skip
             parent = psutil.Process(process.pid)

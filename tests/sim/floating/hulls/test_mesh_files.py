@@ -184,7 +184,7 @@ def test_a_mesh_of_20_km_is_told_of_millimetres(tmp_path):
     path = stl(tmp_path / "wedge.stl", 1000.0 * VERTICES, np.concatenate([DECK, SIDES]))
     assert_refused(str(path), lambda: Hull.load(path), "--hull-unit mm")
     assert_refused("unit", lambda: Hull.load(path, unit="inch"), "m, cm, mm, ft")
-    assert_refused("weld", lambda: Hull.load(path, weld=-1.0), "from 0 m")
+    assert_refused("weld", lambda: Hull.load(path, weld=-1.0), "at least 0 m")
     assert_refused("mirror", lambda: Hull.load(path, mirror="z"), "x, y")
     assert_refused("cap", lambda: Hull.load(path, cap="keel"), "deck")
 

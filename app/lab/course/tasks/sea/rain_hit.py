@@ -60,8 +60,8 @@ MISTAKES = (
     ),
     Mistake(
         "motion of the surface forgotten",
-        "This is a fraction of the drop's path, z0 - z1. The surface moves too: divide by what the height above it "
-        "falls, (z0 - level0) - (z1 - level1).",
+        "This is a fraction of the drop's path, z0 - z1. The surface moves too: divide by the fall relative "
+        "to it, (z0 - level0) - (z1 - level1).",
         still_way,
     ),
     Mistake(
@@ -96,7 +96,7 @@ MISTAKES = (
     ),
     Mistake(
         "distance instead of fraction",
-        "This is the height above the surface. Divide it by what it falls within the step.",
+        "This is the height above the surface. Divide it by its decrease within the step.",
         with_start_and_end(lambda a, b: np.where((a > 0) & (b <= 0), a, np.inf)),
     ),
 )

@@ -55,7 +55,7 @@ MISTAKES = (
     ),
     Mistake(
         "density of air",
-        "The density of air has come in. Above the oil the box displaces nothing that counts.",
+        "This uses the density of air. Above the oil the box displaces nothing that counts.",
         lambda b, H, o, d, w: draft(b, H, 1.2, d, w),
     ),
     Mistake(

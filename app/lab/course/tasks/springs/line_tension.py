@@ -24,10 +24,10 @@ def inputs(rng):
 MISTAKES = (
     Mistake(
         "horizontal part only",
-        "This is the horizontal part, H. The line also carries the weight of what hangs, V = w s.",
+        "This is the horizontal part, H. The line also carries the weight of its hanging part, V = w s.",
         lambda w, s, z: w * (s**2 - z**2) / (2 * z),
     ),
-    Mistake("weight only", "This is the weight of what hangs. The line also pulls sideways.", lambda w, s, z: w * s),
+    Mistake("weight only", "This is the hanging weight. The line also pulls sideways.", lambda w, s, z: w * s),
     Mistake(
         "parts added",
         "The level and the upward part are at right angles: the tension is the root of the sum of their squares.",

@@ -74,7 +74,7 @@ MISTAKES = (
     Mistake("Euler", "This is explicit Euler: both come from the start of the step.", euler),
     Mistake("second half step forgotten", "The velocity stays half a step behind. Add h/2 a(x_new).", one_kick),
     Mistake(
-        "force not computed anew",
+        "force not computed again",
         "Both half steps of v use the acceleration at the old position. The second needs the one at x_new.",
         old_force,
     ),

@@ -44,7 +44,7 @@ def midpoint(x, v, h, acceleration):
 MISTAKES = (
     Mistake(
         "keeps the first force",
-        "The acceleration is computed once. Compute it anew at each of the four states.",
+        "The acceleration is computed once. Compute it again at each of the four states.",
         first_force,
     ),
     Mistake("Euler", "This is explicit Euler: only f1 counts.", euler),

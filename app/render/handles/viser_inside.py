@@ -250,9 +250,11 @@ def watch_messages(server: viser.ViserServer, take: Callable[[ViserMessage], boo
         def send_together(parts: Sequence[ViserMessage]) -> None:
             # Within, viser wakes its event loop once and not for each message.
             start()
-            for message in parts:
-                send(message)
-            end()
+            try:
+                for message in parts:
+                    send(message)
+            finally:
+                end()
 
         connection.queue_message = queue_message
         return send_together

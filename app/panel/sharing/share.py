@@ -131,9 +131,13 @@ class Share:
                     del self.confirmed[identity]
 
     async def on_inbox(self, event: ViserEvent) -> None:
-        """Take an address ("?scene=...") or a file ("{...}") from a page, below a line with the page's own word."""
-        (page, _, text), client = self.inbox.value.partition("\n"), event.client
-        if not text or client is None:
+        """Take an address ("?scene=...") or a file ("{...}") from a page, below a line with its word and a number.
+
+        A page sends the last text to the next panel too: a closed panel takes none.
+        """
+        (sender, _, text), client = self.inbox.value.partition("\n"), event.client
+        page, _, number = sender.partition(" ")
+        if not text or client is None or not self.settings.is_open or not self.changes.is_new(page, number):
             return
         self.inbox.value = ""  # so that the same text can come again
         try:

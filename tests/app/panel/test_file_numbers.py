@@ -77,12 +77,20 @@ def test_a_setup_holds_the_changes_of_the_file_that_it_names() -> None:
     assert missing_files(setup, FILE) == ""
 
 
-def test_a_run_of_the_command_line_has_the_changes_of_its_setup(tmp_path: Path) -> None:
+def test_a_run_of_the_command_line_has_the_changes_of_its_setup(tmp_path: Path, capsys: Any) -> None:
     path, kind = tmp_path / "changed.json", scene_named("mooring")
     path.write_text(write_file(kind, edited()), "utf-8")
     words = ["run", "mooring", "--preset", str(path), "--mooring", str(PATH), "--seconds", "1", "--out", "run.npz"]
     params = read_params(kind, make_parser().parse_args(words))
     assert params.file_changes == edited().file_changes
+    assert "without the changes" not in capsys.readouterr().err
+    name, written = content(edited())
+    (tmp_path / name).write_bytes(written)
+    words[words.index(str(PATH))] = str(tmp_path / name)
+    again = read_params(kind, make_parser().parse_args(words))
+    assert again.file_changes == ()
+    assert lines_of(again) == lines_of(params)
+    assert f"{name}: without the changes of the set-up, which are those of {PATH.name}" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

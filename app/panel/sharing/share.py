@@ -142,14 +142,15 @@ class Share:
         self.inbox.value = ""  # so that the same text can come again
         try:
             subject = self.read(text)
-        except ValueError as reason:
+            is_shown = isinstance(subject, Setup) and self.settings.shows(subject)
+        except ValueError as reason:  # also of a file that cannot have the set-up's changes
             self.refuse(client, str(reason))
             return
-        missing = missing_files(subject, self.settings.params) if isinstance(subject, Setup) else ""
-        if missing:
-            client.add_notification("A file is missing", missing, color="orange", auto_close_seconds=30.0)
-        shown = self.settings.kind.name, self.settings.params
-        if isinstance(subject, Setup) and (subject.scene, subject.params) == shown:
+        if isinstance(subject, Setup):
+            missing = missing_files(subject, self.settings.params_with_files(subject.scene))
+            if missing:
+                client.add_notification("A file is missing", missing, color="orange", auto_close_seconds=30.0)
+        if isinstance(subject, Setup) and is_shown:
             self.turn(subject)
             self.place(subject, client)
         elif isinstance(subject, str) and self.beside is None:

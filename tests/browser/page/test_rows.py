@@ -20,6 +20,7 @@ from app.lab.course.task import load_tasks
 from app.lab.course.workbook import Workbook
 from app.lab.report.classroom import Classroom
 from app.messages import Pause, Play
+from app.render import client_page
 from app.render.scripts import before_tags
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import read_query
@@ -161,7 +162,8 @@ def first_scripts() -> Iterator[list[str]]:
     """Scripts that run before all others in the page of each browser."""
     scripts = [HOOK]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(served_page, "before_tags", lambda: f"<script>{';'.join(scripts)}</script>{before_tags()}")
+        ours = lambda names: f"<script>{';'.join(scripts)}</script>{before_tags(names)}"  # noqa: E731
+        patch.setattr(client_page, "before_tags", ours)
         served_page.covered.cache_clear()
         yield scripts
     served_page.covered.cache_clear()

@@ -124,9 +124,13 @@ def check_files_named(arguments: argparse.Namespace) -> None:
 
 
 def say_missing_files(setup: Any, arguments: argparse.Namespace | None = None) -> None:
-    """Say on the error stream which files a set-up had, except for those that options give."""
+    """Say on the error stream which files of a set-up no option gives, and which given file lacks its changes."""
     from app.scenes.setups import missing_files
 
+    for option, name in setup.files.items() if setup.changes else ():
+        given = getattr(arguments, option, None)
+        if given is not None and given.name != name:
+            say_on_error_stream(f"{given.name}: without the changes of the set-up, which are those of {name}")
     others = {option: file for option, file in setup.files.items() if getattr(arguments, option, None) is None}
     text = missing_files(setup._replace(files=others))
     if text:

@@ -2,6 +2,7 @@
 
 import dataclasses
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
 import viser
@@ -16,6 +17,7 @@ from app.scenes.own_setups import own_files
 from app.scenes.setups import FILES, Setup, file_name, make_setup, with_changes
 from sim.parameters import changed_names, clamp_value, effect_of_change, parameters_of
 
+NO_PARAMS: Mapping[str, BaseParams] = MappingProxyType({})
 OWN = "Mine: {}"  # name of the user's own set-ups in the list of presets
 
 # Takes a scene to show, optional parameters, and an optional camera for one browser.
@@ -45,10 +47,14 @@ class SceneSettings:
         params: BaseParams,
         post: PostCommand,
         open_scene: OpenScene = lambda name, params, camera: None,
+        first_params: Mapping[str, BaseParams] = NO_PARAMS,
     ) -> None:
-        """post: takes commands for the simulation. open_scene: takes another scene to show. Both return at once."""
+        """post: takes commands for the simulation. open_scene: takes another scene to show. Both return at once.
+
+        first_params: by scene, with the files that the lab has for other scenes.
+        """
         self.server, self.kind, self.post, self.open_scene = server, kind, post, open_scene
-        self.params = params
+        self.params, self.first_params = params, first_params
         self.own = own_presets(kind)  # name in the list -> the user's set-up
         # Name of the last preset loaded; at first the one nearest to the parameters.
         self.loaded = self.nearest_preset(params)
@@ -67,8 +73,19 @@ class SceneSettings:
         return self.params_of_setup(self.own.get(preset) or make_setup(self.kind, preset))
 
     def params_of_setup(self, setup: Setup) -> BaseParams:
-        """The parameters of a set-up of this scene, with the file that is open, changed as the set-up says."""
-        return with_changes(with_fields_of(self.params, setup.params), setup)
+        """The parameters of a set-up, with the file that the lab has for its scene, changed as the set-up says.
+
+        Raises ValueError as `with_changes`.
+        """
+        return with_changes(with_fields_of(self.params_with_files(setup.scene), setup.params), setup)
+
+    def shows(self, setup: Setup) -> bool:
+        """True if the parameters are those of a set-up. Raises ValueError as `with_changes`."""
+        return setup.scene == self.kind.name and self.params_of_setup(setup) == self.params
+
+    def params_with_files(self, scene: str) -> BaseParams | None:
+        """Parameters of a scene that have the files of the lab for it, if there are any."""
+        return self.params if scene == self.kind.name else self.first_params.get(scene)
 
     def nearest_preset(self, params: BaseParams) -> str:
         """Name of the preset nearest to the parameters."""
@@ -133,10 +150,10 @@ class SceneSettings:
     def show_setup(self, setup: Setup, client: int | None) -> None:
         """Show a set-up from a link or a file, with its camera for one browser. Raises ValueError as `with_changes`."""
         camera = None if setup.camera is None or client is None else ClientCamera(client, *setup.camera)
-        if setup.scene != self.kind.name:
-            self.open_scene(setup.scene, setup.params, camera)
-            return
         params = self.params_of_setup(setup)
+        if setup.scene != self.kind.name:
+            self.open_scene(setup.scene, params, camera)
+            return
         self.load_params(params, setup.preset or next(iter(self.kind.presets)), () if camera is None else (camera,))
 
     def open_first_view_of(self, scene: str) -> None:
@@ -199,7 +216,9 @@ def own_presets(kind: AnyKind) -> dict[str, Setup]:
     return {OWN.format(name): setup for name, (_, setup) in own_files(kind).items()}
 
 
-def with_fields_of(old: BaseParams, new: BaseParams) -> BaseParams:
-    """`new`, with the hull from a file, which is not a parameter, as in `old`."""
+def with_fields_of(old: BaseParams | None, new: BaseParams) -> BaseParams:
+    """`new` with the files of `old` and the other fields that are not parameters."""
+    if old is None:
+        return new
     kept = {f.name: getattr(old, f.name) for f in dataclasses.fields(old) if "parameter" not in f.metadata}
     return dataclasses.replace(new, **kept)

@@ -21,7 +21,7 @@ import viser
 
 from app.render.handles.viser_inside import uuid_of
 from app.render.handles.viser_types import GuiHandle, ViserEvent
-from app.render.markup.html import fill
+from app.render.markup.html import Html, fill
 
 LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
@@ -40,6 +40,7 @@ class ShaderInjector:
     def __init__(self, server: viser.ViserServer) -> None:
         self._server = weakref.ref(server)
         self._watched: dict[str, float] = {}  # node -> since when it is watched [s]
+        self._sky = ""  # name of the sky that lights the scene; "" before the first picture
         self._seen: dict[int, float] = {}  # client id -> when it was first looked for [s]
         self._drawn: dict[int, frozenset[str]] = {}  # client id -> nodes that it draws with their shader
         self.is_recorded = False  # True if drawing is only recorded, for pages that have the script
@@ -50,23 +51,28 @@ class ShaderInjector:
         """Begin a scene: a new hidden field through which pages report, so nothing is left of an earlier one."""
         self._watched.clear()
         self._drawn.clear()
+        self._sky = ""
         inbox: GuiHandle = server.gui.add_text("Shaders", "", multiline=True, visible=False)
         self._inbox = uuid_of(inbox)
-        self._field: GuiHandle = server.gui.add_html(self._words(), order=LAST)
+        self._field: GuiHandle = server.gui.add_html(str(self._words()), order=LAST)
 
         @inbox.on_update
         async def _(event: ViserEvent) -> None:
             _, *names = inbox.value.split("\n")  # the page's own word comes first: two pages may report the same
             self._drawn[event.client_id] = frozenset(names)
 
-    def _words(self) -> str:
-        """The field of the page: where it reports to, and the nodes of a whole picture (`js/scene/frames.js`)."""
+    def _words(self) -> Html:
+        """The field of the page: where it reports to, and the parts of a whole picture."""
+        return fill('<span data-springtide-shaders="{}">{}</span>', self._inbox, self.whole_picture())
+
+    def whole_picture(self) -> Html:
+        """The sky and the nodes that a whole picture has, as the page reads them (`js/scene/frames.js`)."""
         names = "\n".join(self._watched)
-        return str(fill('<span data-springtide-shaders="{}" data-springtide-nodes="{}"></span>', self._inbox, names))
+        return fill('<span data-springtide-sky="{}" data-springtide-nodes="{}"></span>', self._sky, names)
 
     def _tell(self) -> None:
-        """Show the page another list of nodes."""
-        words = self._words()
+        """Show the page other parts of a whole picture."""
+        words = str(self._words())
         if self._field.content != words:
             self._field.content = words
 
@@ -74,6 +80,11 @@ class ShaderInjector:
         """A browser has left."""
         self._drawn.pop(client.client_id, None)
         self._seen.pop(client.client_id, None)
+
+    def expect_sky(self, name: str) -> None:
+        """Expect this sky over the scene; called before it is sent, since a page names its skies as they arrive."""
+        self._sky = name
+        self._tell()
 
     def watch(self, name: str) -> None:
         """Expect every browser to draw this node with its shader from now on."""
@@ -108,11 +119,15 @@ def disable_shaders(server: viser.ViserServer) -> None:
     _disabled.add(server)
 
 
-def record_shaders(server: viser.ViserServer) -> None:
-    """Leave out vertices for browsers without shaders: this server's messages are recorded, with the script."""
+def record_shaders(server: viser.ViserServer) -> ShaderInjector:
+    """Leave out vertices for browsers without shaders: this server's messages are recorded, with the script.
+
+    Returns the server's shaders.
+    """
     injector = injector_of(server)
     assert injector is not None
     injector.is_recorded = True
+    return injector
 
 
 def injector_of(server: viser.ViserServer) -> ShaderInjector | None:

@@ -10,6 +10,7 @@ import functools
 import json
 import posixpath
 import re
+from collections.abc import Iterable
 from importlib import resources
 from urllib.parse import quote
 
@@ -18,8 +19,9 @@ from app.render.markup.html import Html
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
 
 ROOMS = ("core", "page", "panel", "scene", "sea", "shading")
-BEFORE = ("failures.js", "address.js", "connection.js")
-PAGE, SCENE = "page/main.js", "scene/main.js"  # entries: of a lab, which starts the scene too, and of a replay
+FAILURES = "failures.js"
+BEFORE = (FAILURES, "address.js", "connection.js")  # of a lab
+PAGE, REPLAY = "page/main.js", "page/replay.js"  # the modules that start a lab and a replay
 SHARED = {
     "WATER_UNIFORMS": WATER_UNIFORMS,
     "RAIN_UNIFORMS": RAIN_UNIFORMS,
@@ -27,7 +29,7 @@ SHARED = {
     "DARK_LIFT": DARK_LIFT,
     "LUMA": LUMA,
 }
-IMPORTED = re.compile(r'(\bfrom |\bimport\()"(\.{1,2}/[^"]+)"')
+IMPORTED = re.compile(r'(\bfrom |\bimport[ (])"(\.{1,2}/[^"]+)"')
 KEPT = " !\"$&'()*+,/:;=?@[]^`{|}~\\"  # characters that a data: address may have
 
 
@@ -69,7 +71,7 @@ def tags(entry: str) -> Html:
     return Html(f'{import_map(modules())}<script type="module">import "{name_of(entry)}";</script>')
 
 
-def before_tags() -> Html:
-    """The scripts that run before viser's client."""
+def before_tags(names: Iterable[str]) -> Html:
+    """Scripts in `js/before`, which run before viser's client."""
     folder = resources.files("app.render") / "js" / "before"
-    return Html("".join(f"<script>{(folder / name).read_text('utf-8')}</script>" for name in BEFORE))
+    return Html("".join(f"<script>{(folder / name).read_text('utf-8')}</script>" for name in names))

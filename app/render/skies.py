@@ -2,10 +2,12 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import viser
 
 from app.render.cameras import set_clipping
+from app.render.injection import injector_of
 from app.render.material import HAZE_DISTANCE, RGB, Material
 
 CAMERA_RANGE = 20_000.0  # [m] at which the camera's view ends; viser's own 1000 m would cut the horizon off
@@ -101,6 +103,18 @@ SKIES = {
 }
 
 
+def light_scene(server: viser.ViserServer, name: str, **how: Any) -> None:
+    """Light the scene by an environment map of viser's. how: as for its `configure_environment_map`.
+
+    The map should be its background or have another intensity than 1, as viser's page has a map of its own without
+    background at intensity 1 until this one arrives (`js/scene/photograph.js`).
+    """
+    injector = injector_of(server)
+    if injector is not None:
+        injector.expect_sky(name)
+    server.scene.configure_environment_map(name, **how)  # type: ignore[arg-type]
+
+
 def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Material:
     """Set environment map, lights, haze and camera range; returns a material lit by that sky.
 
@@ -109,13 +123,7 @@ def set_sky(server: viser.ViserServer, name: str, azimuth: float = 0.0) -> Mater
     photo = SKIES[name]
     turn = azimuth - (1.5 * math.pi - 2 * math.pi * (photo.sun_column - 0.5))
     wxyz = (math.cos(turn / 2), 0.0, 0.0, math.sin(turn / 2))
-    server.scene.configure_environment_map(
-        name,  # type: ignore[arg-type]
-        background=True,
-        background_blurriness=0.3,
-        background_wxyz=wxyz,
-        environment_wxyz=wxyz,
-    )
+    light_scene(server, name, background=True, background_blurriness=0.3, background_wxyz=wxyz, environment_wxyz=wxyz)
     server.scene.configure_default_lights(enabled=True, cast_shadow=False)
     # This haze is for everything but the water, which has its own.
     server.scene.configure_fog(0.1 * HAZE_DISTANCE, 1.6 * HAZE_DISTANCE, color=photo.horizon)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from app.render.cameras import NEAR, set_clipping
 from app.render.handles.of_handles import OfHandles
 from app.render.handles.viser_inside import update_node
+from app.render.skies import light_scene
 from app.render.staff import Staff
 
 Colour = tuple[int, int, int]  # sRGB, 0 to 255
@@ -69,7 +70,7 @@ class Surroundings:
         """near: [m] from the camera, where the picture begins."""
         scene = server.scene
         # viser keeps the light and the fog of the scene before, here those of a sea.
-        scene.configure_environment_map("studio", background=False, environment_intensity=0.4)
+        light_scene(server, "studio", background=False, environment_intensity=0.4)
         scene.configure_default_lights(enabled=False, cast_shadow=False)
         self.sun = scene.add_light_directional("/sun", position=SUN, intensity=SUN_INTENSITY, cast_shadow=True)
         scene.add_light_directional("/fill", position=FILL, intensity=FILL_INTENSITY)

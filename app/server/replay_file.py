@@ -18,10 +18,11 @@ from app.panel.recording.files import REPLAY_DURATION
 from app.panel.recording.recorder import RecordedFrame, arrays_of_frame
 from app.panel.recording.recording_files import Plotted, plot_charts
 from app.render.cameras import place_cameras
+from app.render.client_page import with_ours
 from app.render.handles.viser_inside import change_buffers
 from app.render.injection import record_shaders
 from app.render.markup.html import Html, fill, join
-from app.render.scripts import SCENE, tags
+from app.render.scripts import FAILURES, REPLAY
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
@@ -29,6 +30,7 @@ from app.scenes.setups import setup_block, write_value
 from app.server.web.guard import open_server
 from sim.parameters import in_words, parameters_of
 
+COVER_STYLE = "cover.css"
 MAX_FRAMES = 200  # of a replay
 MAX_RAW_BYTES = 80e6  # of the arrays of all frames, before they are packed: a file of about 20 MB
 TOLERANCE = 1e-3  # [s] of the time between two frames
@@ -81,11 +83,12 @@ def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted
     chosen = thinned(frames)
     server = open_server("127.0.0.1", 0).server
     try:
-        record_shaders(server)
+        injector = record_shaders(server)
         params = chosen[-1].params
         with contextlib.closing(view_named(kind.name)(server, lambda command: None)) as view:
             place_cameras(server, *view.first_view(params), view.FIELD_OF_VIEW)
             view.show(chosen[0].frame)
+            whole = injector.whole_picture()
             recording = server.get_scene_serializer()
             for before, kept in itertools.pairwise(chosen):
                 recording.insert_sleep(kept.wall - before.wall)
@@ -98,9 +101,11 @@ def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted
         with contextlib.redirect_stdout(io.StringIO()):  # viser would say that a server has stopped
             server.stop()
     about = about_html(kind, params, plotted, chosen[0].time, chosen[-1].time)
-    return page.replace("<title>Viser</title>", str(fill("<title>Springtide: {}</title>", kind.title)), 1).replace(
-        "</body>", f"{tags(SCENE)}{about}{setup_block(kind, params)}</body>", 1
-    )
+    ours = with_ours(
+        page, title=f"Springtide: {kind.title}", words=f"Opening {kind.title} …", styles=(COVER_STYLE,),
+        before=(FAILURES,), entry=REPLAY, last=f"{whole}{about}{setup_block(kind, params)}",
+    )  # fmt: skip
+    return ours or page  # viser's page as it is, if it is not as expected
 
 
 def about_html(kind: AnyKind, params: BaseParams, plotted: Plotted, start: float, end: float) -> Html:

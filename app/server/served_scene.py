@@ -48,6 +48,7 @@ class SceneHost(Protocol):
     changes: SceneSwitches
     workbook: Workbook | None
     session: "Session | None"
+    first_params: dict[str, BaseParams]
 
     @property
     def beside(self) -> ComparisonCalls | None:
@@ -98,7 +99,7 @@ class ServedScene:
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
         self.view = view_named(kind.name)(self.server, self.commands.put)
         self.cameras = CameraPlacing(self.server, self.view, params)
-        self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want)
+        self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want, viewer.first_params)
         self.panel = Panel(
             self.server, self.view, self.settings, scenes=NAMES, workbook=viewer.workbook, session=viewer.session,
             wake=lambda: self.loop.run.snapshots.fresh.set(), make_replay=replay_html, changes=viewer.changes,

@@ -17,7 +17,7 @@ from app.messages import BaseParams, Command, Release, Reset, StudentAnswer
 from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
-from app.panel.settings import SceneSettings
+from app.panel.settings import SceneSettings, with_fields_of
 from app.panel.sharing.changes import SceneSwitches
 from app.panel.sharing.compare import ComparisonCalls, PaneWords
 from app.render.cameras import ClientCamera, place_client_camera
@@ -91,7 +91,7 @@ class Viewer:
         self.ended = False
         self.came = threading.Event()  # set when a browser connects, or the lab ends
         self.current: ServedScene | None = None  # the last scene opened; it may be closed
-        self.first_params: dict[str, BaseParams] = {}  # scene -> its first parameters
+        self.first_params: dict[str, BaseParams] = {}  # scene -> its first parameters, with the files as last changed
         self.changing = threading.Lock()
         self.requests = SceneRequests()
         threading.Thread(target=self.open_wanted, name="scene changes", daemon=True).start()
@@ -124,6 +124,7 @@ class Viewer:
             asked = self.requests.number
             try:
                 kind = scene_named(name)
+                self.keep_files()
                 if params is None:
                     params = self.first_params.get(name) or (make_setup(kind).params if first_look else kind.params())
                 elif not first_look:
@@ -139,6 +140,11 @@ class Viewer:
             except BaseException as error:
                 self.show_failure(name, error)
                 raise
+
+    def keep_files(self) -> None:
+        """Keep the open scene's files as they are, for the next time that it is opened."""
+        if self.current is not None and (first := self.first_params.get(name := self.current.settings.kind.name)):
+            self.first_params[name] = with_fields_of(self.current.settings.params, first)
 
     def is_given_up(self, asked: int) -> bool:
         """True if the lab has ended, or another scene was requested after the request `asked`, while one is open."""

@@ -153,13 +153,10 @@ class Records:
     def trial(self, listed: Listed, path: Path) -> Trial | None:
         """The tests for a fault in the source at `path`; None without its line."""
         module = listed.fault.module
-        line = listed.fault.line(path.read_text("utf-8"))
-        if line is None:
+        around = reached_from(listed, path)
+        if around is None:
             return None
-        sources = {
-            name: read_source(ROOT / name, name) for name in distances(module) if name.startswith(("app/", "sim/"))
-        }
-        functions, with_kernels = reached(module, line + 1, sources)
+        functions, with_kernels = around
         near = files_for(module)
 
         def calling(*, plain: bool) -> list[str]:
@@ -217,6 +214,22 @@ class Records:
                 rest.append(test)
         parts = [by_files(part) for part in (first, rest)]
         return [Part(plain, part, max((self.time(test, plain=plain) for test in part), default=0.0)) for part in parts]
+
+
+def reached_from(listed: Listed, path: Path) -> tuple[set[str], bool] | None:
+    """What `reached` says of a fault's line in the source at `path`; None without its line."""
+    module = listed.fault.module
+    line = listed.fault.line(path.read_text("utf-8"))
+    if line is None:
+        return None
+    own = [name for name in distances(module) if name.startswith(("app/", "sim/"))]
+    return reached(module, line + 1, {name: read_source(ROOT / name, name) for name in own})
+
+
+def trial_of_finder(listed: Listed, path: Path, finder: str) -> Trial | None:
+    """The test that found a fault, alone, compiled, as all tests run without being told otherwise."""
+    around = reached_from(listed, path)
+    return None if around is None else Trial(listed, [Part(False, [finder], 0.0)], not around[1])
 
 
 def by_files(tests: list[str]) -> list[str]:

@@ -17,9 +17,9 @@ from typing import Any
 
 from sim.cache import own_folder
 from sim.files import replacing
-from tests.faults.choosing import Records, Trial
+from tests.faults.choosing import Records, Trial, trial_of_finder
 from tests.faults.drawing import ROOT, SEED, Listed, read_list
-from tests.faults.trial import DIED, Mode, Outcome, run_tests
+from tests.faults.trial import DIED, MISSING, Mode, Outcome, run_tests
 
 RESULTS = ROOT / "assets" / "bench" / "faults.csv"
 COLUMNS = ("module", "kind", "before", "occurrence", "after", "result", "by", "seconds")
@@ -104,6 +104,9 @@ class Worker:
                 # Where kernels are compiled, nobody knows how long a test takes.
                 timeout = max(SLOWEST, SLOWER * part.longest) if trial.same_kernels else left
                 outcome = self.run(part.tests, left, mode, timeout)
+                if outcome.failed == MISSING:  # a case with another name is none that fails
+                    files = list(dict.fromkeys(test.partition("::")[0] for test in part.tests))
+                    outcome = self.run(files, end - time.monotonic(), mode, timeout)
                 if outcome.failed and not (part.plain and outcome.crash):
                     return "found", outcome.failed
                 if not outcome.ended and not part.plain:
@@ -183,6 +186,46 @@ def in_random_order(faults: list[Listed]) -> list[Listed]:
     return sorted(faults, key=lambda listed: hashlib.sha256(f"{SEED} {key_of_fault(listed)}".encode()).digest())
 
 
+def names_of_tests(marks: str) -> set[str]:
+    """The tests of the checkout that pytest chooses by an expression of marks."""
+    command = [sys.executable, "-m", "pytest", "--collect-only", "-m", marks]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8", check=True).stdout
+    return {line for line in listed.split("\n") if "::" in line}
+
+
+def write_result(listed: Listed, result: str, by: str, took: float) -> None:
+    key = key_of_fault(listed)
+    latest = read_results()  # another run may have written since
+    latest[key] = dict(zip(COLUMNS, (*key, result, by, f"{took:.1f}"), strict=True))
+    write_results(latest)
+    print(f"{result:10} {took:6.1f} s  {listed.fault.module}: {listed.fault.after}  [{by}]", flush=True)
+
+
+def not_found_again(work: Path, chosen: list[Listed], long: set[str], *, workers: int, limit: float) -> list[Listed]:
+    """Those of the faults, all found before, that the test that found each no longer finds, or that a long test found.
+
+    long: the tests that README's command leaves out.
+    """
+    results = read_results()
+    quick = names_of_tests("not stress and not long and not browser")
+    jobs, left = [], []
+    for listed in chosen:
+        finder = results[key_of_fault(listed)]["by"]
+        trial = trial_of_finder(listed, ROOT / listed.fault.module, finder) if finder in quick else None
+        if trial is None:
+            left.append(listed)
+        else:
+            jobs.append(trial)
+    print(f"{len(jobs)} tests to try again, {len(left)} faults without one", flush=True)
+    with processes(work, workers, limit) as pool:
+        for listed, result, by, took in pool.imap_unordered(try_one, jobs):
+            if result == "found" and by not in long:
+                write_result(listed, result, by, took)
+            else:
+                left.append(listed)
+    return left
+
+
 def wanted(listed: Listed, results: dict[tuple[str, ...], dict[str, str]], start: str, only: str) -> bool:
     """Whether to try a fault: one without a result, or with the result `only`."""
     row = results.get(key_of_fault(listed))
@@ -192,14 +235,20 @@ def wanted(listed: Listed, results: dict[tuple[str, ...], dict[str, str]], start
 def run_faults(work: Path, start: str, only: str, *, workers: int, limit: float, most: int) -> None:
     """Try each fault of the list that has no result yet, of modules that begin with `start`.
 
-    only: "": those without a result; "not found" or "open": those with this result, again. limit: time of a fault [s].
-    most: so many faults. Each result is written at once, so that a run that is interrupted goes on where it was.
+    only: "": those without a result, or those with this result, again: of those that were found, at first the test that
+    found each alone. limit: time of a fault [s]. most: so many faults. Each result is written at once, so that a run
+    that is interrupted goes on where it was. "long": found by a test that README's command leaves out.
     """
     print(f"seed {SEED}", flush=True)
     work.mkdir(parents=True, exist_ok=True)
     link_cache(own_folder(), work / "cache")
     records, results = Records(work), read_results()
+    long = names_of_tests("long and not stress")
     chosen = [listed for listed in in_random_order(read_list()) if wanted(listed, results, start, only)][:most]
+    if only == "found":
+        chosen = not_found_again(work, chosen, long, workers=workers, limit=limit)
+    if not chosen:
+        return
     with processes(work, workers, limit) as pool:
         missing = records.missing()
         for number, ((name, plain), outcome) in enumerate(pool.imap_unordered(record_one, missing), 1):
@@ -208,19 +257,12 @@ def run_faults(work: Path, start: str, only: str, *, workers: int, limit: float,
             how = "plain" if plain else "compiled"
             print(f"({number} of {len(missing)}, {how}: {len(outcome.durations)} tests of {name})", flush=True)
 
-        def write(listed: Listed, result: str, by: str, took: float) -> None:
-            key = key_of_fault(listed)
-            latest = read_results()  # another run may have written since
-            latest[key] = dict(zip(COLUMNS, (*key, result, by, f"{took:.1f}"), strict=True))
-            write_results(latest)
-            print(f"{result:10} {took:6.1f} s  {listed.fault.module}: {listed.fault.after}  [{by}]", flush=True)
-
         jobs = []
         for listed in chosen:
             trial = records.trial(listed, ROOT / listed.fault.module)
             if listed.equivalent:
-                write(listed, "equivalent", listed.equivalent, 0.0)
+                write_result(listed, "equivalent", listed.equivalent, 0.0)
             elif trial is not None:
                 jobs.append(trial)
-        for outcome in pool.imap_unordered(try_one, jobs):
-            write(*outcome)
+        for listed, result, by, took in pool.imap_unordered(try_one, jobs):
+            write_result(listed, "long" if by in long else result, by, took)

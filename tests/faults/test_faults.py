@@ -1,16 +1,19 @@
 """The list of faults to plant: that it is one, and that each kind of fault is what it says."""
 
+import contextlib
 import math
 from collections import Counter
+from types import SimpleNamespace
 
 import pytest
 
-from tests.faults import table
+from tests.faults import running, table
 from tests.faults.calls import reached, read_source
-from tests.faults.choosing import files_for
+from tests.faults.choosing import Part, Trial, files_for
 from tests.faults.drawing import LINES_PER_FAULT, ROOT, Listed, drawn, modules, read_list
 from tests.faults.running import key_of_fault
 from tests.faults.sites import Fault, faults_in
+from tests.faults.trial import MISSING, Outcome
 
 CASES = {
     "y = 2.0 * x": {("constant", "y = 2.2 * x"), ("operator", "y = 2.0 / x")}, "y = a + b": {("sign", "y = a - b")},
@@ -133,4 +136,47 @@ def test_untried_and_open_faults_count_as_not_found(monkeypatch, capsys):
     monkeypatch.setattr(table, "read_list", lambda: listed)
     monkeypatch.setattr(table, "read_results", lambda: rows)
     table.print_table()
-    assert capsys.readouterr().out.splitlines()[-1] == "| all | 1 | 1 | 1 | 1 | 0 | 25 % |"
+    assert capsys.readouterr().out.splitlines()[-1] == "| all | 1 | 0 | 1 | 1 | 1 | 0 | 25 % |"
+
+
+def test_what_was_found_is_found_again_by_its_own_test_or_is_left(monkeypatch, tmp_path):
+    faults = [one for one in read_list() if not one.equivalent][:5]
+    finders = ("quick", "gone", "long", "blind", "slow")
+    rows = {key_of_fault(one): {"by": by} for one, by in zip(faults, finders, strict=True)}
+    outcomes = {"quick": ("found", "quick"), "blind": ("not found", ""), "slow": ("found", "long")}
+    tried, written = [], []
+
+    def try_one(trial):
+        [part] = trial.parts
+        tried.extend(part.tests)
+        return trial.listed, *outcomes[part.tests[0]], 1.0
+
+    monkeypatch.setattr(running, "names_of_tests", lambda marks: {"quick", "blind", "slow"})
+    monkeypatch.setattr(running, "read_results", lambda: rows)
+    monkeypatch.setattr(running, "try_one", try_one)
+    monkeypatch.setattr(running, "write_result", lambda *row: written.append(row))
+    monkeypatch.setattr(running, "processes", lambda *_: contextlib.nullcontext(SimpleNamespace(imap_unordered=map)))
+    left = running.not_found_again(tmp_path, faults, {"long"}, workers=1, limit=1.0)
+    assert tried == ["quick", "blind", "slow"]
+    assert written == [(faults[0], "found", "quick", 1.0)]
+    assert sorted(left) == sorted(faults[1:])
+
+
+def test_a_case_that_has_another_name_by_a_fault_has_not_found_it(monkeypatch, tmp_path):
+    fault = Fault("m.py", "sign", "y = x + 1", 0, "y = x - 1")
+    (tmp_path / "m.py").write_text("y = x + 1\n", "utf-8")
+    worker = object.__new__(running.Worker)
+    worker.tree = worker.sound = worker.cache = tmp_path
+    worker.limit = 10.0
+    asked = []
+
+    def run(tests, seconds, mode, timeout):
+        assert "x - 1" in (tmp_path / "m.py").read_text("utf-8")
+        asked.append(tests)
+        return Outcome({}, MISSING if len(asked) == 1 else "", False, True)
+
+    monkeypatch.setattr(worker, "run", run)
+    trial = Trial(Listed(fault, ""), [Part(False, ["t.py::a[1]", "t.py::b", "s.py::c"], 0.0)], True)
+    assert worker.try_fault(trial) == ("not found", "")
+    assert asked == [["t.py::a[1]", "t.py::b", "s.py::c"], ["t.py", "s.py"]]
+    assert (tmp_path / "m.py").read_text("utf-8") == "y = x + 1\n"

@@ -7,11 +7,12 @@ function makePage() {
   /** @type {(() => void)[]} */
   const asked = []; // by requestAnimationFrame
   const nothing = { observe() {}, disconnect() {}, querySelectorAll: () => [], querySelector: () => null };
-  const scene = { environment: {}, traverse() {} };
+  const scene = { environment: {}, background: {}, environmentIntensity: 1, traverse() {} };
   const camera = { position: 0, quaternion: 0, projectionMatrix: 0 };
   const element = Object.assign(new EventTarget(), { style: {}, width: 4, height: 3, clientWidth: 4, clientHeight: 3 });
   const documentElement = { classList: { contains: () => false } };
-  const SIGNALED = 1;
+  const SIGNALED = 1, told = { springtideSky: "park", springtideNodes: "" }; // by the server
+  const querySelector = (/** @type {string} */ found) => (found === "[data-springtide-sky]" ? { dataset: told } : null);
   let drawn = 0; // fences up to this number are signalled
   let fences = 0;
   const gl = {
@@ -32,11 +33,11 @@ function makePage() {
     requestAnimationFrame: (/** @type {() => void} */ call) => void asked.push(call),
     setInterval: () => 0,
     location: new URL("http://127.0.0.1/"),
-    document: Object.assign(new EventTarget(), { ...nothing, documentElement, visibilityState: "visible" }),
+    document: Object.assign(new EventTarget(), { ...nothing, documentElement, visibilityState: "visible", querySelector }),
     window: globalThis,
     addEventListener() {},
     devicePixelRatio: 1,
-    __viserMutable: { scene, camera, requestRender() {}, getRenderRequestState: "ready" },
+    __viserMutable: { scene, camera, nodeRefFromName: {}, requestRender() {}, getRenderRequestState: "ready" },
   });
   return {
     renderer,
@@ -52,21 +53,35 @@ function makePage() {
     },
     isDrawing: () => drawn < fences,
     scene,
+    told,
   };
 }
 
 test("the whole picture is shown from the end of its first frame on, also where the next one begins at once", async () => {
   const page = makePage(), life = new Life();
   const { paceFrames } = await import("./js/scene/frames.js");
+  const { nameSky } = await import("./js/scene/photograph.js");
   const { springtide } = await import("./js/core/springtide.js");
   paceFrames(/** @type {any} */ (page.renderer), life);
+  page.renderer.render = ((earlier) => (/** @type {any} */ scene, /** @type {any} */ camera) => {
+    nameSky(scene); // as the first part of each frame does
+    earlier(scene, camera);
+  })(page.renderer.render);
   const showsWhole = () => springtide.showsWhole?.();
   assert.equal(showsWhole(), false);
   Object.assign(page.scene, { environment: null }); // the sky is not there
   page.render();
   page.draw();
   assert.equal(showsWhole(), false);
-  Object.assign(page.scene, { environment: {} });
+  Object.assign(page.scene, { environment: {}, background: null }); // viser's own sky, which no lab has sent
+  page.render();
+  page.draw(true);
+  assert.equal(showsWhole(), false);
+  page.scene.background = page.scene.environment; // the settings of the lab's sky come before its photograph
+  page.render();
+  page.draw(true);
+  assert.equal(showsWhole(), false);
+  page.scene.environment = {};
   page.render();
   assert.equal(showsWhole(), false); // the first whole frame is being drawn
   for (let k = 0; k < 3; k++) {
@@ -77,9 +92,17 @@ test("the whole picture is shown from the end of its first frame on, also where 
   }
   page.draw(true);
   assert.equal(showsWhole(), true);
-  Object.assign(page.scene, { environment: null }); // another scene
+  page.told.springtideSky = "sunset"; // another scene, whose photograph is not there
   page.render();
   assert.equal(showsWhole(), false);
+  page.draw(true);
+  assert.equal(showsWhole(), false);
+  page.scene.environment = {};
+  page.render();
+  page.draw(true);
+  assert.equal(showsWhole(), true);
+  page.told.springtideNodes = "/sea"; // which has no node here
+  page.render();
   page.draw(true);
   assert.equal(showsWhole(), false);
   life.end();

@@ -9,7 +9,7 @@ import pytest
 from sim.ocean import SPECTRA, RadialSea, Sea, draw_waves
 from sim.ocean.nonlinear import NonlinearSea
 from sim.water import Water
-from sim.waves import Waves
+from sim.waves import DEEPEST, Waves, exponential
 from tests.refusals import assert_refused
 
 ONE = np.ones(1)
@@ -27,6 +27,13 @@ def angles(waves: Waves) -> np.ndarray:
     """theta (points, waves) [rad] in extended precision."""
     k = [np.asarray(one, np.longdouble) for one in (waves.kx, waves.ky)]
     return POINTS[:, :1] * k[0] + POINTS[:, 1:] * k[1] - np.asarray(waves.omega, np.longdouble) * T + waves.phase
+
+
+def test_the_exponential_of_a_depth_is_that_of_math():
+    x = np.linspace(-DEEPEST, 0.0, 401)
+    formula = getattr(exponential, "py_func", exponential)  # the formula itself, which is expanded into other kernels
+    np.testing.assert_allclose(formula(x), np.exp(x), rtol=0.0, atol=1e-13)
+    assert formula(0.0) == 1.0
 
 
 def test_elevation_and_responses_are_sums_over_the_waves():

@@ -23,7 +23,7 @@ UNDO = "Undo this change"
 class SceneSwitch(NamedTuple):
     """A change of the whole lab."""
 
-    page: str  # word of the page that made it (app/render/js/panel/share.js)
+    page: str  # word of the page that made it (app/render/js/core/viewer.js)
     scene: str  # shown after it
     subject: Setup | str  # opened: a set-up, or the name of a comparison
     before: Setup  # the former set-up
@@ -46,10 +46,16 @@ class SceneSwitch(NamedTuple):
 
 
 class SceneSwitches:
-    """The last change of one server."""
+    """The last change of one server, and the last text that each page has sent it."""
 
     def __init__(self) -> None:
         self.latest: SceneSwitch | None = None
+        self.taken: dict[str, str] = {}  # word of a page -> number of its last text
+
+    def is_new(self, page: str, number: str) -> bool:
+        """True if the last text of a page had another number than this one, which is noted."""
+        last, self.taken[page] = self.taken.get(page), number
+        return last != number
 
     def shown_in(self, scene: str) -> SceneSwitch | None:
         """The change to show in the panel of a scene; its time begins in the panel of the opened scene."""

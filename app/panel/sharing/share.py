@@ -131,21 +131,26 @@ class Share:
                     del self.confirmed[identity]
 
     async def on_inbox(self, event: ViserEvent) -> None:
-        """Take an address ("?scene=...") or a file ("{...}") from a page, below a line with the page's own word."""
-        (page, _, text), client = self.inbox.value.partition("\n"), event.client
-        if not text or client is None:
+        """Take an address ("?scene=...") or a file ("{...}") from a page, below a line with its word and a number.
+
+        A page sends the last text to the next panel too: a closed panel takes none.
+        """
+        (sender, _, text), client = self.inbox.value.partition("\n"), event.client
+        page, _, number = sender.partition(" ")
+        if not text or client is None or not self.settings.is_open or not self.changes.is_new(page, number):
             return
         self.inbox.value = ""  # so that the same text can come again
         try:
             subject = self.read(text)
-        except ValueError as reason:
+            is_shown = isinstance(subject, Setup) and self.settings.shows(subject)
+        except ValueError as reason:  # also of a file that cannot have the set-up's changes
             self.refuse(client, str(reason))
             return
-        missing = missing_files(subject, self.settings.params) if isinstance(subject, Setup) else ""
-        if missing:
-            client.add_notification("A file is missing", missing, color="orange", auto_close_seconds=30.0)
-        shown = self.settings.kind.name, self.settings.params
-        if isinstance(subject, Setup) and (subject.scene, subject.params) == shown:
+        if isinstance(subject, Setup):
+            missing = missing_files(subject, self.settings.params_with_files(subject.scene))
+            if missing:
+                client.add_notification("A file is missing", missing, color="orange", auto_close_seconds=30.0)
+        if isinstance(subject, Setup) and is_shown:
             self.turn(subject)
             self.place(subject, client)
         elif isinstance(subject, str) and self.beside is None:

@@ -4,6 +4,7 @@ This file alone names them. Where viser has changed one, the lab goes without wh
 that is. `tests/app/server/test_viser_names.py` takes each away in turn.
 """
 
+import asyncio
 import contextlib
 import sys
 from collections.abc import Awaitable, Callable, Sequence
@@ -180,6 +181,42 @@ def send_at_once(server: viser.ViserServer) -> None:
     attempt(set_window, None, "answers are 17 ms late")
 
 
+class LoopEvent(asyncio.Event):
+    """An event that only its own event loop sets."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        super().__init__()
+        self.loop = loop
+
+    def set(self) -> None:
+        """Set it; nothing on another thread."""
+        with contextlib.suppress(RuntimeError):  # no event loop runs on this thread
+            if asyncio.get_running_loop() is self.loop:
+                super().set()
+
+
+def wake_on_loop(server: viser.ViserServer) -> None:
+    """Wake the tasks that send messages on viser's event loop alone.
+
+    viser sets their event twice: on the thread that has a message, and then on its event loop. If the thread does so
+    after a task has read the event and before it waits, the task is not woken, and the second time changes nothing: no
+    browser gets a message any more until another one connects. To be called before a browser connects.
+    """
+    loop = server.get_event_loop()
+
+    def replace(connection: ViserConnection) -> None:
+        buffer = connection.get_message_buffer()
+        _ = buffer.message_event
+        buffer.message_event = LoopEvent(loop)
+
+    def put() -> None:
+        connection = connection_of(server)
+        replace(connection)
+        connection.on_client_connect(replace)
+
+    attempt(put, None, "a page may stop taking messages")
+
+
 def pass_windows_through(server: viser.ViserServer, change: Callable[[Any], Any]) -> None:
     """Let `change` make of each iterator over groups of messages that are sent another one."""
 
@@ -213,9 +250,11 @@ def watch_messages(server: viser.ViserServer, take: Callable[[ViserMessage], boo
         def send_together(parts: Sequence[ViserMessage]) -> None:
             # Within, viser wakes its event loop once and not for each message.
             start()
-            for message in parts:
-                send(message)
-            end()
+            try:
+                for message in parts:
+                    send(message)
+            finally:
+                end()
 
         connection.queue_message = queue_message
         return send_together

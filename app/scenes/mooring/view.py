@@ -10,6 +10,7 @@ from app.messages import RestartStatistics, Snapshot, Vector
 from app.render.cameras import framing_view, point_in_view, set_clipping
 from app.render.handles.dragging import GrabLine, drag
 from app.render.handles.gizmo import Gizmo
+from app.render.skies import light_scene
 from app.render.tubes import compile_tube
 from app.scenes.contract import Pieces, PostCommand, SceneView
 from app.scenes.mooring.arrangement import depth_of, extent, shown_points
@@ -55,9 +56,8 @@ class MooringView(SceneView[MooringParams, MooringFrame, MooringReadings]):
         self.server, self.post = server, post
         self.built: Shape = ()
         self.drawn: DrawnMooring | None = None
-        scene = server.scene
-        scene.configure_environment_map("studio", background=False, environment_intensity=0.4)
-        scene.configure_default_lights(enabled=True, cast_shadow=False)
+        light_scene(server, "studio", background=False, environment_intensity=0.4)
+        server.scene.configure_default_lights(enabled=True, cast_shadow=False)
         self.grab = GrabLine(server)
         self.gizmos = {
             name: Gizmo(server, post, name, 1.0, position=(0.0, 0.0, 0.0), visible=False)

@@ -10,6 +10,7 @@ the range of their control. If viser has changed so that this is not possible, o
 
 import asyncio
 import collections
+import concurrent.futures
 import contextlib
 import dataclasses
 import ipaddress
@@ -40,6 +41,7 @@ from app.render.handles.viser_inside import (
     lose,
     refuse_requests,
     send_to_all,
+    wake_on_loop,
 )
 from app.render.handles.viser_types import GuiHandle, ViserConnection, ViserMessage
 from app.server.web.access import OWN_PAGES_ONLY, Access, admitted, refusal
@@ -114,10 +116,12 @@ def may_connect(request: Request, bound: str, access: Access) -> bool:
 def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list[str]]:
     """While open, a websocket server that starts refuses upgrades from other pages with 403, and serves the panes.
 
-    Yields a list with an entry for each started server.
+    A browser that connects meanwhile waits: viser listens before its messages are filtered. Yields a list with an entry
+    for each started server.
     """
     serve = websockets.asyncio.server.serve
     started: list[str] = []
+    ended: concurrent.futures.Future[None] = concurrent.futures.Future()
 
     def guarded_serve(
         handler: Callable[[ViserConnection], Awaitable[None]],
@@ -138,6 +142,7 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
             return answer or with_cover(request, process_request(connection, request))
 
         async def serve_pane(connection: ViserConnection) -> None:
+            await asyncio.shield(asyncio.wrap_future(ended))
             limit = RateLimit(connection)
             connection.send = limit.send
             LIMIT.set(limit)
@@ -151,6 +156,7 @@ def checked_requests(bound: str, access: Access, panes: Panes) -> Generator[list
         yield started
     finally:
         websockets.asyncio.server.serve = serve  # type: ignore[assignment]
+        ended.set_result(None)
 
 
 def is_bounded(value: object) -> bool:
@@ -401,12 +407,12 @@ def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> Opened
     panes = Panes()
     with STARTING, checked_requests(host, access, panes) as started, quiet():
         server = viser.ViserServer(host=host, port=port, label="Springtide", verbose=False)
+        message_filter = guarded(server)
     if port not in (0, server.get_port()):
         server.stop()
         raise OSError(f"port {port} was taken while starting")
     if not started:
         lose("other pages of the browser may connect", "it does not call websockets.asyncio.server.serve")
-    message_filter = guarded(server)
     if not (started and message_filter.is_in_place) and not is_loopback(host):
         server.stop()
         raise OSError(f"with viser {viser.__version__} the lab serves loopback addresses only")
@@ -415,9 +421,12 @@ def open_server(host: str, port: int, access: Access = OWN_PAGES_ONLY) -> Opened
 
 def open_pane(panes: Panes, number: int) -> Opened:
     """The server of a pane, reached through the port of the first lab and protected with it."""
-    with STARTING, panes.making(number), quiet():
+    with STARTING, panes.making() as made, quiet():
         server = viser.ViserServer(port=0, label="Springtide", verbose=False)
-    return Opened(server, guarded(server), panes)
+    opened = Opened(server, guarded(server), panes)
+    if made:
+        panes.servers[number] = made[0]
+    return opened
 
 
 def guarded(server: viser.ViserServer) -> MessageFilter:
@@ -425,5 +434,6 @@ def guarded(server: viser.ViserServer) -> MessageFilter:
     message_filter = MessageFilter(server)
     refuse_requests(server, "ShareUrlRequest", "ShareUrlDisconnect")
     message_filter.is_in_place = put_intakes(server, message_filter)
+    wake_on_loop(server)
     put_small_first(server)
     return message_filter

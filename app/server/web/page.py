@@ -1,13 +1,10 @@
 """The page of the lab: viser's, with a title, a cover until something is drawn, and our own scripts.
 
-viser serves one HTML file. The cover is at the top of its body, so that it is seen before the client behind it is read;
-our modules follow (`app/render/scripts.py`). If viser's page is not as expected, it is sent unchanged: the lab works
-with viser's client alone.
+viser serves one HTML file. If it is not as expected, it is sent unchanged: the lab works with viser's client alone.
 """
 
 import functools
 import gzip
-import re
 import secrets
 import sys
 from http import HTTPStatus
@@ -16,14 +13,15 @@ from importlib import resources
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
-from app.render.scripts import PAGE, before_tags, tags
+from app.render.client_page import with_ours
+from app.render.scripts import BEFORE, PAGE
 
 ALIVE_PATH = "/springtide-alive"  # requested by the page, to check that the server answers
 # The answer to that: another name is another server, which knows nothing of the page.
 SERVER_NAME = secrets.token_hex(8)
-TITLE = "<title>Springtide</title>"
 PANES_PATH = "/beside"  # of the page that shows several labs side by side
-COVER = '<div id="springtide-cover"><h1>Springtide</h1><div id="springtide-cover-words">Starting …</div></div>'
+TITLE, STARTING = "Springtide", "Starting …"
+STYLES = ("cover.css", "page.css")
 
 
 def own_answer(request: Request, *, shared: bool) -> Response | None:
@@ -53,26 +51,13 @@ def with_cover(request: Request, response: Response | None) -> Response | None:
     return Response(response.status_code, response.reason_phrase, headers, page)
 
 
-def style_sheet() -> str:
-    """The style sheet of the page, without its comments, which would come before the cover."""
-    source = (resources.files("app.render") / "js" / "page.css").read_text("utf-8")
-    return re.sub(r"/\*.*?\*/\s*", "", source, flags=re.DOTALL)
-
-
 @functools.cache
 def covered(sent: bytes, zipped: bool) -> bytes:
     """viser's page with ours around it, compressed again if it was; unchanged if it is not as expected."""
     page = (gzip.decompress(sent) if zipped else sent).decode("utf-8")
-    head, found, body = page.rpartition("<body>")
-    # viser's client is one long script in the head: below the cover it does not delay it.
-    start, last = head.find("<script"), head.rfind("</script>")
-    if not found or not 0 <= start < last or "</body>" not in body:
+    found = with_ours(page, title=TITLE, words=STARTING, styles=STYLES, before=BEFORE, entry=PAGE)
+    if found is None:
         print("springtide: the page of viser has changed: it is shown without cover and scripts", file=sys.stderr)
         return sent
-    end = last + len("</script>")
-    first = f"{before_tags()}<style>{style_sheet()}</style>"
-    client = head[start:end]
-    head = head[:start].replace("<title>Viser</title>", TITLE, 1) + first + head[end:]
-    body = body.replace("</body>", f"{client}{tags(PAGE)}</body>", 1)
-    made = f"{head}<body>{COVER}{body}".encode()
+    made = found.encode()
     return gzip.compress(made) if zipped else made

@@ -117,17 +117,18 @@ class Panes:
             await self.servers[number].serve(connection)
 
     @contextlib.contextmanager
-    def making(self, number: int) -> Generator[None]:
-        """Context in which a started websocket server becomes a pane."""
+    def making(self) -> Generator[list[Unbound]]:
+        """Context in which a started websocket server is one of a pane, which is put on the list."""
         serve = websockets.asyncio.server.serve
+        made: list[Unbound] = []
 
         def unbound(handler: PaneHandler, *_: object, **__: object) -> Unbound:
-            self.servers[number] = Unbound(handler)
-            return self.servers[number]
+            made.append(Unbound(handler))
+            return made[-1]
 
         websockets.asyncio.server.serve = unbound  # type: ignore[assignment]
         try:
-            yield
+            yield made
         finally:
             websockets.asyncio.server.serve = serve  # type: ignore[assignment]
 

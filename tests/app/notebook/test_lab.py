@@ -209,6 +209,14 @@ def test_without_a_browser_there_is_no_picture_and_the_error_says_so(rope: Lab, 
             rope.picture(*size)
 
 
+def test_a_picture_is_half_a_large_screen_unless_told_otherwise(rope: Lab, monkeypatch) -> None:
+    sizes = []
+    monkeypatch.setattr("app.notebook.lab.take_still", lambda viewer, *size: sizes.append(size))
+    rope.picture()
+    rope.picture(320, height=200)
+    assert sizes == [(960, 540), (320, 200)]
+
+
 def test_a_busy_port_is_said_and_changes_nothing(rope: Lab) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]

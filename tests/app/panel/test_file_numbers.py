@@ -45,6 +45,18 @@ def test_a_file_that_was_changed_and_written_is_that_which_runs(tmp_path: Path) 
     assert described(scene_named("mooring"), params)["mooring"]["lines"][0]["length"] == 123.25
 
 
+def test_a_number_that_is_changed_back_leaves_the_file_as_it_is() -> None:
+    first, second, *_ = own = numbers(FILE)
+    for there, back in ((LENGTH, DIAMETER), (DIAMETER, LENGTH)):
+        params = changed(FILE, first, {**own[first], there: 3.5})
+        params = changed(params, second, {**own[second], back: 0.5})
+        assert len(params.file_changes) == 2
+        params = changed(params, first, own[first])
+        assert [value for *_, value in params.file_changes] == [0.5]
+        assert changed(params, second, own[second]) == FILE
+    assert changed(edited(), first, numbers(edited())[first]) == edited()
+
+
 def edited() -> MooringParams:
     """The file with another length of its first line and another diameter of the second one's type."""
     first, second, *_ = numbers(FILE)
@@ -65,12 +77,20 @@ def test_a_setup_holds_the_changes_of_the_file_that_it_names() -> None:
     assert missing_files(setup, FILE) == ""
 
 
-def test_a_run_of_the_command_line_has_the_changes_of_its_setup(tmp_path: Path) -> None:
+def test_a_run_of_the_command_line_has_the_changes_of_its_setup(tmp_path: Path, capsys: Any) -> None:
     path, kind = tmp_path / "changed.json", scene_named("mooring")
     path.write_text(write_file(kind, edited()), "utf-8")
     words = ["run", "mooring", "--preset", str(path), "--mooring", str(PATH), "--seconds", "1", "--out", "run.npz"]
     params = read_params(kind, make_parser().parse_args(words))
     assert params.file_changes == edited().file_changes
+    assert "without the changes" not in capsys.readouterr().err
+    name, written = content(edited())
+    (tmp_path / name).write_bytes(written)
+    words[words.index(str(PATH))] = str(tmp_path / name)
+    again = read_params(kind, make_parser().parse_args(words))
+    assert again.file_changes == ()
+    assert lines_of(again) == lines_of(params)
+    assert f"{name}: without the changes of the set-up, which are those of {PATH.name}" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -149,6 +169,39 @@ def test_numbers_are_applied_undone_and_saved(panel: Viewer) -> None:
     assert found.fields[LENGTH].value == before
     wait_for(lambda: not panel.scene.params.file_changes)
     assert panel.scene.file.system == read_moordyn(PATH, lambda line: None)
+
+
+def message(viewer: Viewer, text: str) -> list[str]:
+    """Send an address or a set-up as a page does; returns the notifications."""
+    told: list[str] = []
+    client = SimpleNamespace(
+        client_id=1, add_notification=lambda title, body, **how: told.append(body), camera=SimpleNamespace()
+    )
+    sharing = viewer.panel.share
+    sharing.inbox.value = f"page\n{text}"
+    coroutines.run(sharing.on_inbox(SimpleNamespace(client=client)))
+    return told
+
+
+def test_a_scene_that_is_shown_again_has_its_file_as_it_was_changed(panel: Viewer) -> None:
+    kind = scene_named("mooring")
+    for way, params in (("Back", edited()), ("list", FILE), ("set-up", edited())):
+        panel.settings.show_setup(read_file(write_file(kind, params)), None)
+        query = panel.panel.head.here.content.split('"')[1]  # that the page keeps for Back and Forward
+        assert message(panel, "?scene=rope") == []
+        wait_for(lambda: panel.is_open and panel.settings.kind.name == "rope")
+        if way == "list":
+            panel.settings.open_first_view_of("mooring")
+        else:
+            assert message(panel, query if way == "Back" else write_file(kind, params)) == []
+        wait_for(lambda: panel.is_open and panel.settings.kind.name == "mooring")
+        assert panel.settings.params.moordyn_file == str(PATH)
+        assert panel.settings.params.file_changes == params.file_changes
+        wait_for(lambda params=params: panel.scene.params.file_changes == params.file_changes)
+    act = panel.settings.history.act
+    for params, begun in ((panel.settings.params, 0), (FILE, 1), (FILE, 1)):
+        assert message(panel, write_file(kind, params)) == []
+        assert panel.settings.history.act == act + begun  # what is shown already does not begin again
 
 
 def test_an_opened_setup_changes_the_file_and_undo_takes_it_back_in_either_order(panel: Viewer) -> None:

@@ -14,6 +14,7 @@ from app.render import injection
 from app.render.injection import ShaderInjector
 from app.render.material import RAIN_UNIFORMS, WATER_UNIFORMS, Cutout, Grid, Material, Oil, SlickRegion, uniform_table
 from app.render.scripts import SHARED, modules
+from app.render.skies import light_scene
 from sim.ocean.fluids.oil_film import BAND_WIDTH, BANDS
 
 
@@ -80,6 +81,20 @@ def test_the_page_is_told_the_nodes_of_a_whole_picture(server: FakeServer, injec
     assert told() == ["/rope"]
     injector.restart(server)  # type: ignore[arg-type]
     assert told() == []
+
+
+def test_the_page_is_told_the_sky_before_it_is_sent() -> None:
+    """The page names a sky as it arrives."""
+    server = FakeServer()
+    injection._injectors[server] = ShaderInjector(server)  # type: ignore[index, arg-type]
+    told = lambda: re.findall(r'data-springtide-sky="([^"]*)"', server.field.content)  # noqa: E731
+    assert told() == [""]
+    sent: list[Any] = []
+    server.scene = SimpleNamespace(configure_environment_map=lambda name, **how: sent.append((name, how, told())))
+    light_scene(server, "dawn", environment_intensity=0.5)  # type: ignore[arg-type]
+    assert sent == [("dawn", {"environment_intensity": 0.5}, ["dawn"])]
+    injection._injectors[server].restart(server)  # type: ignore[index, arg-type]
+    assert told() == [""]
 
 
 def test_a_browser_that_left_is_forgotten(server: FakeServer, injector: ShaderInjector) -> None:

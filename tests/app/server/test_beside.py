@@ -2,6 +2,7 @@
 
 import asyncio
 import http.client
+import itertools
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -301,9 +302,10 @@ def test_an_address_and_the_panel_open_a_comparison() -> None:
     viewer = Viewer("127.0.0.1", 0)
     said: list[str] = []
     client = SimpleNamespace(client_id=1, add_notification=lambda title, reason, **how: said.append(reason))
+    numbers = itertools.count()
 
     def inbox(text: str) -> None:
-        viewer.panel.share.inbox.value = f"page\n{text}"
+        viewer.panel.share.inbox.value = f"page {next(numbers)}\n{text}"
         coroutines.run(viewer.panel.share.on_inbox(SimpleNamespace(client=client)))
 
     try:

@@ -1,6 +1,7 @@
 """Links of one browser of a shared lab: the last one wins, all see it for some seconds, and it can be undone."""
 
 import asyncio
+import itertools
 import types
 from unittest.mock import Mock
 
@@ -13,10 +14,12 @@ from app.server.viewer import Viewer
 from tests import coroutines
 from tests.app.server.visitors import Visitor, until, visitor
 
+NUMBERS = itertools.count()  # of texts from a page
+
 
 async def follow(browser: Visitor, query: str) -> None:
     """Follow a link, and wait until the line about it is drawn."""
-    await browser.send(browser.lab.panel.share.inbox, f"page{browser.client}\n{query}")
+    await browser.send(browser.lab.panel.share.inbox, f"page{browser.client} {next(NUMBERS)}\n{query}")
     await until(lambda: f'data-springtide-changer="page{browser.client}"' in shown(browser.lab))
 
 
@@ -102,3 +105,28 @@ def test_a_change_can_be_undone_by_all_also_one_of_the_scene(lab: Viewer) -> Non
             await until(lambda: lab.settings.params == before and not shown(lab))
 
     coroutines.run(undo_links())
+
+
+def test_a_text_is_taken_once_by_a_panel_that_is_open(lab: Viewer) -> None:
+    """A page sends its last text to the next panel too."""
+    params = lambda: vars(lab.settings.params)  # noqa: E731
+
+    async def send_again() -> None:
+        async with visitor(lab) as browser:
+            old = lab.panel.share.inbox
+            lab.panel.close()
+            await browser.send(old, "page 1\n?scene=rope&points=9")
+            await until(lambda: old.value)
+            await asyncio.sleep(0.3)
+            assert params()["points"] != 9
+            lab.open("rope")
+            await browser.send(lab.panel.share.inbox, "page 1\n?scene=rope&points=9")
+            await until(lambda: params()["points"] == 9)
+            lab.settings.set("points", 12)
+            for number, stiffness in ((1, 300.0), (2, 400.0)):
+                await browser.send(lab.panel.share.inbox, f"page {number}\n?scene=rope&stiffness={stiffness:g}")
+                await asyncio.sleep(0.1)
+            await until(lambda: params()["stiffness"] == 400.0)
+            assert not lab.changes.is_new("page", "2")
+
+    coroutines.run(send_again())

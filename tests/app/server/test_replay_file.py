@@ -60,6 +60,8 @@ def test_the_page_holds_every_frame_and_its_time(recorded: Any, page: str) -> No
 def test_the_page_says_what_it_shows_and_runs_no_text_of_ours(recorded: Any, page: str) -> None:
     kind, frames, _ = recorded
     assert f"<title>Springtide: {kind.title}</title>" in page
+    assert page.index(f"Opening {kind.title} …") < page.index("__VISER_EMBED_DATA__=")  # the cover is seen first
+    assert '<span data-springtide-sky="studio" data-springtide-nodes="/rope"></span>' in page
     assert LIGHT_SKY.css in page  # which has no style sheet of ours
     assert f"t = {frames[0].time:.2f} to {frames[-1].time:.2f} s" in page
     about = page[page.index("springtide-about") :]

@@ -185,7 +185,7 @@ def test_a_scene_comes_back_with_the_parameters_it_was_first_opened_with(lab: Vi
     lab.open("cloth", params)
     lab.open("rope")
     lab.open("cloth")
-    assert lab.settings.params is params
+    assert lab.settings.params == params
 
 
 def test_of_several_scenes_asked_for_only_the_last_is_opened(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,7 +17,7 @@ OWN = {"_replace", "_asdict", "_fields", "_exit", "_current_frames"}  # of named
 NAMES = (
     "_binary_buffers", "_connected_clients", "_gui_input_handle_from_uuid", "_handle_incoming_message", "_impl",
     "_messages", "_queue_scene_message", "_websock_connection", "_websock_server", "SceneNodeUpdateMessage",
-    "atomic_start", "get_message_buffer", "on_client_connect", "queue_message",
+    "atomic_start", "get_message_buffer", "message_event", "on_client_connect", "queue_message",
     "unregister_handler", "window_duration_sec", "window_generator",
 )  # fmt: skip
 QUIET = {"_connected_clients"}  # a browser that leaves during its arrival may count

@@ -45,6 +45,7 @@ def test_the_cover_goes_with_the_first_scene_and_comes_back_with_the_end(chromiu
     page.close()
 
 
+@pytest.mark.long
 def test_the_cover_stays_until_all_nodes_of_the_scene_are_there(chromium: Any) -> None:
     """On a slow page the sky may be there long before the vertices of a sea."""
     viewer = Viewer("127.0.0.1", 0)
@@ -112,6 +113,7 @@ def test_a_page_that_cannot_start_says_why(chromium: Any, script: str, words: st
         page.close()
 
 
+@pytest.mark.long
 def test_the_cover_names_the_error_of_a_client_that_ends(chromium: Any) -> None:
     """viser's client runs in the page, and anything in it may fail in a browser that nobody has tried."""
     viewer = Viewer("127.0.0.1", 0)

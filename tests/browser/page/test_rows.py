@@ -20,7 +20,7 @@ from app.lab.course.task import load_tasks
 from app.lab.course.workbook import Workbook
 from app.lab.report.classroom import Classroom
 from app.messages import Pause, Play
-from app.render.handles.viser_inside import uuid_of
+from app.render import client_page
 from app.render.scripts import before_tags
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import read_query
@@ -36,7 +36,6 @@ from tests.browser.page.test_page import NO_WEBGL, REFUSED
 
 ENGINES = ["chromium", *(pytest.param(name, marks=pytest.mark.long) for name in ("firefox", "webkit"))]
 DRAWN = ("rope", "square_sea")  # scenes drawn within seconds; the long tests draw the others
-INBOX = "return document.querySelector('[data-springtide-inbox]')?.dataset.springtideInbox;"
 FREE = (110, 520)  # [pixels] of the page, where there is nothing but the floor
 # Error messages of the page, including the end of viser's client.
 HOOK = """window.noted = [];
@@ -163,7 +162,8 @@ def first_scripts() -> Iterator[list[str]]:
     """Scripts that run before all others in the page of each browser."""
     scripts = [HOOK]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(served_page, "before_tags", lambda: f"<script>{';'.join(scripts)}</script>{before_tags()}")
+        ours = lambda names: f"<script>{';'.join(scripts)}</script>{before_tags(names)}"  # noqa: E731
+        patch.setattr(client_page, "before_tags", ours)
         served_page.covered.cache_clear()
         yield scripts
     served_page.covered.cache_clear()
@@ -321,6 +321,7 @@ def test_a_point_of_the_rope_is_marked_and_pulled(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_a_point_of_the_cloth_is_pulled(visit: Visit) -> None:
     visit.follow("cloth")
     settled(visit, 0.5)
@@ -337,6 +338,7 @@ def test_the_arrows_move_the_root(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_the_arrows_move_the_sphere(visit: Visit) -> None:
     visit.viewer.settings.load("Over the sphere")
     visit.until(lambda: visit.viewer.loop.latest.frame.sphere is not None, "no sphere")
@@ -350,6 +352,7 @@ def test_the_arrows_move_the_sphere(visit: Visit) -> None:
     assert visit.errors() == []
 
 
+@pytest.mark.long
 def test_the_buoy_is_pulled(visit: Visit) -> None:
     visit.follow("mooring")
     visit.viewer.settings.load("The lab's buoy")
@@ -591,12 +594,35 @@ def test_a_set_up_is_chosen_from_a_file(visit: Visit, tmp_path: Path) -> None:
     for points in (23, 24):
         path.write_text(json.dumps({"scene": "rope", "parameters": {"points": points}}), "utf-8")
         visit.show("Share")
-        # Another scene has another panel, and what a page sends to the old one is lost.
-        visit.until(
-            lambda: visit.page.run(INBOX) == uuid_of(visit.viewer.panel.share.inbox), "the panel is the old one"
-        )
         visit.page.choose_file("[data-springtide-load]", path)
         visit.until(lambda points=points: visit.param("points") == points, "the file is not read")
+
+
+def test_a_file_that_is_chosen_while_the_lab_changes_scenes_is_read(
+    visit: Visit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "set-up.json"
+    path.write_text(json.dumps({"scene": "rope", "parameters": {"points": 25}}), "utf-8")
+    visit.show("Share")
+    made, closed, goes_on = visit.viewer.make_scene, threading.Event(), threading.Event()
+
+    def make_late(*wanted: Any) -> Any:
+        closed.set()
+        goes_on.wait(60.0)
+        return made(*wanted)
+
+    monkeypatch.setattr(visit.viewer, "make_scene", make_late)
+    opening = threading.Thread(target=visit.viewer.open, args=["rope"])
+    opening.start()
+    try:
+        visit.until(closed.is_set, "the old scene is not closed")
+        old, taken = visit.viewer.panel.share.inbox, dict(visit.viewer.changes.taken)
+        visit.page.choose_file("[data-springtide-load]", path)
+        visit.until(lambda: old.value or visit.viewer.changes.taken != taken, "nothing is sent")
+    finally:
+        goes_on.set()
+        opening.join()
+    visit.until(lambda: visit.param("points") == 25, "the file is lost")
 
 
 def test_a_replay_plays_from_a_file(visit: Visit, tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 import json
 from typing import Any
 
+import pytest
+
 from app.server.viewer import Viewer
 from tests.browser.conftest import Tab
 
@@ -21,6 +23,7 @@ def restyled(chromium: Any, page: Any, seconds: float) -> list[int]:
     return [one["args"]["elementCount"] for one in events if "elementCount" in one.get("args", {})]
 
 
+@pytest.mark.long
 def test_a_number_of_the_panel_restyles_little_else(chromium: Any) -> None:
     viewer = Viewer("127.0.0.1", 0)
     viewer.open("rope")

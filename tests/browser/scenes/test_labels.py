@@ -88,6 +88,7 @@ def test_no_label_covers_another_however_far_the_camera_is(race: tuple[Viewer, A
     assert min(found[1:]) > 0.97 * found[0]
 
 
+@pytest.mark.long
 def test_labels_keep_their_size_where_panels_leave_less_of_the_picture(race: tuple[Viewer, Any]) -> None:
     _, page = race
     page.evaluate(CHOOSE, "high")

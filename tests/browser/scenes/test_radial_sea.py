@@ -52,6 +52,7 @@ def test_a_burning_rig_has_flames_and_a_slick(lab: Viewer, open_tab) -> None:
     assert tab.errors == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("presets", [list(PRESETS)[::5], pytest.param(list(PRESETS), marks=pytest.mark.stress)])
 def test_every_preset_is_drawn_as_water_without_console_errors(shown: tuple[Viewer, Tab], presets: list[str]) -> None:
     lab, tab = shown

@@ -72,6 +72,7 @@ def test_a_press_where_the_tip_was_a_moment_before_takes_it(lab: Viewer, open_ta
     assert tab.errors == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "scene", ["rope", *(pytest.param(name, marks=pytest.mark.stress) for name in ("race", "cloth"))]
 )

@@ -5,6 +5,7 @@ take a minute each, and are stress tests.
 """
 
 import io
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from PIL import Image
 from app.scenes import NAMES, scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
+from docs.make_replays import CLIPS, page_of
 from tests.browser.conftest import NO_NOTES, new_page
 from tests.browser.water.test_water import wait
 
@@ -23,6 +25,15 @@ LARGEST_CHANGE = 12.0  # of 255, of the mean of any of the three colours
 SAMPLE = ("square_sea", "Storm arriving", "low")  # it began under a blue sky
 NOTHING_OVER_THE_PICTURE = NO_NOTES + " .mantine-Paper-root { display: none !important }"
 CASES = [(scene, preset, quality) for scene in NAMES for preset in scene_named(scene).presets for quality in QUALITIES]
+
+# Holds the photographs back that the server sends: until `letSkyCome` viser's client shows its own.
+LATE_SKY = """const get = window.fetch;
+const held = new Promise((go) => { window.letSkyCome = go; });
+window.fetch = (asked, how) => {
+    const isOfServer = (asked.url ?? String(asked)).startsWith("blob:");
+    return (isOfServer ? held : Promise.resolve()).then(() => get(asked, how)); };"""
+SHOWS_OTHER_SKY = "Boolean(window.__viserMutable?.scene?.environment)"
+COVERED = "document.querySelector('#springtide-cover:not(.springtide-hidden)')?.innerText ?? ''"
 
 
 def mean_colour(page: Any) -> np.ndarray:
@@ -65,3 +76,29 @@ def test_the_first_whole_frame_has_the_colour_of_the_later_ones(
     first, later = colours(chromium, scene, preset, quality)
     assert later.mean() > 10.0  # there is a picture
     assert first == pytest.approx(later, abs=LARGEST_CHANGE)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("form", ["lab", "replay"])
+def test_the_cover_stays_until_the_scene_has_its_own_sky(form: str, chromium: Any, tmp_path: Path) -> None:
+    page = new_page(chromium, 400, 260, drawn=False)
+    page.add_init_script(LATE_SKY)
+    lab = Viewer("127.0.0.1", 0) if form == "lab" else None
+    try:
+        if lab is not None:
+            page.goto(f"http://127.0.0.1:{lab.port}/?hideViserLogo&fixedDpr=0.2", wait_until="commit")
+            assert wait(page, lambda: page.evaluate(SHOWS_OTHER_SKY), 60.0)  # no scene is open
+            lab.open("square_sea", paused=True)
+        else:
+            file = tmp_path / "sea.html"
+            file.write_text(page_of("square_sea", CLIPS["square_sea"]._replace(start=0.0, end=12.0, rate=1.0)), "utf-8")
+            page.goto(file.as_uri(), wait_until="commit")
+            assert wait(page, lambda: "Opening Square sea …" in page.evaluate(COVERED), 60.0)
+        page.wait_for_timeout(6000)  # in which all else arrives
+        assert page.evaluate(COVERED)
+        page.evaluate("letSkyCome()")
+        assert wait(page, lambda: not page.evaluate(COVERED), 40.0)
+    finally:
+        page.close()
+        if lab is not None:
+            lab.shut()

@@ -13,7 +13,7 @@ import pytest
 import viser
 from PIL import Image
 
-from app.render.scripts import SCENE, tags
+from app.render.scripts import tags
 from app.render.skies import set_sky
 from app.render.water import DrawnWater, Tile
 from app.server.viewer import Viewer
@@ -197,7 +197,7 @@ def test_a_sea_of_rings_is_water_too(chromium, server):
 def no_answer(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """As with a viser of another page."""
     monkeypatch.setattr("app.render.injection.MAX_ANSWER_TIME", 1.0)
-    monkeypatch.setattr("app.server.web.page.tags", lambda entry: "")
+    monkeypatch.setattr("app.render.client_page.tags", lambda entry: "")
     covered.cache_clear()
     yield
     covered.cache_clear()
@@ -253,7 +253,7 @@ def test_an_exported_page_has_the_shader_without_a_server(chromium, server, tmp_
     make_water(server)
     file = tmp_path / "sea.html"
     page_of_viser = server.get_scene_serializer().as_html()
-    file.write_text(page_of_viser.replace("</body>", f"{tags(SCENE)}</body>", 1), encoding="utf-8")
+    file.write_text(page_of_viser.replace("</body>", f"{tags('scene/main.js')}</body>", 1), encoding="utf-8")
     page = new_page(chromium, 320, 200, drawn=False)
     errors: list[str] = []
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)

@@ -158,7 +158,7 @@ def test_a_rope_between_two_pins_is_at_rest(law, end):
     assert np.linalg.norm(find_rest_positions(net) - x, axis=0).max() < 2e-8
 
 
-@pytest.mark.parametrize("method", ["leapfrog", "implicit_midpoint"])
+@pytest.mark.parametrize("method", ["leapfrog", pytest.param("implicit_midpoint", marks=pytest.mark.long)])
 @pytest.mark.parametrize("stretch", [0.05, 0.4])
 def test_a_mass_on_a_stiffening_link_has_duffing_s_period(stretch, method):
     """4 K(m)/(omega sqrt(1 + c A^2)) with m = c A^2/2/(1 + c A^2), of DLMF 22.19(ii) and 19.2.8."""

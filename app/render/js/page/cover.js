@@ -7,61 +7,34 @@
 import { page } from "../core/life.js";
 import { springtide } from "../core/springtide.js";
 import { onChange, onLook } from "../core/watch.js";
+import { awaitsPicture, pictured, showCover } from "../scene/cover.js";
 
 const ALIVE_INTERVAL = 2000; // [ms] between two checks that the server answers
 const RETRY_INTERVAL = 1000; // [ms] the same after a check without an answer
 const ANSWER_TIME = 5000; // [ms] after which a check has failed
 const MAX_UNANSWERED = 3; // failed checks in a row: a laptop that wakes up, or changes its network, misses one
-const SETTLING = 300; // [ms] after a panel, in which the objects of its scene arrive
-const UNDRAWN = 10_000; // [ms] after which the cover goes if no frame has begun
-const PATIENCE = 60_000; // [ms] after which it goes in any case
-const cover = /** @type {HTMLElement} */ (document.getElementById("springtide-cover"));
-const words = /** @type {HTMLElement} */ (document.getElementById("springtide-cover-words"));
 // A path belongs to a proxy, such as a JupyterHub, or to a pane of a comparison.
 const path = location.pathname.replace(/(pane\/\d+\/)?(index\.html)?$/, "");
 const restart = path === "/" ? "Start it again with the command: springtide" : "Reload this page to start it again.";
 let unanswered = 0;
 let server = ""; // name of the server, which differs for each server
 
-/** @param {string | null} text @param {boolean} hidden */
-function say(text, hidden) {
-  if (text !== null && words.textContent !== text) words.textContent = text;
-  cover.classList.toggle("springtide-hidden", hidden);
-}
-
-/** @type {string | null} */
-let opened = null; // the panel whose picture is awaited, by its field for reports
-let openedAt = 0; // [ms] since when
-let pictured = ""; // the panel whose picture was complete
-
-// True if the picture of the panel's scene is not complete yet. A lab that draws by viser's public interface has no such field;
-// otherwise it follows the status line.
-function awaitsPicture() {
-  const field = document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "";
-  if (field && field === pictured) return false;
-  const now = performance.now();
-  if (field !== opened) [opened, openedAt] = [field, now];
-  const since = now - openedAt, { showsWhole } = springtide;
-  if (!field) return since < SETTLING;
-  if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;
-  pictured = field;
-  return false;
-}
-
 let waiting = "Connecting to the lab …"; // while there is no panel
 function update() {
-  if (unanswered >= MAX_UNANSWERED) return say(`The lab has stopped. ${restart}`, false);
+  if (unanswered >= MAX_UNANSWERED) return showCover(`The lab has stopped. ${restart}`, false);
   const progress = document.querySelector(".springtide-progress");
   if (progress) {
     waiting = progress.textContent;
-    return say(waiting, false);
+    return showCover(waiting, false);
   }
   if (document.querySelector(".springtide-panel")) {
     waiting = "Opening the scene …"; // the page is connected now
-    const isAwaited = awaitsPicture();
-    return say(isAwaited && !pictured ? "Preparing the picture …" : null, !isAwaited);
+    // The panel by its field for reports. A lab that draws by viser's public interface has none; otherwise it follows the status
+    // line.
+    const isAwaited = awaitsPicture(document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "");
+    return showCover(isAwaited && !pictured ? "Preparing the picture …" : null, !isAwaited);
   }
-  return say(springtide.failure || waiting, false);
+  return showCover(springtide.failure || waiting, false);
 }
 
 // Name of the server; "" if it does not answer.

@@ -8,9 +8,10 @@
 import { page } from "../core/life.js";
 import { notice } from "../core/notice.js";
 import { springtide } from "../core/springtide.js";
-import { PAGE, send as sendToLab, startedViewer } from "../core/viewer.js";
+import { PAGE, send, startedViewer } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { chartsOfPage } from "./charts.js";
+import { sendText } from "./inbox.js";
 import { labAt, ofLab, setupIn } from "./links.js";
 import { rowsOf } from "./rows.js";
 import { withDuration } from "./webm.js";
@@ -23,19 +24,13 @@ const CLIP_BITS = 12e6; // [bit/s]
 const MAX_CLIP = 300; // [s] after which a clip ends by itself
 const ASKED = 3000; // [ms] after a press of "Copy link" for the link to arrive
 const asked = new URLSearchParams(location.search);
-let query = ["scene", "task", "compare"].some((name) => asked.has(name)) ? location.search : "";
 let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
 let pressed = -Infinity;
-
-/** @param {string} text */
-function send(text) {
-  return sendToLab(document.querySelector("[data-springtide-inbox]")?.dataset.springtideInbox, `${PAGE}\n${text}`);
-}
 
 // Request a file from the server, by a hidden button of the panel.
 /** @param {string} value */
 function make(value) {
-  sendToLab(document.querySelector("[data-springtide-makers]")?.dataset.springtideMakers, value);
+  send(document.querySelector("[data-springtide-makers]")?.dataset.springtideMakers, value);
 }
 
 const own = `[data-springtide-changer="${PAGE}"]`, sentences = document.createElement("style");
@@ -69,7 +64,6 @@ function completeLinks() {
 }
 
 function update() {
-  if (query && document.querySelector(".springtide-panel[data-state]") && send(ofLab(query))) query = "";
   completeLinks();
   if (showsLab) {
     const found = [...document.querySelectorAll('[role="tab"]')].find((one) => one.textContent.trim() === "Lab");
@@ -216,7 +210,8 @@ page.listen(document, "change", async (event) => {
     text = setupIn(await file.text()) ?? text;
   }
   // A text that is too long is sent up to the lab's limit, so that the lab reports the error.
-  send(text.slice(0, MAX_LENGTH) || " ");
+  sendText(text.slice(0, MAX_LENGTH) || " ");
   field.value = "";
 });
+if (["scene", "task", "compare"].some((name) => asked.has(name))) sendText(ofLab(location.search));
 onControls(update);

@@ -4,8 +4,8 @@
 // The address does not change, so that a reload shows the present lab. A lab embedded in another page adds no entries.
 
 import { page } from "../core/life.js";
-import { PAGE, send } from "../core/viewer.js";
 import { onChange } from "../core/watch.js";
+import { sendText } from "./inbox.js";
 
 const PATIENCE = 10_000; // [ms] for the lab to show the requested scene
 let here = ""; // the query of the scene and preset shown
@@ -24,10 +24,10 @@ function follow() {
 
 if (window.top === window) {
   page.listen(window, "popstate", ({ state }) => {
-    const query = state?.springtide, inbox = document.querySelector("[data-springtide-inbox]")?.dataset.springtideInbox;
+    const query = state?.springtide;
     if (!query || (query === here && !asked)) return;
     asked = { query, until: performance.now() + PATIENCE };
-    send(inbox, `${PAGE}\n${query}`);
+    sendText(query);
   });
   onChange(follow);
 }

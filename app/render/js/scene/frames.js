@@ -16,6 +16,7 @@ import { lacksPrograms, programsReady } from "../shading/shaders.js";
 import { BOTH_SIDES } from "../shading/three.js";
 import { wrapMethod } from "../shading/wrap.js";
 import { awaitsLight, skiesRead } from "./ambient.js";
+import { skyOf } from "./photograph.js";
 
 const SMALL = 16384; // size up to which a texture's numbers are compared: viser increments the version of labels in each frame
 const LONG_FRAME = 100; // [ms] of a frame, above which time is left for the panel
@@ -109,11 +110,14 @@ function inputsOf(renderer, scene, camera) {
   return list;
 }
 
-// True if a node is still to come that the server counts to the picture (app/render/injection.py): on a slow page the sky is
-// there long before the vertices of a sea.
-function lacksNodes() {
-  const names = document.querySelector("[data-springtide-nodes]")?.dataset.springtideNodes ?? "";
-  return names.split("\n").some((name) => name && !viewer()?.nodeRefFromName[name]);
+// True if a frame of the scene has all parts of the picture: the sky and the nodes that the server counts to it
+// (app/render/injection.py), their light, and their shaders. A slow page has them one after the other: a sky of viser's before
+// that of the scene, and either before the vertices of a sea.
+/** @param {three.Scene} scene */
+function isComplete(scene) {
+  if (!scene.environment || awaitsLight() || lacksPrograms) return false;
+  const { springtideSky: sky, springtideNodes: nodes = "" } = document.querySelector("[data-springtide-sky]")?.dataset ?? {};
+  return Boolean(sky) && skyOf(scene) === sky && nodes.split("\n").every((name) => !name || viewer()?.nodeRefFromName[name]);
 }
 
 // life: of the renderer.
@@ -175,7 +179,7 @@ export function paceFrames(renderer, life) {
     if (camera !== eye || QUALITY.isCapturing() || springtide.isRecording || !keepsPixels) {
       last = null;
       earlier.call(this, scene, camera);
-      isWhole = Boolean(own.environment) && !lacksPrograms;
+      isWhole = isComplete(own);
       return;
     }
     if (document.visibilityState === "hidden") return;
@@ -185,7 +189,7 @@ export function paceFrames(renderer, life) {
     [started, left] = [performance.now(), 0];
     earlier.call(this, scene, camera);
     last = inputs;
-    isWhole = Boolean(own.environment) && !awaitsLight() && !lacksPrograms && !lacksNodes();
+    isWhole = isComplete(own);
     if (!isWhole) finishedWhole = false;
     const known = programs();
     awaitEnd(known !== knownPrograms);

@@ -4,6 +4,8 @@
 // Before three draws with a photograph, it blurs it for reflections. In software this takes four seconds for 1024 x 512
 // pixels, and half a second for the copy. viser draws the photograph only once, and a lost context takes it away: so its
 // numbers are read once, asynchronously, to restore it from them.
+//
+// The lab names the sky that it has sent. While that is decoded, viser's client shows the one before, at first one of its own.
 
 import { toHalf } from "../sea/half_floats.js";
 import { contextNumber, drawsFloats } from "../shading/context.js";
@@ -22,6 +24,28 @@ const smallerCopies = new WeakMap(); // photograph or copy -> copy of half its w
  */
 /** @type {WeakMap<three.Texture, State>} */
 const known = new WeakMap();
+
+// Name of the sky in each photograph and its substitutes: the one that the lab had named when it was first seen, or "" for the
+// one that viser's client shows before the lab's: no background, at full intensity.
+/** @type {WeakMap<three.Texture, string>} */
+const names = new WeakMap();
+
+/** @param {three.Scene} scene */
+export function nameSky({ environment, background, environmentIntensity }) {
+  if (!environment || names.has(environment)) return;
+  const isOfLab = background || environmentIntensity !== 1;
+  const named = document.querySelector("[data-springtide-sky]")?.dataset.springtideSky;
+  names.set(environment, (isOfLab && named) || "");
+}
+
+// Name of the sky that lights the scene; "" without one of the lab.
+/** @param {three.Scene} scene */
+export const skyOf = ({ environment }) => (environment && names.get(environment)) ?? "";
+
+/** @param {three.Texture} photograph @param {three.Texture} other */
+function passName(photograph, other) {
+  names.set(other, names.get(photograph) ?? "");
+}
 
 // A copy of half the width, in another target. Of three this uses the frame buffer of the target; null if it is missing because
 // another renderer has drawn it.
@@ -78,6 +102,7 @@ function textureOf(photograph, { numbers, width, height }) {
 // Replace a texture by another throughout the scene.
 /** @param {three.Scene} scene @param {three.Texture} photograph @param {three.Texture} other */
 function replace(scene, photograph, other) {
+  passName(photograph, other);
   if (scene.environment === photograph) scene.environment = other;
   if (scene.background === photograph) scene.background = other;
   if (scene.userData.photograph === photograph) scene.userData.photograph = other;
@@ -118,6 +143,7 @@ function formSky(photograph, sky) {
 // photograph if it was lost.
 /** @param {three.Renderer} renderer @param {three.Scene} scene @param {SkyColors | null} sky */
 export function preparePhotograph(renderer, scene, sky) {
+  nameSky(scene);
   if (scene.environment && !drawsFloats(renderer)) {
     replace(scene, scene.environment, formSky(scene.environment, sky ?? ROOM));
     return;
@@ -128,6 +154,7 @@ export function preparePhotograph(renderer, scene, sky) {
     const smaller = smallerCopies.get(larger);
     if (!smaller) break;
     known.set(smaller, stateOf(renderer, larger));
+    passName(larger, smaller);
     scene.environment = smaller;
   }
   const photograph = scene.environment;

@@ -225,19 +225,26 @@ function showPhotograph(scene, shown) {
   if (shown && !scene.background) scene.background = scene.userData.photograph || null;
 }
 
-const SKY = "--springtide-sky"; // of the page (page.css): background of a sea without a sky
+// Of the page: background of the cover, and of a sea without a sky; and the colour of words on it (cover.css, page.css).
+const SKY = "--springtide-sky", INK = "--springtide-ink", DARK_INK = "#1b2a3a", LIGHT_INK = "#eef3f8";
+const DARK_SKY = 0.18; // light of a sky below which words on it are light
 const OVERCAST = 0.5; // light of a grey sky over that of a clear one
 const UNTONED = 0.8; // light over that of a colour of the page
+
+/** @param {number[]} color linear */
+const lightness = ([r, g, b]) => 0.3 * r + 0.5 * g + 0.2 * b;
 
 // Until the sky is ready, its mean colour is shown: that of the haze, which the server sets for each sky, grey under clouds.
 /** @param {Sea} sea @param {three.Scene} scene */
 function standIn({ uniforms }, scene) {
   if (!scene.fog) return;
   const { r, g, b } = scene.fog.color, cover = Math.min(Math.max(uniforms.clouds.value.x, 0), 1);
-  const grey = OVERCAST * (0.3 * r + 0.5 * g + 0.2 * b), mixed = [r, g, b].map((light) => light + cover * (grey - light));
+  const grey = OVERCAST * lightness([r, g, b]), mixed = [r, g, b].map((light) => light + cover * (grey - light));
   uniforms.standIn.value = mixed.map((light) => UNTONED * light);
   const { style } = document.documentElement, color = scene.fog.color.clone().fromArray(mixed).getStyle();
-  if (style.getPropertyValue(SKY) !== color) style.setProperty(SKY, color);
+  if (style.getPropertyValue(SKY) === color) return;
+  style.setProperty(SKY, color);
+  style.setProperty(INK, lightness(mixed) < DARK_SKY ? LIGHT_INK : DARK_INK);
 }
 
 /** @type {NodeShader & Required<Pick<NodeShader, "unpack">>} */
@@ -249,7 +256,7 @@ export const water = {
       disposeSea(sea);
       seas.delete(base);
     }
-    if (!seas.size) document.documentElement.style.removeProperty(SKY);
+    if (!seas.size) for (const name of [SKY, INK]) document.documentElement.style.removeProperty(name);
   },
   unpack({ base, mesh, data }) {
     readMaterial({ base, mesh, data });

@@ -31,15 +31,20 @@ def numbers(params: MooringParams) -> dict[str, dict[str, float]]:
 
 
 def changed(params: MooringParams, thing: str, values: Mapping[str, float]) -> MooringParams:
-    """The parameters with other numbers of a line. Raises ValueError if the file cannot have them."""
-    line = lines_of(params)[thing]
+    """The parameters with other numbers of a line. Raises ValueError if the file cannot have them.
+
+    A number that the file has itself is no change.
+    """
+    line = lines_of(dataclasses.replace(params, file_changes=()))[thing]
     changes = {(what, of): value for what, of, value in params.file_changes}
-    if values[LENGTH] != line.length:
-        changes["length", str(line.id)] = values[LENGTH]
-    if values[DIAMETER] != line.type.diameter:
-        changes["diameter", line.type.name] = values[DIAMETER]
+    changes["length", str(line.id)] = values[LENGTH]
+    changes["diameter", line.type.name] = values[DIAMETER]
+    own = {("length", str(line.id), line.length), ("diameter", line.type.name, line.type.diameter)}
     found = dataclasses.replace(
-        params, file_changes=tuple((what, of, value) for (what, of), value in sorted(changes.items()))
+        params,
+        file_changes=tuple(
+            (what, of, value) for (what, of), value in sorted(changes.items()) if (what, of, value) not in own
+        ),
     )
     opened(found)
     return found

@@ -129,6 +129,7 @@ def test_the_numbers_of_the_oil_are_those_of_archimedes_and_fresnel(found) -> No
     assert number(values, "flight_distance") == pytest.approx(t * math.hypot(9.0, 7.0))
     values = found("surface_colour")
     assert number(values, "film_light") == pytest.approx(math.exp(-0.1 / 0.07))
+    assert number(values, "opaque_thickness") == pytest.approx(0.07e-3 * math.log(10.0))  # "less than 10 %"
 
 
 def test_the_numbers_of_the_seas_are_those_of_their_laws(found) -> None:

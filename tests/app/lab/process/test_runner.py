@@ -74,6 +74,16 @@ def test_what_goes_wrong_is_named_and_the_next_call_works(tmp_path: Path, body: 
         assert runner.call("mine.py", "right", 3.0) == 6.0
 
 
+def test_the_effort_of_the_calls_is_processor_time_of_the_worker(tmp_path: Path) -> None:
+    write(tmp_path, "import time\n    return time.process_time()")
+    efforts = [0.0]
+    with Runner(tmp_path, time_limit=20.0) as runner:
+        for _ in range(3):
+            assert efforts[-1] <= runner.call("mine.py", "f", 1.0)
+            efforts.append(runner.effort)
+    assert efforts == sorted(efforts)
+
+
 def test_an_endless_loop_is_found_in_any_folder_and_function(tmp_path: Path) -> None:
     folder = tmp_path / "Übung ∂"
     folder.mkdir()

@@ -1,5 +1,6 @@
 """Links that open a task of the lab."""
 
+import itertools
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,6 +14,7 @@ from app.server.viewer import Viewer
 from tests import coroutines
 from tests.waiting import wait_for
 
+NUMBERS = itertools.count()  # of texts from a page
 TASKS = load_tasks(with_checks=False)
 BOOK = Workbook(TASKS, Path("none"))
 
@@ -86,5 +88,5 @@ def shown_task(lab: Viewer) -> str:
 def follow(share: Share, query: str) -> None:
     """Do what a page does that has this query in its address."""
     client = SimpleNamespace(client_id=1, add_notification=lambda title, body, **how: pytest.fail(body))
-    share.inbox.value = f"page\n{query}"
+    share.inbox.value = f"page {next(NUMBERS)}\n{query}"
     coroutines.run(share.on_inbox(SimpleNamespace(client=client)))

@@ -387,6 +387,13 @@ def test_nets_are_made_anew_only_where_something_moves_or_other_forces_act():
     assert [net.families[0].stiffness for net in nets()] == [net.families[0].stiffness for net in rest]
 
 
+def test_the_first_view_of_one_rope_is_as_high_as_its_distance_shows():
+    params = RaceParams(ropes=1)
+    position, target = np.array(RaceView.first_view(object.__new__(RaceView), params))
+    height = 2.0 * math.tan(0.5 * RaceView.FIELD_OF_VIEW) * np.linalg.norm(target - position)
+    assert height == pytest.approx(shown_height(params))
+
+
 def test_all_ropes_look_equally_large_from_the_front():
     params = RaceParams(ropes=6)
     position, target = np.array(RaceView.first_view(object.__new__(RaceView), params))

@@ -19,7 +19,9 @@ import websockets
 from viser import _messages as vm
 from websockets.asyncio.client import connect
 
+from app.render.handles.viser_inside import uuid_of
 from app.server.viewer import Viewer
+from app.server.web import guard
 from app.server.web.guard import (
     MAX_TEXT_LENGTH,
     Intake,
@@ -30,7 +32,7 @@ from app.server.web.guard import (
     open_server,
 )
 from tests import coroutines
-from tests.stress.clients import CAMERA
+from tests.stress.clients import CAMERA, Clients
 from tests.waiting import wait_for
 
 PROTOCOL = websockets.Subprotocol(f"viser-v{viser.__version__}")
@@ -169,6 +171,30 @@ def test_a_browser_that_leaves_while_its_camera_waits_is_not_counted(
     coroutines.run(leave_at_once(lab.port))
     time.sleep(0.5)  # until the turn of the camera would have come
     assert len(lab.server.get_clients()) == before
+
+
+def test_a_browser_that_connects_while_the_server_starts_is_served(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a page does whose lab is started again: viser listens before its messages are filtered."""
+    guarded, clients = guard.guarded, []
+
+    def guarded_late(server: viser.ViserServer) -> guard.MessageFilter:
+        clients.append(Clients(server.get_port()))
+        clients[0].join()
+        return guarded(server)
+
+    monkeypatch.setattr(guard, "guarded", guarded_late)
+    server = open_server("127.0.0.1", 0).server
+    try:
+        wait_for(lambda: len(server.get_clients()) == 1)
+        (browser,) = clients[0].open
+        received = clients[0].received[browser]
+        field = server.gui.add_text("Field", "")
+        wait_for(lambda: clients[0].received[browser] > received)
+        clients[0].say(browser, {"type": "GuiUpdateMessage", "uuid": uuid_of(field), "updates": {"value": "heard"}})
+        wait_for(lambda: field.value == "heard")
+    finally:
+        clients[0].shut()
+        server.stop()
 
 
 async def follow_a_link_while_somebody_looks(lab: Viewer) -> None:

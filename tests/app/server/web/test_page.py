@@ -7,8 +7,9 @@ from importlib import resources
 
 import pytest
 
+from app.render.client_page import cover, style_sheet
 from app.server.viewer import Viewer
-from app.server.web.page import ALIVE_PATH, COVER, SERVER_NAME, TITLE, covered, style_sheet
+from app.server.web.page import ALIVE_PATH, SERVER_NAME, STARTING, STYLES, TITLE, covered
 
 MAX_START = 30_000  # characters before the end of the cover; viser's client has 800,000
 
@@ -27,19 +28,20 @@ def test_the_page_has_our_title_and_its_cover_before_anything_long(lab: Viewer, 
     assert status == 200
     assert int(headers["Content-Length"]) == len(body)
     page = (gzip.decompress(body) if zipped else body).decode()
-    assert TITLE in page[:MAX_START]
-    assert COVER in page[:MAX_START]
+    assert f"<title>{TITLE}</title>" in page[:MAX_START]
+    assert cover(STARTING) in page[:MAX_START]
     assert "<title>Viser" not in page
-    assert page.index(COVER) < page.index('<div id="root">') < page.rindex("<script")
+    assert page.index(cover(STARTING)) < page.index('<div id="root">') < page.rindex("<script")
 
 
-def test_the_style_sheet_has_all_its_rules_and_no_comment() -> None:
-    source = (resources.files("app.render") / "js" / "page.css").read_text("utf-8")
+@pytest.mark.parametrize("name", STYLES)
+def test_the_style_sheet_has_all_its_rules_and_no_comment(name: str) -> None:
+    source = (resources.files("app.render") / "js" / name).read_text("utf-8")
     assert "/*" in source
-    assert "/*" not in style_sheet()
-    assert "*/" not in style_sheet()
-    assert style_sheet().count("{") == re.sub(r"(?m)/\*[^*]*\*/", "", source).count("{")
-    assert style_sheet().count("}") == style_sheet().count("{")
+    assert "/*" not in style_sheet(name)
+    assert "*/" not in style_sheet(name)
+    assert style_sheet(name).count("{") == re.sub(r"(?m)/\*[^*]*\*/", "", source).count("{")
+    assert style_sheet(name).count("}") == style_sheet(name).count("{")
 
 
 def test_the_page_can_ask_whether_the_server_is_there(lab: Viewer) -> None:

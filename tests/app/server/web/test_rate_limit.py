@@ -1,6 +1,7 @@
 """How much is on the way to a browser: what waits in front of a slow line is counted, on a clock that does not wait."""
 
 import asyncio
+import random
 import selectors
 import time
 from collections.abc import AsyncGenerator, Coroutine, Sequence
@@ -11,6 +12,7 @@ import pytest
 import viser
 import websockets
 from viser import _messages as vm
+from viser.infra._async_message_buffer import AsyncMessageBuffer
 from websockets.asyncio.client import connect
 
 from app.server.web.guard import open_server
@@ -236,6 +238,95 @@ def test_an_update_that_waits_does_not_follow_a_newer_one() -> None:
 def test_nothing_goes_ahead_of_what_is_made_or_removed() -> None:
     windows = [[vm.RemoveSceneNodeMessage("/box")], [picture("/sea", 1), panel("a", 1.0)]]
     assert passed(windows) == [[windows[0][0], *windows[1]]]
+
+
+class Unsteady(LineTo):
+    """A line that loses some pongs, delays others, and now and then carries much less."""
+
+    def __init__(self, chance: random.Random) -> None:
+        super().__init__(LINE, ROUND_TRIP)
+        self.chance = chance
+
+    async def ping(self) -> "asyncio.Future[float]":
+        self.rate = LINE * 10.0 ** -self.chance.choice([0.0, 0.0, 0.0, 1.0, 2.0])
+        self.round_trip = self.chance.choice([0.001, ROUND_TRIP, ROUND_TRIP, 5.0])
+        self.pongs = int(self.chance.random() > 0.2)
+        return await super().ping()
+
+
+State = dict[str, dict[str, Any]]
+
+
+def apply(state: State, messages: Sequence[vm.Message]) -> None:
+    """Change elements of the panel and nodes as a page does."""
+    for message in messages:
+        match message:
+            case vm.GuiHtmlMessage(uuid=name) | vm.FrameMessage(name=name):
+                state[name] = {}
+            case vm.GuiUpdateMessage(uuid=name) | vm.SceneNodeUpdateMessage(name=name):
+                state.get(name, {}).update(message.updates)
+            case vm.GuiRemoveMessage(uuid=name) | vm.RemoveSceneNodeMessage(name=name):
+                state.pop(name, None)
+            case _:
+                raise AssertionError(message)
+
+
+def changes(chance: random.Random, state: State, count: int) -> vm.Message:
+    """A change of a page in this state. The names of nodes come again, those of elements do not."""
+    node = f"/node{chance.randrange(4)}"
+    elements = [name for name in state if name[0] != "/"]
+    match chance.randrange(9):
+        case 0:
+            return vm.GuiHtmlMessage(f"html{count}", "root", vm.GuiHtmlProps(0.0, "", True))
+        case 1 if len(elements) > 2:
+            return vm.GuiRemoveMessage(chance.choice(elements))
+        case 2 if node in state:
+            return vm.RemoveSceneNodeMessage(node)
+        case 3 | 4 | 5 if elements:
+            return panel(chance.choice(elements), str(count) * chance.choice([1, 1, SMALL]))
+        case _ if node in state:
+            return vm.SceneNodeUpdateMessage(node, {"text": str(count) * chance.choice([1, SMALL, 5 * SMALL])})
+        case _:
+            return vm.FrameMessage(node, vm.FrameProps(False, 0.1, 0.1, 0.1, (0, 0, 0), 1.0))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_each_change_reaches_a_browser_on_any_line_and_one_that_comes_again(seed: int) -> None:
+    chance = random.Random(seed)
+
+    async def show(buffer: AsyncMessageBuffer, number: int, page: State) -> None:
+        line = Unsteady(chance)
+        connection = RateLimit(line)
+        async for window in small_first(buffer.window_generator(number), connection):
+            await connection.send(bytes(sum(len(str(getattr(message, "updates", ""))) for message in window)))
+            apply(page, window)
+
+    async def change() -> None:
+        loop = asyncio.get_running_loop()
+        buffer = AsyncMessageBuffer(loop, persistent_messages=True, window_duration_sec=0.0)
+        wanted: State = {}
+        pages: list[State] = []
+        tasks: list[asyncio.Task[None]] = []
+        for count in range(400):
+            if count % 100 == 0:
+                for task in tasks[-1:]:
+                    task.cancel()
+                pages.append({})
+                tasks.append(loop.create_task(show(buffer, len(pages), pages[-1])))
+            message = changes(chance, wanted, count)
+            apply(wanted, [message])
+            buffer.push(message)
+            await asyncio.sleep(chance.choice([0.0, 0.0, 0.001, 0.03, 0.3]))
+        end = loop.time() + 120.0
+        while pages[-1] != wanted and loop.time() < end:
+            await asyncio.sleep(0.1)
+        ended = [task for task in tasks if task.done() and not task.cancelled()]
+        assert not ended
+        assert pages[-1] == wanted
+        tasks[-1].cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    hurried(change())
 
 
 def test_what_a_browser_is_sent_before_it_answers_is_bounded() -> None:

@@ -14,6 +14,7 @@ from websockets.asyncio.client import connect
 from app.server.web.guard import open_server
 from app.server.web.transport import Transport
 from tests import coroutines
+from tests.waiting import wait_for
 
 NODES = 12  # of the drawing, a mesh and a place each
 PICTURES = 300
@@ -125,3 +126,25 @@ def test_a_picture_is_not_waited_for_but_before_the_next_and_before_the_end() ->
     finally:
         busy.set()
         server.stop()
+
+
+def test_a_picture_that_viser_refuses_holds_back_no_later_one(server: viser.ViserServer) -> None:
+    connection = server._websock_server
+    send, refused = connection.queue_message, threading.Event()
+
+    def refuse(message: Any) -> None:
+        if getattr(message, "updates", {}).get("text") == "bad":
+            refused.set()
+            raise ValueError("no such text")
+        send(message)
+
+    connection.queue_message = refuse
+    server.get_event_loop().call_soon_threadsafe(
+        server.get_event_loop().set_exception_handler, lambda loop, context: None
+    )
+    transport = Transport(server)
+    label = server.scene.add_label("/label", "")
+    with transport.counted():
+        label.text = "bad"
+    assert refused.wait(10.0)
+    wait_for(lambda: connection.get_message_buffer().atomic_counter == 0)

@@ -166,6 +166,16 @@ def test_an_export_that_fails_leaves_nothing(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_the_reason_is_said_where_the_draft_of_an_export_is_gone(tmp_path, monkeypatch):
+    def fail(sequence: object, draft: Path, *_: object) -> None:
+        draft.rmdir()
+        raise OSError("the disk was removed")
+
+    monkeypatch.setattr("app.study.export.command.write_frames", fail)
+    with pytest.raises(OSError, match="the disk was removed"):
+        export("cloth", ClothParams(rows=4, cols=4), 0.1, 30.0, 0.0, None, tmp_path / "a")
+
+
 def test_without_openexr_a_line_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(ValueError, match=r"OpenEXR is not installed .*png"):

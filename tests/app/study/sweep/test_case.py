@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import pytest
 
@@ -9,7 +10,7 @@ import app.scenes.rope.scene
 import app.study.sweep.case
 from app.scenes import NAMES, scene_named
 from app.scenes.quantities import Measure, measured
-from app.study.sweep.case import DIVERGED, FAILED, FINISHED, run_case
+from app.study.sweep.case import DIVERGED, FAILED, FINISHED, advance_to, run_case
 from sim.floating import Hull, equilibrium_draft
 from sim.parameters import parameters_of
 from sim.springs import simulate
@@ -34,6 +35,20 @@ def test_every_scene_gives_labelled_numbers_and_none_bears_the_name_of_a_paramet
     assert not outcome.measures.keys() & parameters_of(scene_named(name).params).keys()
     assert not outcome.measures.keys() & {"time", "case", "end", "message", "diverged_at", "run_time"}
     assert all(meaning for _, meaning in outcome.labels.values())
+
+
+def test_a_case_takes_the_steps_to_its_time_and_no_more(monkeypatch):
+    taken: list[int] = []
+
+    def take(running: object, count: int) -> None:
+        taken.append(count)
+        assert sum(taken) <= 100
+
+    monkeypatch.setattr(app.study.sweep.case, "advance", take)
+    running = SimpleNamespace(time=0.5, step=0.01, take_plot_rows=lambda: [(float(len(taken)),)] * (len(taken) % 2))
+    assert advance_to(running, 1.5) == (33.0,)
+    assert (sum(taken), max(taken)) == (100, 3)
+    assert advance_to(running, 0.5) == ()
 
 
 def test_a_rope_that_has_come_to_rest_hangs_as_statics_say():

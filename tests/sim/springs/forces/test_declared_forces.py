@@ -6,6 +6,7 @@ A force stores energy, or damps, or does both. Each test takes those that it is 
 import dataclasses
 import math
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -170,3 +171,15 @@ def test_a_net_refuses_numbers_that_are_not_finite_and_a_force_twice(numbers):
     for forces in ((numbers._replace(**{numbers._fields[0]: math.nan}),), (numbers, numbers)):
         with pytest.raises(ValueError, match=OWN[type(numbers)].name if len(forces) == 1 else "forces"):
             dataclasses.replace(NETS["rope"], forces=forces)
+
+
+class Steady(NamedTuple):
+    """A force that says nothing of its bound."""
+
+    strength: float = 2.0
+
+
+def test_a_force_without_a_bound_leaves_that_of_the_net(monkeypatch):
+    monkeypatch.setitem(OWN, Steady, Force("steady", numbers=Steady))
+    for net in NETS.values():
+        assert gershgorin(dataclasses.replace(net, forces=(Steady(),))) == gershgorin(net)

@@ -1,0 +1,35 @@
+// The cover over the page, of a lab (page/cover.js) or a replay (page/replay.js), until the picture of a scene is complete
+// (frames.js).
+
+import { springtide } from "../core/springtide.js";
+
+const SETTLING = 300; // [ms] after a panel, in which the objects of its scene arrive
+const UNDRAWN = 10_000; // [ms] after which the cover goes if no frame has begun
+const PATIENCE = 60_000; // [ms] after which it goes in any case
+const cover = /** @type {HTMLElement} */ (document.getElementById("springtide-cover"));
+const words = /** @type {HTMLElement} */ (document.getElementById("springtide-cover-words"));
+
+/** @param {string | null} text null for that which is there @param {boolean} hidden */
+export function showCover(text, hidden) {
+  if (text !== null && words.textContent !== text) words.textContent = text;
+  cover.classList.toggle("springtide-hidden", hidden);
+}
+
+/** @type {string | null} */
+let opened = null; // the scene whose picture is awaited
+let openedAt = 0; // [ms] since when
+export let pictured = ""; // the scene whose picture was complete
+
+// True if the picture of a scene is not complete yet. scene: a name of it that no other scene of this page has; "" for a scene
+// whose picture has no list of parts.
+/** @param {string} scene */
+export function awaitsPicture(scene) {
+  if (scene && scene === pictured) return false;
+  const now = performance.now();
+  if (scene !== opened) [opened, openedAt] = [scene, now];
+  const since = now - openedAt, { showsWhole } = springtide;
+  if (!scene) return since < SETTLING;
+  if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;
+  pictured = scene;
+  return false;
+}

@@ -24,8 +24,8 @@ from app.panel.recording.files import MakeReplay
 from app.panel.recording.recorder import Recorder
 from app.panel.recording.timeline import Timeline
 from app.panel.settings import SceneSettings
-from app.panel.sharing.changes import SceneSwitches
 from app.panel.sharing.compare import CompareFolder, ComparisonCalls
+from app.panel.sharing.scene_switches import SceneSwitches
 from app.panel.sharing.share import Share
 from app.panel.workbook.guide import GuideTab
 from app.render.cameras import place_camera

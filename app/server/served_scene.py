@@ -14,8 +14,8 @@ from app.messages import BaseParams, Command, Halt
 from app.panel.panel import Panel
 from app.panel.recording.recorder import RecordedFrame
 from app.panel.settings import SceneSettings
-from app.panel.sharing.changes import SceneSwitches
 from app.panel.sharing.compare import ComparisonCalls
+from app.panel.sharing.scene_switches import SceneSwitches
 from app.render.cameras import ClientCamera
 from app.render.markup.html import note
 from app.scenes import NAMES, view_named

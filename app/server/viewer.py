@@ -18,8 +18,8 @@ from app.panel.display import set_theme
 from app.panel.head import add_scene_chooser
 from app.panel.panel import Panel
 from app.panel.settings import SceneSettings, with_fields_of
-from app.panel.sharing.changes import SceneSwitches
 from app.panel.sharing.compare import ComparisonCalls, PaneWords
+from app.panel.sharing.scene_switches import SceneSwitches
 from app.render.cameras import ClientCamera, place_client_camera
 from app.render.handles.viser_inside import send_at_once
 from app.render.injection import disable_shaders, reset_page

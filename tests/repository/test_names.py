@@ -22,7 +22,9 @@ FORMER = {
     "WavePace": "WaveSlope",
     "writeHalves": "writeHalfFloats",
 }
-FORMER_FILES = {"job", "moments", "pace", "pacer", "left_runs", "runs", "access.js", "half", "halve"}
+FORMER_FILES = {
+    "job", "moments", "pace", "pacer", "left_runs", "runs", "access.js", "half", "halve", "where", "shown", "sense",
+}  # fmt: skip
 OTHER = {  # of a former name, in a sense of its own: a type in one file
     "Look": {"app/panel/plots.py"},
     "Runs": {"app/render/markup/line_chart.py"},

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from app.lab.check.comparing import call, conform, form_of, parts, reproduces, same, same_shape
-from app.lab.check.diagnosis import where
+from app.lab.check.diagnosis import differences
 from app.lab.check.diagnosis.edits import explain_edit, explain_repair
 from app.lab.check.diagnosis.explanation import Explanation
 from app.lab.check.diagnosis.steps import explain_step
@@ -208,9 +208,9 @@ def in_special_case(student: StudentFunction, trials: Sequence[Trial]) -> Explan
     """The only special case of the task in which a function differs, or None."""
     cases = getattr(student.task.check, "CASES", ())
     compared = compared_parts(trials)
-    if compared is None or not where.case_of(compared, cases):
+    if compared is None or not differences.case_of(compared, cases):
         return None
-    return where.explain_where(compared, student.task.arguments, part_names(student, trials), cases)
+    return differences.explain_where(compared, student.task.arguments, part_names(student, trials), cases)
 
 
 def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
@@ -224,7 +224,7 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
         other = next(trial for trial in trials if not same_shape(trial.found, trial.right))
         raise Wrong(f"it returns {form_of(other.found)}; expected {form_of(other.right)}", "wrong shape")
     else:
-        found = where.explain_where(compared, student.task.arguments, part_names(student, trials), ())
+        found = differences.explain_where(compared, student.task.arguments, part_names(student, trials), ())
     if found.mistake:
         return found
     try:
@@ -236,11 +236,11 @@ def elsewhere(student: StudentFunction, trials: Sequence[Trial]) -> Explanation:
     return found
 
 
-def compared_parts(trials: Sequence[Trial]) -> list[where.Difference] | None:
+def compared_parts(trials: Sequence[Trial]) -> list[differences.Difference] | None:
     """The trials with their differences; None if results have other shapes."""
     if not all(same_shape(trial.found, trial.right) for trial in trials):
         return None
-    return [where.compared(trial.sample, parts(trial.found), parts(trial.right)) for trial in trials]
+    return [differences.compared(trial.sample, parts(trial.found), parts(trial.right)) for trial in trials]
 
 
 def part_names(student: StudentFunction, trials: Sequence[Trial]) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from app.lab.check.check import FolderResult, TaskResult
-from app.lab.check.diagnosis.shown import equation_lines
+from app.lab.check.diagnosis.equation_html import equation_lines
 from app.lab.check.program_check import SAMPLES
 from app.lab.course.answer_check import AnswerVerdict
 from app.lab.course.answers import Answers, Value

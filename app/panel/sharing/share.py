@@ -15,8 +15,8 @@ from app.panel.plots import Plots
 from app.panel.recording.files import Files, MakeReplay, file_name
 from app.panel.recording.recorder import Recorder
 from app.panel.settings import SceneSettings
-from app.panel.sharing.changes import SceneSwitch, SceneSwitches, SwitchNotice
 from app.panel.sharing.compare import ComparisonCalls
+from app.panel.sharing.scene_switches import SceneSwitch, SceneSwitches, SwitchNotice
 from app.panel.workbook.task_setups import read_link
 from app.render.cameras import place_camera
 from app.render.handles.viser_inside import uuid_of

@@ -4,7 +4,7 @@ import numpy as np
 import viser
 
 from app.formats.formatting import metres, number
-from app.lab.check.diagnosis.shown import equation_lines
+from app.lab.check.diagnosis.equation_html import equation_lines
 from app.lab.check.program_check import Verdict
 from app.lab.course.live_values import LiveValues
 from app.lab.course.task import Task

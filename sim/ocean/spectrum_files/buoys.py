@@ -14,7 +14,7 @@ import numpy as np
 from sim.ocean.records.measured import spread_by_mean, spread_by_moments
 from sim.ocean.spectra.record import SECOND_EXPONENT, SECOND_PEAK, Spectrum, peaked
 from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, filled, made, nearest, towards
-from sim.ocean.spectrum_files.sense import COMPASS
+from sim.ocean.spectrum_files.sea_summary import COMPASS
 from sim.tables import line_error, read_text, values_of
 from sim.validation import argument_error
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.ocean.records.wave_record import zero_crossings
-from sim.ocean.spectrum_files.sense import warnings_of
+from sim.ocean.spectrum_files.sea_summary import warnings_of
 from sim.tables import Meaning, line_error, read_table, read_text
 from sim.tables.columns import LENGTH, TIME
 from sim.validation import argument_error, check_kind
@@ -55,10 +55,10 @@ def read_record(path: str | Path) -> HeightRecord:
         raise line_error(path, table.lines[first + int((np.diff(t) <= 0.0).argmax()) + 1], "times that rise")
     lost = len(there) - len(t)
     notes = [*table.notes, *([f"{lost} rows without a height left out at the ends"] if lost else [])]
-    return HeightRecord(t, height, (*sense_of_record(t, height), *notes))
+    return HeightRecord(t, height, (*summary_of_record(t, height), *notes))
 
 
-def sense_of_record(t: np.ndarray, height: np.ndarray) -> list[str]:
+def summary_of_record(t: np.ndarray, height: np.ndarray) -> list[str]:
     """A line with Hs, Tz and duration of a record of heights (n,) [m] at times (n,) [s], and warnings."""
     Hs, Tz = 4.0 * float(height.std()), zero_crossings(t, height).mean_period
     line = f"Hs {Hs:.3g} m, Tz {Tz:.3g} s, {t[-1] - t[0]:.4g} s long in {len(t)} samples"

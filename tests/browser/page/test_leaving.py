@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from app.panel.sharing.changes import UNDO
+from app.panel.sharing.scene_switches import UNDO
 from app.server.viewer import Viewer
 from tests.browser.conftest import CHROMIUM, FLAGS, Tab, surroundings
 

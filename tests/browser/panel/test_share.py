@@ -8,7 +8,7 @@ from urllib.parse import quote
 import imageio.v3 as iio
 import pytest
 
-from app.panel.sharing.changes import UNDO
+from app.panel.sharing.scene_switches import UNDO
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import NAMES, scene_named
 from app.scenes.own_setups import own_files
@@ -63,7 +63,7 @@ def test_a_link_is_taken_shown_to_the_others_and_made_again(
 ) -> None:
     """With a second visitor, who follows a link."""
     lab, tab = opened
-    monkeypatch.setattr("app.panel.sharing.changes.SHOWN_TIME", 60.0)  # of a slow machine
+    monkeypatch.setattr("app.panel.sharing.scene_switches.SHOWN_TIME", 60.0)  # of a slow machine
     query = "&scene=rope&stiffness=2k&time_step=1/600&camera=3,-4,2,0,0,1.5"
     other = open_tab(lab.port, query=query)
     base = f"http://127.0.0.1:{lab.port}/"

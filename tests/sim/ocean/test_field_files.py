@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import measured_spectrum, read_record, read_spectrum, recorded_waves
-from sim.ocean.spectrum_files.sense import bearing_of
+from sim.ocean.spectrum_files.sea_summary import bearing_of
 from sim.tables.text import MAX_BYTES
 from tests.refusals import assert_refused
 

@@ -13,9 +13,9 @@ from msgspec.structs import replace
 
 from app.lab.check.comparing import call, conform, parts, reproduces, same
 from app.lab.check.diagnose import FRESH, FRESH_SEED, SEED
+from app.lab.check.diagnosis.differences import number
 from app.lab.check.diagnosis.edits import own_edits
 from app.lab.check.diagnosis.effects import EFFECTS
-from app.lab.check.diagnosis.where import number
 from app.lab.check.program_check import SAMPLES, compare
 from app.lab.check.student_function import StudentFunction
 from app.lab.checking import Wrong

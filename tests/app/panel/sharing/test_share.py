@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from app.panel.sharing.changes import SceneSwitch
+from app.panel.sharing.scene_switches import SceneSwitch
 from app.panel.sharing.share import Share, camera_of
 from app.scenes import scene_named
 from app.scenes.setups import make_setup

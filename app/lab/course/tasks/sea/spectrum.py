@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.lab.check.diagnosis.where import Case
+from app.lab.check.diagnosis.differences import Case
 from app.lab.checking import Curve, Mistake, require
 
 

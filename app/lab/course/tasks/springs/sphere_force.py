@@ -5,8 +5,8 @@ import itertools
 
 import numpy as np
 
+from app.lab.check.diagnosis.differences import Case
 from app.lab.check.diagnosis.terms import Form, Term
-from app.lab.check.diagnosis.where import Case
 from app.lab.checking import Curve, Mistake, require
 
 

@@ -7,7 +7,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from app.panel.sharing.changes import SHOWN_TIME, UNDO, SceneSwitch, SceneSwitches, SwitchNotice
+from app.panel.sharing.scene_switches import SHOWN_TIME, UNDO, SceneSwitch, SceneSwitches, SwitchNotice
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
@@ -37,7 +37,7 @@ def shown(lab: Viewer) -> str:
 
 def test_the_time_of_a_change_begins_in_the_scene_that_it_opened(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr("app.panel.sharing.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr("app.panel.sharing.scene_switches.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
     before = make_setup(scene_named("rope"))
     changes = SceneSwitches()
     changes.latest = SceneSwitch("page", "cloth", make_setup(scene_named("cloth")), before)
@@ -63,7 +63,7 @@ def test_a_change_is_undone_once() -> None:
 
 def test_all_see_for_some_seconds_who_opened_what(lab: Viewer, monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [100.0]
-    monkeypatch.setattr("app.panel.sharing.changes.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
+    monkeypatch.setattr("app.panel.sharing.scene_switches.time", types.SimpleNamespace(monotonic=lambda: clock[0]))
 
     async def follow_links() -> None:
         async with visitor(lab) as first:

@@ -15,7 +15,7 @@ ANGLES = np.radians(np.arange(0.0, 360.0, 2.0))
 FREQUENCIES = 400
 
 
-def sense_of(spectrum: Spectrum[Any]) -> tuple[str, ...]:
+def summary_of(spectrum: Spectrum[Any]) -> tuple[str, ...]:
     """A line with Hs, Tp and main direction of a measured spectrum, and a warning for each that is unlikely."""
     moments = spectrum.moments()
     height, period = moments.significant_height, moments.peak_period

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.mooring.parts import MooringParts
-from sim.springs.forces.bending import BEND_STIFFNESS, LINKS, NODES, OFFSET, WEIGHTS
+from sim.springs.forces.under_water.bending import BEND_STIFFNESS, LINKS, NODES, OFFSET, WEIGHTS
 from sim.springs.points.line_arrays import LineArrays
 
 Array = NDArray[np.float64]

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.forces.bed import bed_force
-from sim.springs.forces.bending import BEND_STIFFNESS, LINKS, WEIGHTS, bend_at
 from sim.springs.forces.links import lengthening
-from sim.springs.forces.water import push_of
+from sim.springs.forces.under_water.bed import bed_force
+from sim.springs.forces.under_water.bending import BEND_STIFFNESS, LINKS, WEIGHTS, bend_at
+from sim.springs.forces.under_water.water import push_of
 from sim.springs.laws import tension
 from sim.springs.points.arrays import link_at
 from sim.springs.points.each_link import stretch

@@ -18,7 +18,7 @@ from sim.mooring.run import MooringRun
 from sim.mooring.system import System
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import energy_history
-from sim.springs.forces.bending import set_line_tensions
+from sim.springs.forces.under_water.bending import set_line_tensions
 from sim.springs.integrators import Integrator, integrator_named
 from sim.springs.points.acceleration import set_node_forces
 from sim.springs.simulate import SIMULATED, Simulated

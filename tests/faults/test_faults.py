@@ -116,7 +116,7 @@ def test_a_line_is_reached_by_what_calls_it_and_a_kernel_by_what_mentions_it(tmp
 
 def test_a_file_of_tests_lies_where_its_module_lies():
     for module, name in {
-        "sim/springs/forces/water.py": "tests/sim/springs/",
+        "sim/springs/forces/under_water/water.py": "tests/sim/springs/",
         "app/scenes/mooring/readings/report.py": "tests/app/scenes/mooring/",
         "app/server/loop/sim_loop.py": "tests/app/server/",
         "sim/validation.py": "tests/sim/test_validation.py",

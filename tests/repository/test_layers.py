@@ -158,15 +158,15 @@ def test_springs_ocean_and_particles_do_not_know_each_other():
     assert not offences(below("sim/floating"), "sim.springs", "sim.particles")
 
 
-@pytest.mark.parametrize(("top", "types"), [("sim", False), ("app", True), ("benchmarks", True)])
-def test_there_is_no_circle_of_imports(top: str, types: bool):
-    """types: those for types only are counted, too."""
+@pytest.mark.parametrize("top", ["sim", "app", "benchmarks"])
+def test_there_is_no_circle_of_imports(top: str):
+    """Those for types only are counted, too."""
     modules = {module_of(path): path for path in below(top)}
     graph = {
         # A package is run before its modules are, so that what they import of it by name is not counted.
         name: {
             other
-            for other in imports(path, types=types) & set(modules)
+            for other in imports(path, types=True) & set(modules)
             if not name.startswith(other + ".") and other != name
         }
         for name, path in modules.items()
@@ -195,19 +195,3 @@ def test_nothing_is_left_to_do():
     words = ("TODO", "FIXME", "XXX", "NotImplementedError")
     left = [(named(path), word) for path in SOURCES for word in words if word in path.read_text("utf-8")]
     assert [entry for entry in left if entry[0] != named(Path(__file__))] == []
-
-
-def test_text_files_name_their_encoding():
-    """That of Windows is another one than that of Linux and macOS."""
-    before = {"read_text": 0, "write_text": 1}  # arguments before the encoding
-    wrong = []
-    for path in SOURCES:
-        text = path.read_text("utf-8")
-        if not any(name in text for name in before):
-            continue
-        for call in (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)):
-            name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
-            named_ones = {word.arg for word in call.keywords}
-            if name in before and len(call.args) <= before[name] and "encoding" not in named_ones:
-                wrong.append(f"{named(path)}:{call.lineno}")
-    assert not wrong

@@ -25,7 +25,7 @@ from app.scenes.springs.speed_advice import faster_steps
 from sim.floating.motion.rotation import quaternion_by_vector
 from sim.mooring import System
 from sim.springs import INTEGRATORS
-from sim.springs.forces.bending import set_line_tensions
+from sim.springs.forces.under_water.bending import set_line_tensions
 from sim.springs.stability import Gauge, Mode, gauge_of, top_modes
 from sim.springs.state import State, advance, velocities
 from sim.validation import DivergenceError

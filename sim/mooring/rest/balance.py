@@ -15,7 +15,7 @@ from sim.mooring.elastic import Elastic
 from sim.mooring.rest.buoyancy import Volumes
 from sim.mooring.rest.chains import Chains
 from sim.mooring.tangent import declared_stiffness, forces_on_free, links_at, moved, moves_on_free, six_of
-from sim.springs.forces.bending import BEND_STIFFNESS
+from sim.springs.forces.under_water.bending import BEND_STIFFNESS
 from sim.springs.points.acceleration import set_rest_forces
 from sim.springs.points.line_arrays import STIFFNESS, LineArrays
 

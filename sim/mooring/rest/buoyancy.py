@@ -1,9 +1,9 @@
-"""Buoyancy in the statics of a mooring: pieces of segments, and points that float, as `sim.springs.forces.water`."""
+"""Buoyancy in the statics of a mooring: pieces of segments, and points that float, by the force `water`."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.springs.forces.water import PIECES
+from sim.springs.forces.under_water.water import PIECES
 from sim.springs.points.line_arrays import LineArrays
 
 Array = NDArray[np.float64]

@@ -15,7 +15,7 @@ from sim.mooring.rest.balance import Laws, balanced
 from sim.mooring.rest.chains import Chains
 from sim.mooring.rest.interior import along_central_path
 from sim.mooring.tangent import six_of
-from sim.springs.forces.bending import set_line_tensions
+from sim.springs.forces.under_water.bending import set_line_tensions
 from sim.springs.points.line_arrays import LineArrays
 from sim.validation import ConvergenceError
 

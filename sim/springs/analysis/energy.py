@@ -10,7 +10,7 @@ import numpy as np
 
 from sim.jit import kernel
 from sim.springs.forces import each
-from sim.springs.forces.water import inertia_power
+from sim.springs.forces.under_water.water import inertia_power
 from sim.springs.points.acceleration import accelerate, make_scratch
 from sim.springs.points.arrays import by_net, mass_at, point_count
 from sim.springs.points.line_arrays import BODY_MASS

@@ -14,7 +14,7 @@ To add a force, write a module in this folder with
 
 The forces without numbers of their own read those of the net's record. In ropes, cloths and other nets, links, gravity
 and drag accelerate in the hand-written loops over links of `sim/springs/points/acceleration.py`. Lines under water are
-nets with more forces: water, bed, bending, steady loads and the bodies that they hold.
+nets with more forces, those of `under_water`: water, bed, bending, steady loads and the bodies that they hold.
 """
 
 from collections import namedtuple
@@ -23,13 +23,14 @@ from typing import Any, NamedTuple
 
 from sim.jit import chosen, generated, kernel, modules_of
 from sim.springs.forces.record import Absent, Force
+from sim.springs.forces.under_water import FORCES as UNDER_WATER
 from sim.springs.points.arrays import GridArrays, RopeArrays, by_net
 from sim.springs.points.line_arrays import LineArrays
 from sim.validation import argument_error, check_number
 
 FORCES: tuple[Force, ...] = tuple(
     sorted(
-        (module.FORCE for module in modules_of(__name__) if hasattr(module, "FORCE")),
+        (*UNDER_WATER, *(module.FORCE for module in modules_of(__name__) if hasattr(module, "FORCE"))),
         key=lambda force: (force.rank, force.name),
     )
 )

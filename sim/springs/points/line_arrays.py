@@ -77,7 +77,7 @@ class LineArrays(NamedTuple):
     # (links, 5): rest length [m], stiffness [N/m], damping [N s/m], first row and number of rows in `curves`, or 0
     links: NDArray[np.float64]
     curves: NDArray[np.float64]  # (rows, 3): strain, tension [N], energy per length [N], see `sim.springs.laws.curve`
-    bends: NDArray[np.float64]  # (bends, 12): see `sim.springs.forces.bending`
+    bends: NDArray[np.float64]  # (bends, 12): see `sim.springs.forces.under_water.bending`
     loads: NDArray[np.float64]  # (n, 3) [N] steady forces on nodes, or (0, 3) without any
     places: NDArray[np.int64]  # (parts, 3): node, and the nodes before and after it along the line
     parts: NDArray[np.void]  # (parts,) of PART
@@ -96,6 +96,6 @@ class LineArrays(NamedTuple):
     # (bodies, 225): inverse mass, mass, stiffness and damping matrix; place at rest [m]; how damping decays
     bodies: NDArray[np.float64]
     steady: NDArray[np.float64]  # (bodies, 6) [N, N m] steady forces on bodies
-    # (bodies, 12, waves) [N/m, N]: real, then imaginary part of X, see `sim.springs.forces.bodies`
+    # (bodies, 12, waves) [N/m, N]: real, then imaginary part of X, see `sim.springs.forces.under_water.bodies`
     excitation: NDArray[np.float64]
     stop: NDArray[np.int64]  # (2,) that ends a long solve, see sim.interruption

@@ -9,7 +9,7 @@ import pytest
 
 from sim.mooring import Line, LineType, Point, System, critical_step, read_moordyn, simulate
 from sim.springs.analysis.energy import energies
-from sim.springs.forces.bending import energy
+from sim.springs.forces.under_water.bending import energy
 from sim.springs.points.acceleration import set_rest_forces
 from sim.springs.state import State
 from tests.refusals import assert_refused
@@ -140,7 +140,7 @@ def test_slack_links_are_damped_on_demand_only():
     kind = LineType("rope", 0.05, 5.0, 2e6, 500.0)
     points = (Point(1, "fixed", (0.0, 0.0, -5.0)), Point(2, "fixed", (8.0, 0.0, -5.0)))
     system = System((Line(1, kind, 1, 2, 10.0, 2),), points, 30.0, gravity=0.0, **DRY)
-    from sim.springs.forces.bending import set_line_tensions
+    from sim.springs.forces.under_water.bending import set_line_tensions
 
     x, v, out = np.array([0.0, 8.0, 4.0, 0.0, 0.0, 0.0, -5.0, -5.0, -5.0]), np.zeros(9), np.empty(2)
     v[2] = 0.3

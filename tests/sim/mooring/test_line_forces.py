@@ -10,7 +10,7 @@ from sim.springs.analysis.energy import pins_damping_power, power
 from sim.springs.damping import damp_lines, make_decay
 from sim.springs.forces.links import set_tensions
 from sim.springs.forces.matrices import DAMPING, STIFFEST, STIFFNESS
-from sim.springs.forces.water import tangent as buoyancy_tangent
+from sim.springs.forces.under_water.water import tangent as buoyancy_tangent
 from sim.springs.points.acceleration import set_acceleration
 from sim.springs.points.line_points import set_inverse_masses
 from sim.water import Water

@@ -9,7 +9,7 @@ import pytest
 from sim.mooring import Line, LineType, Point, State, System, advance, point_forces, simulate
 from sim.springs.analysis.energy import energies as energies_of
 from sim.springs.analysis.energy import power
-from sim.springs.forces.water import PIECES, wet_potential, wet_share, wet_slopes
+from sim.springs.forces.under_water.water import PIECES, wet_potential, wet_share, wet_slopes
 from sim.springs.points.acceleration import set_acceleration
 from sim.water import Water
 from sim.waves import Waves

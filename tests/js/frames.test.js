@@ -7,6 +7,10 @@ function makePage() {
   /** @type {(() => void)[]} */
   const asked = []; // by requestAnimationFrame
   const nothing = { observe() {}, disconnect() {}, querySelectorAll: () => [], querySelector: () => null };
+  /** @type {Record<string, object>} */
+  const nodeRefFromName = {};
+  const field = { dataset: { springtideNodes: "/sea" } };
+  let looked = 0; // how often the page was asked for its nodes
   const scene = { environment: {}, traverse() {} };
   const camera = { position: 0, quaternion: 0, projectionMatrix: 0 };
   const element = Object.assign(new EventTarget(), { style: {}, width: 4, height: 3, clientWidth: 4, clientHeight: 3 });
@@ -32,19 +36,24 @@ function makePage() {
     requestAnimationFrame: (/** @type {() => void} */ call) => void asked.push(call),
     setInterval: () => 0,
     location: new URL("http://127.0.0.1/"),
-    document: Object.assign(new EventTarget(), { ...nothing, documentElement, visibilityState: "visible" }),
+    document: Object.assign(new EventTarget(), {
+      ...nothing, documentElement, visibilityState: "visible",
+      querySelector: (/** @type {string} */ name) => (name === "[data-springtide-nodes]" ? ((looked += 1), field) : null),
+    }),
     window: globalThis,
     addEventListener() {},
     devicePixelRatio: 1,
-    __viserMutable: { scene, camera, requestRender() {}, getRenderRequestState: "ready" },
+    __viserMutable: { scene, camera, nodeRefFromName, requestRender() {}, getRenderRequestState: "ready" },
   });
   return {
     renderer,
-    // Ask for a frame of the scene, which is another one than the last.
-    render() {
-      camera.position += 1;
+    // Ask for a frame of the scene: another one than the last, or the same.
+    render(isOther = true) {
+      if (isOther) camera.position += 1;
       renderer.render(scene, camera);
     },
+    looks: () => looked,
+    nodeRefFromName,
     // All frames that were begun are drawn; whether the page looks before it begins the next one.
     draw(looks = false) {
       drawn = fences;
@@ -61,6 +70,7 @@ test("the whole picture is shown from the end of its first frame on, also where 
   const { springtide } = await import("./js/core/springtide.js");
   paceFrames(/** @type {any} */ (page.renderer), life);
   const showsWhole = () => springtide.showsWhole?.();
+  page.nodeRefFromName["/sea"] = {};
   assert.equal(showsWhole(), false);
   Object.assign(page.scene, { environment: null }); // the sky is not there
   page.render();
@@ -82,5 +92,35 @@ test("the whole picture is shown from the end of its first frame on, also where 
   assert.equal(showsWhole(), false);
   page.draw(true);
   assert.equal(showsWhole(), false);
+  life.end();
+});
+
+test("another scene awaits a frame that began after it and has its nodes, which are not looked for afterwards", async () => {
+  const page = makePage(), life = new Life();
+  const { paceFrames } = await import("./js/scene/frames.js");
+  const { springtide } = await import("./js/core/springtide.js");
+  paceFrames(/** @type {any} */ (page.renderer), life);
+  const showsWhole = () => springtide.showsWhole?.();
+  page.render(); // a frame of the scene before
+  springtide.awaitPicture?.();
+  page.draw(true);
+  assert.equal(showsWhole(), false);
+  page.render(false);
+  page.draw(true);
+  assert.equal(showsWhole(), false); // without its nodes
+  page.nodeRefFromName["/sea"] = {};
+  page.render();
+  page.draw(true);
+  assert.equal(showsWhole(), true);
+  const looks = page.looks();
+  page.render();
+  page.draw(true);
+  assert.equal(showsWhole(), true);
+  assert.equal(page.looks(), looks);
+  springtide.awaitPicture?.(); // the same scene again: the same frame is drawn once more
+  assert.equal(showsWhole(), false);
+  page.render(false);
+  page.draw(true);
+  assert.equal(showsWhole(), true);
   life.end();
 });

@@ -40,7 +40,10 @@ function awaitsPicture() {
   const field = document.querySelector("[data-springtide-shaders]")?.dataset.springtideShaders ?? "";
   if (field && field === pictured) return false;
   const now = performance.now();
-  if (field !== opened) [opened, openedAt] = [field, now];
+  if (field !== opened) {
+    [opened, openedAt] = [field, now];
+    springtide.awaitPicture?.();
+  }
   const since = now - openedAt, { showsWhole } = springtide;
   if (!field) return since < SETTLING;
   if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;

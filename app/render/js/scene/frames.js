@@ -127,6 +127,8 @@ export function paceFrames(renderer, life) {
   let isWhole = false; // true if that frame has its nodes, its sky, its light, and all of its shaders
   let finishedWhole = false; // true if the last drawn frame had, and no frame without them has begun since
   let length = 0; // [ms] of it
+  let awaitsNodes = true; // true while the cover waits for the nodes of a scene
+  let isStale = false; // true if the next frame is drawn although it has the inputs of the last one
   let started = 0, pressed = 0, left = 0; // time of its start, time of the last press in the panel, frames left to the panel
 
   // True if the last frame is drawn. Its length is the time until the browser's next frame.
@@ -162,8 +164,17 @@ export function paceFrames(renderer, life) {
     return true;
   }
 
+  // Only frames that begin from now on count.
+  springtide.awaitPicture = () => {
+    [awaitsNodes, isStale, isWhole, finishedWhole] = [true, true, false, false];
+    viewer()?.requestRender();
+  };
   // The cover then goes. In software a frame is nearly always being drawn.
-  springtide.showsWhole = () => (drawing ? finishedWhole : isWhole);
+  springtide.showsWhole = () => {
+    const isShown = drawing ? finishedWhole : isWhole;
+    if (isShown) awaitsNodes = false;
+    return isShown;
+  };
   let knownPrograms = ""; // with the last frame
   const programs = () => `${renderer.info.programs?.at(-1)?.id} ${programsReady}`;
 
@@ -180,12 +191,12 @@ export function paceFrames(renderer, life) {
     }
     if (document.visibilityState === "hidden") return;
     const inputs = inputsOf(renderer, own, camera), shown = last;
-    if (shown?.length === inputs.length && inputs.every((input, k) => Object.is(input, shown[k]))) return;
+    if (!isStale && shown?.length === inputs.length && inputs.every((input, k) => Object.is(input, shown[k]))) return;
     if (shown && hasToWait()) return void requestRender?.();
     [started, left] = [performance.now(), 0];
     earlier.call(this, scene, camera);
-    last = inputs;
-    isWhole = Boolean(own.environment) && !awaitsLight() && !lacksPrograms && !lacksNodes();
+    [last, isStale] = [inputs, false];
+    isWhole = Boolean(own.environment) && !awaitsLight() && !lacksPrograms && !(awaitsNodes && lacksNodes());
     if (!isWhole) finishedWhole = false;
     const known = programs();
     awaitEnd(known !== knownPrograms);

@@ -66,7 +66,7 @@ def test_the_ledger_closes_through_contact_and_friction(name, law):
 
 
 def leaning(angle: float) -> tuple[Net, np.ndarray]:
-    """An undamped straight rope at an angle [rad] to the vertical, from which it swings without chaos, and its points."""
+    """An undamped straight rope at an angle [rad] to the vertical, where it swings without chaos, and its points."""
     net = rope(10, damping=0.0, drag=0.0, gravity=10.0)
     along = np.linalg.norm(net.x0 - net.x0[:, :, :1], axis=0)[0]
     return net, np.outer(along, (np.sin(angle), 0.0, -np.cos(angle)))

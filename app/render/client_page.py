@@ -39,7 +39,7 @@ def with_ours(
         return None
     end += len("</script>")
     client = head[start:end]
-    first = f"{before_tags(before)}<style>{''.join(map(style_sheet, styles))}</style>"
-    head = head[:start].replace("<title>Viser</title>", fill("<title>{}</title>", title), 1) + first + head[end:]
+    sheets = f"<style>{''.join(map(style_sheet, styles))}</style>"
+    head = head[:start].replace("<title>Viser</title>", fill("<title>{}</title>", title), 1) + sheets + head[end:]
     body = body.replace("</body>", f"{client}{tags(entry)}{last}</body>", 1)
-    return f"{head}<body>{cover(words)}{body}"
+    return f"{head}<body>{cover(words)}{before_tags(before)}{body}"

@@ -1,8 +1,8 @@
 """Rings that raindrops make on water: how many a second, and the wave that they begin with.
 
-A drop excites waves of all lengths. The last to leave its place are those of the least speed there is, where gravity
-and tension pull equally: k = sqrt(rho g/sigma), c = (4 g sigma/rho)^(1/4) (Lamb, Hydrodynamics, Art. 267). Their group
-is as fast as they are, so that they spread as one ring about still water.
+A drop excites waves of all lengths. The slowest are those where gravity and tension pull equally:
+k = sqrt(rho g/sigma), c = (4 g sigma/rho)^(1/4) (Lamb, Hydrodynamics, Art. 267). Their group is as fast as they are, so
+that they spread as one ring about still water.
 """
 
 import math

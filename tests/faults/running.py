@@ -208,6 +208,7 @@ def not_found_again(work: Path, chosen: list[Listed], long: set[str], *, workers
     """
     results = read_results()
     quick = names_of_tests("not stress and not long and not browser")
+    quick |= {name.partition("::")[0] for name in quick}  # a file that could not be read found a fault, too
     jobs, left = [], []
     for listed in chosen:
         finder = results[key_of_fault(listed)]["by"]

@@ -11,8 +11,12 @@ function makePage() {
   const camera = { position: 0, quaternion: 0, projectionMatrix: 0 };
   const element = Object.assign(new EventTarget(), { style: {}, width: 4, height: 3, clientWidth: 4, clientHeight: 3 });
   const documentElement = { classList: { contains: () => false } };
+  /** @type {Record<string, object>} */
+  const nodeRefFromName = {};
   const SIGNALED = 1, told = { springtideSky: "park", springtideNodes: "" }; // by the server
-  const querySelector = (/** @type {string} */ found) => (found === "[data-springtide-sky]" ? { dataset: told } : null);
+  let looked = 0; // how often the page was asked for what the server has told
+  const querySelector = (/** @type {string} */ found) =>
+    found === "[data-springtide-sky]" ? ((looked += 1), { dataset: told }) : null;
   let drawn = 0; // fences up to this number are signalled
   let fences = 0;
   const gl = {
@@ -37,15 +41,17 @@ function makePage() {
     window: globalThis,
     addEventListener() {},
     devicePixelRatio: 1,
-    __viserMutable: { scene, camera, nodeRefFromName: {}, requestRender() {}, getRenderRequestState: "ready" },
+    __viserMutable: { scene, camera, nodeRefFromName, requestRender() {}, getRenderRequestState: "ready" },
   });
   return {
     renderer,
-    // Ask for a frame of the scene, which is another one than the last.
-    render() {
-      camera.position += 1;
+    // Ask for a frame of the scene: another one than the last, or the same.
+    render(isOther = true) {
+      if (isOther) camera.position += 1;
       renderer.render(scene, camera);
     },
+    looks: () => looked,
+    nodeRefFromName,
     // All frames that were begun are drawn; whether the page looks before it begins the next one.
     draw(looks = false) {
       drawn = fences;
@@ -57,7 +63,8 @@ function makePage() {
   };
 }
 
-test("the whole picture is shown from the end of its first frame on, also where the next one begins at once", async () => {
+// The page with frames that name their sky first, and what shows the whole picture.
+async function pacedPage() {
   const page = makePage(), life = new Life();
   const { paceFrames } = await import("./js/scene/frames.js");
   const { nameSky } = await import("./js/scene/photograph.js");
@@ -67,7 +74,11 @@ test("the whole picture is shown from the end of its first frame on, also where 
     nameSky(scene); // as the first part of each frame does
     earlier(scene, camera);
   })(page.renderer.render);
-  const showsWhole = () => springtide.showsWhole?.();
+  return { page, life, showsWhole: () => springtide.showsWhole?.(), awaitPicture: () => springtide.awaitPicture?.() };
+}
+
+test("the whole picture is shown from the end of its first frame on, also where the next one begins at once", async () => {
+  const { page, life, showsWhole, awaitPicture } = await pacedPage();
   assert.equal(showsWhole(), false);
   Object.assign(page.scene, { environment: null }); // the sky is not there
   page.render();
@@ -93,6 +104,7 @@ test("the whole picture is shown from the end of its first frame on, also where 
   page.draw(true);
   assert.equal(showsWhole(), true);
   page.told.springtideSky = "sunset"; // another scene, whose photograph is not there
+  awaitPicture();
   page.render();
   assert.equal(showsWhole(), false);
   page.draw(true);
@@ -102,8 +114,36 @@ test("the whole picture is shown from the end of its first frame on, also where 
   page.draw(true);
   assert.equal(showsWhole(), true);
   page.told.springtideNodes = "/sea"; // which has no node here
+  awaitPicture();
   page.render();
   page.draw(true);
   assert.equal(showsWhole(), false);
+  life.end();
+});
+
+test("another scene awaits a frame that began after it and has its nodes, which are not looked for afterwards", async () => {
+  const { page, life, showsWhole, awaitPicture } = await pacedPage();
+  page.told.springtideNodes = "/sea";
+  page.render(); // a frame of the scene before
+  awaitPicture();
+  page.draw(true);
+  assert.equal(showsWhole(), false);
+  page.render(false);
+  page.draw(true);
+  assert.equal(showsWhole(), false); // without its nodes
+  page.nodeRefFromName["/sea"] = {};
+  page.render();
+  page.draw(true);
+  assert.equal(showsWhole(), true);
+  const looks = page.looks();
+  page.render();
+  page.draw(true);
+  assert.equal(showsWhole(), true);
+  assert.equal(page.looks(), looks);
+  awaitPicture(); // the same scene again: the same frame is drawn once more
+  assert.equal(showsWhole(), false);
+  page.render(false);
+  page.draw(true);
+  assert.equal(showsWhole(), true);
   life.end();
 });

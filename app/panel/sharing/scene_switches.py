@@ -17,6 +17,7 @@ from app.scenes.comparisons import COMPARISONS
 from app.scenes.setups import Setup
 
 SHOWN_TIME = 5.0  # [s] for which a change is shown
+PAGES = 100  # whose last text is remembered
 UNDO = "Undo this change"
 
 
@@ -50,11 +51,13 @@ class SceneSwitches:
 
     def __init__(self) -> None:
         self.latest: SceneSwitch | None = None
-        self.taken: dict[str, str] = {}  # word of a page -> number of its last text
+        self.taken: dict[str, str] = {}  # word of a page -> number of its last text, for the last PAGES that sent one
 
     def is_new(self, page: str, number: str) -> bool:
         """True if the last text of a page had another number than this one, which is noted."""
-        last, self.taken[page] = self.taken.get(page), number
+        last, self.taken[page] = self.taken.pop(page, None), number
+        if len(self.taken) > PAGES:
+            del self.taken[next(iter(self.taken))]
         return last != number
 
     def shown_in(self, scene: str) -> SceneSwitch | None:

@@ -14,6 +14,7 @@ interface Springtide {
   quality?: object;
   memory?: () => object;
   skiesDrawn?: number;
+  awaitPicture?: () => void;
   showsWhole?: () => boolean;
   contexts?: number;
   beside?: boolean;

@@ -17,7 +17,7 @@ from app.scenes.square_sea.rainfall import MAX_SPLASHES, SPLASH_DURATION, RainFr
 from sim.particles.rain import rainfall, slope_parameter
 from sim.water import EARTH_GRAVITY
 
-EXPOSURE_TIME = 1 / 40  # [s] over which a moving drop draws its streak
+EXPOSURE_TIME = 1 / 30  # [s] over which a moving drop draws its streak
 STREAK_HALF_WIDTH = 0.004  # [m]
 MIN_STREAK_ANGLE = 0.0007  # [rad] half the width below which the shader draws a streak paler instead: half a pixel
 STREAK_COLOUR = (214, 224, 234)
@@ -26,7 +26,7 @@ FADE_DISTANCE = 1.0  # [m] from the camera within which the shader draws no stre
 NEAR_DROPS = 8000  # that the shader draws around the camera, at most
 NEAR_BOX = 10.0  # [m] side of the box around the camera that they are in
 NEAR_HALF_WIDTH = 0.0022  # [m] of such a drop for each millimetre of its diameter
-NEAR_OPACITY = 0.7
+NEAR_OPACITY = 0.85
 CROWN_DROPS = 6  # thrown up by a splash
 CROWN_HEIGHT, CROWN_RADIUS = 0.16, 0.09  # [m]
 HIDDEN_HEIGHT = -1e3  # [m] where unused streaks are kept

@@ -1,5 +1,6 @@
 """Lines of an opened MoorDyn file are changed in the panel, and written again."""
 
+import itertools
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -24,6 +25,7 @@ from tests.waiting import wait_for
 
 PATH = Path(__file__).parents[2] / "sim/mooring/moordyn/files/shared_line.txt"
 FILE = MooringParams(moordyn_file=str(PATH), time_step=2e-3)
+NUMBERS = itertools.count()  # of texts that a page sends
 
 
 def test_a_file_that_was_changed_and_written_is_that_which_runs(tmp_path: Path) -> None:
@@ -178,7 +180,7 @@ def message(viewer: Viewer, text: str) -> list[str]:
         client_id=1, add_notification=lambda title, body, **how: told.append(body), camera=SimpleNamespace()
     )
     sharing = viewer.panel.share
-    sharing.inbox.value = f"page\n{text}"
+    sharing.inbox.value = f"page {next(NUMBERS)}\n{text}"
     coroutines.run(sharing.on_inbox(SimpleNamespace(client=client)))
     return told
 

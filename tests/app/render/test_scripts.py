@@ -13,6 +13,7 @@ from app.render import scripts
 from app.render.scripts import IMPORTED, PAGE, REPLAY, SHARED, import_map, modules
 
 ROOT = Path(__file__).parents[3]
+BROWSERS = ("Chrome", "Edge", "Firefox", "Safari")
 # Rooms from left to right: none imports a room to its left.
 ORDER = ("page", "panel", "scene", "sea", "shading", "core")
 
@@ -56,6 +57,19 @@ def test_every_module_is_started_by_an_entry() -> None:
 def test_types_are_declared_of_all_constants_that_python_shares() -> None:
     declared = (Path(scripts.__file__).parent / "js" / "shared.d.ts").read_text("utf-8")
     assert re.findall(r"const (\w+):", declared) == list(SHARED)
+
+
+def test_the_page_the_linter_and_the_documentation_name_the_same_oldest_browsers() -> None:
+    script = Path(scripts.__file__).parent / "js" / "before" / "failures.js"
+    found = [
+        {name: re.search(rf"{name}\D+(\d+(?:\.\d+)?)", line, re.IGNORECASE) for name in BROWSERS}
+        for path, word in ((script, "OLDEST ="), (ROOT / ".ci/js/eslint.config.mjs", "browsers:"),
+                           (ROOT / "docs/platforms.md", "The oldest browsers"))
+        for line in path.read_text("utf-8").splitlines() if word in line
+    ]  # fmt: skip
+    versions = [{name: match and match[1] for name, match in one.items()} for one in found]
+    assert versions == [versions[0]] * 3
+    assert all(versions[0].values())
 
 
 def test_an_import_map_holds_each_module_as_it_is_but_for_names() -> None:

@@ -7,7 +7,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from app.panel.sharing.scene_switches import SHOWN_TIME, UNDO, SceneSwitch, SceneSwitches, SwitchNotice
+from app.panel.sharing.scene_switches import PAGES, SHOWN_TIME, UNDO, SceneSwitch, SceneSwitches, SwitchNotice
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
 from app.server.viewer import Viewer
@@ -130,3 +130,12 @@ def test_a_text_is_taken_once_by_a_panel_that_is_open(lab: Viewer) -> None:
             assert not lab.changes.is_new("page", "2")
 
     coroutines.run(send_again())
+
+
+def test_the_texts_of_the_pages_that_sent_last_are_remembered() -> None:
+    changes = SceneSwitches()
+    for page in range(2 * PAGES):
+        assert changes.is_new(str(page), "1")
+        assert changes.is_new("often", "1") is (page == 0)
+    assert len(changes.taken) == PAGES
+    assert not changes.is_new(str(2 * PAGES - 1), "1")

@@ -140,6 +140,7 @@ def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str,
     viewer.loop.commands.put(Pause())
     with slow_line(viewer.port, FAST, 0.0) as line:
         page = counted_page(chromium)
+        page.add_init_script("Document.prototype.hasFocus = () => false;")  # as on a projector
         page.emulate_media(color_scheme="dark")
 
         def dark() -> list[bool | None]:
@@ -149,7 +150,6 @@ def test_a_page_that_connects_again_has_nothing_twice(chromium: Any, scene: str,
         try:
             page.goto(f"http://127.0.0.1:{line.port}/?hideViserLogo&fixedDpr=0.2")
             page.wait_for_function("window.__springtide?.quality")
-            page.bring_to_front()  # viser connects again where the page has the focus
             page.evaluate("window.isFirst = true")
             held = [settled_counts(page)]
             clients = set(viewer.server.get_clients())

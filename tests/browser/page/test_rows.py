@@ -58,7 +58,7 @@ SCENE_IS_SHOWN = (
     "const cover = document.getElementById('springtide-cover'); return cover.classList.contains('springtide-hidden');"
 )
 # Firefox has the focus where a window manager runs. Else no control that keys go to hears of it.
-HAS_FOCUS = "return document.hasFocus();"
+HAS_FOCUS = "return Document.prototype.hasFocus.call(document);"
 THUMB = """[...document.querySelectorAll(".multi-slider-thumb")].find((one) => one.ariaLabel?.startsWith(NAME))"""
 FOLDER = """[...document.querySelectorAll(".mantine-Paper-root > .mantine-Paper-root:first-child")]
     .find((one) => one.textContent.trim() === NAME)"""

@@ -1,6 +1,7 @@
 """The functions of the water's shader, as Chromium compiles them, against closed forms and the same sums in numpy."""
 
 import itertools
+import math
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -15,17 +16,18 @@ from app.render.scripts import modules
 from app.render.skies import set_sky
 from sim.ocean.fluids.oil_film import APPEARANCES, EXTINCTION, light_through, mirrored_light
 from sim.ocean.radial.radial_grid import RadialGrid
-from sim.particles.rain_rings import ring_wave
+from sim.particles.rain_rings import ring_flux, ring_wave
 from tests.browser.glsl import evaluate, page_with_modules
 
 POINTS = np.random.default_rng(1).uniform(-300.0, 300.0, (40_000, 2))
 FOOTPRINT = 0.65 / 1080 / np.sqrt(0.3)  # over the distance, seen from 0.3 of it above the water, 1080 rows in 0.65 rad
 
 
-def constant(name: str) -> float:
-    """The value of `const float name` or `const int name` in the shader."""
-    (value,) = re.findall(rf"const (?:float|int) {name} = ([-0-9.e]+);", modules()["sea/water_shader.js"])
-    return float(value)
+def constant(name: str, part: int = 0) -> float:
+    """The value of the constant `name` in the shader, or a part of it."""
+    values = re.findall(rf"\b{name} = (?:vec2\()?([-0-9.e]+)(?:, ([-0-9.e]+)\))?[;,]", modules()["sea/water_shader.js"])
+    assert len(values) == 1
+    return float(values[0][part])
 
 
 def fresnel(c: NDArray[np.float64], n: float) -> NDArray[np.float64]:
@@ -178,7 +180,7 @@ def test_a_texture_of_rings_has_at_each_vertex_what_was_written_there(page: Any,
     np.testing.assert_allclose(rings, np.arange(1, n), atol=2e-3)
 
 
-def test_foam_and_rings_have_the_shares_that_they_are_told(page: Any) -> None:
+def test_foam_has_the_share_that_it_is_told(page: Any) -> None:
     """Foam from near and from where small bubbles are not seen: "Foam covers" in the panel is the mean of shares."""
     points = np.column_stack([POINTS, np.zeros(len(POINTS))])
     for share, footprint in itertools.product((0.05, 0.2, 0.5, 0.9), (0.01, 0.25)):
@@ -190,16 +192,36 @@ def test_foam_and_rings_have_the_shares_that_they_are_told(page: Any) -> None:
         few = evaluate(page, f"foamCover(p.xy, p.z, {footprint})", points, {"wind": (0.4, 9.81, 1.0)}, details=0)[:, 0]
         assert few.mean() == pytest.approx(share, abs=0.03)
         assert 0.5 * share < (few > 0.5).mean() < 2.0 * share
-    wavelength, speed = ring_wave(9.81)
-    for share in (0.3, 0.9):
-        life = constant("RING_REACH") * wavelength / speed
-        side = constant("RING_CELL") * wavelength
-        flux = share * constant("RING_LAYERS") / (life * side**2)
-        uniforms = {"rainRings": (flux, wavelength, speed), "seaState": (3.1, 0.5, 0.0)}
-        rings = evaluate(page, "rainSlopes(0.03 * p.xy, 0.0)", POINTS, uniforms)
-        expected = share * constant("RING_VARIANCE")
-        assert (rings[:, :2] ** 2).sum(-1).mean() == pytest.approx(expected, rel=0.06)
-        assert abs(rings[:, :2].mean()) < 2e-3
+
+
+def rain(page: Any, rate: float, footprint: float, lean: float, details: int) -> NDArray[np.float64]:
+    """Of a sea in rain of this rate [mm/h]: two slopes, missing variance and jets (n, 4) in pixels of a width [m]."""
+    uniforms = {"rainRings": (ring_flux(rate), *ring_wave(9.81)), "seaState": (3.1, 0.5, 0.0)}
+    call = f"rainSlopes(0.5 * p.xy, {footprint}, vec2({0.6 * lean}, {0.8 * lean}))"
+    return evaluate(page, call, POINTS, uniforms, details=details)
+
+
+@pytest.mark.parametrize("rate", [2.0, 15.0, 100.0])
+def test_rings_and_jets_of_rain_are_as_many_seen_from_near_and_from_far(page: Any, rate: float) -> None:
+    for details in (2, 1, 0):
+        near, far = rain(page, rate, 1e-4, 1.5, details), rain(page, rate, 0.3, 1.5, details)
+        assert (near[:, :2] ** 2).sum(-1).mean() == pytest.approx(far[:, 2].mean(), rel=0.1)
+        assert abs(near[:, :2].mean()) < 0.02 * math.sqrt(far[:, 2].mean())
+        assert near[:, 3].mean() == pytest.approx(far[:, 3].mean(), rel=0.2)
+        assert (near[:, 2] == 0.0).all()
+        assert (far[:, :2] == 0.0).all()
+    # Seen more flatly, jets hide more of the sea.
+    assert rain(page, rate, 0.3, 6.0, 0)[:, 3].mean() > 3.0 * rain(page, rate, 0.3, 1.5, 0)[:, 3].mean()
+
+
+def test_rings_of_large_drops_are_the_waves_of_least_group_speed() -> None:
+    k = np.linspace(0.1, 1.0, 100_001)  # over that of the least phase speed, which is sqrt(2) in these units
+    frequency = np.sqrt(k + k**3)
+    speed = np.gradient(frequency, k)
+    slowest = speed.argmin()
+    assert constant("RING_LENGTH", 1) == pytest.approx(1.0 / k[slowest], rel=0.01)
+    assert constant("RING_SPEED", 1) == pytest.approx(speed[slowest] / math.sqrt(2.0), rel=0.01)
+    assert constant("CREST_SPEED", 1) == pytest.approx(frequency[slowest] / k[slowest] / speed[slowest], rel=0.01)
     # A ring stays within its cell, or it would end at the border as at a wall.
     assert 0.5 * constant("RING_CELL") - constant("RING_REACH") - 1.0 >= 0.0
 

@@ -7,9 +7,10 @@ import pytest
 
 from sim.mooring import Line, LineType, Point, State, System, simulate
 from sim.mooring.rest.balance import what_is_left
-from sim.mooring.tangent import declared_stiffness
+from sim.mooring.tangent import declared_stiffness, is_declared
 from sim.springs.analysis.energy import energies
 from sim.springs.forces import OWN
+from sim.springs.forces.record import Absent
 from sim.springs.points.acceleration import set_rest_forces
 from sim.springs.points.line_arrays import LineArrays
 from tests.sim.mooring.dense import stiffness_matrix
@@ -89,3 +90,12 @@ def test_a_line_rests_and_keeps_its_energy_with_each(numbers):
     moved = np.abs(run.x[1][-1] - run.x[1][0]).max()
     assert moved > 1e-4
     assert np.abs(run.energy.error).max() < 1e-4 * np.ptp(run.energy.kinetic)
+
+
+def test_a_mooring_declares_a_force_if_one_of_its_forces_has_numbers():
+    p, there = line().kernel_view(1.0), (2.0,)
+    assert not is_declared(p)
+    for forces in ((), (Absent(),), (Absent(), Absent())):
+        assert not is_declared(p._replace(forces=forces))
+    for forces in ((there,), (Absent(), there), (there, Absent())):
+        assert is_declared(p._replace(forces=forces))

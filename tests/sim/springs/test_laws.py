@@ -205,7 +205,7 @@ def test_a_taut_line_that_shortens_fast_neither_pulls_nor_pushes(method, model):
     assert velocities(net, state)[:, 0, 1] == pytest.approx([2.0, 0.0, 0.0], abs=1e-11)
     # It takes what the line had stored.
     record = INTEGRATORS[method]
-    assert state.dissipated == pytest.approx(0.5 * 400.0 * 0.01**2, rel=0.02 if record.order > 1 else 0.2)
+    assert state.dissipated == pytest.approx(0.5 * 400.0 * 0.01**2, rel=0.02 if record.order > 1 else 0.25)
 
 
 @pytest.mark.parametrize("model", ["isotropic", "axial"])

@@ -225,7 +225,7 @@ def digest(value: Any, depth: int = MAX_DEPTH) -> Any:
     if isinstance(value, types.FunctionType):
         return id(value)
     if type(value).__module__ == "numpy.random._generator":
-        return digest(value.bit_generator.state, depth - 1)
+        return digest(value.bit_generator.state)
     held = getattr(value, "__dict__", None)
     return (id(value), digest(held, depth - 1)) if held else (type(value), repr(value))
 

@@ -8,6 +8,9 @@
 // Without a connection viser's client has its worker try again each second, which ends the attempt under way. Chromium delays
 // attempts by up to five seconds once many have failed, so that after a minute none would succeed: here each has its time.
 // Messages that a newer viser adds pass unchanged.
+//
+// viser's client tries again only while its page has the focus. A page that is seen without it, on a projector or in a frame
+// beside others, would stand still. Here a page that is visible counts as one with the focus.
 
 (() => {
   "use strict";
@@ -34,6 +37,9 @@
       super.postMessage(message, how);
     }
   };
+  const isVisible = () => document.visibilityState === "visible";
+  document.hasFocus = isVisible;
+  document.addEventListener("visibilitychange", () => dispatchEvent(new Event(isVisible() ? "focus" : "blur")));
   addEventListener("pagehide", () => workers.forEach((worker) => worker.terminate()));
   addEventListener("pageshow", (event) => event.persisted && location.reload());
 })();

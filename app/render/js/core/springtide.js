@@ -1,8 +1,8 @@
 // The only global name of the page: for tests, for the page with the panes, and for the scripts before viser's client.
 //
-// fail(words): show a failure on the cover (before/failures.js). isRecording: true while a clip is recorded. showsWhole():
-// true if the canvas shows the complete picture (page/cover.js). quality, memory, skiesDrawn, contexts: for tests. beside: on
-// the page with the panes (beside.html).
+// fail(words): show a failure on the cover (before/failures.js). isRecording: true while a clip is recorded. awaitPicture(): the
+// scene is another one. showsWhole(): true if the canvas shows its complete picture (page/cover.js). quality, memory,
+// skiesDrawn, contexts: for tests. beside: on the page with the panes (beside.html).
 
 /** @type {Springtide} */
 export const springtide = (globalThis.__springtide ??= {});

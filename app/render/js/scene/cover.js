@@ -26,7 +26,10 @@ export let pictured = ""; // the scene whose picture was complete
 export function awaitsPicture(scene) {
   if (scene && scene === pictured) return false;
   const now = performance.now();
-  if (scene !== opened) [opened, openedAt] = [scene, now];
+  if (scene !== opened) {
+    [opened, openedAt] = [scene, now];
+    springtide.awaitPicture?.();
+  }
   const since = now - openedAt, { showsWhole } = springtide;
   if (!scene) return since < SETTLING;
   if (since < (showsWhole ? PATIENCE : UNDRAWN) && (since < SETTLING || !showsWhole?.())) return true;

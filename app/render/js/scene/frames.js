@@ -112,10 +112,11 @@ function inputsOf(renderer, scene, camera) {
 
 // True if a frame of the scene has all parts of the picture: the sky and the nodes that the server counts to it
 // (app/render/injection.py), their light, and their shaders. A slow page has them one after the other: a sky of viser's before
-// that of the scene, and either before the vertices of a sea.
-/** @param {three.Scene} scene */
-function isComplete(scene) {
+// that of the scene, and either before the vertices of a sea. awaitsParts: false once a frame had sky and nodes.
+/** @param {three.Scene} scene @param {boolean} awaitsParts */
+function isComplete(scene, awaitsParts) {
   if (!scene.environment || awaitsLight() || lacksPrograms) return false;
+  if (!awaitsParts) return true;
   const { springtideSky: sky, springtideNodes: nodes = "" } = document.querySelector("[data-springtide-sky]")?.dataset ?? {};
   return Boolean(sky) && skyOf(scene) === sky && nodes.split("\n").every((name) => !name || viewer()?.nodeRefFromName[name]);
 }
@@ -131,6 +132,8 @@ export function paceFrames(renderer, life) {
   let isWhole = false; // true if that frame has its nodes, its sky, its light, and all of its shaders
   let finishedWhole = false; // true if the last drawn frame had, and no frame without them has begun since
   let length = 0; // [ms] of it
+  let awaitsParts = true; // true while the cover waits for the sky and the nodes of a scene
+  let isStale = false; // true if the next frame is drawn although it has the inputs of the last one
   let started = 0, pressed = 0, left = 0; // time of its start, time of the last press in the panel, frames left to the panel
 
   // True if the last frame is drawn. Its length is the time until the browser's next frame.
@@ -166,8 +169,17 @@ export function paceFrames(renderer, life) {
     return true;
   }
 
+  // Only frames that begin from now on count.
+  springtide.awaitPicture = () => {
+    [awaitsParts, isStale, isWhole, finishedWhole] = [true, true, false, false];
+    viewer()?.requestRender();
+  };
   // The cover then goes. In software a frame is nearly always being drawn.
-  springtide.showsWhole = () => (drawing ? finishedWhole : isWhole);
+  springtide.showsWhole = () => {
+    const isShown = drawing ? finishedWhole : isWhole;
+    if (isShown) awaitsParts = false;
+    return isShown;
+  };
   let knownPrograms = ""; // with the last frame
   const programs = () => `${renderer.info.programs?.at(-1)?.id} ${programsReady}`;
 
@@ -179,17 +191,17 @@ export function paceFrames(renderer, life) {
     if (camera !== eye || QUALITY.isCapturing() || springtide.isRecording || !keepsPixels) {
       last = null;
       earlier.call(this, scene, camera);
-      isWhole = isComplete(own);
+      isWhole = isComplete(own, awaitsParts);
       return;
     }
     if (document.visibilityState === "hidden") return;
     const inputs = inputsOf(renderer, own, camera), shown = last;
-    if (shown?.length === inputs.length && inputs.every((input, k) => Object.is(input, shown[k]))) return;
+    if (!isStale && shown?.length === inputs.length && inputs.every((input, k) => Object.is(input, shown[k]))) return;
     if (shown && hasToWait()) return void requestRender?.();
     [started, left] = [performance.now(), 0];
     earlier.call(this, scene, camera);
-    last = inputs;
-    isWhole = isComplete(own);
+    [last, isStale] = [inputs, false];
+    isWhole = isComplete(own, awaitsParts);
     if (!isWhole) finishedWhole = false;
     const known = programs();
     awaitEnd(known !== knownPrograms);

@@ -406,48 +406,64 @@ export const WATER_GLSL = {
       return vec4(cover, relief, 1.0 + 0.35 * grain);
     }
 
-    // Rings of raindrops. A ring spreads at the least speed that waves have, at that wavelength; it lives until it is
-    // RING_REACH wavelengths wide. In each layer the sea has cells of RING_CELL wavelengths with one ring at a time.
-    uniform vec3 rainRings; // drops that make a ring [1/(m2 s)] (0: no rain), wavelength [m] and speed [m/s] of the ring
-    const int RING_LAYERS = 4;
+    // Rings and jets of raindrops. A small drop makes a ring of the waves of least speed. A large one moves more water: its
+    // ring is of the waves of least group speed, the last to leave its place, whose crests run through the ring. A ring lives
+    // until it is RING_REACH of its wavelengths wide. In each layer the sea has cells of RING_CELL wavelengths with one ring at
+    // a time.
+    uniform vec3 rainRings; // drops that make a ring [1/(m2 s)] (0: no rain), least wavelength [m] and speed [m/s] of rings
+    const float LARGE_SHARE = 0.05; // of these drops
+    const vec2 RING_LENGTH = vec2(1.0, 2.54), RING_SPEED = vec2(1.0, 0.77); // of both kinds: Lamb, Art. 267
+    const vec2 CREST_SPEED = vec2(1.0, 1.574); // over that of the ring
     const float RING_CELL = 10.0;
     const float RING_REACH = 3.0;
     const float RING_SLOPE = 0.7; // greatest, of the first wave of a large drop
-    const float RING_VARIANCE = 0.00505; // of both slopes together, where every cell has a ring
+    const float RING_VARIANCE = 0.00248; // of both slopes together, of a layer where every cell has a ring
+    const float RING_GAIN = 2.0; // greatest factor on slopes where there are more rings than cells
+    // Of the jet that each drop throws up: its time [s], height and radius, in wavelengths of its ring.
+    const vec2 JET_TIME = vec2(0.12, 0.2), JET_HEIGHT = vec2(2.0, 1.5), JET_RADIUS = vec2(0.35, 0.25);
 
-    // Slopes of the rings: (slope x, slope y, variance not shown, share that is splash).
-    vec4 rainSlopes(vec2 x, float footprint) {
+    // Slopes of the rings, and jets: (slope x, slope y, variance not shown, share of the view that is jets). lean: of the view,
+    // its way along the level over that down.
+    vec4 rainSlopes(vec2 x, float footprint, vec2 lean) {
       if (rainRings.x <= 0.0) return vec4(0.0);
-      float life = RING_REACH * rainRings.y / rainRings.z, side = RING_CELL * rainRings.y;
-      int layers = DETAILS > 1 ? RING_LAYERS : RING_LAYERS / 2;
-      float share = min(rainRings.x * life * side * side / float(layers), 1.0); // of the cells that have a ring
-      float seen = DETAILS > 0 ? 1.0 - smoothstep(0.15, 0.6, footprint / rainRings.y) : 0.0;
-      vec2 slope = vec2(0.0);
-      float splash = 0.0;
-      if (seen > 0.0) {
-        for (int k = 0; k < layers; k++) {
-          float turned = 0.7 * float(k);
-          vec2 p = mat2(cos(turned), sin(turned), -sin(turned), cos(turned)) * x / side;
-          p += 0.37 * float(k);
-          vec2 i = floor(p), layer = vec2(101.0, 57.0) * float(k);
-          vec2 start = hash2(i + layer);
-          float turn = seaState.x / life + start.x;
-          float number = floor(turn), age = turn - number;
-          vec2 place = hash2(i + layer + number * vec2(17.0, 29.0));
-          vec2 drop = hash2(i - layer - number * vec2(23.0, 13.0));
-          if (drop.x >= share) continue;
-          vec2 d = RING_CELL * (p - i) - (RING_REACH + 1.0) - (RING_CELL - 2.0 * RING_REACH - 2.0) * place;
-          float r = length(d), w = r - RING_REACH * age;
-          float strength = mix(0.4, 1.0, drop.y * drop.y) * (1.0 - age);
-          if (abs(w) < 1.0) {
-            float fade = (1.0 - w * w) * (1.0 - w * w);
-            vec2 along = mat2(cos(turned), -sin(turned), sin(turned), cos(turned)) * d / max(r, 1e-3);
-            slope += RING_SLOPE * strength * fade * sin(6.2832 * w) * along;
-          }
-          splash += (1.0 - smoothstep(0.1, 0.5, r)) * (1.0 - smoothstep(0.0, 0.2, age));
+      vec2 waves = RING_LENGTH * rainRings.y, lives = RING_REACH * waves / (RING_SPEED * rainRings.z), sides = RING_CELL * waves;
+      vec2 fluxes = rainRings.x * vec2(1.0 - LARGE_SHARE, LARGE_SHARE);
+      // Layers of both kinds, rings in each cell, and the share of the cells that have one.
+      ivec2 layers = DETAILS > 1 ? ivec2(2, 3) : ivec2(1, 1 + DETAILS);
+      vec2 rings = fluxes * lives * sides * sides / vec2(layers), shares = min(rings, 1.0);
+      vec2 gains = min(sqrt(max(rings, 1.0)), RING_GAIN), pixels = footprint / waves;
+      vec2 seen = 1.0 - smoothstep(0.15, 0.6, pixels), jetsSeen = 1.0 - smoothstep(0.7, 2.0, pixels);
+      vec2 slope = vec2(0.0), missing = 1.0 - seen * seen;
+      float jets = 0.0;
+      for (int k = 0; k < layers.x + layers.y; k++) {
+        int kind = k < layers.y ? 1 : 0;
+        if (jetsSeen[kind] <= 0.0) continue;
+        mat2 turned = mat2(cos(0.7 * float(k)), sin(0.7 * float(k)), -sin(0.7 * float(k)), cos(0.7 * float(k)));
+        vec2 p = turned * x / sides[kind] + 0.37 * float(k);
+        vec2 i = floor(p), layer = vec2(101.0, 57.0) * float(k);
+        float turn = seaState.x / lives[kind] + hash2(i + layer).x, number = floor(turn), age = turn - number;
+        vec2 place = hash2(i + layer + number * vec2(17.0, 29.0));
+        vec2 drop = hash2(i - layer - number * vec2(23.0, 13.0));
+        if (drop.x >= shares[kind]) continue;
+        vec2 d = RING_CELL * (p - i) - (RING_REACH + 1.0) - (RING_CELL - 2.0 * RING_REACH - 2.0) * place;
+        float r = length(d), w = r - RING_REACH * age;
+        if (abs(w) < 1.0) {
+          float fade = (1.0 - w * w) * (1.0 - w * w), strength = mix(0.4, 1.0, drop.y * drop.y) * (1.0 - age * age);
+          float crest = sin(6.2832 * (r - CREST_SPEED[kind] * RING_REACH * age));
+          slope += seen[kind] * gains[kind] * RING_SLOPE * strength * fade * crest * d * turned / max(r, 1e-3);
+        }
+        // A jet is upright: a pixel shows what stands on the way from the eye, up to its height.
+        float time = age * lives[kind] / JET_TIME[kind], wide = max(JET_RADIUS[kind], 0.7 * pixels[kind]);
+        if (time < 1.0) {
+          vec2 way = turned * lean * min(1.0, (RING_REACH + 1.0) / (JET_HEIGHT[kind] * max(length(lean), 1e-3)));
+          float up = clamp(-dot(d, way) / max(dot(way, way), 1e-4), 0.0, 4.0 * time * (1.0 - time) * JET_HEIGHT[kind]);
+          jets += jetsSeen[kind] * (1.0 - smoothstep(0.6 * wide, wide, length(d + up * way))) * JET_RADIUS[kind] / wide;
         }
       }
-      return vec4(seen * slope, (1.0 - seen * seen) * share * RING_VARIANCE, seen * min(splash, 1.0));
+      // The mean of the jets that have no cell, or are too narrow for a pixel: their area as the eye sees it, over that of the sea.
+      vec2 areas = 2.0 * JET_RADIUS * 0.667 * JET_HEIGHT * waves * waves;
+      jets += 1.0 - exp(-dot((1.0 - jetsSeen * shares / rings) * fluxes, JET_TIME * areas) * length(lean));
+      return vec4(slope, dot(missing, vec2(layers) * shares * gains * gains) * RING_VARIANCE, min(jets, 1.0));
     }
 
     // Oil on the water, as a round slick with an irregular edge.
@@ -629,7 +645,7 @@ export const WATER_GLSL = {
         rough = max(rough, 0.0);
       }
       #endif
-      vec4 rings = rainSlopes(rest, footprint);
+      vec4 rings = rainSlopes(rest, footprint, toEye.xy / max(toEye.z, 0.05 * far));
       slope += rings.xy;
       float variance = optics.y * optics.y + 0.5 * (rough + fine.z + rings.z);
       float sigma = sqrt(variance);
@@ -702,7 +718,7 @@ export const WATER_GLSL = {
       vec3 white = foamColor * (skylight + 0.3183 * sunLight * max(0.8 * dot(M, sunDirection) + 0.2, 0.0)
                               + 0.3183 * fire * max(dot(M, toFire), 0.0));
       color = mix(color, white * bubbles.w, foam);
-      color = mix(color, skylight, 0.5 * rings.w);
+      color = mix(color, skylight, 0.8 * rings.w);
 
       #ifdef HULLS
         color *= 0.65 + 0.35 * smoothstep(0.0, 0.6, hull);

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from app.lab.check.diagnosis.effects import ARGUMENT, EFFECTS, FILE, SETTING, STATE
+from app.lab.check.diagnosis.effects import ARGUMENT, EFFECTS, FILE, SETTING, STATE, digest
 from app.lab.check.program_check import Verdict, check_program
 from app.lab.course.task import Task, load_tasks
 from app.lab.process.runner import Runner
@@ -97,6 +97,18 @@ def right_but(task: Task, lines: str) -> str:
 def copy(argument: str) -> str:
     """An argument of which the reference gets a copy."""
     return f"{argument}.copy() if isinstance({argument}, np.ndarray) else {argument}"
+
+
+def test_a_generator_changes_when_it_draws_and_only_then_however_deep_it_lies() -> None:
+    for kind in (np.random.PCG64, np.random.MT19937):
+        rng = np.random.Generator(kind(3))
+        for value in (rng, [[rng]], [[[[{"rng": rng}]]]]):
+            before, kept = digest(value), []
+            for _ in range(20):
+                kept.append(digest(value))
+            assert kept == [before] * 20
+            rng.normal()
+            assert digest(value) != before
 
 
 @pytest.mark.parametrize("name", ARRAYS)

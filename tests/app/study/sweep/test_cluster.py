@@ -5,14 +5,15 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import xarray as xr
 
 from app.__main__ import main
 from app.study.sweep import case, workers
-from app.study.sweep.case import FINISHED, run_case
-from app.study.sweep.workers import connected, on_cluster
+from app.study.sweep.case import FINISHED, program, run_case
+from app.study.sweep.workers import check_workers, connected, on_cluster
 from tests.app.study.sweep.cases import rope_jobs
 from tests.wine import needs_pools
 
@@ -126,6 +127,15 @@ def test_an_address_where_nothing_answers_is_refused(tmp_path, capsys, monkeypat
         assert len(lines) == 1
         assert "--scheduler" in lines[0]
         assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+def test_workers_are_refused_that_run_another_program():
+    runs = {"tcp://first": program()}
+    client = SimpleNamespace(wait_for_workers=lambda count, timeout: None, run=lambda function: runs)
+    check_workers(client, "here")
+    runs["tcp://second"] = "springtide 0.1"
+    with pytest.raises(ValueError, match=r"tcp://second runs springtide 0\.1"):
+        check_workers(client, "here")
 
 
 def test_a_refused_scheduler_does_not_cost_what_is_finished(tmp_path, capsys):

@@ -404,7 +404,15 @@ def test_a_slider(visit: Visit) -> None:
     visit.page.press((x, y), (x + 8, y), (x + 16, y))
     visit.until(lambda: visit.param("stiffness") > 1.2 * before, "by mouse")
     visit.until(lambda: not visit.viewer.settings.history.hands, "it is not let go")
-    dragged = visit.param("stiffness")
+    values: list[float] = []
+
+    def rests() -> bool:
+        values.append(visit.param("stiffness"))
+        visit.page.run("await new Promise((done) => setTimeout(done, 400));")  # viser sends the last value later
+        return values[-1] == visit.param("stiffness")
+
+    visit.until(rests, "it does not rest")
+    dragged = values[-1]
     visit.page.run(f"{named(THUMB, 'Stiffness')}.focus();")
     visit.page.type("ArrowRight")
     visit.until(lambda: dragged < visit.param("stiffness") < 1.2 * dragged, "by key")

@@ -52,8 +52,8 @@ class SceneSwitches:
         self.latest: SceneSwitch | None = None
         self.taken: dict[str, str] = {}  # word of a page -> number of its last text
 
-    def is_new(self, page: str, number: str) -> bool:
-        """True if the last text of a page had another number than this one, which is noted."""
+    def take_text(self, page: str, number: str) -> bool:
+        """Note the number of a text from a page; False if it is that of the last one."""
         last, self.taken[page] = self.taken.get(page), number
         return last != number
 

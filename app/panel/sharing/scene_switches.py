@@ -53,8 +53,8 @@ class SceneSwitches:
         self.latest: SceneSwitch | None = None
         self.taken: dict[str, str] = {}  # word of a page -> number of its last text, for the last PAGES that sent one
 
-    def is_new(self, page: str, number: str) -> bool:
-        """True if the last text of a page had another number than this one, which is noted."""
+    def take_text(self, page: str, number: str) -> bool:
+        """Note the number of a text from a page; False if it is that of the last one."""
         last, self.taken[page] = self.taken.pop(page, None), number
         if len(self.taken) > PAGES:
             del self.taken[next(iter(self.taken))]

@@ -137,7 +137,7 @@ class Share:
         """
         (sender, _, text), client = self.inbox.value.partition("\n"), event.client
         page, _, number = sender.partition(" ")
-        if not text or client is None or not self.settings.is_open or not self.changes.is_new(page, number):
+        if not text or client is None or not self.settings.is_open or not self.changes.take_text(page, number):
             return
         self.inbox.value = ""  # so that the same text can come again
         try:

@@ -199,8 +199,8 @@ def wake_on_loop(server: viser.ViserServer) -> None:
     """Wake the tasks that send messages on viser's event loop alone.
 
     viser sets their event twice: on the thread that has a message, and then on its event loop. If the thread does so
-    after a task has read the event and before it waits, the task is not woken, and the second time changes nothing: no
-    browser gets a message any more until another one connects. To be called before a browser connects.
+    after a task has read the event and before it waits, the task is not woken, and the second time changes nothing: its
+    browser gets no message any more until another one connects. To be called before a browser connects.
     """
     loop = server.get_event_loop()
 

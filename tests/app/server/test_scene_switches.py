@@ -127,7 +127,7 @@ def test_a_text_is_taken_once_by_a_panel_that_is_open(lab: Viewer) -> None:
                 await browser.send(lab.panel.share.inbox, f"page {number}\n?scene=rope&stiffness={stiffness:g}")
                 await asyncio.sleep(0.1)
             await until(lambda: params()["stiffness"] == 400.0)
-            assert not lab.changes.is_new("page", "2")
+            assert not lab.changes.take_text("page", "2")
 
     coroutines.run(send_again())
 

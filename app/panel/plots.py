@@ -26,8 +26,6 @@ MAX_ROWS = 5400  # kept: three minutes of a scene that adds 30 a second
 SHOWN_ROWS = 900  # in a chart: half a minute of them
 CHART_HEIGHT, TALL_CHART_HEIGHT = 180, 220  # [pixels] of a chart, and of one with a logarithmic scale, at first
 PADDING = (8, 16, 0, 0)  # [pixels] above, right, below, left: room for half of the highest tick's words
-LETTER_WIDTH, TICK_ROOM = 8.7, 16.0  # [pixels] of a letter of a tick in a wide font, and beside the words
-LOGARITHMIC_TICK_WIDTH = 66.0  # [pixels] for the words at a logarithmic scale
 FIRST_AXIS_HEIGHT = 28  # [pixels] of its ticks and their words
 KEPT_OPACITY, KEPT_DASH = "99", (5.0, 4.0)  # of the lines of an earlier run: a hexadecimal byte, [pixels]
 DOT_SIZE = 11  # [pixels] of a dot
@@ -219,7 +217,7 @@ class Plots:
         if ticks:
             places, words = tuple(place for place, _ in ticks), tuple(word for _, word in ticks)
             scales["y"] = uplot.Scale(distr=3, log=10, range=(places[0], places[-1]), auto=False)
-            looks = axes_of(places, words, LOGARITHMIC_TICK_WIDTH)
+            looks = axes_of(places, words)
         with self.dock.tab:
             return self.server.gui.add_uplot(
                 (EMPTY, np.full(2, math.nan)),
@@ -270,13 +268,12 @@ def kept_line(line: ChartLine) -> ChartLine:
     return ChartLine(f"{line.label}, kept", line.colour + KEPT_OPACITY, 1.5, KEPT_DASH)
 
 
-def axes_of(ticks: tuple[float, ...], words: tuple[str, ...], width: float | None = None) -> tuple[uplot.Axis, ...]:
-    """The two axes of a chart, the second with words at its ticks; `js/panel/charts.js` writes the name of the first.
+def axes_of(ticks: tuple[float, ...], words: tuple[str, ...]) -> tuple[uplot.Axis, ...]:
+    """The two axes of a chart, the second with words at its ticks.
 
-    width: [pixels] for the words.
+    `js/panel/charts.js` writes the name of the first, and makes the second as wide as its words are.
     """
-    size = width or TICK_ROOM + LETTER_WIDTH * max(map(len, words))
-    return uplot.Axis(size=FIRST_AXIS_HEIGHT, gap=2), uplot.Axis(splits=ticks, values=words, size=size)
+    return uplot.Axis(size=FIRST_AXIS_HEIGHT, gap=2), uplot.Axis(splits=ticks, values=words)
 
 
 def series_of(first: str, lines: Sequence[ChartLine]) -> tuple[uplot.Series, ...]:

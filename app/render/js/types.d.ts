@@ -181,7 +181,7 @@ declare namespace uplot {
   type Padding = number | Size;
   interface Axis {
     font: [css: string, onCanvas: number, onPage: number];
-    size: Size;
+    size(chart: Chart, words: string[] | null, ...rest: unknown[]): number;
     space: Size;
     scale: string;
     filter(chart: Chart, splits: number[]): number[];

@@ -12,6 +12,15 @@ from app.render.markup.html import Html, fill, join
 TOKEN = re.compile(r'\s*(?:(\\[a-z]+)|(\d+(?:\.\d+)?)|([A-Za-z]{2,})|([^\W\d_])|"([^"]*)"|(\S))')
 MINUS = {"-": "−", "*": "·"}
 BRACKETS = "()|[]"
+# Fonts with the measures of formulas: a browser may know none itself, and would put subscripts on the line.
+FONTS = (
+    "Cambria Math",
+    "STIX Two Math",
+    "Latin Modern Math",
+    "Libertinus Math",
+    "Noto Sans Math",
+    "DejaVu Math TeX Gyre",
+)
 GAP = Html('<mspace width="0.17em"></mspace>')
 
 
@@ -26,7 +35,7 @@ def formula(text: str) -> Html:
     """A formula as MathML, on a line of its own. Raises ValueError for braces that do not match, or an unknown word."""
     tokens = [match for match in TOKEN.finditer(text) if match.group().strip()]
     found = row(tokens, 0, closed=False)
-    return fill('<math display="block">{}</math>', found.html)
+    return fill('<math display="block" style="font-family: {}, math">{}</math>', ", ".join(FONTS), found.html)
 
 
 def row(tokens: list[re.Match[str]], at: int, *, closed: bool) -> Parsed:

@@ -135,7 +135,7 @@ def test_a_text_is_taken_once_by_a_panel_that_is_open(lab: Viewer) -> None:
 def test_the_texts_of_the_pages_that_sent_last_are_remembered() -> None:
     changes = SceneSwitches()
     for page in range(2 * PAGES):
-        assert changes.is_new(str(page), "1")
-        assert changes.is_new("often", "1") is (page == 0)
+        assert changes.take_text(str(page), "1")
+        assert changes.take_text("often", "1") is (page == 0)
     assert len(changes.taken) == PAGES
-    assert not changes.is_new(str(2 * PAGES - 1), "1")
+    assert not changes.take_text(str(2 * PAGES - 1), "1")

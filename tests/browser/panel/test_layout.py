@@ -191,6 +191,9 @@ def test_the_line_on_slow_drawing_lies_beside_the_panel_and_above_the_time_line(
         assert box["x"] + box["width"] <= panel["x"]
         assert box["y"] + box["height"] <= bar["y"]
         assert box["height"] < 60
+        # The picture is centred above it, so that it covers no label.
+        middle = "(({ fullHeight, offsetY }) => fullHeight / 2 - offsetY)(window.__viserMutable.camera.view)"
+        assert page.evaluate(middle) == pytest.approx(0.5 * box["y"], abs=2.0)
     finally:
         page.close()
         lab.shut()

@@ -95,3 +95,27 @@ def test_charts_fill_their_drawer_at_any_height_with_the_key_beside_the_title(
     finally:
         tab.page.set_viewport_size(size)
     assert not tab.errors
+
+
+# Of each chart: pixels beside the widest words of its second axis, in the type that the axis has.
+BESIDE_WORDS = """() => Object.values(window.__viserTestpoints.uplots).map(({ chart: { ctx, axes: [, axis] } }) => {
+    ctx.save(), (ctx.font = axis.font[0]);
+    const wide = Math.max(...axis._values.map((word) => ctx.measureText(word).width)) * axis.font[2] / axis.font[1];
+    ctx.restore();
+    return axis._size - wide; })"""
+
+
+@pytest.mark.parametrize("large", [False, True])
+def test_the_words_of_ticks_have_room_in_any_type(shown: tuple[Viewer, Tab], large: bool) -> None:
+    """The race's smallest error has the most letters of all ticks: its first one was cut off."""
+    lab, tab = shown
+    tab.follow(lab, "race")
+    tab.page.evaluate("large => document.documentElement.classList.toggle('springtide-large', large)", large)
+    try:
+        tab.wait(lambda: tab.page.evaluate(BESIDE_WORDS))
+        tab.page.wait_for_timeout(1000)
+        room = tab.page.evaluate(BESIDE_WORDS)
+        assert len(room) == 2
+        assert all(15.0 <= one <= 45.0 for one in room), room
+    finally:
+        tab.page.evaluate("document.documentElement.classList.remove('springtide-large')")

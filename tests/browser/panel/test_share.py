@@ -1,11 +1,13 @@
 """Links, set-ups and recordings in the page."""
 
+import base64
 import json
 from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import quote
 
 import imageio.v3 as iio
+import numpy as np
 import pytest
 
 from app.panel.sharing.scene_switches import UNDO
@@ -18,6 +20,15 @@ from sim.parameters import check_record
 from tests.browser.conftest import Tab
 
 SCENE = "rope"
+# Width and height of a clip, and the bytes of the first row of one of its pictures.
+FIRST_ROW = """async clip => { const video = document.createElement("video");
+    const bytes = Uint8Array.from(atob(clip), c => c.charCodeAt(0));
+    video.muted = true, video.src = URL.createObjectURL(new Blob([bytes]));
+    await new Promise(done => { video.onloadeddata = done; });
+    await new Promise(done => { video.onseeked = done; video.currentTime = 0.3; });
+    const { videoWidth: width, videoHeight: height } = video, pen = new OffscreenCanvas(width, height).getContext("2d");
+    pen.drawImage(video, 0, 0);
+    return [width, height, ...pen.getImageData(0, 0, width, 1).data]; }"""
 
 
 @pytest.fixture
@@ -157,6 +168,11 @@ def test_clip_picture_and_plots_are_made_as_files(
         tab.page.locator("[data-springtide-clip]").click()  # its name says how long the clip is by now
     clip = Path(download.value.path()).read_bytes()
     assert clip[4:8] == b"ftyp" or clip[:4] == b"\x1a\x45\xdf\xa3"  # MP4 or WebM
+    tab.wait(lambda: tab.page.locator("[data-springtide-clip]").inner_text() == "Clip saved")
+    width, height, *top = tab.page.evaluate(FIRST_ROW, base64.b64encode(clip).decode())
+    sky = LIGHT_SKY.pixels(height, width)  # that the page shows
+    assert np.median(abs(np.reshape(top, (width, 4))[:, :3] - sky[0])) < 5.0
+    tab.wait(lambda: tab.page.locator("[data-springtide-clip]").inner_text() == "Record clip")
     for form, begin in (("CSV", b"t [s],"), ("SVG", b"<?xml"), ("PNG", b"\x89PNG")):
         tab.page.locator("[data-springtide-plots]").select_option(form)
         made = saved("Save plots").read_bytes()

@@ -27,8 +27,10 @@ function measure() {
   if (!drawn) return;
   const canvas = drawn.getBoundingClientRect();
   let box = { x: canvas.left, y: canvas.top, width: canvas.width, height: canvas.height };
+  const slow = document.getElementById("springtide-slow"); // the line on slow drawing (quality.js)
   const framed = document.documentElement.classList.contains("springtide-framed"); // beside.js
-  const bar = document.querySelector(OPEN_BAR)?.parentElement, panels = [...document.querySelectorAll(PANEL), ...(bar ? [bar] : [])];
+  const bar = document.querySelector(OPEN_BAR)?.parentElement;
+  const panels = [...document.querySelectorAll(PANEL), bar, slow].filter((one) => !!one);
   for (const panel of framed ? [] : panels) box = without(box, panel.getBoundingClientRect());
   const found = { x: box.x - canvas.left, y: box.y - canvas.top, width: box.width, height: box.height };
   const earlier = free;

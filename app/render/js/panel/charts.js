@@ -21,6 +21,8 @@ const PHONE = matchMedia("(max-width: 36em)"), PHONE_PANES = "[data-springtide-i
 const PHONE_SHARE = 0.32; // of the window's height, for the plots on a phone (page.css)
 const MIN_ZOOM = 3; // [pixels] of a drag that zooms; uPlot's own is less
 const TICK_HEIGHT = 1.1; // of the words of a tick, in sizes of their type
+const TICK_ROOM = 17; // [pixels] beside the words: uPlot's tick and the gap between
+const LEAST_WORDS = 24; // [pixels] so that a chart keeps its place from 9 to 10
 const CROSS = "springtide-cross", PLACED = "springtide-placed-cross";
 const CROSS_HEIGHT = 14, CROSS_WIDTH = 8; // [pixels] of a cross in type of 12 pixels; its words stand to its right
 const CROSS_STYLE = "position:absolute;white-space:nowrap;pointer-events:none";
@@ -185,13 +187,26 @@ function sizeType(chart) {
   chart.setSize({ width: chart.width, height: chart.height });
 }
 
-const isThinned = new WeakSet(); // axes
+const isFitted = new WeakSet(); // axes
+const ruler = document.createElement("canvas").getContext("2d");
 
-// Leave out the words of a tick that would stand in those of the one before: a chart may be low.
+// [pixels] of the longest words of an axis, in type of the size that viser has set. They depend on the fonts of the system.
+/** @param {uplot.Axis} axis @param {string[]} words */
+function widthOf(axis, words) {
+  const { font } = axisSizes.get(axis) ?? axis;
+  if (!ruler || !Array.isArray(font)) return LEAST_WORDS;
+  const [css, onCanvas, onPage] = font;
+  ruler.font = css;
+  return Math.max(LEAST_WORDS, ...words.map((word) => (ruler.measureText(word).width * onPage) / onCanvas));
+}
+
+// Make room for the words of the ticks, and leave out those that would stand in the words of the tick before: a chart may be
+// low.
 /** @param {uplot.Chart} chart */
-function thinTicks({ axes: [, axis] }) {
-  if (!axis || isThinned.has(axis) || typeof axis.values !== "function") return;
+function fitTicks({ axes: [, axis] }) {
+  if (!axis || isFitted.has(axis) || typeof axis.values !== "function") return;
   const { values } = axis;
+  axis.size = (chart, words) => Math.ceil(TICK_ROOM + widthOf(axis, words ?? []));
   axis.filter = (chart, splits) => splits; // uPlot leaves out ticks of a logarithmic axis, but not their words
   axis.values = (chart, splits, ...rest) => {
     let last = Infinity;
@@ -202,7 +217,7 @@ function thinTicks({ axes: [, axis] }) {
       return word;
     });
   };
-  isThinned.add(axis);
+  isFitted.add(axis);
 }
 
 /** @param {uplot.Chart} chart */
@@ -214,7 +229,7 @@ let moment = ""; // [s] of the recording, as the time line gives it
 
 function look() {
   const charts = chartsOfPage();
-  charts.forEach(thinTicks);
+  charts.forEach(fitTicks);
   charts.forEach(sizeType);
   fillPanes(charts);
   for (const chart of charts) {

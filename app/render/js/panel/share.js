@@ -1,27 +1,21 @@
 // Links and set-ups: the query of this page's address is sent to the lab once, and a chosen file is read here and sent as text;
 // of a replay, the set-up file in it. The lab checks both. A link from the lab is shown with this page's own address. After a
 // change of a shared lab, the page that made it shows its own sentence.
-// Clips are recorded here from the canvas of the view, and plots are saved as one picture.
+// Plots are saved here as one picture.
 //
-// Of viser this file uses window.__viserMutable.canvas and the charts of the page.
+// Of viser this file uses the charts of the page.
 
 import { page } from "../core/life.js";
-import { notice } from "../core/notice.js";
-import { springtide } from "../core/springtide.js";
-import { PAGE, send, startedViewer } from "../core/viewer.js";
+import { PAGE, send } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
 import { chartsOfPage } from "./charts.js";
+import { download, toggleClip } from "./clip.js";
 import { sendText } from "./inbox.js";
 import { labAt, ofLab, setupIn } from "./links.js";
 import { rowsOf } from "./rows.js";
-import { withDuration } from "./webm.js";
 
 const MAX_LENGTH = 5000; // [characters] that the lab takes
 const MAX_REPLAY = 2e8; // [bytes] of a replay
-const CLIP_TYPES = ["video/mp4;codecs=avc1.640028", "video/webm;codecs=vp9", "video/webm"];
-const CLIP_RATE = 30; // [1/s] frames of a clip
-const CLIP_BITS = 12e6; // [bit/s]
-const MAX_CLIP = 300; // [s] after which a clip ends by itself
 const ASKED = 3000; // [ms] after a press of "Copy link" for the link to arrive
 const asked = new URLSearchParams(location.search);
 let showsLab = asked.has("task"); // show the tab "Lab", also of a scene that the link opens, until another is chosen
@@ -73,64 +67,6 @@ function update() {
       }
     }
   }
-}
-
-/** @param {Blob} content @param {string} name */
-function download(content, name) {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(content);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
-}
-
-// Save a clip of a duration [s].
-/** @param {Blob} made @param {number} seconds */
-async function saveClip(made, seconds) {
-  const { type } = made;
-  if (type.startsWith("video/mp4")) return download(made, "springtide.mp4");
-  const bytes = withDuration(new Uint8Array(await made.arrayBuffer()), seconds);
-  download(new Blob([bytes], { type }), "springtide.webm");
-}
-
-/** @type {MediaRecorder | null} */
-let clip = null; // the recorder of the clip under way
-/** @param {HTMLElement} button */
-function toggleClip(button) {
-  if (clip) {
-    clip.stop();
-    return;
-  }
-  const type = CLIP_TYPES.find((one) => window.MediaRecorder?.isTypeSupported(one));
-  if (!type) {
-    notice("springtide-clips", "This browser cannot record clips. Save a replay instead, or use another browser.");
-    return;
-  }
-  /** @type {Blob[]} */
-  const parts = [];
-  const started = performance.now();
-  const made = new MediaRecorder(startedViewer().canvas.captureStream(CLIP_RATE), {
-    mimeType: type, videoBitsPerSecond: CLIP_BITS,
-  });
-  clip = made;
-  const show = () => {
-    const seconds = (performance.now() - started) / 1000;
-    button.textContent = `Stop clip (${seconds.toFixed(0)} s)`;
-    if (seconds >= MAX_CLIP) made.stop();
-  };
-  springtide.isRecording = true; // the quality stays constant during the recording
-  const timer = setInterval(show, 500);
-  made.ondataavailable = (event) => parts.push(event.data);
-  made.onstop = () => {
-    clearInterval(timer);
-    for (const track of made.stream.getTracks()) track.stop();
-    clip = null;
-    springtide.isRecording = false;
-    button.textContent = "Record clip";
-    saveClip(new Blob(parts, { type }), (performance.now() - started) / 1000);
-  };
-  made.start(1000);
-  show();
 }
 
 // All charts below each other, each with its title above and the names of its lines below.
@@ -196,7 +132,7 @@ page.listen(document, "click", (event) => {
   const button = event.target instanceof Element && event.target.closest("button");
   if (!button) return;
   if (button.textContent === "Copy link") pressed = performance.now();
-  if ("springtideClip" in button.dataset) toggleClip(button);
+  if ("springtideClip" in button.dataset) toggleClip();
   if (!("springtideCharts" in button.dataset)) return;
   const form = choiceOf("[data-springtide-plots]");
   form === "PNG" ? saveCharts(button) : make(`Plots as ${form}`);

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.render.markup.formula import formula
+from app.render.markup.formula import FONTS, formula
 
 BAR = '<mo stretchy="false" lspace="0" rspace="0">|</mo>'
 
@@ -24,7 +24,8 @@ BAR = '<mo stretchy="false" lspace="0" rspace="0">|</mo>'
     ],
 )
 def test_formulas_become_mathml(text: str, html: str) -> None:
-    assert formula(text) == f'<math display="block"><mrow>{html}</mrow></math>'
+    fonts = ", ".join(FONTS)
+    assert formula(text) == f'<math display="block" style="font-family: {fonts}, math"><mrow>{html}</mrow></math>'
 
 
 @pytest.mark.parametrize("text", ["{a", "a}", r"\frac{a}", "a^", r"\sum", "a_{b"])

@@ -13,6 +13,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from app.__main__ import main
 from app.commands import lab_class, serve
 from app.scenes import scene_named
 from app.scenes.setups import make_setup
@@ -153,3 +154,10 @@ def test_the_page_of_a_class_opens_itself_too(
     assert lab_class.serve_class([], [], other_program, browser=True) == 0
     assert addresses[0].startswith(f"http://127.0.0.1:{other_program}/")
     assert addresses[0] in capsys.readouterr().out
+
+
+def test_the_scene_of_the_command_line_is_served(monkeypatch: pytest.MonkeyPatch) -> None:
+    served: list[Any] = []
+    monkeypatch.setattr(serve, "serve_lab", lambda name, params, *_, **options: served.append((name, params)) or 0)
+    assert main(["--scene", "race"]) == 0
+    assert served == [("race", None)]

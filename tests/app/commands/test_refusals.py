@@ -98,3 +98,9 @@ def test_a_solver_that_fails_is_one_line_and_status_1(monkeypatch, capsys):
     assert (
         capsys.readouterr().err == "springtide: a state of rest: no solution after 40 iterations; 3 N at node 7 left\n"
     )
+
+
+def test_a_lab_without_a_folder_says_what_to_give(capsys):
+    with pytest.raises(SystemExit):
+        main(["lab"])
+    assert "DIR, new or check" in capsys.readouterr().err.splitlines()[-1]

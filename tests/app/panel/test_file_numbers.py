@@ -85,7 +85,9 @@ def test_a_run_of_the_command_line_has_the_changes_of_its_setup(tmp_path: Path, 
     words = ["run", "mooring", "--preset", str(path), "--mooring", str(PATH), "--seconds", "1", "--out", "run.npz"]
     params = read_params(kind, make_parser().parse_args(words))
     assert params.file_changes == edited().file_changes
-    assert "without the changes" not in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "shared_line.txt: changed here: length of 1 is 123.25 m" in said
+    assert "without the changes" not in said
     name, written = content(edited())
     (tmp_path / name).write_bytes(written)
     words[words.index(str(PATH))] = str(tmp_path / name)

@@ -225,3 +225,10 @@ def test_every_field_of_a_material_reaches_the_uniforms() -> None:
             other = 0.7 * value + 0.11
         changed = table(dataclasses.replace(plain, **{field.name: other}))
         assert (changed != table(plain)).any(), field.name
+
+
+def test_rain_and_haze_are_seen_through_as_one_medium() -> None:
+    """Their extinctions add up."""
+    material = dataclasses.replace(Material(), haze_distance=2000.0, rain_extinction=1.5e-3)
+    table = uniform_table(material, (0.0, 1.0, 0.01), Grid(8, 8, 100.0))
+    assert table[WATER_UNIFORMS.index("lens"), 0] == pytest.approx(500.0)

@@ -1,6 +1,7 @@
 """Labs side by side without a browser: one port, one sky, what differs in words, and one lab again at the end."""
 
 import asyncio
+import dataclasses
 import http.client
 import itertools
 import threading
@@ -186,6 +187,26 @@ def quiet(*labs: Any) -> None:
     for _ in range(3):
         for lab in labs:
             run(lab, lambda: None)
+
+
+@pytest.mark.parametrize("who", [0, 1])
+def test_the_first_lab_brings_its_parameters_and_another_takes_those_that_there_are(panes: Any, who: int) -> None:
+    record, *labs = panes
+    labs[who].settings.params = dataclasses.replace(labs[who].settings.params, speed=0.3)
+    record.enter(labs[who])
+    quiet(*labs)
+    speeds = [lab.settings.params.speed for lab in labs]
+    assert speeds == ([0.3, 0.3] if who == 0 else [RopeParams().speed] * 2)
+
+
+def test_a_change_is_recorded_alone(panes: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    record, first, second = panes
+    written: list[Any] = []
+    monkeypatch.setattr(record, "write", lambda source, values: written.append((source, dict(values))))
+    changes = [(first, "speed", 0.5), (second, "stiffness", 450.0), (first, "stiffness", 450.0), (second, "speed", 0.5)]
+    for lab, name, value in changes:
+        run(lab, lambda lab=lab, name=name, value=value: lab.settings.set(name, value))
+    assert written == [(lab, {name: value}) for lab, name, value in changes]
 
 
 @pytest.mark.parametrize("hand", [0, 1])

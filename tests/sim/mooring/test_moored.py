@@ -14,6 +14,7 @@ from sim.springs.points.acceleration import set_acceleration
 from sim.water import Water
 from sim.waves import Waves
 from tests.refusals import assert_refused
+from tests.sim.mooring.systems import chain_on_bed
 
 RATE, AMPLITUDE = 0.8, 0.5  # [rad/s], [m] of the wave
 THREAD = LineType("thread", 1e-3, 1e-3, 10.0)  # a line that does not matter
@@ -118,3 +119,14 @@ def test_a_body_and_its_waves_have_one_water():
     alone = moored(1, box, RATE, water=fresh)
     assert (alone.stiffness == found.stiffness).all()
     assert (alone.mass == found.mass).all()
+
+
+@pytest.mark.parametrize(("depth", "stiffness", "fits"), [(39.9, 3e6, False), (39.9, 0.0, True), (40.0, 3e6, True)])
+def test_a_fixed_point_lies_on_or_above_a_bed_that_there_is(depth, stiffness, fits):
+    chain = chain_on_bed(4)
+    assert chain.points[0].position[2] == -40.0
+    made = {"depth": depth, "bed_stiffness": stiffness}
+    if fits:
+        assert dataclasses.replace(chain, **made).depth == depth
+    else:
+        assert_refused("point 1: position", lambda: dataclasses.replace(chain, **made), "above the bed at z = -39.9 m")

@@ -11,6 +11,7 @@ import pytest
 
 from sim.ocean import measured_spectrum, read_record, read_spectrum, recorded_waves
 from sim.ocean.spectrum_files.sea_summary import bearing_of
+from sim.tables.rows import split_rows
 from sim.tables.text import MAX_BYTES
 from tests.refusals import assert_refused
 
@@ -398,3 +399,13 @@ def test_a_record_with_a_gap_or_times_that_fall_is_refused(tmp_path):
     assert_refused("height", lambda: recorded_waves(T, heights), "finite")
     with pytest.raises(ValueError, match=r"nan at t = 3 s, 1 such"):
         recorded_waves(T, heights)
+
+
+def test_a_mark_at_the_end_of_each_line_is_no_column_and_one_of_some_lines_is_an_empty_word():
+    def words(text: str) -> list[list[str]]:
+        return [row.words for row in split_rows(text, Path("table.csv"))[0]]
+
+    assert words("f;S\n1;2\n") == words("f;S;\n1;2;\n") == [["f", "S"], ["1", "2"]]
+    assert words("f;;S\n1;;2\n") == [["f", "", "S"], ["1", "", "2"]]
+    assert words("f;S;\n1;2\n") == [["f", "S", ""], ["1", "2"]]
+    assert words("f;;\n1;;\n") == [["f", ""], ["1", ""]]

@@ -3,7 +3,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from sim.springs import cloth, lab_units, rope
+from sim.springs import Grab, cloth, lab_units, rope
 from sim.springs.statics import hanging_chain
 
 
@@ -87,3 +87,9 @@ def test_the_table_of_links_has_each_link_of_each_family_in_the_order_of_rows_an
     view = net.kernel_view(1.0)
     assert np.array_equal(view.ends, ends)
     assert np.array_equal(view.links, links)
+
+
+def test_only_a_net_with_a_grab_has_a_grabbed_point():
+    net = cloth(3, 4)
+    assert net.kernel_view(1.0).grabbed == -1
+    assert dataclasses.replace(net, grab=Grab(1, 2, (0.0, 0.0, 0.0), 10.0, 1.0, 5.0)).kernel_view(1.0).grabbed == 6

@@ -30,7 +30,7 @@ FUNCTIONS = (
     ("max", "min"), ("maximum", "minimum"), ("sqrt", "square"), ("sum", "mean"), ("zeros", "ones"),
 )  # fmt: skip
 WRAPS = ("np.sqrt({})", "({})**2", "-({})", "1/({})", "2*({})", "({})/2", "({}) + 1", "({}) - 1")  # of any expression
-FACTORS = ("np.pi", "2*np.pi", "1000", "3", "6")
+FACTORS = ("np.pi", "(2*np.pi)", "1000", "3", "6")
 WHOLE_WRAPS = ("np.abs({})", "np.maximum({}, 0)", "np.exp({})", "np.log({})", "np.floor({})")  # of a whole side
 ASARRAY = re.compile(r"np\.asarray\((\w+)\)")  # which says nothing of the formula
 SHORT = 12  # characters of an expression, below which the enclosing one is shown

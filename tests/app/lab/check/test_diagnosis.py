@@ -10,11 +10,15 @@ import numpy as np
 import pytest
 
 from app.lab.check.comparing import reproduces
-from app.lab.check.diagnosis.edits import edits_of
+from app.lab.check.diagnosis.edits import edits_of, own_edits
 from app.lab.check.diagnosis.equations import equations_of, written
+from app.lab.check.diagnosis.factors import is_simple
+from app.lab.check.diagnosis.links import SPRING_FORMS, spring
+from app.lab.check.diagnosis.shown import notation
 from app.lab.check.diagnosis.steps import explain_step
 from app.lab.check.diagnosis.tableau import STEPS, NoTableau, merged, order_of, pruned, read_tableau
 from app.lab.check.diagnosis.terms import Term, explain_terms
+from app.lab.check.program_check import Verdict
 from app.lab.course.task import load_tasks
 
 TASKS = {task.name: task for task in load_tasks() if task.check is not None}
@@ -394,3 +398,45 @@ def test_a_form_may_differ_by_the_rounding_of_the_right_results() -> None:
     form, found = np.array([1e-7 / 3.0]), np.array([2e-7 / 3.0])
     assert reproduces(form, found, np.array([1e6]))
     assert not reproduces(form, found, np.array([1.0]))
+
+
+def test_the_edits_of_a_number_and_of_the_arguments_of_a_call() -> None:
+    source = b"def one(a, b):\n    return f(a, b, 3) + a\n"
+    near = {edit.after for edit in own_edits(source, "one", {}, far=False)}
+    far = {edit.after for edit in own_edits(source, "one", {}, far=True)}
+    assert {after for after in near if re.fullmatch(r"f\(a, b, [^ab]+\)", after)} == {
+        "f(a, b, 3)", "f(a, b, 6)", "f(a, b, 1.5)", "f(a, b, 4)", "f(a, b, 2)", "f(a, b, -3)",
+    }  # fmt: skip
+    assert {after for after in far if re.fullmatch(r"f\([ab3, ]+\)", after)} == {"f(b, a, 3)", "f(a, 3, b)", "f(b, 3)"}
+    assert {"f(a, b, 3) / (2 * np.pi)", "f(a, b, 3) * (2 * np.pi)", "f(a, b, 3) / np.pi"} <= far
+
+
+def test_factors_that_a_person_may_omit() -> None:
+    assert all(map(is_simple, (2.0, -0.5, 1e3, 2.0 * np.pi, 1.0 / 3.0, 1024.0)))
+    assert not any(map(is_simple, (0.0, np.inf, -np.inf, np.nan, 59403.0)))
+
+
+def test_the_forms_of_a_spring_that_only_pulls_or_only_pushes() -> None:
+    pulls, pushes, both = (
+        next(law for text, _, law in SPRING_FORMS if text.startswith(start))
+        for start in ("k max(", "k min(", "k ||r| - d|")
+    )
+    for length, sign in ((1.5, 1.0), (0.5, -1.0)):
+        r = np.array([0.6, 0.0, 0.8]) * length
+        arguments = r, np.array([length]), np.zeros(3), 10.0, 1.0, 1.0
+        force = spring(*arguments)
+        assert np.abs(force).max() > 1.0
+        np.testing.assert_array_equal(pulls(*arguments), force if sign > 0.0 else 0.0)
+        np.testing.assert_array_equal(pushes(*arguments), force if sign < 0.0 else 0.0)
+        np.testing.assert_allclose(both(*arguments), sign * force)
+
+
+def test_numbers_of_stages_are_subscripts_and_all_else_stays() -> None:
+    assert notation("h/2 (a1 + a2)") == "h/2 (a<sub>1</sub> + a<sub>2</sub>)"
+    assert notation("force") == "force"
+
+
+def test_the_sentence_of_a_verdict_ends_with_one_mark() -> None:
+    assert [Verdict("wrong", text, "no end").sentence for text in ("it runs on", "It runs on.", "Does it end?")] == [
+        "no end: it runs on.", "no end: It runs on.", "no end: Does it end?",
+    ]  # fmt: skip

@@ -257,3 +257,26 @@ def last(x):
 """
     assert written(source) == "import numpy as np\n\n\n# 3.2-2\ndef begun(x):\n    return x\n"
     assert written("def broken(:\n") == "def broken(:\n"
+
+
+@pytest.mark.parametrize("task", [one for one in TASKS if hasattr(one.check, "behaviour")], ids=lambda task: task.name)
+def test_a_reference_behaves_as_its_task_says(task: Task) -> None:
+    task.check.behaviour(task.function)
+
+
+def test_points_of_the_tasks_on_springs_move_at_metres_a_second() -> None:
+    for name in ("spring_force", "rope_acceleration", "cloth_forces"):
+        task = next(task for task in TASKS if task.name == name)
+        rng = np.random.default_rng(3)
+        for sample in (task.check.inputs(rng) for _ in range(100)):
+            of_points = [np.max(np.abs(value)) for value in sample if np.shape(value)[-1:] == (3,)]
+            assert max(of_points) < 30.0, name
+
+
+@pytest.mark.parametrize("name", ["step_leapfrog", "step_rk4", "step_euler"])
+def test_accelerations_depend_on_the_velocity_where_a_method_can_follow_it(name: str) -> None:
+    """Not with leapfrog, which knows the velocity half a step away only."""
+    task = next(task for task in TASKS if task.name == name)
+    x, v, _, acceleration = task.check.inputs(np.random.default_rng(1))
+    depends = not np.allclose(acceleration(x, v), acceleration(x, v + 1.0))
+    assert depends == (name != "step_leapfrog")

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.lab.process import declared_forces
 from app.lab.process.cloth_march import ClothFunctions
 from app.lab.process.rope_march import ClothData, Functions, Segment, march, packed, unpacked
 from app.lab.process.wire import Foreign, pack, unpack
@@ -85,3 +86,19 @@ def test_what_a_function_returns_passes_from_one_process_to_another() -> None:
         found = through(value)
         assert isinstance(found, Foreign)
         assert found.type_name == name
+
+
+def test_points_go_to_the_kernel_by_components_and_their_accelerations_come_back_by_points(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rng = np.random.default_rng(3)
+    x, v, record = rng.normal(size=(4, 3)), rng.normal(size=(4, 3)), object()
+    asked = []
+
+    def set_declared(x, v, t, p, a):
+        asked.append((t, p))
+        a[:] = 2.0 * x + 3.0 * v
+
+    monkeypatch.setattr(declared_forces, "set_declared", set_declared)
+    assert declared_forces.accelerations(x, v, 1.5, record) == pytest.approx(2.0 * x + 3.0 * v)
+    assert asked == [(1.5, record)]

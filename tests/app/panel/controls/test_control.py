@@ -13,7 +13,9 @@ import viser
 
 from app.panel.controls.control import SliderScale, title
 from app.panel.controls.controls import Controls
+from app.panel.controls.remedy import Remedy
 from app.scenes import NAMES, scene_named
+from app.scenes.contract import Advice
 from app.server.viewer import Viewer
 from sim.parameters import Parameter, parameters_of
 from tests import coroutines
@@ -203,3 +205,13 @@ def test_a_slider_that_a_browser_moves_sets_the_value_at_its_place(lab: Viewer) 
     before = lab.settings.params
     coroutines.run(control.on_slider(SimpleNamespace(client_id=None, target=None)))  # the program moved it
     assert lab.settings.params is before
+
+
+def test_the_button_of_a_remedy_is_hidden_until_there_is_an_advice(server: Any) -> None:
+    remedy = Remedy(server.gui, "Take {}", lambda advice: None)
+    shown = [remedy.button.visible]
+    for advice in (Advice("time_step", 0.1, "1/10 s"), None):
+        remedy.show(advice)
+        shown.append(remedy.button.visible)
+    assert shown == [False, True, False]
+    assert remedy.button.label == "Take 1/10 s"

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,15 +11,18 @@ import pytest
 from app.messages import GrabTo, Place, Release
 from app.panel.head import status_line
 from app.render.colormap import scale_colours
+from app.scenes import scene_named
 from app.scenes.cloth import SCENE
 from app.scenes.cloth.parameters import PRESETS, ClothParams, hidden
 from app.scenes.cloth.scene import MAX_SPHERE_SPEED, ClothScene, gusty_wind
 from app.scenes.cloth.view import ClothView, checks, faces
 from app.scenes.quantities import measured, plotted_quantities, recorded_quantities
+from app.scenes.springs.divergence import holding_step
 from app.scenes.springs.quantities import STABILITY
 from app.server.loop.sim_loop import SimLoop
 from sim.parameters import check_record
 from sim.springs import INTEGRATORS
+from sim.springs.stability import Gauge
 from sim.validation import DivergenceError
 
 SMALL = ClothParams(rows=10, cols=10, time_step=1 / 1200, wind=0.0)
@@ -384,3 +388,12 @@ def test_gusts_blow_along_across_and_up_by_their_shares():
     assert along.std() == pytest.approx(8.0 * 0.5 * math.sqrt((0.3**2 + 0.2**2) / 2.0), rel=0.01)
     assert np.abs(across).max() == pytest.approx(8.0 * 0.5 * 0.35, rel=1e-3)
     assert up.max() == pytest.approx(8.0 * 0.5 * 0.15, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["rope", "cloth"])
+def test_the_remedy_of_a_scene_is_a_step_at_which_it_holds(name):
+    gauge = Gauge(100.0, 0.0, 4.0, 2.0, 0.02, 0.04, 100.0)
+    snapshot = SimpleNamespace(params=SimpleNamespace(time_step=0.04), readings=SimpleNamespace(stability=gauge))
+    advice = scene_named(name).remedy(snapshot)
+    assert advice == holding_step(0.04, gauge)
+    assert (advice.name, 0.005 < advice.value <= 0.02) == ("time_step", True)

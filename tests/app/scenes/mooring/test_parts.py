@@ -1,5 +1,6 @@
 """Parts of the mooring scene by themselves: its lines, restoring curves, tables and meshes."""
 
+import dataclasses
 import math
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from app.scenes.mooring.arrangement import body_of, build, first_places, line_ty
 from app.scenes.mooring.body_scene import MooringScene
 from app.scenes.mooring.drawing.body_view import DrawnBody
 from app.scenes.mooring.drawing.square import square_faces, square_points
+from app.scenes.mooring.drawing.watch_view import WatchCircle
 from app.scenes.mooring.drawing.water_view import SeenWater
 from app.scenes.mooring.files.from_file import mooring_of, slack_of
 from app.scenes.mooring.frame import EndStatistics
@@ -153,3 +155,18 @@ def test_the_water_opens_about_the_body_where_pages_draw_by_shaders(scene, serve
         disable_shaders(server)
     water = SeenWater(server, scene.frame())
     assert (water.around is not None) is has_shaders
+
+
+def test_the_watch_circle_is_a_circle_about_the_place_of_rest_as_wide_as_the_farthest_offset(scene, server):
+    scene.advance(1)
+    frame = scene.frame()
+    frame = frame._replace(rest=(3.0, -2.0, 0.0), offset=1.5, params=dataclasses.replace(frame.params, watch=True))
+    watch = WatchCircle(server, frame)
+    watch.show(frame)
+    pieces = next(handle.points for part, handle, height in watch.parts if part == "circle" and height == 0.0)
+    np.testing.assert_allclose(np.hypot(*(pieces[..., :2] - (3.0, -2.0)).T), 1.5, rtol=1e-6)
+    lengths = np.linalg.norm(pieces[:, 1] - pieces[:, 0], axis=-1)
+    assert lengths.sum() == pytest.approx(2.0 * math.pi * 1.5, rel=1e-3)
+    assert np.ptp(lengths) < 1e-6
+    np.testing.assert_allclose(pieces[-1, 1], pieces[0, 0], atol=1e-6)
+    watch.remove()

@@ -24,7 +24,9 @@ from app.scenes.square_sea.view import (
     OVERCAST_DEEP,
     OVERCAST_FROM,
     OVERCAST_TINT,
+    SPAR_TOP,
     SquareSeaView,
+    WaveGaugeMesh,
     upright,
 )
 
@@ -148,3 +150,12 @@ def test_a_nonlinear_sea_has_a_staff_beside_which_its_camera_stands(server: vise
     view.show(scene.frame())
     assert view.staff is None
     assert view.gauge is not None
+
+
+def test_the_parts_of_the_wave_gauge_stand_on_one_another(server):
+    spar, float_, ball = (part.batched_positions[0] + part.vertices for part in WaveGaugeMesh(server).parts)
+    assert (spar[:, 2].min(), spar[:, 2].max()) == pytest.approx((-1.2, SPAR_TOP))
+    assert float_[:, 2].min() == pytest.approx(-0.1)  # in the water
+    assert 0.0 < float_[:, 2].max() < SPAR_TOP
+    assert np.hypot(*float_[:, :2].T).max() > 2.0 * np.hypot(*spar[:, :2].T).max() > 0.0
+    assert ball.mean(axis=0) == pytest.approx((0.0, 0.0, SPAR_TOP), abs=0.05)

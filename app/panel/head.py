@@ -88,7 +88,7 @@ class Head:
             kind, self.visited = settings.kind, settings.loaded
             preset = self.visited if self.visited in kind.presets else ""
             query = write_query(kind, settings.params_of(self.visited), preset)
-            self.here.content = str(fill('<span data-springtide-here="{}"></span>', query))  # js/panel/visited.js
+            self.here.content = str(fill('<span data-springtide-here="{}"></span>', query))  # js/sharing/visited.js
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are out of date."""

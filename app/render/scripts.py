@@ -18,7 +18,7 @@ from app.render.brightness import DARK_LIFT, LUMA
 from app.render.markup.html import Html
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
 
-ROOMS = ("core", "page", "panel", "scene", "sea", "shading")
+ROOMS = ("core", "page", "panel", "scene", "sea", "shading", "sharing")
 FAILURES = "failures.js"
 BEFORE = (FAILURES, "address.js", "connection.js")  # of a lab
 PAGE, REPLAY = "page/main.js", "page/replay.js"  # the modules that start a lab and a replay

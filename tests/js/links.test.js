@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { labAt, ofLab, setupIn } from "./js/panel/links.js";
+import { labAt, ofLab, setupIn } from "./js/sharing/links.js";
 
 test("the lab gets of an address what viser's client does not take", () => {
   assert.equal(ofLab("?scene=rope&darkMode&fixedDpr=2&length=1/2&hideViserLogo"), "?scene=rope&length=1%2F2");

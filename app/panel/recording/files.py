@@ -29,7 +29,7 @@ PICTURE_SIZES = {  # [pixels]
 REPLAY_DURATION = 20.0  # [s] playing time of a replay
 REPLAY, ARRAYS, PICTURE = f"Replay (last {REPLAY_DURATION:g} s)", "Data (.npz)", "Picture"
 PLOTS, CHARTS = "Plots as CSV", "Plots as SVG"
-# The page makes clips and PNG files of plots, and has the other plots made (js/panel/share.js).
+# The page makes clips and PNG files of plots, and has the other plots made (js/sharing/share.js).
 PAGE_BUTTONS = (
     '<div class="springtide-switches" data-springtide-makers="{}"><label>Plots <select data-springtide-plots>'
     "<option>CSV</option><option>SVG</option><option>PNG</option></select></label>"

@@ -15,7 +15,7 @@ from app.render.scripts import IMPORTED, PAGE, REPLAY, SHARED, import_map, modul
 ROOT = Path(__file__).parents[3]
 BROWSERS = ("Chrome", "Edge", "Firefox", "Safari")
 # Rooms from left to right: none imports a room to its left.
-ORDER = ("page", "panel", "scene", "sea", "shading", "core")
+ORDER = ("page", "sharing", "panel", "scene", "sea", "shading", "core")
 
 
 def imports_of(path: str) -> list[str]:

@@ -8,11 +8,11 @@
 import { page } from "../core/life.js";
 import { PAGE, send } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";
-import { chartsOfPage } from "./charts.js";
+import { chartsOfPage } from "../panel/charts.js";
 import { download, toggleClip } from "./clip.js";
 import { sendText } from "./inbox.js";
 import { labAt, ofLab, setupIn } from "./links.js";
-import { rowsOf } from "./rows.js";
+import { rowsOf } from "../panel/rows.js";
 
 const MAX_LENGTH = 5000; // [characters] that the lab takes
 const MAX_REPLAY = 2e8; // [bytes] of a replay

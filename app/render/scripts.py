@@ -70,6 +70,7 @@ def tags(entry: str) -> Html:
 
 
 def before_tags() -> Html:
-    """The scripts that run before viser's client."""
+    """The scripts that run before viser's client, without lines of comments, which would come before the cover."""
     folder = resources.files("app.render") / "js" / "before"
-    return Html("".join(f"<script>{(folder / name).read_text('utf-8')}</script>" for name in BEFORE))
+    sources = [re.sub(r"(?m)^ *//.*\n", "", (folder / name).read_text("utf-8")) for name in BEFORE]
+    return Html("".join(f"<script>{source}</script>" for source in sources))

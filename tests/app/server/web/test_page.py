@@ -30,6 +30,7 @@ def test_the_page_has_our_title_and_its_cover_before_anything_long(lab: Viewer, 
     assert TITLE in page[:MAX_START]
     assert COVER in page[:MAX_START]
     assert "<title>Viser" not in page
+    assert not re.search(r"(?m)^ *//", page[: page.index(COVER)])
     assert page.index(COVER) < page.index('<div id="root">') < page.rindex("<script")
 
 

@@ -103,7 +103,12 @@ class Visit:
     def wait_for_panel(self) -> None:
         self.marks += 1
         mark = self.viewer.server.gui.add_html(f'<i class="springtide-mark-{self.marks}"></i>')
-        self.page.wait(f"return document.querySelector('.springtide-mark-{self.marks}') !== null;")
+        try:
+            self.page.wait(f"return document.querySelector('.springtide-mark-{self.marks}') !== null;")
+        except AssertionError as error:
+            buffer = self.viewer.server._websock_server.get_message_buffer()
+            error.add_note(f"Last message by browser: {buffer.generator_cursors}, of {buffer.message_counter}")
+            raise
         mark.remove()
         self.page.wait(SCENE_IS_SHOWN)
 

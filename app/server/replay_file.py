@@ -22,7 +22,7 @@ from app.render.client_page import with_ours
 from app.render.handles.viser_inside import change_buffers
 from app.render.injection import record_shaders
 from app.render.markup.html import Html, fill, join
-from app.render.scripts import FAILURES, REPLAY
+from app.render.scripts import BEFORE_REPLAY, REPLAY
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
@@ -34,6 +34,7 @@ COVER_STYLE = "cover.css"
 MAX_FRAMES = 200  # of a replay
 MAX_RAW_BYTES = 80e6  # of the arrays of all frames, before they are packed: a file of about 20 MB
 TOLERANCE = 1e-3  # [s] of the time between two frames
+MIN_VECTORS = 64  # of an array of places; the numbers that shaders read (`app/render/material.py`) are fewer
 BITS = 11  # kept of each coordinate, over its largest size in a frame
 STYLE = (
     "#springtide-about{position:fixed;bottom:52px;left:8px;z-index:9;max-width:600px;max-height:80vh;overflow:auto;"
@@ -47,9 +48,11 @@ STYLE = (
 
 
 def rounded(buffer: memoryview) -> memoryview:
-    """An array of 3-vectors of float32 with `BITS` bits of each coordinate; packed and other arrays as they are."""
+    """An array of 3-vectors of float32 with `BITS` bits of each coordinate; any other, or a short one, as it is."""
     values = np.asarray(buffer)
-    vectors = values.dtype == np.float32 and values.ndim >= 2 and values.shape[-1] == 3 and values.size > 0
+    vectors = (
+        values.dtype == np.float32 and values.ndim >= 2 and values.shape[-1] == 3 and values.size >= 3 * MIN_VECTORS
+    )
     if not vectors or is_packed(values):
         return buffer
     largest = np.abs(values).reshape(-1, 3).max(axis=0)
@@ -103,7 +106,7 @@ def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted
     about = about_html(kind, params, plotted, chosen[0].time, chosen[-1].time)
     ours = with_ours(
         page, title=f"Springtide: {kind.title}", words=f"Opening {kind.title} …", styles=(COVER_STYLE,),
-        before=(FAILURES,), entry=REPLAY, last=f"{whole}{about}{setup_block(kind, params)}",
+        before=BEFORE_REPLAY, entry=REPLAY, last=f"{whole}{about}{setup_block(kind, params)}",
     )  # fmt: skip
     if ours is None:
         raise ValueError("the page of viser has changed: this version of Springtide makes no replay with it")

@@ -37,12 +37,12 @@ TOLERANCE = 1e-3  # [s] of the time between two frames
 MIN_VECTORS = 64  # of an array of places; the numbers that shaders read (`app/render/material.py`) are fewer
 BITS = 11  # kept of each coordinate, over its largest size in a frame
 STYLE = (
-    "#springtide-about{position:fixed;bottom:52px;left:8px;z-index:9;max-width:600px;max-height:80vh;overflow:auto;"
+    "#springtide-about{position:fixed;top:8px;left:8px;z-index:9;max-width:600px;max-height:80vh;overflow:auto;"
     "background:#fffffff2;color:#1b2a3a;border-radius:6px;padding:6px 10px;font:13px/1.4 sans-serif;"
     "box-shadow:0 1px 6px #0003}#springtide-about summary{cursor:pointer;font-weight:bold}"
     "#springtide-about td{padding:0 10px 0 0}"
     f"canvas[data-engine]{{background:{LIGHT_SKY.css}}}"
-    "#springtide-slow{bottom:92px!important}"  # above the time line
+    "#springtide-slow{top:52px!important;bottom:auto!important}"  # in the sky, as labels stand below it
     "#webgl-software-rendering{display:none!important}"  # the line on slow drawing says it
 )
 

@@ -50,10 +50,8 @@ STYLE = (
 def rounded(buffer: memoryview) -> memoryview:
     """An array of 3-vectors of float32 with `BITS` bits of each coordinate; any other, or a short one, as it is."""
     values = np.asarray(buffer)
-    vectors = (
-        values.dtype == np.float32 and values.ndim >= 2 and values.shape[-1] == 3 and values.size >= 3 * MIN_VECTORS
-    )
-    if not vectors or is_packed(values):
+    vectors = values.dtype == np.float32 and values.ndim >= 2 and values.shape[-1] == 3
+    if not vectors or values.size < 3 * MIN_VECTORS or is_packed(values):
         return buffer
     largest = np.abs(values).reshape(-1, 3).max(axis=0)
     step = np.exp2(np.ceil(np.log2(np.maximum(largest, 1e-9))) - BITS).astype(np.float32)

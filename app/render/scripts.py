@@ -19,8 +19,8 @@ from app.render.markup.html import Html
 from app.render.material import MAX_WATERLINES, RAIN_UNIFORMS, WATER_UNIFORMS
 
 ROOMS = ("core", "page", "panel", "scene", "sea", "shading", "sharing")
-FAILURES = "failures.js"
-BEFORE = (FAILURES, "address.js", "connection.js")  # of a lab
+BEFORE = ("failures.js", "address.js", "connection.js")  # of a lab
+BEFORE_REPLAY = ("failures.js", "replay.js")
 PAGE, REPLAY = "page/main.js", "page/replay.js"  # the modules that start a lab and a replay
 SHARED = {
     "WATER_UNIFORMS": WATER_UNIFORMS,

@@ -22,7 +22,7 @@ from app.render.client_page import with_ours
 from app.render.handles.viser_inside import change_buffers
 from app.render.injection import record_shaders
 from app.render.markup.html import Html, fill, join
-from app.render.scripts import FAILURES, REPLAY
+from app.render.scripts import BEFORE_REPLAY, REPLAY
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import view_named
 from app.scenes.contract import AnyKind
@@ -34,23 +34,24 @@ COVER_STYLE = "cover.css"
 MAX_FRAMES = 200  # of a replay
 MAX_RAW_BYTES = 80e6  # of the arrays of all frames, before they are packed: a file of about 20 MB
 TOLERANCE = 1e-3  # [s] of the time between two frames
+MIN_VECTORS = 64  # of an array of places; the numbers that shaders read (`app/render/material.py`) are fewer
 BITS = 11  # kept of each coordinate, over its largest size in a frame
 STYLE = (
-    "#springtide-about{position:fixed;bottom:52px;left:8px;z-index:9;max-width:600px;max-height:80vh;overflow:auto;"
+    "#springtide-about{position:fixed;top:8px;left:8px;z-index:9;max-width:600px;max-height:80vh;overflow:auto;"
     "background:#fffffff2;color:#1b2a3a;border-radius:6px;padding:6px 10px;font:13px/1.4 sans-serif;"
     "box-shadow:0 1px 6px #0003}#springtide-about summary{cursor:pointer;font-weight:bold}"
     "#springtide-about td{padding:0 10px 0 0}"
     f"canvas[data-engine]{{background:{LIGHT_SKY.css}}}"
-    "#springtide-slow{bottom:92px!important}"  # above the time line
+    "#springtide-slow{top:52px!important;bottom:auto!important}"  # in the sky, as labels stand below it
     "#webgl-software-rendering{display:none!important}"  # the line on slow drawing says it
 )
 
 
 def rounded(buffer: memoryview) -> memoryview:
-    """An array of 3-vectors of float32 with `BITS` bits of each coordinate; packed and other arrays as they are."""
+    """An array of 3-vectors of float32 with `BITS` bits of each coordinate; any other, or a short one, as it is."""
     values = np.asarray(buffer)
-    vectors = values.dtype == np.float32 and values.ndim >= 2 and values.shape[-1] == 3 and values.size > 0
-    if not vectors or is_packed(values):
+    vectors = values.dtype == np.float32 and values.ndim >= 2 and values.shape[-1] == 3
+    if not vectors or values.size < 3 * MIN_VECTORS or is_packed(values):
         return buffer
     largest = np.abs(values).reshape(-1, 3).max(axis=0)
     step = np.exp2(np.ceil(np.log2(np.maximum(largest, 1e-9))) - BITS).astype(np.float32)
@@ -103,7 +104,7 @@ def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted
     about = about_html(kind, params, plotted, chosen[0].time, chosen[-1].time)
     ours = with_ours(
         page, title=f"Springtide: {kind.title}", words=f"Opening {kind.title} …", styles=(COVER_STYLE,),
-        before=(FAILURES,), entry=REPLAY, last=f"{whole}{about}{setup_block(kind, params)}",
+        before=BEFORE_REPLAY, entry=REPLAY, last=f"{whole}{about}{setup_block(kind, params)}",
     )  # fmt: skip
     return ours or page  # viser's page as it is, if it is not as expected
 

@@ -13,7 +13,7 @@ from app.scenes.springs.rope_parameters import stiffness_parameter
 SCENE = SceneKind(
     name="rope",
     title="Rope",
-    help="<b>Drag the rope</b>, or its root by the arrows.",
+    help="<b>Drag the rope</b> to pull it, or the arrows to move its root and the sphere.",
     params=RopeParams,
     presets=PRESETS,
     about=ABOUT,

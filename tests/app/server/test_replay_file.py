@@ -14,6 +14,7 @@ from app.formats.packing import pack
 from app.panel.recording.files import REPLAY_DURATION
 from app.panel.recording.recorder import Recorder
 from app.panel.recording.recording_files import Plotted
+from app.render.material import Grid, Material, Waterline, uniform_table, waterline_table
 from app.render.surroundings import LIGHT_SKY
 from app.scenes import scene_named, view_named
 from app.scenes.setups import read_setup
@@ -101,6 +102,9 @@ def test_rounding_keeps_what_is_seen_and_leaves_other_arrays() -> None:
     assert len(np.unique(kept[:, 0])) < len(np.unique(points[:, 0]))
     packed = pack(points.T, (1e-4,) * 3, 10)
     assert (np.asarray(rounded(packed.data)) == packed).all()
+    material = uniform_table(Material(haze_distance=3000.0), (1.0, 2.0, 0.02), Grid(9, 9, 600.0))
+    for table in (material, waterline_table([Waterline((300.0, 200.0), 0.3, (0.4, 0.6), 0.1)])):
+        assert (np.asarray(rounded(table.data)) == table).all()
     faces = np.arange(12, dtype=np.uint32).reshape(4, 3)
     assert (np.asarray(rounded(faces.data)) == faces).all()
 

@@ -44,6 +44,16 @@ export function unpack(numbers) {
   return found;
 }
 
+/** @type {WeakSet<Float32Array>} */
+const ownArrays = new WeakSet();
+
+// The numbers of an attribute in memory of its own. Those of viser's messages are views: in a recording, equal arrays are one.
+/** @param {three.Attribute} attribute */
+function ownArray(attribute) {
+  if (!ownArrays.has(attribute.array)) ownArrays.add((attribute.array = attribute.array.slice()));
+  return attribute.array;
+}
+
 // Write the first three fields into the positions of a mesh's vertices, added to their places at rest (an array; null: 0),
 // and the next three into another attribute of three numbers, once for each data. False if the data belongs to another mesh.
 // viser may replace the array of positions at any time: then it is written again.
@@ -66,7 +76,7 @@ export function applyPacked(mesh, data, attribute, rest) {
     own = new position.constructor(new Float32Array(3 * count), 3);
     mesh.geometry.setAttribute(attribute, own);
   }
-  const places = position.array;
+  const places = ownArray(position);
   for (let axis = 0; axis < 3; axis++) {
     const [values, others] = [fields[axis], fields[axis + 3]];
     for (let i = 0, k = axis; i < count; i++, k += 3) {

@@ -34,7 +34,7 @@ function label(words) {
 
 // Paint the sky: an ellipse of three colours, brightest in the middle, that goes through the farthest corner; or one colour.
 /** @param {CanvasRenderingContext2D} pen @param {string} background as the style sheet has it */
-export function paintSky(pen, background) {
+function paintSky(pen, background) {
   const { width, height } = pen.canvas, [inner = "white", around = inner, outer = around] = background.match(/rgba?\([^)]*\)/g) ?? [];
   const [x = 0.5, y = 0.5, share = 0.5] = (background.match(/[\d.]+(?=%)/g) ?? []).map((found) => Number(found) / 100);
   const sides = [width * Math.max(x, 1 - x), height * Math.max(y, 1 - y)];

@@ -11,6 +11,7 @@ from app.lab.process.rope_march import entries
 from app.lab.process.wire import Foreign
 
 TOLERANCE = 1e-4  # of the largest value of a result: single precision is right too
+REPAIR_TOLERANCE = 1e-5  # the same, for what an edit makes right: a small part that is wrong shows at other inputs
 FORM_TOLERANCE = 1e-7  # of the largest value of a student's result, within which a form agrees
 SINGLE_TOLERANCE = 2e-5  # the same, of results in single precision
 
@@ -70,7 +71,7 @@ def same_shape(found: Any, expected: Any) -> bool:
     return [a.shape for a in parts(found)] == [b.shape for b in parts(expected)]
 
 
-def same(found: Any, expected: Any) -> bool:
+def same(found: Any, expected: Any, tolerance: float = TOLERANCE) -> bool:
     """True if two results agree within the tolerance, every part relative to its largest value."""
     if not same_shape(found, expected):
         return False
@@ -79,7 +80,7 @@ def same(found: Any, expected: Any) -> bool:
         scale = np.abs(b[finite]).max(initial=0.0)
         if not np.array_equal(a[~finite], b[~finite], equal_nan=True):
             return False
-        if not (np.abs(a[finite] - b[finite]) <= TOLERANCE * scale + 1e-12).all():
+        if not (np.abs(a[finite] - b[finite]) <= tolerance * scale + 1e-12).all():
             return False
     return True
 

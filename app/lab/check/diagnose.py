@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.check.comparing import call, conform, form_of, parts, reproduces, same, same_shape
+from app.lab.check.comparing import REPAIR_TOLERANCE, call, conform, form_of, parts, reproduces, same, same_shape
 from app.lab.check.diagnosis import differences
 from app.lab.check.diagnosis.edits import explain_edit, explain_repair
 from app.lab.check.diagnosis.explanation import Explanation
@@ -148,7 +148,8 @@ def first_repair(student: StudentFunction, first: Trial, others: Sequence[Trial]
 
     def is_right(value: Any, trial: Trial) -> bool:
         try:
-            return same(student.normalised(conform(value, student.reference(*trial.sample))), trial.right)
+            value = student.normalised(conform(value, student.reference(*trial.sample)))
+            return same(value, trial.right, REPAIR_TOLERANCE)
         except (Wrong, ValueError, IndexError):
             return False
 

@@ -4,6 +4,7 @@ import random
 import re
 import textwrap
 from collections.abc import Callable, Iterator
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from app.lab.check.diagnosis.shown import notation
 from app.lab.check.diagnosis.steps import explain_step
 from app.lab.check.diagnosis.tableau import STEPS, NoTableau, merged, order_of, pruned, read_tableau
 from app.lab.check.diagnosis.terms import Term, explain_terms
+from app.lab.check.diagnosis.where import part_of
 from app.lab.check.program_check import Verdict
 from app.lab.course.task import load_tasks
 
@@ -440,3 +442,15 @@ def test_the_sentence_of_a_verdict_ends_with_one_mark() -> None:
     assert [Verdict("wrong", text, "no end").sentence for text in ("it runs on", "It runs on.", "Does it end?")] == [
         "no end: it runs on.", "no end: It runs on.", "no end: Does it end?",
     ]  # fmt: skip
+
+
+def test_the_part_of_a_result_that_is_wrong_is_named_where_others_are_right() -> None:
+    first, second, both = (
+        SimpleNamespace(wrong=tuple(np.array(part) for part in wrong))
+        for wrong in (([True, False], [False]), ([False, False], [True]), ([True, True], [True]))
+    )
+    names = ("positions", "velocities")
+    assert part_of([first], names) == "in the positions"
+    assert part_of([second, second], names) == "in the velocities"
+    assert part_of([first, second], names) == part_of([both], names) == ""
+    assert part_of([SimpleNamespace(wrong=(np.array([True]),))], ("force",)) == ""

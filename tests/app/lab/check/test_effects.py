@@ -1,6 +1,7 @@
 """Side effects of a student's function are found, before anything else is said of it."""
 
 import inspect
+import os
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 from msgspec.structs import replace
 
-from app.lab.check.diagnosis.effects import ARGUMENT, EFFECTS, FILE, SETTING, STATE, digest
+from app.lab.check.diagnosis.effects import ARGUMENT, EFFECTS, FILE, SETTING, STATE, alike, digest, is_writing
 from app.lab.check.program_check import Verdict, check_program
 from app.lab.course.task import Task, load_tasks
 from app.lab.process.runner import Runner
@@ -188,3 +189,18 @@ def test_what_keeps_nothing_is_right(desk: Runner) -> None:
 def test_the_effects_are_those_that_a_verdict_may_name() -> None:
     assert {kind for kind, *_ in EFFECTS_OF_LINES} == set(EFFECTS)
     assert np.geterr()["divide"] == "warn"
+
+
+def test_a_file_is_written_by_its_mode_or_its_flags() -> None:
+    assert all(is_writing(mode, os.O_RDONLY) for mode in ("w", "a", "x", "r+", "rb+"))
+    assert all(is_writing(None, flags) for flags in (os.O_WRONLY, os.O_RDWR | os.O_CREAT))
+    assert not any(is_writing(mode, os.O_RDONLY) for mode in ("r", "rb", "", None))
+
+
+def test_results_of_equal_calls_may_differ_by_rounding_relative_to_themselves() -> None:
+    for size in (1e-9, 1.0, 1e9):
+        one = size * np.array([1.0, -0.3, 0.0])
+        assert alike(one, one * (1.0 + 1e-14))
+        assert alike((one, 2.0), (one.copy(), 2.0))
+        assert not alike(one, one + 0.01 * size)
+        assert not alike((one, 2.0), (one, 2.0 + 0.01))

@@ -29,7 +29,7 @@ from app.lab.course.folder import folder_names, make_folder
 from app.lab.course.task import Task, load_tasks
 from app.lab.process.runner import Runner
 from app.lab.process.runners import Runners
-from app.lab.report.class_page import page, rows, strip
+from app.lab.report.class_page import page, rows, strip, student_row
 from app.lab.report.classroom import Classroom, Desk, Student
 from app.lab.report.rope_picture import RopePicture, rope_picture, svg
 from app.lab.student.saved import Saved, read_files, store
@@ -433,3 +433,10 @@ def test_the_poses_of_a_picture_are_the_darker_the_later_and_the_last_has_its_po
     text = str(svg(RopePicture(own, own[-1:], "Matches the reference.")))
     assert [float(number) for number in re.findall(r'opacity="([0-9.]+)"', text)] == [0.9, 0.25, 0.5, 0.75, 1.0]
     assert text.count("<circle") == 3
+
+
+def test_a_folder_without_results_says_why() -> None:
+    assert "being checked" in str(student_row(Student(Path("ada")), "ada"))
+    row = str(student_row(Student(Path("ada"), error="no such folder"), "ada"))
+    assert "no such folder" in row
+    assert "being checked" not in row

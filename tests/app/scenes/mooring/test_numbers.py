@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -185,3 +186,9 @@ def test_the_part_with_floats_lifts_by_its_share():
     assert [round(length / params.length, 3) for _, length, _ in parts] == [0.4, 0.25, 0.35]
     assert sum(count for _, _, count in parts) == params.segments
     assert [kind.name for kind, _, _ in parts] == ["line", "line with floats", "line"]
+
+
+def test_the_table_of_the_bed_numbers_lines_from_1(scene):
+    text = str(report.bed_table(snapshot_of(scene)))
+    count = len(scene.readings().lines)
+    assert re.findall(r"<tr><td>(-?\d+)</td>", text) == [str(number) for number in range(1, count + 1)]

@@ -191,6 +191,8 @@ def test_steps_that_a_frame_has_no_time_for_are_counted_as_dropped() -> None:
     loop, scene = make(cost=1.0)
     loop.run.advance_within_budget(10)
     assert (scene.time, loop.run.fixed_step.dropped, loop.run.fixed_step.capped) == (scene.step, 9, True)
+    loop.run.take_single_steps(5)
+    assert (scene.time, loop.run.fixed_step.dropped) == (2.0 * scene.step, 13)
 
 
 @pytest.mark.parametrize(("wall", "frame"), [(FRAME_INTERVAL, FRAME_INTERVAL), (0.25, MAX_LONG_FRAME)])

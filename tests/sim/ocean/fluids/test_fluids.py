@@ -121,3 +121,9 @@ def test_index_of_oils_by_the_one_third_rule():
     assert oil_index(932.0) == pytest.approx(1.534, abs=2e-3)
     assert fluids()["fresh water"].refractive_index == 1.333
     assert fluids()["Maya"].refractive_index == oil_index(932.0)
+
+
+@pytest.mark.parametrize("index", [1.0, 1.05, 1.333, 10.0])
+def test_light_from_above_is_reflected_by_the_difference_of_the_indices(index):
+    assert normal_reflectance(index) == pytest.approx(((index - 1.0) / (index + 1.0)) ** 2)
+    assert normal_reflectance(index) == pytest.approx(float(fresnel(0.0, index).mean))

@@ -81,7 +81,7 @@ class Walls:
         spacing = TICK_SPACING * TICKS_PER_NUMBER
         letters = min(LETTER_HEIGHT * self.size, MAX_LETTER_SHARE * spacing)
         for k in range(int(-cutaway.floor / spacing) + 1):
-            text, place = f"{-k * spacing:.1f} m" if k else "0 m", self.on_wall(RULER_PLACE, -k * spacing)
+            text, place = f"\N{MINUS SIGN}{k * spacing:.1f} m" if k else "0 m", self.on_wall(RULER_PLACE, -k * spacing)
             server.scene.add_label(
                 f"{name}/ruler/tick_{k}", text, position=place, anchor="center-right", font_size_mode="scene",
                 font_scene_height=letters,

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from app.lab.check.comparing import REPAIR_TOLERANCE, call, conform, form_of, parts, reproduces, same, same_shape
+from app.lab.check.comparing import REPAIR_TOLERANCE, call, conform, form_of, has, parts, reproduces, same, same_shape
 from app.lab.check.diagnosis import differences
 from app.lab.check.diagnosis.edits import explain_edit, explain_repair
 from app.lab.check.diagnosis.explanation import Explanation
@@ -46,9 +46,10 @@ def diagnosed(student: StudentFunction, trials: Sequence[Trial]) -> Wrong:
     rng = np.random.default_rng(FRESH_SEED)
     fresh = [student.trial(tuple(task.check.inputs(rng))) for _ in range(FRESH)]  # type: ignore[union-attr]
     every = [*trials, *fresh]
+    has_numbers = any(has(np.isfinite, trial.found) for trial in every)  # without any, too many forms agree with it
 
     def is_stated(form: Callable[..., Any] | None) -> bool:
-        return form is not None and all(has_form(student, form, trial) for trial in every)
+        return form is not None and has_numbers and all(has_form(student, form, trial) for trial in every)
 
     why = explain(student)
     if why is not None:

@@ -1,14 +1,19 @@
 """Each scene of the program has a small picture to choose it by; an added one need not have any."""
 
 import base64
+import contextlib
 import io
 from importlib import resources
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from PIL import Image
 
-from app.panel.controls.scene_pictures import picture
+from app.panel.controls.scene_pictures import add_scene_pictures, picture
+from app.panel.head import add_scene_chooser
 from app.scenes import NAMES
+from sim.parameters import in_words
 
 PICTURES = sorted(file.name for file in (resources.files("assets") / "scenes").iterdir())
 
@@ -24,3 +29,13 @@ def test_a_scene_has_a_small_picture(file: str) -> None:
     content = base64.b64decode(str(picture(file.removesuffix(".jpg"))).split(",")[1].removesuffix('">'))
     assert len(content) < 6000  # each page is sent all of them
     assert Image.open(io.BytesIO(content)).size == (160, 100)
+
+
+def test_each_button_names_its_scene_and_shows_its_picture(server: Any) -> None:
+    chooser = add_scene_chooser(server.gui, tuple(NAMES), "rope", lambda name: None)
+    found: list[str] = []
+    gui: Any = SimpleNamespace(add_folder=lambda *_, **__: contextlib.nullcontext(), add_html=found.append)
+    add_scene_pictures(gui, chooser, tuple(NAMES))
+    for name in NAMES:
+        title = in_words(name)
+        assert f'<button type="button" data-springtide-scene="{title}">{picture(name)}{title}</button>' in found[0]

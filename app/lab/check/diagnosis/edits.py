@@ -96,7 +96,8 @@ def edits_of_tree(
     changes = more_changes if far else changes_of
     for node in nodes[1:]:
         shown: ast.AST = node
-        while len(source_of(shown)) < (SHORT_IN_LINE if is_own else SHORT) and isinstance(places[shown][0], ast.expr):
+        short = SHORT_IN_LINE if is_own else SHORT
+        while (len(source_of(shown)) < short or is_sliced(shown)) and isinstance(places[shown][0], ast.expr):
             shown = places[shown][0]
         before, line = source_of(shown), getattr(node, "lineno", 0)
         for change in changes(node, places[node][0], names):
@@ -161,6 +162,11 @@ def changes_of(node: ast.AST, parent: ast.AST, names: Sequence[str]) -> Iterator
         yield changed("test", ast.Constant(False))
     elif isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Subscript):
         yield lambda _: None
+
+
+def is_sliced(node: ast.AST) -> bool:
+    """True for an index with a colon, which is no expression without its array."""
+    return isinstance(node, ast.Slice) or any(isinstance(part, ast.Slice) for part in getattr(node, "elts", ()))
 
 
 def is_range(node: ast.AST) -> bool:

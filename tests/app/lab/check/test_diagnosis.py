@@ -1,5 +1,6 @@
 """The diagnosis of wrong functions: the tableau of a step, the terms of a force. Mistakes are drawn at random."""
 
+import ast
 import random
 import re
 import textwrap
@@ -411,6 +412,15 @@ def test_the_edits_of_a_number_and_of_the_arguments_of_a_call() -> None:
     }  # fmt: skip
     assert {after for after in far if re.fullmatch(r"f\([ab3, ]+\)", after)} == {"f(b, a, 3)", "f(a, 3, b)", "f(b, 3)"}
     assert {"f(a, b, 3) / (2 * np.pi)", "f(a, b, 3) * (2 * np.pi)", "f(a, b, 3) / np.pi"} <= far
+
+
+def test_an_edit_of_an_index_is_shown_with_its_array() -> None:
+    source = b"def one(numbers, rows):\n    return numbers[:-1, 1:] - numbers[2:rows]\n"
+    found = [(edit.before, edit.after) for far in (False, True) for edit in own_edits(source, "one", {}, far=far)]
+    assert ("numbers[:-1, 1:]", "numbers[1:, :-1]") in found
+    assert len(found) > 100
+    for text in (text for edit in found for text in edit if text):
+        ast.parse(text)
 
 
 def test_factors_that_a_person_may_omit() -> None:

@@ -200,6 +200,18 @@ return np.hypot(level, weight * hanging)"""
     assert is_true(TASKS["line_tension"], source, said), str(said)
 
 
+def test_no_form_is_told_of_a_function_that_is_infinite_wherever_it_is_tried(runner: Runner) -> None:
+    """It is not at some other inputs, so that what agrees with it here need not agree there."""
+    body = """a, b = z1 - level1, z0 - level0
+s = np.full(a.shape, np.inf)
+np.divide(a, a - level0, out=s, where=(a > 0) & (b <= 0))
+return s"""
+    source = source_of(TASKS["rain_hit"], body)
+    said = judged(runner, TASKS["rain_hit"], source)
+    assert isinstance(said, Wrong)
+    assert is_true(TASKS["rain_hit"], source, said), str(said)
+
+
 def test_the_less_likely_edits_are_tried_around_a_conditional_expression_too() -> None:
     source = b"def one(a, b):\n    x = (a if a > b else b)\n    return 2 * x\n"
     found = {(edit.before, edit.after) for edit in own_edits(source, "one", {}, far=True)}

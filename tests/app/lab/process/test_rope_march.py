@@ -232,3 +232,22 @@ def test_friction_on_the_student_s_sphere_acts_against_the_motion_along_it() -> 
         force = functions.sphere(np.array([0.0, 0.0, 0.9]), v, 1)
         assert force[2] == pytest.approx(5.0)
         assert force[:2] == pytest.approx(-0.3 * 5.0 * v[:2] / np.linalg.norm(v[:2]))
+
+
+def test_the_mouse_pulls_a_point_as_a_damped_spring_that_gives_way() -> None:
+    x, v = np.array([[0.0, 0.0, 3.0], [-0.5, 0.0, 3.0], [-1.0, 0.0, 3.0]]), np.zeros((3, 3))
+    v[2] = 0.4, 0.0, -0.3
+    free = Forces(2.0, 800.0, 7.0, 0.0, 0.5, 0.0)
+    gap = np.array([0.3, -0.4, 0.0])
+    for most, size in ((1e9, 20.0 * 0.5), (4.0, 4.0)):
+        place = dict(zip(("grab_x", "grab_y", "grab_z"), x[2] + gap, strict=True))
+        found = []
+        for forces in (free, free._replace(grabbed=2, grab_k=20.0, grab_b=3.0, grab_max=most, **place)):
+            functions = Functions(types.SimpleNamespace(), [], "step_rk4", {})  # type: ignore[arg-type]
+            functions.segment = Segment(1, 1e-3, forces, np.zeros((0, 4, 3)))
+            a = np.zeros((3, 3))
+            functions.add_surroundings(x, v, a)
+            found.append(a)
+        pull = 2.0 * (found[1] - found[0])
+        np.testing.assert_allclose(pull[2], size * gap / 0.5 - 3.0 * v[2], atol=1e-12)
+        assert not pull[:2].any()

@@ -11,7 +11,7 @@ from app.render.client_page import cover, style_sheet
 from app.server.viewer import Viewer
 from app.server.web.page import ALIVE_PATH, SERVER_NAME, STARTING, STYLES, TITLE, covered
 
-MAX_START = 30_000  # characters before the end of the cover; viser's client has 800,000
+MAX_START = 32_000  # characters before the end of the cover; viser's client has 800,000
 
 
 def get(port: int, path: str, **headers: str) -> tuple[int, bytes, dict[str, str]]:

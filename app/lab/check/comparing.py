@@ -12,7 +12,7 @@ from app.lab.process.wire import Foreign
 
 TOLERANCE = 1e-4  # of the largest value of a result: single precision is right too
 REPAIR_TOLERANCE = 1e-5  # the same, for what an edit makes right: a small part that is wrong shows at other inputs
-FORM_TOLERANCE = 1e-7  # of the largest value of a student's result, within which a form agrees
+FORM_TOLERANCE = 1e-9  # of the largest value of a student's result, within which a form agrees
 SINGLE_TOLERANCE = 2e-5  # the same, of results in single precision
 
 

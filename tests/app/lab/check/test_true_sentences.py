@@ -200,6 +200,16 @@ return np.hypot(level, weight * hanging)"""
     assert is_true(TASKS["line_tension"], source, said), str(said)
 
 
+def test_no_form_is_told_that_leaves_out_a_small_part_of_the_result(runner: Runner) -> None:
+    """A level part that lacks the weight twice is 1e-8 of the tension, and less at most inputs."""
+    body = """level = (hanging * hanging - height * height) / weight / 2 / height
+return np.hypot(level, weight * hanging)"""
+    source = source_of(TASKS["line_tension"], body)
+    said = judged(runner, TASKS["line_tension"], source)
+    assert isinstance(said, Wrong)
+    assert is_true(TASKS["line_tension"], source, said), str(said)
+
+
 def test_no_form_is_told_of_a_function_that_is_infinite_wherever_it_is_tried(runner: Runner) -> None:
     """It is not at some other inputs, so that what agrees with it here need not agree there."""
     body = """a, b = z1 - level1, z0 - level0

@@ -19,7 +19,7 @@ from app.lab.check.diagnosis import differences
 from app.lab.check.diagnosis.edits import explain_edit, explain_repair
 from app.lab.check.diagnosis.explanation import Explanation
 from app.lab.check.diagnosis.steps import explain_step
-from app.lab.check.diagnosis.terms import WHOLE, Term, explain_terms
+from app.lab.check.diagnosis.terms import IGNORED, WHOLE, Term, explain_terms
 from app.lab.check.student_function import TASK_LIMIT, StudentFunction, Trial
 from app.lab.checking import Wrong
 from app.lab.process.runner import RunError
@@ -29,6 +29,7 @@ FRESH_SEED = 20261127
 FRESH = 24  # fresh inputs, not used to find an explanation
 TERM_SAMPLES = 16  # random inputs at which terms are compared
 MAX_DRAWS = 200  # of inputs, to find enough
+SMALLER = 1e-3  # of an argument, at which a result that seems not to depend on it is tried too
 MAX_REPAIRS = 20  # that are right at one input and are tried at the others
 UNFIT = ("NaN", "infinite", "wrong shape", "wrong type", "returns nothing")  # results without a test of behaviour
 OTHER_SHAPE = "for other numbers of points its results have the wrong shape"
@@ -56,6 +57,8 @@ def diagnosed(student: StudentFunction, trials: Sequence[Trial]) -> Wrong:
         forms = getattr(task.check, "within", lambda form: (form,))(why.form)
         form = next(filter(is_stated, forms), None)
         why = None if form is None else why._replace(form=form)
+    if why is not None and why.text.startswith(IGNORED) and unused_arguments(student, every) is None:
+        why = None
     if rounds_down(student) and (mended := repair(student, every, of="//")) is not None:
         return wrong_of(mended)
     for mistake in getattr(task.check, "MISTAKES", ()):
@@ -183,25 +186,32 @@ def unused_arguments(student: StudentFunction, trials: Sequence[Trial]) -> Expla
     unused = [name for i, name in enumerate(student.task.arguments) if ignores(student, trials, i)]
     if not unused:
         return None
-    return Explanation(f"{unused[0]} not used", f"The result does not change with {' and '.join(unused)}.")
+    return Explanation(f"{unused[0]} not used", f"{IGNORED}{' and '.join(unused)}.")
 
 
 def ignores(student: StudentFunction, trials: Sequence[Trial], i: int) -> bool:
     """True if the student's result never depends on argument `i`, though the reference does.
 
-    Each pair of inputs is tried, as a force may be 0 at many of them; False for a function that is too slow for that.
+    Each pair of inputs is tried, as a force may be 0 at many of them, and then much smaller numbers, as all of the
+    task's may be so large that a term is gone; False for a function that is too slow for that.
     """
     changed_reference = False
-    for one, other in itertools.product(trials, repeat=2):
-        sample = (*one.sample[:i], other.sample[i], *one.sample[i + 1 :])
-        if np.shape(one.sample[i]) != np.shape(other.sample[i]):
+    pairs = ((one, other.sample[i]) for one, other in itertools.product(trials, repeat=2))
+    smaller = ((one, SMALLER * one.sample[i]) for one in trials if np.asarray(one.sample[i]).dtype.kind == "f")
+    for one, value in itertools.chain(pairs, smaller):
+        sample = (*one.sample[:i], value, *one.sample[i + 1 :])
+        if np.shape(one.sample[i]) != np.shape(value):
             continue
         if same(one.right, student.normalised(student.reference(*sample))):
             continue
         if student.runner.effort - student.effort > TASK_LIMIT / 2.0:
             return False
         changed_reference = True
-        if not same(student.trial(sample).found, one.found):
+        try:
+            found = student.trial(sample).found
+        except (RunError, Wrong):  # as of an input that the task does not have
+            return False
+        if not same(found, one.found):
             return False
     return changed_reference
 

@@ -222,6 +222,15 @@ return s"""
     assert is_true(TASKS["rain_hit"], source, said), str(said)
 
 
+def test_an_argument_that_counts_only_where_it_is_small_is_not_called_unused(runner: Runner) -> None:
+    body = """once = np.exp(-absorption * absorption)
+return oil_colour + once * once * (absorption - oil_colour)"""
+    source = source_of(TASKS["surface_colour"], body)
+    said = judged(runner, TASKS["surface_colour"], source)
+    assert isinstance(said, Wrong)
+    assert str(said) == "The result does not change with water_colour and thickness."
+
+
 def test_the_less_likely_edits_are_tried_around_a_conditional_expression_too() -> None:
     source = b"def one(a, b):\n    x = (a if a > b else b)\n    return 2 * x\n"
     found = {(edit.before, edit.after) for edit in own_edits(source, "one", {}, far=True)}

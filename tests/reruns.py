@@ -1,4 +1,4 @@
-"""Fails a run of the tests in which too many had to be tried again."""
+"""Names the tests that had to be tried again, and fails a run with too many of them."""
 
 import pytest
 
@@ -10,19 +10,27 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 class Reruns:
-    """The counter of one session. With pytest-xdist it counts in the controller, which gets the reports of all."""
+    """The tests tried again in one session. With pytest-xdist the controller decides, which gets the reports of all."""
 
     def __init__(self, config: pytest.Config) -> None:
-        self.config, self.count = config, 0
+        self.config = config
+        self.found: list[str] = []  # the name of each, and why its first try failed
         self.decides = not hasattr(config, "workerinput")
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        self.count += report.outcome == "rerun"  # as pytest-rerunfailures calls it
+        if report.outcome == "rerun":  # as pytest-rerunfailures calls it
+            crash = getattr(report.longrepr, "reprcrash", None)
+            reason = str(crash.message if crash else report.longrepr).partition("\n")[0]
+            self.found.append(f"{report.nodeid}: {reason}")
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
-        if self.decides and self.count > MAX_RERUNS and session.exitstatus == pytest.ExitCode.OK:
+        if self.decides and len(self.found) > MAX_RERUNS and session.exitstatus == pytest.ExitCode.OK:
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        if self.decides and self.count > MAX_RERUNS:
-            terminalreporter.write_line(f"failed: {self.count} reruns; allowed: at most {MAX_RERUNS}", red=True)
+        if not self.decides:
+            return
+        for found in self.found:
+            terminalreporter.write_line(f"tried again: {found}")
+        if len(self.found) > MAX_RERUNS:
+            terminalreporter.write_line(f"failed: {len(self.found)} reruns; allowed: at most {MAX_RERUNS}", red=True)

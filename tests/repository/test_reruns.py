@@ -31,3 +31,4 @@ def test_more_than_three_reruns_fail_the_suite(tmp_path, processes, reruns):
     assert f"{reruns} passed, {reruns} rerun" in run.stdout
     assert run.returncode == (reruns > MAX_RERUNS), run.stdout
     assert ("allowed: at most 3" in run.stdout) == (reruns > MAX_RERUNS)
+    assert f"tried again: test_second_try.py::test_it[{reruns - 1}]: assert 1 == 2" in run.stdout

@@ -73,7 +73,8 @@ def free_port() -> int:
 
 # The words of a page, and whether viser's client takes messages, for a wait that failed.
 STATE = """const { getRenderRequestState, messageQueue } = window.__viserMutable ?? {};
-    return [document.body.innerText.slice(0, 300), getRenderRequestState, messageQueue?.length, window.noted];"""
+    const errors = [...new Set(window.noted?.map(String))];
+    return [document.body.innerText.slice(0, 300), getRenderRequestState, messageQueue?.length, errors];"""
 
 
 def moves(points: Sequence[Point]) -> list[dict[str, Any]]:

@@ -32,6 +32,7 @@ def hall(shown: tuple[Viewer, Tab]) -> Iterator[tuple[Viewer, Tab]]:
         lab.settings.set(name, True)
     tab.wait(lambda: len(charts(tab)) == 2, 30)
     yield lab, tab
+    tab.page.evaluate(LARGE, "no")
     tab.page.keyboard.press("Escape")
     tab.page.keyboard.press("Escape")
     for name in ("plot_energy", "plot_tip"):
@@ -84,8 +85,7 @@ def test_an_enlarged_chart_fills_the_window_and_its_type_follows(hall: tuple[Vie
     foot = (0, SIZE["width"], SIZE["height"])
     tab.wait(lambda: edges(tab, "#springtide-time") == pytest.approx(foot, abs=1), 20)
     tab.page.evaluate(LARGE, "yes")
-    tab.wait(lambda: charts(tab)[0]["ticks"] == [29, 29], 20)
-    assert charts(tab)[0]["height"] >= 500
+    tab.wait(lambda: charts(tab)[0]["ticks"] == [29, 29] and charts(tab)[0]["height"] >= 500, 20)
     enlarge(tab)  # the same button leads back
     tab.wait(lambda: [chart["ticks"] for chart in charts(tab)] == [[16, 16]] * 2, 20)
     tab.page.evaluate(LARGE, "no")

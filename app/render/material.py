@@ -118,7 +118,7 @@ class Material:
 
     fire_place: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [m] of a fire that lights the sea
     fire_light: RGB = (0.0, 0.0, 0.0)  # its radiant intensity, linear, in units of the sun's irradiance times m2
-    # x, y [m] around which the waves drawn are those of the tile, and 1, or 0 if there is no such place.
+    # x, y [m] of the place around which the tile itself is drawn, and 1; 0 without such a place.
     gauge_place: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     wireframe: bool = False  # draw the simulated grid

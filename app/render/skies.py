@@ -106,8 +106,8 @@ SKIES = {
 def light_scene(server: viser.ViserServer, name: str, **how: Any) -> None:
     """Light the scene by an environment map of viser's. how: as for its `configure_environment_map`.
 
-    The map should be its background or have another intensity than 1, as viser's page has a map of its own without
-    background at intensity 1 until this one arrives (`js/scene/photograph.js`).
+    Pass a background, or an intensity other than 1: viser's default map, which the page draws until this one arrives,
+    has no background and intensity 1, and is told apart by that (`js/scene/photograph.js`).
     """
     injector = injector_of(server)
     if injector is not None:

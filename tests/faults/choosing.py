@@ -217,7 +217,7 @@ class Records:
 
 
 def reached_from(listed: Listed, path: Path) -> tuple[set[str], bool] | None:
-    """What `reached` says of a fault's line in the source at `path`; None without its line."""
+    """Tests that reach a fault's line in the source at `path`, as `reached` returns them; None without its line."""
     module = listed.fault.module
     line = listed.fault.line(path.read_text("utf-8"))
     if line is None:

@@ -206,7 +206,7 @@ def wake_on_loop(server: viser.ViserServer) -> None:
 
     def replace(connection: ViserConnection) -> None:
         buffer = connection.get_message_buffer()
-        _ = buffer.message_event
+        _ = buffer.message_event  # without it a new viser waits for something else, and nothing is replaced
         buffer.message_event = LoopEvent(loop)
 
     def put() -> None:

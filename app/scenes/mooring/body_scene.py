@@ -64,7 +64,7 @@ class MooringScene(LineScene):
         self.tensions.take_now(*self.find_tensions())
 
     def take_system(self) -> None:
-        """Continue with the mooring as it is arranged now."""
+        """Continue with the present arrangement of the mooring."""
         self.system = build(self.params, self.attached.places, self.body, self.sea)
 
     @property

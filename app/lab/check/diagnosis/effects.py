@@ -37,7 +37,7 @@ OPERATORS: dict[type[ast.operator], str] = {
 }  # fmt: skip
 
 
-# A function and the modules in which it may store state, as they are before any call.
+# Makes a fresh copy of a function, and of the modules where it may store state.
 Anew: TypeAlias = Callable[[], tuple[Callable[..., Any], Sequence[ModuleType]]]
 
 

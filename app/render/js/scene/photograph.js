@@ -5,7 +5,8 @@
 // pixels, and half a second for the copy. viser draws the photograph only once, and a lost context takes it away: so its
 // numbers are read once, asynchronously, to restore it from them.
 //
-// The lab names the sky that it has sent. While that is decoded, viser's client shows the one before, at first one of its own.
+// The lab sends the name of a sky before its photograph. Until that is decoded, viser's client draws the previous sky, or at first
+// its default.
 
 import { toHalf } from "../sea/half_floats.js";
 import { contextNumber, drawsFloats } from "../shading/context.js";

@@ -47,7 +47,7 @@ export function unpack(numbers) {
 /** @type {WeakSet<Float32Array>} */
 const ownArrays = new WeakSet();
 
-// The numbers of an attribute in memory of its own. Those of viser's messages are views: in a recording, equal arrays are one.
+// A private copy of an attribute's numbers. viser's own are views of its messages, and equal arrays of a recording share memory.
 /** @param {three.Attribute} attribute */
 function ownArray(attribute) {
   if (!ownArrays.has(attribute.array)) ownArrays.add((attribute.array = attribute.array.slice()));

@@ -1,8 +1,8 @@
 // Texts for the lab: the query of a link, or a file.
 //
-// The panel of each scene takes them through a hidden field of its own. A text that comes while one panel is replaced by the
-// next, or while the line is cut, is lost. Therefore the last text is sent to each new field and on each new connection, for a
-// while. It has a number, and the lab takes each number once.
+// Each scene's panel has a hidden field for them. A text sent while a panel is being replaced, or while the line is cut, is lost.
+// Therefore the last text is sent again to each new field and on each new connection, for a while. It has a number, and the lab
+// takes each number once.
 
 import { connectionNumber, PAGE, send } from "../core/viewer.js";
 import { onControls } from "../core/watch.js";

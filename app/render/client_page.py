@@ -11,6 +11,8 @@ from importlib import resources
 from app.render.markup.html import Html, fill
 from app.render.scripts import before_tags, tags
 
+COVER_STYLE = "cover.css"
+
 
 def style_sheet(name: str) -> Html:
     """A style sheet in `js`, without its comments, which would come before the cover."""
@@ -24,12 +26,12 @@ def cover(words: str) -> Html:
 
 
 def with_ours(
-    page: str, *, title: str, words: str, styles: Iterable[str], before: Iterable[str], entry: str, last: str = ""
+    page: str, *, title: str, words: str, styles: Iterable[str] = (), before: Iterable[str], entry: str, last: str = ""
 ) -> str | None:
     """viser's page with ours around it; None if it is not as expected.
 
-    words: on the cover. styles: style sheets. before: scripts that run before the client. entry: the module that starts
-    the others. last: HTML for the end of the page.
+    words: on the cover. styles: style sheets after that of the cover. before: scripts that run before the client.
+    entry: the module that starts the others. last: HTML for the end of the page.
     """
     head, found, body = page.rpartition("<body>")
     # viser's client is one long script in the head, as is the recording of a replay. Below the cover they do not
@@ -39,7 +41,7 @@ def with_ours(
         return None
     end += len("</script>")
     client = head[start:end]
-    sheets = f"<style>{''.join(map(style_sheet, styles))}</style>"
+    sheets = f"<style>{''.join(map(style_sheet, (COVER_STYLE, *styles)))}</style>"
     head = head[:start].replace("<title>Viser</title>", fill("<title>{}</title>", title), 1) + sheets + head[end:]
     body = body.replace("</body>", f"{client}{tags(entry)}{last}</body>", 1)
     return f"{head}<body>{cover(words)}{before_tags(before)}{body}"

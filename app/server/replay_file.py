@@ -30,7 +30,6 @@ from app.scenes.setups import setup_block, write_value
 from app.server.web.guard import open_server
 from sim.parameters import in_words, parameters_of
 
-COVER_STYLE = "cover.css"
 MAX_FRAMES = 200  # of a replay
 MAX_RAW_BYTES = 80e6  # of the arrays of all frames, before they are packed: a file of about 20 MB
 TOLERANCE = 1e-3  # [s] of the time between two frames
@@ -103,8 +102,8 @@ def replay_html(kind: AnyKind, frames: Sequence[RecordedFrame], plotted: Plotted
             server.stop()
     about = about_html(kind, params, plotted, chosen[0].time, chosen[-1].time)
     ours = with_ours(
-        page, title=f"Springtide: {kind.title}", words=f"Opening {kind.title} …", styles=(COVER_STYLE,),
-        before=BEFORE_REPLAY, entry=REPLAY, last=f"{whole}{about}{setup_block(kind, params)}",
+        page, title=f"Springtide: {kind.title}", words=f"Opening {kind.title} …", before=BEFORE_REPLAY,
+        entry=REPLAY, last=f"{whole}{about}{setup_block(kind, params)}",
     )  # fmt: skip
     return ours or page  # viser's page as it is, if it is not as expected
 

@@ -57,7 +57,8 @@ def diagnosed(student: StudentFunction, trials: Sequence[Trial]) -> Wrong:
         forms = getattr(task.check, "within", lambda form: (form,))(why.form)
         form = next(filter(is_stated, forms), None)
         why = None if form is None else why._replace(form=form)
-    if why is not None and why.text.startswith(IGNORED) and unused_arguments(student, every) is None:
+    unused = why.mistake.removesuffix(" not used") if why is not None and why.text.startswith(IGNORED) else ""
+    if unused in task.arguments and not ignores(student, every, task.arguments.index(unused)):
         why = None
     if rounds_down(student) and (mended := repair(student, every, of="//")) is not None:
         return wrong_of(mended)

@@ -21,7 +21,7 @@ ALIVE_PATH = "/springtide-alive"  # requested by the page, to check that the ser
 SERVER_NAME = secrets.token_hex(8)
 PANES_PATH = "/beside"  # of the page that shows several labs side by side
 TITLE, STARTING = "Springtide", "Starting …"
-STYLES = ("cover.css", "page.css")
+STYLES = ("page.css",)
 
 
 def own_answer(request: Request, *, shared: bool) -> Response | None:

@@ -7,7 +7,7 @@ from importlib import resources
 
 import pytest
 
-from app.render.client_page import cover, style_sheet
+from app.render.client_page import COVER_STYLE, cover, style_sheet
 from app.server.viewer import Viewer
 from app.server.web.page import ALIVE_PATH, SERVER_NAME, STARTING, STYLES, TITLE, covered
 
@@ -34,7 +34,7 @@ def test_the_page_has_our_title_and_its_cover_before_anything_long(lab: Viewer, 
     assert page.index(cover(STARTING)) < page.index('<div id="root">') < page.rindex("<script")
 
 
-@pytest.mark.parametrize("name", STYLES)
+@pytest.mark.parametrize("name", [COVER_STYLE, *STYLES])
 def test_the_style_sheet_has_all_its_rules_and_no_comment(name: str) -> None:
     source = (resources.files("app.render") / "js" / name).read_text("utf-8")
     assert "/*" in source

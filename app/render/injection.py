@@ -14,7 +14,7 @@ through a hidden field, whenever they change.
 """
 
 import time
-import weakref
+from typing import cast
 
 import numpy as np
 import viser
@@ -27,8 +27,9 @@ LAST = 1e9  # place in the panel
 MAX_ANSWER_TIME = 20.0  # [s] after which a browser counts as one without shaders; its first frame compiles them
 CONTACT_SHADOW = "contact_shadow"
 
-_injectors: "weakref.WeakKeyDictionary[viser.ViserServer, ShaderInjector]" = weakref.WeakKeyDictionary()
-_disabled: "weakref.WeakSet[viser.ViserServer]" = weakref.WeakSet()
+# Attribute of a server with its injector, None if shaders are disabled. A dictionary outside would keep both for good,
+# as the injector's field refers to the server.
+SHADERS = "springtide_shaders"
 
 
 class ShaderInjector:
@@ -38,7 +39,7 @@ class ShaderInjector:
     """
 
     def __init__(self, server: viser.ViserServer) -> None:
-        self._server = weakref.ref(server)
+        self._server = server
         self._watched: dict[str, float] = {}  # node -> since when it is watched [s]
         self._sky = ""  # name of the sky that lights the scene; "" before the first picture
         self._seen: dict[int, float] = {}  # client id -> when it was first looked for [s]
@@ -100,8 +101,7 @@ class ShaderInjector:
         """True if every connected browser draws the node with its shader, False if one does not, None while unknown."""
         if self.is_recorded:
             return True
-        server = self._server()
-        clients = list(server.get_clients()) if server is not None else []
+        clients = list(self._server.get_clients())
         if not clients:
             return None
         now = time.monotonic()
@@ -116,7 +116,7 @@ class ShaderInjector:
 
 def disable_shaders(server: viser.ViserServer) -> None:
     """Draw everything on this server by viser's public API alone; to be called before anything is drawn."""
-    _disabled.add(server)
+    setattr(server, SHADERS, None)
 
 
 def record_shaders(server: viser.ViserServer) -> ShaderInjector:
@@ -132,19 +132,18 @@ def record_shaders(server: viser.ViserServer) -> ShaderInjector:
 
 def injector_of(server: viser.ViserServer) -> ShaderInjector | None:
     """The shader injector of a server, made on the first call; None if shaders are disabled."""
-    if server in _disabled:
-        return None
-    if server not in _injectors:
-        _injectors[server] = ShaderInjector(server)
-    return _injectors[server]
+    if not hasattr(server, SHADERS):
+        setattr(server, SHADERS, ShaderInjector(server))
+    return cast("ShaderInjector | None", getattr(server, SHADERS))
 
 
 def reset_page(server: viser.ViserServer) -> None:
     """Remove every node from the scene of a server and every element from its panel."""
     server.gui.reset()
     server.scene.reset()
-    if server in _injectors:
-        _injectors[server].restart(server)
+    injector = getattr(server, SHADERS, None)
+    if injector is not None:
+        injector.restart(server)
 
 
 def add_data_mesh(server: viser.ViserServer, name: str, values: np.ndarray) -> viser.MeshHandle:

@@ -252,7 +252,7 @@ class Comparisons:
     def __init__(self, first: PaneLab, make_pane: Callable[[int], PaneLab]) -> None:
         self.first, self.make_pane = first, make_pane
         self.lock = threading.Lock()
-        self.latest: ComparedLabs | None = None  # the last one made, even while it is being opened
+        self.opening: ComparedLabs | None = None  # a comparison whose labs are being opened
 
     def begin(self, setups: Sequence[Setup], with_first: bool) -> None:
         """Show set-ups beside the first lab; with_first: the first of them in the first lab.
@@ -267,8 +267,11 @@ class Comparisons:
                 self.first.comparison.end()
             if with_first and not self.first.open(setups[0].scene, setups[0].params):
                 return  # another scene was requested
-            self.latest = ComparedLabs(self.first, self.make_pane)
-            self.latest.begin(setups[1:] if with_first else setups, resume=not with_first)
+            self.opening = ComparedLabs(self.first, self.make_pane)
+            try:
+                self.opening.begin(setups[1:] if with_first else setups, resume=not with_first)
+            finally:
+                self.opening = None
 
     def want(self, setups: Sequence[Setup], with_first: bool) -> None:
         """Begin on a separate thread; returns at once."""
@@ -290,8 +293,8 @@ class Comparisons:
 
     def stop_opening(self) -> None:
         """Give up a comparison that waits to be compiled, as the first lab ends."""
-        if self.latest is not None:
-            for viewer in self.latest.viewers[1:]:
+        for labs in {self.opening, self.first.comparison} - {None}:
+            for viewer in labs.viewers[1:]:
                 viewer.stop_opening()
 
     def try_to(self, action: Callable[[], None]) -> None:

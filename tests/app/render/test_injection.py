@@ -86,14 +86,15 @@ def test_the_page_is_told_the_nodes_of_a_whole_picture(server: FakeServer, injec
 def test_the_page_is_told_the_sky_before_it_is_sent() -> None:
     """The page names a sky as it arrives."""
     server = FakeServer()
-    injection._injectors[server] = ShaderInjector(server)  # type: ignore[index, arg-type]
+    shaders = injection.injector_of(server)  # type: ignore[arg-type]
     told = lambda: re.findall(r'data-springtide-sky="([^"]*)"', server.field.content)  # noqa: E731
     assert told() == [""]
     sent: list[Any] = []
     server.scene = SimpleNamespace(configure_environment_map=lambda name, **how: sent.append((name, how, told())))
     light_scene(server, "dawn", environment_intensity=0.5)  # type: ignore[arg-type]
     assert sent == [("dawn", {"environment_intensity": 0.5}, ["dawn"])]
-    injection._injectors[server].restart(server)  # type: ignore[index, arg-type]
+    assert shaders is not None
+    shaders.restart(server)  # type: ignore[arg-type]
     assert told() == [""]
 
 

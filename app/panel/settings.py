@@ -206,9 +206,15 @@ class SceneSettings:
         self.tell()
 
     def tell(self) -> None:
-        """Call the watchers."""
+        """Call every watcher. The first error of one is raised after the last, so that it silences no other."""
+        errors: list[Exception] = []
         for watcher in self.watchers:
-            watcher()
+            try:
+                watcher()
+            except Exception as error:
+                errors.append(error)
+        if errors:
+            raise errors[0]
 
 
 def own_presets(kind: AnyKind) -> dict[str, Setup]:

@@ -26,7 +26,7 @@ class Timeline:
     def __init__(self, gui: viser.GuiApi, recorder: Recorder, settings: SceneSettings) -> None:
         self.recorder, self.settings = recorder, settings
         self.span_at = 0.0
-        self.told: tuple[object, ...] = ()  # known to the pages: the shown frame, whether it plays, and the run
+        self.told: tuple[object, ...] = ()  # known to the pages: time of the shown frame, whether it plays, and the run
         self.is_running = False  # the lab, at the last update
         self.ran_before = False  # the lab was running when a page chose a frame
         self.actions: dict[str, Callable[[float], None]] = {
@@ -79,7 +79,8 @@ class Timeline:
         self.recorder.show_present()
 
     def resume(self, moment: float) -> None:
-        """Continue from a time [s] of the recording, or from the last state before it."""
+        """Continue from a time [s] of the recording, or from the last state before it; without one, look back at it."""
+        self.hold()
         self.recorder.show_time(moment)
         kept = self.recorder.resumable()
         if kept is not None and kept.state is not None:
@@ -99,7 +100,7 @@ class Timeline:
         self.is_running = running
         now = time.monotonic()
         recorder, shown = self.recorder, self.recorder.shown
-        present = id(shown), recorder.playing, recorder.line.number
+        present = None if shown is None else shown.time, recorder.playing, recorder.line.number
         if present == self.told and now - self.span_at < SPAN_INTERVAL:
             return
         self.span_at, self.told = now, present

@@ -77,3 +77,13 @@ def test_a_setup_is_loaded_with_its_camera_or_asked_for_in_another_scene(told: T
     settings.undo()
     assert settings.params == RopeParams()
     assert told.posted[-1] == Take(RopeParams(), act=1, back=True)
+
+
+def test_an_error_of_one_watcher_silences_no_other(told: Told) -> None:
+    def broken() -> None:
+        raise KeyError("broken")
+
+    told.settings.watchers[:0] = [broken, broken]
+    with pytest.raises(KeyError, match="broken"):
+        told.settings.set("points", 20)
+    assert told.shown == [RopeParams(points=20)]

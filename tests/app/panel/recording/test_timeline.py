@@ -112,3 +112,18 @@ def test_pages_learn_of_a_moment_at_once_and_of_the_span_twice_a_second(lab: Lab
         lab.take(text)
         lab.line.update(running=False)
         assert words in lab.line.state.content.replace("&#34;", "&quot;"), text
+
+
+def test_a_time_without_a_state_is_looked_back_at_while_the_lab_pauses(lab: Lab) -> None:
+    lab.take("a1 continue 1.0")  # before the first state
+    assert (lab.time, lab.posted, lab.resumed) == (pytest.approx(1.0), [Pause()], [])
+
+
+def test_each_shown_frame_is_sent_to_the_pages(lab: Lab) -> None:
+    """Frames are told apart by their times: an object that is freed may give its id to the next one."""
+    states = set()
+    for number in range(50):
+        lab.take(f"b{number} show {0.2 * number}")
+        lab.line.update(running=False)
+        states.add(lab.line.state.content)
+    assert len(states) == 50

@@ -135,7 +135,7 @@ class ServedScene:
             fresh.clear()
             shown_at = clock.now()
             if not self.stop.is_set():
-                self.show_latest()
+                self.attempt("page", self.show_latest)
 
     def show_latest(self) -> None:
         """Hand the latest snapshot over; without a new one only the panel."""
@@ -161,16 +161,16 @@ class ServedScene:
             self.recorded = recorded
             self.attempt("compiling", self.show_compiling)
             self.attempt("panel", lambda: self.panel.update(snapshot, rows, busy))
-        recorder.note(snapshot, now)
+        self.attempt("recording", lambda: recorder.note(snapshot, now))
 
     def attempt(self, what: str, action: Callable[[], None]) -> None:
-        """Run a drawing action; an exception halts the run once, and this thread continues."""
+        """Run an action of the viewer's thread; an exception halts the run once, and the thread continues."""
         try:
             action()
         except Exception as error:
             if not self.loop.run.halted:
                 traceback.print_exc()
-                self.commands.put(Halt(f"The {what} could not be drawn, {type(error).__name__}: {error}"))
+                self.commands.put(Halt(f"The {what} could not be updated, {type(error).__name__}: {error}"))
 
     def show_compiling(self) -> None:
         """Show the running compilation: for a chosen preset, or ahead."""

@@ -21,10 +21,10 @@ def touching(x: float, y: float, z: float, t: float, p: Any, on_sphere: bool) ->
 
 
 def contact_force(
-    depth: float, nx: float, ny: float, nz: float, u: float, v: float, w: float, mass: float, p: Any,
-    on_sphere: bool, with_damping: bool,
+    depth: float, nx: float, ny: float, nz: float, u: float, v: float, w: float, p: Any, on_sphere: bool,
+    with_damping: bool,
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Force (fx, fy, fz) on a point of `mass` at `depth` that moves at (u, v, w) relative to the surface."""
+    """Force (fx, fy, fz) on a point at `depth` that moves at (u, v, w) relative to the surface, without friction."""
     k, b = p.contact_k, p.contact_b
     if not with_damping:
         return k * depth * nx, k * depth * ny, k * depth * nz
@@ -34,18 +34,28 @@ def contact_force(
         return k * depth * nx - b * u, k * depth * ny - b * v, k * depth * nz - b * w
     vn = u * nx + v * ny + w * nz
     normal = max(0.0, k * depth - b * vn)
-    fx, fy, fz = normal * nx, normal * ny, normal * nz
-    if p.friction > 0.0:
-        tx, ty, tz = u - vn * nx, v - vn * ny, w - vn * nz
-        speed = math.sqrt(tx * tx + ty * ty + tz * tz)
-        # F_t = -mu N t/|t|, at most what stops the point within the step
-        grip = mass * p.stop_rate
-        if p.friction * normal < grip * speed:
-            grip = p.friction * normal / speed
-        fx -= grip * tx
-        fy -= grip * ty
-        fz -= grip * tz
-    return fx, fy, fz
+    return normal * nx, normal * ny, normal * nz
+
+
+def friction_acceleration(
+    nx: float, ny: float, nz: float, u: float, v: float, w: float, ax: float, ay: float, az: float,
+    grip: float, stop_rate: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Acceleration by friction of a point with velocity (u, v, w) relative to a surface of normal n.
+
+    (ax, ay, az): acceleration by all other forces. grip: mu N / m, the most that friction can do. stop_rate: 1/h.
+    What friction has to do to stop the point within the step is s = v_t / h + a_t. Of a point that friction cannot
+    stop within two steps the direction is that of v_t, with a continuous change between.
+    """
+    if not grip > 0.0:
+        return 0.0, 0.0, 0.0
+    vn, an = u * nx + v * ny + w * nz, ax * nx + ay * ny + az * nz
+    tx, ty, tz = stop_rate * (u - vn * nx), stop_rate * (v - vn * ny), stop_rate * (w - vn * nz)
+    share = min(1.0, max(0.0, 2.0 - math.sqrt(tx * tx + ty * ty + tz * tz) / grip))
+    tx, ty, tz = tx + share * (ax - an * nx), ty + share * (ay - an * ny), tz + share * (az - an * nz)
+    size = math.sqrt(tx * tx + ty * ty + tz * tz)
+    factor = -grip / size if size > grip else -1.0
+    return factor * tx, factor * ty, factor * tz
 
 
 def secant(dx: float, dy: float, dz: float, stiffness: float, most: float) -> float:

@@ -59,19 +59,30 @@ def surfaces(net, x, t):
             yield net.sphere[3] + net.radius - distance, offset / distance, velocity, True
 
 
-def contact_force(net, mass, depth, normal, vr, on_sphere, h):
-    """Force [N] on a touching point that moves at vr relative to the surface."""
+def contact_force(net, depth, normal, vr, on_sphere):
+    """Force [N] on a touching point that moves at vr relative to the surface, without friction."""
     law = net.contact
     if law.law == "lab":
         return law.stiffness * depth * normal - law.damping * (depth if on_sphere else 1.0) * vr
     vn = vr @ normal
-    push = max(0.0, law.stiffness * depth - law.damping * vn)
-    slide = vr - vn * normal
-    speed = math.sqrt(slide @ slide)
-    drag = np.zeros(3)
-    if speed > 0.0:
-        drag = min(law.friction * push, mass * speed / h) * slide / speed
-    return push * normal - drag
+    return max(0.0, law.stiffness * depth - law.damping * vn) * normal
+
+
+def friction(net, mass, depth, normal, vr, others, h):
+    """Friction [N] on a touching point at vr relative to the surface, under the sum of all other forces [N].
+
+    It stops the point within a step of h [s] if mu N is enough. Of a point that it cannot stop within two steps, it acts
+    along the velocity, and continuously between.
+    """
+    if net.contact.law == "lab" or net.contact.friction == 0.0:
+        return np.zeros(3)
+    most = net.contact.friction * (contact_force(net, depth, normal, vr, False) @ normal)
+    across = np.eye(3) - np.outer(normal, normal)
+    slide, pull = mass / h * across @ vr, across @ others
+    if most == 0.0:
+        return np.zeros(3)
+    needed = slide + min(1.0, max(0.0, 2.0 - np.linalg.norm(slide) / most)) * pull
+    return -needed * min(1.0, most / max(np.linalg.norm(needed), 1e-300))
 
 
 def grab_force(grab, x, v):
@@ -99,7 +110,7 @@ def own_contacts(net, xs, vs):
 
 
 def acceleration(net, x, v, t=0.0, h=1.0):
-    """Accelerations (3, rows, cols) [m/s^2]; h [s] is the step that regularises friction."""
+    """Accelerations (3, rows, cols) [m/s^2]; h [s] is the step of friction."""
     rows, cols = net.shape
     force = np.zeros((rows, cols, 3))
     xs, vs = np.moveaxis(x, 0, -1), np.moveaxis(v, 0, -1)
@@ -114,9 +125,11 @@ def acceleration(net, x, v, t=0.0, h=1.0):
         for j in range(cols):
             force[i, j] += net.masses[i, j] * np.array(net.gravity) - net.drag * vs[i, j]
             for depth, normal, velocity, on_sphere in surfaces(net, xs[i, j], t):
-                force[i, j] += contact_force(net, net.masses[i, j], depth, normal, vs[i, j] - velocity, on_sphere, h)
+                force[i, j] += contact_force(net, depth, normal, vs[i, j] - velocity, on_sphere)
             if net.grab is not None and (i, j) == (net.grab.row, net.grab.col):
                 force[i, j] += grab_force(net.grab, xs[i, j], vs[i, j])
+            for depth, normal, velocity, _ in surfaces(net, xs[i, j], t):
+                force[i, j] += friction(net, net.masses[i, j], depth, normal, vs[i, j] - velocity, force[i, j], h)
             if (i, j) in net.pinned:
                 force[i, j] = 0.0
     return np.moveaxis(force / net.masses[..., None], -1, 0)

@@ -260,6 +260,8 @@ class Net(PointSystem[Run]):
     def kernel_view(self, h: float) -> Any:
         """The kernels' view of this net for steps of h [s]. Its arrays are shared, except those that kernels fill."""
         view = self._unit_step_view._replace(stop_rate=1.0 / h, stop=stop_request())
+        if view.held.size:
+            view = view._replace(held=np.zeros_like(view.held))
         if self.thickness == 0.0:
             return view
         return view._replace(pairs=np.full_like(view.pairs, -1), seen=np.zeros_like(view.seen))
@@ -295,6 +297,7 @@ class Net(PointSystem[Run]):
             friction=self.contact.friction,
             stop_rate=1.0,
             lab_contact=self.contact.law == "lab",
+            held=np.zeros(6 * rows * cols if self.contact.friction > 0.0 else 0),
             pins=[i * cols + j for (i, j), _ in self.pin_paths],
             paths=paths,
             grabbed=-1 if self.grab is None else grab.row * cols + grab.col,

@@ -19,7 +19,7 @@ from app.lab.course.tasks.springs.spring_force import spring_force
 from app.lab.course.tasks.springs.step_euler import step_euler
 from app.lab.course.tasks.springs.step_leapfrog import step_leapfrog
 from app.lab.course.tasks.springs.step_rk4 import step_rk4
-from sim.point_laws import contact_force, secant, touching
+from sim.point_laws import contact_force, friction_acceleration, secant, touching
 
 FILE = "rope.py"  # where the tasks have these functions
 REFERENCE: dict[str, Callable[..., Any]] = {
@@ -52,7 +52,6 @@ class Forces(NamedTuple):
     contact_k: float = 800.0  # [N/m]
     contact_b: float = 5.0  # [N s/m]
     friction: float = 0.0  # Coulomb coefficient
-    stop_rate: float = 0.0  # 1/h of the segment: set by `Functions`
     lab_contact: bool = False  # the lab's contact law instead of the clipped one
     grabbed: int = -1  # point that the mouse pulls, -1: none
     grab_x: float = 0.0  # [m] place of the mouse
@@ -259,13 +258,20 @@ class Functions:
     def add_surroundings(self, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
         """Add floor, sphere, the pull of the mouse and the forces that the net declares, on all points but the root."""
         f, first = self.forces, self.roots
+        pressed: list[
+            tuple[int, np.ndarray, np.ndarray, bool]
+        ] = []  # points in contact: force, velocity, on the sphere
         for i in np.flatnonzero(x[first:, 2] < f.floor) + first if x[:, 2].min() < f.floor else ():
-            a[i] += self.contact(x[i], v[i], i, on_sphere=False) / self.mass_of(i)
+            force = self.contact(x[i], v[i], on_sphere=False)
+            pressed.append((i, force, v[i], False))
+            a[i] += force / self.mass_of(i)
         if f.sr > 0.0:
             centre, velocity = self.sphere_now()
             near = np.flatnonzero(np.linalg.norm(x[first:] - centre, axis=1) < f.sr) + first
             for i in range(first, len(x)) if "sphere_force" in self.own else near:
-                a[i] += self.sphere(x[i], v[i] - velocity, i) / self.mass_of(i)
+                force = self.sphere(x[i], v[i] - velocity)
+                pressed.append((i, force, v[i] - velocity, True))
+                a[i] += force / self.mass_of(i)
         if f.grabbed >= first:
             gap = np.array((f.grab_x, f.grab_y, f.grab_z)) - x[f.grabbed]
             pull = secant(*gap.tolist(), stiffness=f.grab_k, most=f.grab_max) * gap - f.grab_b * v[f.grabbed]
@@ -276,6 +282,18 @@ class Functions:
             masses = tuple(float(self.mass_of(i)) for i in range(len(x)))
             p = record(f.declared, self.shape_of(x), masses, tuple(self.pins.tolist()), self.segment.h)
             a += accelerations(x, v, f.began + self.now, p)
+        if f.friction > 0.0 and not f.lab_contact:
+            for i, force, slip, on_sphere in pressed:
+                self.add_friction(x[i], slip, a[i], force / self.mass_of(i), on_sphere=on_sphere)
+
+    def add_friction(self, x: np.ndarray, v: np.ndarray, a: np.ndarray, push: np.ndarray, *, on_sphere: bool) -> None:
+        """Add the program's friction to the acceleration a (3,) of a point at x that moves at v against its surface.
+
+        push: acceleration (3,) by the surface, which a student's function may have given.
+        """
+        _, *normal = touching(*x.tolist(), t=self.now, p=self.forces, on_sphere=on_sphere)
+        grip = self.forces.friction * max(0.0, float(push @ normal))
+        a += friction_acceleration(*normal, *v.tolist(), *a.tolist(), grip=grip, stop_rate=1.0 / self.segment.h)
 
     def shape_of(self, x: np.ndarray) -> tuple[int, int]:
         """Rows and columns of the points."""
@@ -291,35 +309,19 @@ class Functions:
         velocity = np.array((f.svx, f.svy, f.svz))
         return np.array((f.sx, f.sy, f.sz)) + (self.now - f.epoch) * velocity, velocity
 
-    def sphere(self, x: np.ndarray, v: np.ndarray, i: int | np.intp) -> np.ndarray:
-        """The force [N], shape (3,), of the sphere on point i at x, at v against it.
-
-        The program's friction acts by the student's push.
-        """
+    def sphere(self, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """The force [N], shape (3,), of the sphere on a point at x, at v against it, without friction."""
         f = self.forces
         if "sphere_force" not in self.own:
-            return self.contact(x, v, i, on_sphere=True)
+            return self.contact(x, v, on_sphere=True)
         centre, _ = self.sphere_now()
         value = self.own["sphere_force"](x.copy(), v.copy(), centre, f.sr, f.contact_k, f.contact_b)
-        force = self.fit("sphere_force", value, (3,))
-        if f.lab_contact or not f.friction > 0.0:
-            return force
-        _, *normal = touching(*x.tolist(), t=self.now, p=f, on_sphere=True)
-        push = float(force @ normal)
-        if not push > 0.0:
-            return force
-        pressed = f._replace(contact_k=push, contact_b=0.0, stop_rate=1.0 / self.segment.h)
-        gripped = contact_force(
-            1.0, *normal, *v.tolist(), mass=self.mass_of(i), p=pressed, on_sphere=True, with_damping=True
-        )
-        return force + gripped - np.multiply(push, normal)
+        return self.fit("sphere_force", value, (3,))
 
-    def contact(self, x: np.ndarray, v: np.ndarray, i: int | np.intp, *, on_sphere: bool) -> np.ndarray:
-        """The program's force [N], shape (3,), of floor or sphere on point i at x, at v against it."""
-        p = self.forces._replace(stop_rate=1.0 / self.segment.h)
-        at = touching(*x.tolist(), t=self.now, p=p, on_sphere=on_sphere)
-        force = contact_force(*at, *v.tolist(), mass=self.mass_of(i), p=p, on_sphere=on_sphere, with_damping=True)
-        return np.array(force)
+    def contact(self, x: np.ndarray, v: np.ndarray, *, on_sphere: bool) -> np.ndarray:
+        """The program's force [N], shape (3,), of floor or sphere on a point at x, at v against it, without friction."""
+        at = touching(*x.tolist(), t=self.now, p=self.forces, on_sphere=on_sphere)
+        return np.array(contact_force(*at, *v.tolist(), p=self.forces, on_sphere=on_sphere, with_damping=True))
 
     def name_nan(self, x: np.ndarray, v: np.ndarray) -> None:
         """Raises Unfit for the function that returns NaN at this state."""
@@ -334,7 +336,7 @@ class Functions:
                 values = [self.link(x, v, i) for i in range(len(x) - 1)]
             else:
                 _, velocity = self.sphere_now()
-                values = [self.sphere(x[i], v[i] - velocity, i) for i in range(1, len(x))]
+                values = [self.sphere(x[i], v[i] - velocity) for i in range(1, len(x))]
             if any(np.isnan(value).any() for value in values):
                 raise not_a_number(name, self.own[name])
 

@@ -55,7 +55,13 @@ kinetic_energy = by_net(rope=net_kinetic_energy, grid=net_kinetic_energy, lines=
 
 
 power_of_forces = each("power", "x, v, t, p, with_damping", "two sums")
-net_power = kernel(lambda x, v, t, p, with_damping: power_of_forces(x, v, t, p, with_damping), inline=True)
+
+
+@kernel
+def net_power(x, v, t, p, with_damping):
+    if with_damping and p.held.shape[0] > 0:  # friction holds against the sum of the other forces
+        accelerate(x, v, t, p, True, make_scratch(p), np.empty(v.shape[0]))
+    return power_of_forces(x, v, t, p, with_damping)
 
 
 @kernel

@@ -1,9 +1,4 @@
-"""Penalty contact with floor and sphere, and Coulomb friction.
-
-Friction is regularised by the step: a point is never given more tangential force than would stop it within one step
-(stop_rate = 1/h), so its strongest damping has h gamma = 1, inside every integrator's limit. At rest on a slope a point
-creeps at most h g sin(alpha).
-"""
+"""Penalty contact with floor and sphere; `sim.springs.forces.friction` has its friction."""
 
 import math
 
@@ -13,8 +8,7 @@ from sim import point_laws
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
-from sim.springs.points.arrays import mass_at, push
-from sim.springs.points.each_link import TINY
+from sim.springs.points.arrays import push
 from sim.springs.points.order import in_turn
 
 touching = kernel(inline=True)(point_laws.touching)
@@ -69,17 +63,13 @@ def accelerate(x, v, t, p, with_damping, f, a):
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
             if depth > 0.0:
                 ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, mass_at(p, j), p, on_sphere, with_damping)
+                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, p, on_sphere, with_damping)
                 push(p, a, j, fx, fy, fz)
 
 
 @kernel(allocates=False)
 def damp_on(x, v, t, s, p, on_sphere, reverse):
-    """Contact damping and friction of every touching point, exact or capped at standstill.
-
-    Friction takes the normal force of the velocity before the normal damping, in reverse of the one after it: the two
-    together are then symmetric, and of second order.
-    """
+    """Contact damping of every touching point, exact, except that separating points get at most their push."""
     work = 0.0
     if not touches(x, t, p, on_sphere):
         return work
@@ -98,14 +88,9 @@ def damp_on(x, v, t, s, p, on_sphere, reverse):
             ru, rv, rw = ru * keep, rv * keep, rw * keep
         else:
             vn = ru * nx + rv * ny + rw * nz
-            tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
             # The whole normal force, k depth - b v_n, never pulls: separating, damping takes at most k depth.
-            after = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s)
-            normal = max(0.0, p.contact_k * depth - b * (after if reverse else vn))
-            speed = math.sqrt(tx * tx + ty * ty + tz * tz)
-            slow = p.friction * normal * w * s
-            keep = 1.0 - slow / speed if slow < speed else 0.0
-            ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
+            change = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s) - vn
+            ru, rv, rw = ru + change * nx, rv + change * ny, rw + change * nz
         if moves:
             work += ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw) / w
         v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
@@ -157,7 +142,7 @@ def power(x, v, t, p, with_damping):
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
             if depth > 0.0 and p.inverse_masses[j] > 0.0:
                 ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, mass_at(p, j), p, on_sphere, with_damping)
+                fx, fy, fz = contact_force(depth, nx, ny, nz, ru, rv, rw, p, on_sphere, with_damping)
                 push = p.contact_k * depth
                 dissipated -= (fx - push * nx) * ru + (fy - push * ny) * rv + (fz - push * nz) * rw
                 work += fx * su + fy * sv + fz * sw
@@ -168,7 +153,7 @@ def power(x, v, t, p, with_damping):
 def tangent(x, u, t, p, part, longest, out):
     """Every touching point: K = k [n n^T - depth/r (I - n n^T)] with r the distance to the sphere's centre."""
     n = p.rows * p.cols
-    if part == TRANSVERSE:
+    if part in (TRANSVERSE, FRICTION):
         return
     for surface in range(2):
         on_sphere = surface == 1
@@ -185,14 +170,12 @@ def tangent(x, u, t, p, part, longest, out):
                 if p.lab_contact and on_sphere:
                     along *= depth
                 across = along if p.lab_contact else 0.0
-            elif part == FRICTION:
-                along, across = 0.0, mass_at(p, j)
             add_product(out, u, j, n, along, across, nx, ny, nz)
 
 
 @kernel(allocates=False)
 def blocks(x, v, t, g, p, points):
-    """g^2 k n n^T of touching points, their damping, and friction as the secant of its force over the sliding speed."""
+    """g^2 k n n^T of touching points, and their damping."""
     n = p.rows * p.cols
     for surface in range(2):
         on_sphere = surface == 1
@@ -211,13 +194,9 @@ def blocks(x, v, t, g, p, points):
                 across = g * b * (depth if on_sphere else 1.0)
                 along += across
             else:
-                normal = p.contact_k * depth - b * vn
-                if normal <= 0.0:
+                if p.contact_k * depth <= b * vn:
                     continue
                 along += g * b
-                speed = math.sqrt((ru - vn * nx) ** 2 + (rv - vn * ny) ** 2 + (rw - vn * nz) ** 2)
-                if p.friction > 0.0:
-                    across = g * min(mass_at(p, j) * p.stop_rate, p.friction * normal / (speed + TINY))
             add_block(points, j, n, along, across, nx, ny, nz)
 
 

@@ -44,6 +44,7 @@ class RopeArrays(NamedTuple):
     friction: float
     stop_rate: float  # 1/h [1/s]: friction takes at most the force that stops a point within the step
     lab_contact: bool
+    held: NDArray[np.float64]  # (2, 3, rows cols) accelerations by friction of floor and sphere, flat; (0,) without it
     pins: NDArray[np.int64]  # (pins,) flat indices of the moving ones
     paths: NDArray[np.float64]  # (pins, 5, 3): four coefficients, and the start time in [4, 0]
     grabbed: int  # flat index, -1: none

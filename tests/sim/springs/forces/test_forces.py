@@ -156,7 +156,8 @@ def own_power(net, x, v, t, h):
         dissipated += net.drag * vs[i, j] @ vs[i, j]
         for depth, normal, velocity, on_sphere in naive.surfaces(net, xs[i, j], t):
             slip = vs[i, j] - velocity
-            force = naive.contact_force(net, net.masses[i, j], depth, normal, slip, on_sphere, h)
+            force = naive.contact_force(net, depth, normal, slip, on_sphere)
+            force = force + naive.friction(net, net.masses[i, j], depth, normal, slip, np.zeros(3), h)
             dissipated -= (force - net.contact.stiffness * depth * normal) @ slip
             work += force @ velocity
         if net.grab is not None and (i, j) == (net.grab.row, net.grab.col):

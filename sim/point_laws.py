@@ -37,25 +37,24 @@ def contact_force(
     return normal * nx, normal * ny, normal * nz
 
 
-def friction_acceleration(
+def stopping(
     nx: float, ny: float, nz: float, u: float, v: float, w: float, ax: float, ay: float, az: float,
     grip: float, stop_rate: float,
-) -> tuple[float, float, float]:  # fmt: skip
-    """Acceleration by friction of a point with velocity (u, v, w) relative to a surface of normal n.
+) -> tuple[float, float, float, float]:  # fmt: skip
+    """Deceleration s that stops a point along its surface within a step, and the fraction of it that friction gives.
 
-    (ax, ay, az): acceleration by all other forces. grip: mu N / m, the most that friction can do. stop_rate: 1/h.
-    What friction has to do to stop the point within the step is s = v_t / h + a_t. Of a point that friction cannot
-    stop within two steps the direction is that of v_t, with a continuous change between.
+    n: normal of the surface; (u, v, w): velocity relative to it; (ax, ay, az): acceleration by all other forces; grip:
+    mu N / m, the most that friction gives; stop_rate: 1/h. s = v_t / h + a_t. For a point that friction cannot stop
+    within two steps it is v_t / h, so that friction acts against the motion, with a continuous change between.
     """
     if not grip > 0.0:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0
     vn, an = u * nx + v * ny + w * nz, ax * nx + ay * ny + az * nz
-    tx, ty, tz = stop_rate * (u - vn * nx), stop_rate * (v - vn * ny), stop_rate * (w - vn * nz)
-    share = min(1.0, max(0.0, 2.0 - math.sqrt(tx * tx + ty * ty + tz * tz) / grip))
-    tx, ty, tz = tx + share * (ax - an * nx), ty + share * (ay - an * ny), tz + share * (az - an * nz)
-    size = math.sqrt(tx * tx + ty * ty + tz * tz)
-    factor = -grip / size if size > grip else -1.0
-    return factor * tx, factor * ty, factor * tz
+    sx, sy, sz = stop_rate * (u - vn * nx), stop_rate * (v - vn * ny), stop_rate * (w - vn * nz)
+    share = min(1.0, max(0.0, 2.0 - math.sqrt(sx * sx + sy * sy + sz * sz) / grip))
+    sx, sy, sz = sx + share * (ax - an * nx), sy + share * (ay - an * ny), sz + share * (az - an * nz)
+    size = math.sqrt(sx * sx + sy * sy + sz * sz)
+    return sx, sy, sz, grip / size if size > grip else 1.0
 
 
 def secant(dx: float, dy: float, dz: float, stiffness: float, most: float) -> float:

@@ -71,8 +71,8 @@ def contact_force(net, depth, normal, vr, on_sphere):
 def friction(net, mass, depth, normal, vr, others, h):
     """Friction [N] on a touching point at vr relative to the surface, under the sum of all other forces [N].
 
-    It stops the point within a step of h [s] if mu N is enough. Of a point that it cannot stop within two steps, it acts
-    along the velocity, and continuously between.
+    It stops the point within a step of h [s] if mu N is enough. It acts along the velocity of a point that it cannot
+    stop within two steps, with a continuous change between.
     """
     if net.contact.law == "lab" or net.contact.friction == 0.0:
         return np.zeros(3)

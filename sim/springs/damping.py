@@ -246,6 +246,8 @@ def damp_motion(x, v, s, decay, p, reverse):
 
 
 other_acts = each("acts", "p", "truth", having="accelerate", inline=True)
+hold_all = each("hold", "x, v, t, s, p, foreseen", "sum", allocates=False)
+foresee_all = each("foresee", "x, v, t, p", "none", allocates=False)
 damp_others = each("damp", "x, v, t, s, p, reverse", "sum", turns=True, allocates=False)
 
 

@@ -261,7 +261,8 @@ class Net(PointSystem[Run]):
         """The kernels' view of this net for steps of h [s]. Its arrays are shared, except those that kernels fill."""
         view = self._unit_step_view._replace(stop_rate=1.0 / h, stop=stop_request())
         if view.held.size:
-            view = view._replace(held=np.zeros_like(view.held))
+            held, load = np.zeros_like(view.held), np.zeros_like(view.load)
+            view = view._replace(held=held, load=load, load_is=np.zeros_like(view.load_is))
         if self.thickness == 0.0:
             return view
         return view._replace(pairs=np.full_like(view.pairs, -1), seen=np.zeros_like(view.seen))
@@ -298,6 +299,8 @@ class Net(PointSystem[Run]):
             stop_rate=1.0,
             lab_contact=self.contact.law == "lab",
             held=np.zeros(6 * rows * cols if self.contact.friction > 0.0 else 0),
+            load=np.zeros(6 * rows * cols if self.contact.friction > 0.0 else 0),
+            load_is=np.zeros(1, np.int64),
             pins=[i * cols + j for (i, j), _ in self.pin_paths],
             paths=paths,
             grabbed=-1 if self.grab is None else grab.row * cols + grab.col,

@@ -29,7 +29,7 @@ SAFETY = 0.5
 RTOL, ATOL = 1e-6, 1e-9  # of adaptive methods
 LEAST_RTOL, LEAST_ATOL = 1e-14, 1e-18  # below, round-off would demand shorter and shorter steps
 MOST_STEPS = 1e10  # of a run: hours of a rope
-FRICTION_STEP = 1e-3  # [s] that regularises friction where the step varies
+FRICTION_STEP = 1e-3  # [s] within which friction stops a point in adaptive methods
 
 
 class Simulated(NamedTuple):

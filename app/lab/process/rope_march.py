@@ -19,7 +19,7 @@ from app.lab.course.tasks.springs.spring_force import spring_force
 from app.lab.course.tasks.springs.step_euler import step_euler
 from app.lab.course.tasks.springs.step_leapfrog import step_leapfrog
 from app.lab.course.tasks.springs.step_rk4 import step_rk4
-from sim.point_laws import contact_force, friction_acceleration, secant, touching
+from sim.point_laws import contact_force, secant, stopping, touching
 
 FILE = "rope.py"  # where the tasks have these functions
 REFERENCE: dict[str, Callable[..., Any]] = {
@@ -258,9 +258,7 @@ class Functions:
     def add_surroundings(self, x: np.ndarray, v: np.ndarray, a: np.ndarray) -> None:
         """Add floor, sphere, the pull of the mouse and the forces that the net declares, on all points but the root."""
         f, first = self.forces, self.roots
-        pressed: list[
-            tuple[int, np.ndarray, np.ndarray, bool]
-        ] = []  # points in contact: force, velocity, on the sphere
+        pressed: list[tuple[int, np.ndarray, np.ndarray, bool]] = []  # points in contact
         for i in np.flatnonzero(x[first:, 2] < f.floor) + first if x[:, 2].min() < f.floor else ():
             force = self.contact(x[i], v[i], on_sphere=False)
             pressed.append((i, force, v[i], False))
@@ -287,13 +285,14 @@ class Functions:
                 self.add_friction(x[i], slip, a[i], force / self.mass_of(i), on_sphere=on_sphere)
 
     def add_friction(self, x: np.ndarray, v: np.ndarray, a: np.ndarray, push: np.ndarray, *, on_sphere: bool) -> None:
-        """Add the program's friction to the acceleration a (3,) of a point at x that moves at v against its surface.
+        """Add the program's friction to the acceleration a (3,) of a point at x, at v against its surface.
 
         push: acceleration (3,) by the surface, which a student's function may have given.
         """
         _, *normal = touching(*x.tolist(), t=self.now, p=self.forces, on_sphere=on_sphere)
         grip = self.forces.friction * max(0.0, float(push @ normal))
-        a += friction_acceleration(*normal, *v.tolist(), *a.tolist(), grip=grip, stop_rate=1.0 / self.segment.h)
+        *needed, part = stopping(*normal, *v.tolist(), *a.tolist(), grip=grip, stop_rate=1.0 / self.segment.h)
+        a -= np.multiply(part, needed)
 
     def shape_of(self, x: np.ndarray) -> tuple[int, int]:
         """Rows and columns of the points."""
@@ -319,7 +318,7 @@ class Functions:
         return self.fit("sphere_force", value, (3,))
 
     def contact(self, x: np.ndarray, v: np.ndarray, *, on_sphere: bool) -> np.ndarray:
-        """The program's force [N], shape (3,), of floor or sphere on a point at x, at v against it, without friction."""
+        """The program's force [N], shape (3,), of floor or sphere on a point at x, at v against it, but no friction."""
         at = touching(*x.tolist(), t=self.now, p=self.forces, on_sphere=on_sphere)
         return np.array(contact_force(*at, *v.tolist(), p=self.forces, on_sphere=on_sphere, with_damping=True))
 

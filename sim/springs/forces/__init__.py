@@ -8,8 +8,8 @@ To add a force, write a module in this folder with
 1. a NamedTuple class of the force's numbers, all floats, with defaults. `Net.forces` holds one, and kernels take it as
    their first argument: a net without the force has kernels without it.
 2. kernels for its facets, as `Force` lists them; none for a facet that it does not have. A force that depends on
-   velocities leaves them out if `with_damping` is False, and has `damp` and `power`: leapfrog and the energy account
-   know damping by these alone.
+   velocities leaves them out if `with_damping` is False, and has `damp` or `hold`, and `power`: leapfrog and the
+   energy account know damping by these alone.
 3. `FORCE = Force(...)`.
 
 The forces without numbers of their own read those of the net's record. In ropes, cloths and other nets, links, gravity

@@ -15,10 +15,19 @@ from sim.springs.forces.matrices import FRICTION, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
 from sim.springs.points.arrays import mass_at
 from sim.springs.points.each_link import TINY
-from sim.springs.points.order import in_turn
 
 touching = kernel(inline=True)(point_laws.touching)
-friction_acceleration = kernel(inline=True)(point_laws.friction_acceleration)
+stopping = kernel(inline=True)(point_laws.stopping)
+
+# The accelerations that friction holds against: those of the state at hand; the same, noted for later; those noted.
+# Implicit methods hold against those at the start of a step, so that friction depends on velocities alone in the step,
+# as its blocks say. Then Newton's method converges as without friction, and a point at rest stays where it is.
+CURRENT, NOTED, FIXED = 0, 1, 2
+
+
+@kernel(inline=True)
+def set_at(out, i, n, fx, fy, fz):
+    out[i], out[i + n], out[i + 2 * n] = fx, fy, fz
 
 
 @kernel(inline=True)
@@ -33,33 +42,63 @@ def accelerate(x, v, t, p, with_damping, f, a):
         return
     n = p.rows * p.cols
     for surface in range(2):
-        on_sphere = surface == 1
+        on_sphere, o = surface == 1, 3 * n * surface
         if not touches(x, t, p, on_sphere):
+            if p.load_is[0] == NOTED:
+                p.load[o : o + 3 * n] = 0.0
             continue
         su, sv, sw = surface_velocity(p, on_sphere)
-        o = 3 * n * surface
         for j in range(n):
             w = p.inverse_masses[j]
             depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
             if depth <= 0.0 or w == 0.0:
-                p.held[o + j] = p.held[o + n + j] = p.held[o + 2 * n + j] = 0.0
+                set_at(p.held, o + j, n, 0.0, 0.0, 0.0)
+                if p.load_is[0] == NOTED:
+                    set_at(p.load, o + j, n, 0.0, 0.0, 0.0)
                 continue
+            ax, ay, az = a[j], a[n + j], a[2 * n + j]
+            if p.load_is[0] == NOTED:
+                set_at(p.load, o + j, n, ax, ay, az)
+            elif p.load_is[0] == FIXED:
+                ax, ay, az = p.load[o + j], p.load[o + n + j], p.load[o + 2 * n + j]
             ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
             most = grip(depth, ru * nx + rv * ny + rw * nz, w, p)
-            fx, fy, fz = friction_acceleration(nx, ny, nz, ru, rv, rw, a[j], a[n + j], a[2 * n + j], most, p.stop_rate)
-            a[j] += fx
-            a[n + j] += fy
-            a[2 * n + j] += fz
-            p.held[o + j], p.held[o + n + j], p.held[o + 2 * n + j] = fx, fy, fz
+            sx, sy, sz, part = stopping(nx, ny, nz, ru, rv, rw, ax, ay, az, most, p.stop_rate)
+            a[j] -= part * sx
+            a[n + j] -= part * sy
+            a[2 * n + j] -= part * sz
+            set_at(p.held, o + j, n, -part * sx, -part * sy, -part * sz)
 
 
 @kernel(allocates=False)
-def damp_on(x, v, t, s, p, on_sphere, reverse):
-    """Friction for a time s of every touching point, by the normal force at its velocity. Returns the sphere's work."""
+def foresee(x, v, t, p):
+    """Set p.held to the friction of points that slide at v, before a kick that `hold` ends."""
+    n = p.rows * p.cols
+    for surface in range(2):
+        on_sphere, o = surface == 1, 3 * n * surface
+        if not touches(x, t, p, on_sphere):
+            continue
+        su, sv, sw = surface_velocity(p, on_sphere)
+        for j in range(n):
+            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+            ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
+            vn = ru * nx + rv * ny + rw * nz
+            tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
+            over = -grip(depth, vn, p.inverse_masses[j], p) / math.sqrt(tx * tx + ty * ty + tz * tz + TINY)
+            set_at(p.held, o + j, n, over * tx, over * ty, over * tz)
+
+
+@kernel(allocates=False)
+def hold_on(x, v, t, s, p, on_sphere, foreseen):
+    """Friction for a time s, last in a kick: what it can stop stands still. Returns the sphere's work [J].
+
+    foreseen: of other points, the friction that `foresee` has set, for a kick that mirrors one without.
+    """
     work = 0.0
     if not touches(x, t, p, on_sphere):
         return work
     n = p.rows * p.cols
+    o = 3 * n if on_sphere else 0
     su, sv, sw = surface_velocity(p, on_sphere)
     moves = su != 0.0 or sv != 0.0 or sw != 0.0
     for j in range(n):
@@ -71,25 +110,27 @@ def damp_on(x, v, t, s, p, on_sphere, reverse):
         vn = ru * nx + rv * ny + rw * nz
         tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
         slow, speed = grip(depth, vn, w, p) * s, math.sqrt(tx * tx + ty * ty + tz * tz)
-        lost = min(1.0, slow / speed) if speed > 0.0 else 0.0
-        v[j] -= lost * tx
-        v[n + j] -= lost * ty
-        v[2 * n + j] -= lost * tz
+        fx, fy, fz = s * p.held[o + j], s * p.held[o + n + j], s * p.held[o + 2 * n + j]
+        if speed <= slow:
+            fx, fy, fz = -tx, -ty, -tz
+        elif not foreseen or (fx == 0.0 and fy == 0.0 and fz == 0.0):
+            fx, fy, fz = -slow / speed * tx, -slow / speed * ty, -slow / speed * tz
+        v[j] += fx
+        v[n + j] += fy
+        v[2 * n + j] += fz
         if moves:
-            work -= lost * (tx * su + ty * sv + tz * sw) / w
+            work += (fx * su + fy * sv + fz * sw) / w
     return work
 
 
 @kernel(inline=True)
-def damp(x, v, t, s, p, reverse):
-    """The floor's, then the sphere's, or in reverse; each with its surface as a constant, which LLVM makes use of."""
+def hold(x, v, t, s, p, foreseen):
+    """The floor's and the sphere's, each with its surface as a constant, which LLVM makes use of."""
     work = 0.0
-    for turn in range(2):
-        if in_turn(turn, 2, reverse) == 1:
-            if p.has_sphere:
-                work += damp_on(x, v, t, s, p, True, reverse)
-        elif p.has_floor:
-            work += damp_on(x, v, t, s, p, False, reverse)
+    if p.has_floor:
+        work += hold_on(x, v, t, s, p, False, foreseen)
+    if p.has_sphere:
+        work += hold_on(x, v, t, s, p, True, foreseen)
     return work
 
 
@@ -132,10 +173,10 @@ def tangent(x, u, t, p, part, longest, out):
 
 @kernel(allocates=False)
 def blocks(x, v, t, g, p, points):
-    """The secant of the force over the sliding speed, of each touching point."""
+    """The secant of the force over the sliding speed, of each touching point, as against noted accelerations."""
     n = p.rows * p.cols
     for surface in range(2):
-        on_sphere = surface == 1
+        on_sphere, o = surface == 1, 3 * n * surface
         if not touches(x, t, p, on_sphere):
             continue
         su, sv, sw = surface_velocity(p, on_sphere)
@@ -144,14 +185,14 @@ def blocks(x, v, t, g, p, points):
             if depth <= 0.0:
                 continue
             ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-            vn = ru * nx + rv * ny + rw * nz
-            speed = math.sqrt((ru - vn * nx) ** 2 + (rv - vn * ny) ** 2 + (rw - vn * nz) ** 2)
-            across = g * min(mass_at(p, j) * p.stop_rate, grip(depth, vn, 1.0, p) / (speed + TINY))
-            add_block(points, j, n, 0.0, across, nx, ny, nz)
+            most = grip(depth, ru * nx + rv * ny + rw * nz, p.inverse_masses[j], p)
+            ax, ay, az = p.load[o + j], p.load[o + n + j], p.load[o + 2 * n + j]
+            _, _, _, part = stopping(nx, ny, nz, ru, rv, rw, ax, ay, az, most, p.stop_rate)
+            add_block(points, j, n, 0.0, g * mass_at(p, j) * p.stop_rate * part, nx, ny, nz)
 
 
 FORCE = Force(
     "friction", rank=1000, nets=SPRING_NETS,
     acts="p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere)",
-    accelerate=accelerate, damp=damp, power=power, tangent=tangent, blocks=blocks,
+    accelerate=accelerate, foresee=foresee, hold=hold, power=power, tangent=tangent, blocks=blocks,
 )  # fmt: skip

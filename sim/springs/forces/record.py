@@ -44,6 +44,10 @@ class Force(NamedTuple):
     # (x, v, t, s, p, reverse): its damping alone for a time s [s] -> work [J] put in; of lines by the masses and
     # impulses of `sim.springs.points.line_points`
     damp: Any = None
+    # (x, v, t, s, p, foreseen): its impulses in a time s [s] that stop points against all other forces, which come
+    # before it -> work [J] put in. foreseen: after (x, v, t, p) of `foresee` before those forces.
+    hold: Any = None
+    foresee: Any = None
     energy: Any = None  # (x, t, p) -> stored energy [J]
     power: Any = None  # (x, v, t, p, with_damping) -> (dissipated, put in) [W]
     pins_power: Any = None  # (x, v, p) -> power that moving pins put in through its damping [W]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 from sim.springs.analysis.energy import account_size, close_damping, kinetic_energy, open_damping
-from sim.springs.damping import damp, damp_others, other_acts
+from sim.springs.damping import damp, damp_others, foresee_all, hold_all, other_acts
 from sim.springs.kicks.chain import kick_chain, make_chain_room
 from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.vector_ops import add_scaled
@@ -184,12 +184,37 @@ damp_outside = by_net(rope=damp_outside_net, grid=damp_outside_net, lines=damp_o
 
 
 @kernel(inline=True)
+def hold_net(x, v, t, s, room, p, foreseen, with_account, ledger):
+    if p.held.shape[0] > 0:
+        kinetic = open_damping(v, p, room.before) if with_account else 0.0
+        by_sphere = hold_all(x, v, t, s, p, foreseen)
+        if with_account:
+            close_damping(x, v, p, 0.0, kinetic, by_sphere, room.before, ledger)
+
+
+@kernel(inline=True)
+def foresee_net(x, v, t, p):
+    if p.held.shape[0] > 0:
+        foresee_all(x, v, t, p)
+
+
+hold_lines = kernel(lambda x, v, t, s, room, p, foreseen, with_account, ledger: None, inline=True)
+foresee_lines = kernel(lambda x, v, t, p: None, inline=True)
+# Friction is last in both kicks of a step: what can rest then does not move between them. Of what slides, the second
+# kick takes the friction of its beginning, as the mirror image of the first one: the step is of second order.
+hold = by_net(rope=hold_net, grid=hold_net, lines=hold_lines)
+foresee = by_net(rope=foresee_net, grid=foresee_net, lines=foresee_lines)
+
+
+@kernel(inline=True)
 def kick(x, v, a, t, s, decay, room, p, reverse, closing, with_account, ledger):
     """Change v by all forces in a time s [s], half a step, at positions x and the accelerations a of `accelerate`.
 
     closing: the kick that ends a step; the one that begins it goes through its parts in the reverse order. reverse: of
     the links and of other damping. decay: make_decay(p, s).
     """
+    if closing:
+        foresee(x, v, t, p)
     for turn in range(2):
         if (turn == 0) == closing:
             kick_inside(x, v, a, s, closing, room, p, with_account, ledger)
@@ -198,3 +223,4 @@ def kick(x, v, a, t, s, decay, room, p, reverse, closing, with_account, ledger):
             by_sphere = damp_outside(x, v, t, s, decay, room.kind, p, reverse)
             if with_account:
                 close_damping(x, v, p, s, kinetic, by_sphere, room.before, ledger)
+    hold(x, v, t, s, room, p, closing, with_account, ledger)

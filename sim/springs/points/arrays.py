@@ -42,9 +42,11 @@ class RopeArrays(NamedTuple):
     contact_k: float
     contact_b: float
     friction: float
-    stop_rate: float  # 1/h [1/s]: friction takes at most the force that stops a point within the step
+    stop_rate: float  # 1/h [1/s]: friction stops a point within the step, if it can
     lab_contact: bool
     held: NDArray[np.float64]  # (2, 3, rows cols) accelerations by friction of floor and sphere, flat; (0,) without it
+    load: NDArray[np.float64]  # (2, 3, rows cols) accelerations by all other forces, which friction holds against
+    load_is: NDArray[np.int64]  # (1,) CURRENT, NOTED or FIXED, see sim/springs/forces/friction.py
     pins: NDArray[np.int64]  # (pins,) flat indices of the moving ones
     paths: NDArray[np.float64]  # (pins, 5, 3): four coefficients, and the start time in [4, 0]
     grabbed: int  # flat index, -1: none

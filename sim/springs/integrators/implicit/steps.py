@@ -14,6 +14,7 @@ import numpy as np
 
 from sim.jit import is_stopped, kernel
 from sim.springs.analysis.energy import add_power
+from sim.springs.forces.friction import FIXED, NOTED
 from sim.springs.integrators.implicit.newton import (
     Exactness,
     forget_factors,
@@ -41,6 +42,19 @@ OF_CONSERVING_MIDPOINT = Exactness(share=0.0, usable=0.0, most=60, most_of_rope=
 is_conserving = by_net(rope=kernel(lambda p: True, inline=True), grid=kernel(lambda p: p.is_conserving, inline=True))
 GAMMA = 2.0 - math.sqrt(2.0)  # fraction of a step of TR-BDF2 in its first stage
 W = math.sqrt(2.0) / 4.0  # weights of the quadrature of TR-BDF2: W, W, GAMMA/2
+
+
+@kernel(allocates=False)
+def note_net_load(x, v, t, p, f, a):
+    if p.held.shape[0] > 0:
+        p.load_is[0] = NOTED
+        accelerate(x, v, t, p, True, f, a)
+        p.load_is[0] = FIXED
+
+
+no_load = kernel(lambda x, v, t, p, f, a: None, inline=True)
+# Note what friction holds against in the step that begins here.
+note_load = by_net(rope=note_net_load, grid=note_net_load, lines=no_load)
 
 
 @kernel
@@ -73,6 +87,7 @@ def advance_implicit(method, x, v, ledger, t, h, steps, p, with_account):
             now = t + (s + done / finest) * h
             after = t + (s + (done + size) / finest) * h
             set_pins(x, v, now, p)
+            note_load(x, v, now, p, f, a)
             # Each stage solves vs = v0 + g a(x0 + g vs, vs, then).
             g, then = part, after
             if method == MIDPOINT:

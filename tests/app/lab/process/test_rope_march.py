@@ -229,9 +229,10 @@ def test_friction_on_the_student_s_sphere_acts_against_the_motion_along_it() -> 
     forces = Forces(1.0, 800.0, 7.0, 1.0, 0.2, 10.0, sr=1.0, contact_k=50.0, friction=0.3)
     functions.segment = Segment(1, 1e-3, forces, np.zeros((0, 4, 3)))
     for v in (np.array([2.0, 0.0, 0.0]), np.array([0.0, -3.0, 1.0])):
-        force = functions.sphere(np.array([0.0, 0.0, 0.9]), v, 1)
-        assert force[2] == pytest.approx(5.0)
-        assert force[:2] == pytest.approx(-0.3 * 5.0 * v[:2] / np.linalg.norm(v[:2]))
+        a = np.zeros((2, 3))
+        functions.add_surroundings(np.array([[5.0, 0.0, 0.0], [0.0, 0.0, 0.9]]), np.array([0.0 * v, v]), a)
+        assert a[1, 2] == pytest.approx(5.0)
+        assert a[1, :2] == pytest.approx(-0.3 * 5.0 * v[:2] / np.linalg.norm(v[:2]))
 
 
 def test_the_mouse_pulls_a_point_as_a_damped_spring_that_gives_way() -> None:

@@ -31,44 +31,36 @@ SAME = 1e-12  # relative change of a limited force that is round-off
 
 
 class ChainRoom(NamedTuple):
-    """Scratch of the kick of a rope of n points, and the mean velocities that it leaves."""
+    """Scratch of kicks of one time s of a rope of n points, and the mean velocities that they leave."""
 
     mean: NDArray[np.float64]  # (3 n,) mean velocities of the kick [m/s]
     load: NDArray[np.float64]  # (3 n,) accelerations by forces that do not depend on the velocities [m/s2]
     acting: NDArray[np.float64]  # (n,) damping of the link after a point where it is linear [N s/m]
     limited: NDArray[np.float64]  # (3 n,) its constant force on this point where it is not [N]
     along: NDArray[np.float64]  # (3 n,) its direction
-    turning: NDArray[np.float64]  # (n,) rate at which it turns away from its own rate of lengthening [m/s2]
-    force: NDArray[np.complex128]  # (3 n,) complex forces of dampers
-    back: NDArray[np.complex128]  # (n,) factor of the next force in the way back
+    turning: NDArray[np.float64]  # (n,) rate at which its lengthening grows as it turns [m/s2]
+    eased: NDArray[np.complex128]  # (n,) 1 / (1 + alpha s c w) of each point
+    mobility: NDArray[np.complex128]  # (n,) alpha s w of each point, eased
+    force: NDArray[np.complex128]  # (3 n,) forces of the dampers on the points before them [N]
+    pivot: NDArray[np.complex128]  # (n,) inverse pivots of the elimination
+    back: NDArray[np.complex128]  # (n,) factors of the next force on the way back
 
 
 @kernel
-def make_chain_room(p, wanted, mean):
-    """Room for a rope; not wanted: of no points. mean: (3 n,) for the mean velocities."""
+def make_chain_room(p, s, wanted, mean):
+    """Room for kicks of a time s [s]; not wanted: of no points. mean: (3 n,) for the mean velocities."""
     n = p.cols if wanted else 0
-    return ChainRoom(
-        mean, np.zeros(3 * n), np.full(n, p.families[0, 2]), np.zeros(3 * n), np.zeros(3 * n),
-        np.zeros(n), np.zeros(3 * n, np.complex128), np.zeros(n, np.complex128),
+    eased, mobility = np.zeros(n, np.complex128), np.zeros(n, np.complex128)
+    for j in range(n):
+        eased[j] = 1.0 / (1.0 + ALPHA * (s * p.drag * p.inverse_masses[j]))
+        mobility[j] = ALPHA * (s * p.inverse_masses[j]) * eased[j]
+    room = ChainRoom(
+        mean, np.zeros(3 * n), np.full(n, p.families[0, 2]), np.zeros(3 * n), np.zeros(3 * n), np.zeros(n),
+        eased, mobility, np.zeros(3 * n, np.complex128), np.zeros(n, np.complex128), np.zeros(n, np.complex128),
     )  # fmt: skip
-
-
-@kernel(inline=True)
-def complex_drag(p, j, s):
-    """The factor 1 + alpha s c w of a point."""
-    return 1.0 + ALPHA * (s * p.drag * p.inverse_masses[j])
-
-
-@kernel(inline=True)
-def drive(v, room, j, i, s, p):
-    """U of a point: its complex velocity without dampers; i: index of its component."""
-    return (v[i] + ALPHA * (s * room.load[i])) / complex_drag(p, j, s)
-
-
-@kernel(inline=True)
-def mobility(p, j, s):
-    """alpha s W of a point."""
-    return ALPHA * (s * p.inverse_masses[j]) / complex_drag(p, j, s)
+    if wanted and not p.axial:
+        set_isotropic_pivots(room, p)
+    return room
 
 
 @kernel(inline=True)
@@ -77,32 +69,45 @@ def turning_time(s, closing):
     return ALPHA * s - (s if closing else 0.0)
 
 
+@kernel(inline=True)
+def drive(v, s, room, j, i):
+    """Complex velocity of point j without dampers; i: index of its component."""
+    return (v[i] + ALPHA * (s * room.load[i])) * room.eased[j]
+
+
+@kernel(noalias=True, allocates=False)
+def set_isotropic_pivots(room, p):
+    """The elimination's factors, which are the same for all three components."""
+    back = 0.0j
+    for j in range(p.cols - 1):
+        b, left, right = room.acting[j], room.mobility[j], room.mobility[j + 1]
+        room.pivot[j] = b / (1.0 + b * (left + right) - b * left * back)
+        back = right * room.pivot[j]
+        room.back[j] = back
+
+
 @kernel(noalias=True, allocates=False)
 def solve_isotropic(v, s, room, p):
-    """Set room.force, one component after another: its system is the same for all three."""
+    """Set room.force, one component after another."""
     n = p.cols
     for e in range(3):
-        o = e * n
-        before = last_back = 0.0j  # of the link before
-        left, left_drive = mobility(p, 0, s), drive(v, room, 0, o, s, p)
+        o, force = e * n, 0.0j
+        left = drive(v, s, room, 0, o)
         for j in range(n - 1):
-            b = room.acting[j]
-            right, right_drive = mobility(p, j + 1, s), drive(v, room, j + 1, o + j + 1, s, p)
-            pivot = 1.0 / (1.0 + b * (left + right) - b * left * last_back)
-            before = b * (right_drive - left_drive + left * before) * pivot
-            last_back = b * right * pivot
-            room.force[o + j], room.back[j] = before, last_back
-            left, left_drive = right, right_drive
-        after = 0.0j
+            right = drive(v, s, room, j + 1, o + j + 1)
+            force = room.pivot[j] * (right - left + room.mobility[j] * force)
+            room.force[o + j] = force
+            left = right
+        force = 0.0j
         for turn in range(n - 1):
             j = n - 2 - turn
-            after = room.force[o + j] + room.back[j] * after
-            room.force[o + j] = after
+            force = room.force[o + j] + room.back[j] * force
+            room.force[o + j] = force
 
 
 @kernel(noalias=True, allocates=False)
 def set_directions(x, v, room, p):
-    """Directions of links, and how much faster each lengthens a time later for having turned, over that time."""
+    """Directions of links, and how fast the lengthening of each grows as it turns."""
     n = p.cols
     for j in range(n - 1):
         rx, ry, rz, length = stretch(x, p, link_at(p, j))
@@ -116,27 +121,27 @@ def set_directions(x, v, room, p):
 def solve_axial(v, s, closing, room, p):
     """Set room.force (3 n,): the forces along the links, times their directions."""
     n, along, time = p.cols, room.along, turning_time(s, closing)
-    before, last_back, cosine = 0.0j, 0.0j, 0.0  # the cosine between a link and the one before it
+    force, back, cosine = 0.0j, 0.0j, 0.0  # the cosine between a link and the one before it
     for j in range(n - 1):
-        b, left, right, speed = room.acting[j], mobility(p, j, s), mobility(p, j + 1, s), room.turning[j] * time
+        b, left, right, speed = room.acting[j], room.mobility[j], room.mobility[j + 1], room.turning[j] * time
         for e in range(3):
             i = e * n + j
-            speed += along[i] * (drive(v, room, j + 1, i + 1, s, p) - drive(v, room, j, i, s, p))
-        pivot = 1.0 / (1.0 + b * (left + right) - b * left * cosine * last_back)
-        before = b * (speed + left * cosine * before) * pivot
+            speed += along[i] * (drive(v, s, room, j + 1, i + 1) - drive(v, s, room, j, i))
+        pivot = b / (1.0 + b * (left + right) - b * left * cosine * back)
+        force = pivot * (speed + left * cosine * force)
         cosine = 0.0
         if j + 2 < n:
             for e in range(3):
                 cosine += along[e * n + j] * along[e * n + j + 1]
-        last_back = b * right * cosine * pivot
-        room.force[j], room.back[j] = before, last_back
-    after = 0.0j
+        back = right * cosine * pivot
+        room.force[j], room.back[j] = force, back
+    force = 0.0j
     for turn in range(n - 1):
         j = n - 2 - turn
-        after = room.force[j] + room.back[j] * after
-        room.force[j] = after * room.along[j]
-        room.force[n + j] = after * room.along[n + j]
-        room.force[2 * n + j] = after * room.along[2 * n + j]
+        force = room.force[j] + room.back[j] * force
+        room.force[j] = force * along[j]
+        room.force[n + j] = force * along[n + j]
+        room.force[2 * n + j] = force * along[2 * n + j]
 
 
 @kernel(noalias=True, allocates=False)
@@ -151,7 +156,7 @@ def solve_forces(v, s, closing, room, p):
         o, before = e * n, 0.0j
         for j in range(n):
             force = room.force[o + j] if j + 1 < n else 0.0j
-            room.mean[o + j] = (drive(v, room, j, o + j, s, p) + mobility(p, j, s) * (force - before)).real
+            room.mean[o + j] = (drive(v, s, room, j, o + j) + room.mobility[j] * (force - before)).real
             before = force
 
 
@@ -207,11 +212,15 @@ def solve_limited(law, x, v, a, s, closing, room, p):
         room.acting[j] = p.families[0, 2]
         for e in range(3):
             room.limited[e * p.cols + j] = 0.0
+    if not p.axial:
+        set_isotropic_pivots(room, p)
     for _ in range(MOST_CHANGES):
         set_loads(a, room, p)
         solve_forces(v, s, closing, room, p)
         if not limit_anew(x, s, closing, room, p):
             break
+        if not p.axial:
+            set_isotropic_pivots(room, p)
 
 
 solve = by_damping(whole=solve_whole, limited=solve_limited)

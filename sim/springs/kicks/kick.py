@@ -87,17 +87,17 @@ def make_net_room(x, p, s, kind, with_account):
         share[j], mean_share[j] = shares(p.drag * p.inverse_masses[j], s)
     mean = np.empty(x.shape[0] if with_account or kind == WHOLE else 0)
     before = np.empty(account_size(x, with_account))
-    return KickRoom(kind, share, mean_share, mean, before, make_system(p, kind, mean))
+    return KickRoom(kind, share, mean_share, mean, before, make_system(p, s, kind, mean))
 
 
 @kernel
 def make_lines_room(x, p, s, kind, with_account):
     none = np.empty(0)
-    return KickRoom(kind, none, none, none, np.empty(account_size(x, with_account)), make_system(p, kind, none))
+    return KickRoom(kind, none, none, none, np.empty(account_size(x, with_account)), make_system(p, s, kind, none))
 
 
-make_chain = kernel(lambda p, kind, mean: make_chain_room(p, kind == WHOLE, mean))
-no_system = kernel(lambda p, kind, mean: 0, inline=True)
+make_chain = kernel(lambda p, s, kind, mean: make_chain_room(p, s, kind == WHOLE, mean))
+no_system = kernel(lambda p, s, kind, mean: 0, inline=True)
 make_system = by_net(rope=make_chain, grid=no_system, lines=no_system)
 make_room = by_net(rope=make_net_room, grid=make_net_room, lines=make_lines_room)
 

@@ -17,7 +17,6 @@ from sim.springs.forces.air import air_scratch_size, drift
 from sim.springs.integrators import Integrator
 from sim.springs.kicks.kick import SPLIT, kick, make_kick_room
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.points.vector_ops import add_scaled
 from sim.springs.rope_gap import cross_gap, gaps_merge, make_gap
 
 

@@ -4,10 +4,10 @@ Damping is taken apart from the other forces only where h times its rate is smal
 decay of each, which is quick. A splitting is right only there. With y the rate of a stiff part times h, its steady
 speed is wrong by y^2/12 (Speth, Green, MacNamara & Strang 2013). Elsewhere the forces act inside the damping: links and
 drag in one system (`sim.springs.kicks.formula`), drag alone exactly. Which of these it is depends on the net and the
-step alone, so that it is the same in every call.
+step alone, so that it is the same in every call. The normal damping of floor and sphere is inside the kick of each
+point; it is taken apart only where links and drag are one system.
 """
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 from sim.springs.analysis.energy import account_size, close_damping, kinetic_energy, open_damping
-from sim.springs.damping import damp, damp_others, other_acts
+from sim.springs.damping import damp_beside, damp_lines, damp_motion, damp_others, other_acts
+from sim.springs.forces.contact import kick_touching, touches
 from sim.springs.kicks.chain import factor_chain, make_chain, solve_chain
 from sim.springs.kicks.dampers import (
     MOST_CHANGES,
@@ -27,10 +28,12 @@ from sim.springs.kicks.dampers import (
     set_directions,
     set_whole,
 )
+from sim.springs.kicks.formula import shares
 from sim.springs.kicks.sheet import make_sheet, solve_sheet
 from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.each_link import each_link
-from sim.springs.points.vector_ops import add_scaled
+from sim.springs.points.order import in_turn
+from sim.springs.points.vector_ops import add_scaled, set_sum
 
 # Largest h times `strongest_rate` at which damping is taken apart: steady speeds of the fastest mode are then right to
 # WEAK^2 / 12, or 2 %, and those of slow modes, which carry the motion, far nearer.
@@ -82,19 +85,6 @@ class KickRoom(NamedTuple):
     force: NDArray[np.float64]  # (3 points,) mean forces of dampers [N]
     dampers: Dampers
     system: Any  # `Chain` of a rope, `Sheet` of another net
-
-
-@kernel(inline=True)
-def shares(rate, s):
-    """Times [s] for which w = a - rate v at the start of a time s [s] changes v, and the mean of v.
-
-    s phi1(-y) and s phi2(-y), y = rate s, of exponential integrators (Hochbruck & Ostermann 2010, eq. 2.10).
-    """
-    y = rate * s
-    if y < 1e-3:
-        return s * (1.0 - y / 2.0 + y * y / 6.0 - y**3 / 24.0), s * (0.5 - y / 6.0 + y * y / 24.0 - y**3 / 120.0)
-    first = -math.expm1(-y) / y
-    return s * first, s * (1.0 - first) / y
 
 
 make_system = by_net(rope=make_chain, grid=kernel(lambda p, s, wanted: make_sheet(p, wanted)))
@@ -201,43 +191,64 @@ def close_kick(v, a, s, p, kinetic, put_in, mean, ledger):
     ledger[1] += put_in
 
 
+@kernel(allocates=False)
+def kick_points(x, v, a, t, s, room, p, with_account):
+    """Kick each point by itself, with drag and the normal damping of contact inside.
+
+    Returns the work [J] that a moving sphere did by its damping.
+    """
+    n, drag = np.uint64(p.rows * p.cols), p.drag if room.kind == FREE else 0.0
+    if touches(x, t, p, False) or touches(x, t, p, True):
+        return kick_touching(x, v, a, drag, t, s, p, room.mean)
+    if drag == 0.0:
+        if with_account:
+            set_sum(room.mean, v, 0.5 * s, a)
+        add_scaled(v, s, a)
+        return 0.0
+    if with_account:
+        set_drag_mean(v, a, p, room.mean_share, room.mean)
+    for e in range(3):
+        kick_by_drag(v, a, p.inverse_masses, drag, room.share, np.uint64(e) * n, n)
+    return 0.0
+
+
 @kernel(inline=True)
-def kick_inside_net(x, v, a, s, closing, room, p, with_account, ledger):
+def kick_inside_net(x, v, a, t, s, closing, room, p, with_account, ledger):
     """The forces of position, and the damping that is inside of their kick."""
-    n = np.uint64(p.rows * p.cols)
-    kinetic = put_in = 0.0
-    if room.kind == SPLIT or (room.kind == FREE and p.drag == 0.0):
+    if room.kind != WHOLE and not (p.has_floor or p.has_sphere or (room.kind == FREE and p.drag > 0.0)):
         add_scaled(v, s, a)
         return
-    if with_account:
-        kinetic = kinetic_energy(v, p)
+    kinetic = kinetic_energy(v, p) if with_account else 0.0
     if room.kind == WHOLE:
         put_in = kick_whole(x, v, a, s, closing, room, p, ledger)
     else:
-        if with_account:
-            set_drag_mean(v, a, p, room.mean_share, room.mean)
-        for e in range(3):
-            kick_by_drag(v, a, p.inverse_masses, p.drag, room.share, np.uint64(e) * n, n)
+        put_in = kick_points(x, v, a, t, s, room, p, with_account)
     if with_account:
         close_kick(v, a, s, p, kinetic, put_in, room.mean, ledger)
 
 
 kick_inside_lines = kernel(
-    lambda x, v, a, s, closing, room, p, with_account, ledger: add_scaled(v, s, a), inline=True
+    lambda x, v, a, t, s, closing, room, p, with_account, ledger: add_scaled(v, s, a), inline=True
 )  # fmt: skip
 kick_inside = by_net(rope=kick_inside_net, grid=kick_inside_net, lines=kick_inside_lines)
 
 
 @kernel(inline=True)
 def damp_outside_net(x, v, t, s, decay, kind, p, reverse):
-    if kind == SPLIT:
-        return damp(x, v, t, s, decay, p, reverse)
-    return damp_others(x, v, t, s, p, reverse) if other_acts(p) else 0.0
+    work = 0.0
+    for turn in range(2):
+        if in_turn(turn, 2, reverse) == 0:
+            if kind == SPLIT:
+                damp_motion(x, v, s, decay, p, reverse)
+        elif other_acts(p):
+            if kind == WHOLE:
+                work += damp_others(x, v, t, s, p, reverse)
+            else:
+                work += damp_beside(x, v, t, s, p, reverse)
+    return work
 
 
-damp_outside_lines = kernel(
-    lambda x, v, t, s, decay, kind, p, reverse: damp(x, v, t, s, decay, p, reverse), inline=True
-)  # fmt: skip
+damp_outside_lines = kernel(lambda x, v, t, s, decay, kind, p, reverse: damp_lines(x, v, t, s, p, reverse), inline=True)
 # The damping that is taken apart; returns the work [J] that a moving sphere did.
 damp_outside = by_net(rope=damp_outside_net, grid=damp_outside_net, lines=damp_outside_lines)
 
@@ -251,7 +262,7 @@ def kick(x, v, a, t, s, decay, room, p, reverse, closing, with_account, ledger):
     """
     for turn in range(2):
         if (turn == 0) == closing:
-            kick_inside(x, v, a, s, closing, room, p, with_account, ledger)
+            kick_inside(x, v, a, t, s, closing, room, p, with_account, ledger)
         else:
             kinetic = open_damping(v, p, room.before) if with_account else 0.0
             by_sphere = damp_outside(x, v, t, s, decay, room.kind, p, reverse)

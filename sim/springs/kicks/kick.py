@@ -267,4 +267,4 @@ def kick(x, v, a, t, s, decay, room, p, reverse, closing, with_account, ledger):
             kinetic = open_damping(v, p, room.before) if with_account else 0.0
             by_sphere = damp_outside(x, v, t, s, decay, room.kind, p, reverse)
             if with_account:
-                close_damping(x, v, p, s, kinetic, by_sphere, room.before, ledger)
+                close_damping(x, v, p, s, kinetic, by_sphere, room.kind == SPLIT, room.before, ledger)

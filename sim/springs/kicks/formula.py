@@ -17,4 +17,29 @@ d^T (N - h^2 K/4) d + h^2 m^T K m of the difference d and the mean m of two posi
 h omega < 2 of the undamped net: that is enough at any damping.
 """
 
+import math
+
+from sim.jit import kernel
+
 ALPHA = 0.5 + 0.5j
+
+
+@kernel(inline=True)
+def shares(rate, s):
+    """Times [s] for which w = a - rate v at the start of a time s [s] changes v, and the mean of v: exact for one rate.
+
+    s phi1(-y) and s phi2(-y), y = rate s, of exponential integrators (Hochbruck & Ostermann 2010, eq. 2.10).
+    """
+    y = rate * s
+    if y < 1e-3:
+        return s * (1.0 - y / 2.0 + y * y / 6.0 - y**3 / 24.0), s * (0.5 - y / 6.0 + y * y / 24.0 - y**3 / 120.0)
+    first = -math.expm1(-y) / y
+    return s * first, s * (1.0 - first) / y
+
+
+@kernel(inline=True)
+def relaxed(v, pull, rate, s):
+    """Velocity after a time s [s] of v' = pull - rate v, and its mean."""
+    first, second = shares(rate, s)
+    w = pull - rate * v
+    return v + first * w, v + second * w

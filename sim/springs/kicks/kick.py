@@ -1,13 +1,13 @@
 """`kick`: half a step's change of velocities, by the forces of position and all damping.
 
 Damping is taken apart from the other forces only where h times its rate is small, see WEAK: link by link by the exact
-decay of each, which is quick. A splitting is right only there. Where a part is stiff its steady state is wrong by
-1 + y^2/12, with y its rate times h (Speth, Green, MacNamara & Strang 2013). Elsewhere the forces act inside the damping:
-links and drag in one system (`sim.springs.kicks.formula`), and drag alone exactly.
-Which of these it is depends on the net and the step alone, so that it is the same in every call.
+decay of each, which is quick. A splitting is right only there. With y the rate of a stiff part times h, its steady
+speed is wrong by y^2/12 (Speth, Green, MacNamara & Strang 2013). Elsewhere the forces act inside the damping: links and
+drag in one system (`sim.springs.kicks.formula`), drag alone exactly. Which of these it is depends on the net and the
+step alone, so that it is the same in every call. The normal damping of floor and sphere is inside the kick of each
+point; it is taken apart only where links and drag are one system.
 """
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,32 +15,50 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 from sim.springs.analysis.energy import account_size, close_damping, kinetic_energy, open_damping
-from sim.springs.damping import damp, damp_others, foresee_all, hold_all, other_acts
-from sim.springs.kicks.chain import kick_chain, make_chain_room
+from sim.springs.damping import damp_beside, damp_lines, damp_motion, damp_others, foresee_all, hold_all, other_acts
+from sim.springs.forces.contact import kick_touching, touches
+from sim.springs.kicks.chain import factor_chain, make_chain, solve_chain
+from sim.springs.kicks.dampers import (
+    MOST_CHANGES,
+    Dampers,
+    add_limited,
+    limit_anew,
+    make_dampers,
+    may_be_limited,
+    set_directions,
+    set_whole,
+)
+from sim.springs.kicks.formula import shares
+from sim.springs.kicks.sheet import make_sheet, solve_sheet
 from sim.springs.points.arrays import by_net, mass_at
-from sim.springs.points.vector_ops import add_scaled
+from sim.springs.points.each_link import each_link
+from sim.springs.points.order import in_turn
+from sim.springs.points.vector_ops import add_scaled, set_sum
 
-# Largest h times the damping rate of links and air at which they are taken apart: by `strongest_rate`, so that steady
-# speeds of the fastest mode are right to WEAK^2 / 12 or 2 %, and those of slow modes, which carry the motion, far nearer.
+# Largest h times `strongest_rate` at which damping is taken apart: steady speeds of the fastest mode are then right to
+# WEAK^2 / 12, or 2 %, and those of slow modes, which carry the motion, far nearer.
 WEAK = 0.5
 FREE = 0  # no link is damped: drag is exact
 SPLIT = 1  # damping is weak
 WHOLE = 2  # links and drag in one system
 
 
+@each_link()
+def add_rates(link, p, rates):
+    """Add the bounds of a link's damping rate to those of its ends [1/s], by Gershgorin's discs."""
+    rates[link.a] += 2.0 * link.damping * p.inverse_masses[link.a]
+    rates[link.b] += 2.0 * link.damping * p.inverse_masses[link.b]
+
+
 @kernel
-def rope_rate(p):
-    most = 0.0
-    for j in range(p.cols):
-        links = (j > 0) + (j + 1 < p.cols)
-        rate = max(2.0 * links * p.families[0, 2] + p.drag, 2.0 * p.drag) * p.inverse_masses[j]
-        most = max(most, rate)
-    return most
-
-
-# Bound of the damping rate of links and air [1/s], by Gershgorin's discs; at least twice that of drag alone.
-never_whole = kernel(lambda p: 0.0)
-strongest_rate = by_net(rope=rope_rate, grid=never_whole, lines=never_whole)
+def strongest_rate(p):
+    """Bound of the damping rate of links and air [1/s], and at least twice the rate of the air."""
+    rates, strongest = np.zeros(p.rows * p.cols), 0.0
+    add_rates(p, rates)
+    for j in range(rates.shape[0]):
+        drag = p.drag * p.inverse_masses[j]
+        strongest = max(strongest, drag + max(drag, rates[j]))
+    return strongest
 
 
 @kernel
@@ -59,46 +77,44 @@ class KickRoom(NamedTuple):
     """How the kicks of a call are taken, and their scratch."""
 
     kind: int
-    share: NDArray[np.float64]  # (points,) time for which the acceleration acts where drag is exact [s]
-    mean_share: NDArray[np.float64]  # (points,) the same of the mean velocity
+    share: NDArray[np.float64]  # (points,) time for which w = a - c v / m changes v, where drag is exact [s]
+    mean_share: NDArray[np.float64]  # (points,) the same of the mean of v
     mean: NDArray[np.float64]  # (3 points,) mean velocities of a kick, where needed [m/s]
     before: NDArray[np.float64]  # (3 points,) of an account: velocities before damping [m/s]
-    system: Any  # `ChainRoom` of a rope
+    load: NDArray[np.float64]  # (3 points,) accelerations by all but linear dampers [m/s2]
+    force: NDArray[np.float64]  # (3 points,) mean forces of dampers [N]
+    dampers: Dampers
+    system: Any  # `Chain` of a rope, `Sheet` of another net
 
 
-@kernel(inline=True)
-def shares(rate, s):
-    """Times [s] by which w = a - rate v changes v in a time s [s], and by which the mean of v differs from v.
-
-    s phi1(-y) and s phi2(-y), y = rate s, of exponential integrators (Hochbruck & Ostermann 2010, eq. 2.10).
-    """
-    y = rate * s
-    if y < 1e-3:
-        return s * (1.0 - y / 2.0 + y * y / 6.0 - y**3 / 24.0), s * (0.5 - y / 6.0 + y * y / 24.0 - y**3 / 120.0)
-    first = -math.expm1(-y) / y
-    return s * first, s * (1.0 - first) / y
+make_system = by_net(rope=make_chain, grid=kernel(lambda p, s, wanted: make_sheet(p, wanted)))
+keep_factors = kernel(lambda system, dampers, p: None, inline=True)
+factor = by_net(rope=factor_chain, grid=keep_factors)
+solve = by_net(rope=solve_chain, grid=solve_sheet)
 
 
 @kernel
 def make_net_room(x, p, s, kind, with_account):
-    n = p.rows * p.cols if kind == FREE and p.drag > 0.0 else 0
-    share, mean_share = np.empty(n), np.empty(n)
-    for j in range(n):
+    whole, by_drag = kind == WHOLE, kind == FREE and p.drag > 0.0
+    share, mean_share = np.empty(p.rows * p.cols if by_drag else 0), np.empty(p.rows * p.cols if by_drag else 0)
+    for j in range(share.shape[0]):
         share[j], mean_share[j] = shares(p.drag * p.inverse_masses[j], s)
-    mean = np.empty(x.shape[0] if with_account or kind == WHOLE else 0)
+    mean = np.empty(x.shape[0] if with_account or whole else 0)
+    load = np.empty(x.shape[0] if whole else 0)
     before = np.empty(account_size(x, with_account))
-    return KickRoom(kind, share, mean_share, mean, before, make_system(p, kind, mean))
+    dampers, system = make_dampers(p, whole), make_system(p, s, whole)
+    if whole:
+        factor(system, dampers, p)
+    return KickRoom(kind, share, mean_share, mean, before, load, np.empty_like(load), dampers, system)
 
 
 @kernel
 def make_lines_room(x, p, s, kind, with_account):
     none = np.empty(0)
-    return KickRoom(kind, none, none, none, np.empty(account_size(x, with_account)), make_system(p, kind, none))
+    before = np.empty(account_size(x, with_account))
+    return KickRoom(kind, none, none, none, before, none, none, make_dampers(p, False), 0)
 
 
-make_chain = kernel(lambda p, kind, mean: make_chain_room(p, kind == WHOLE, mean))
-no_system = kernel(lambda p, kind, mean: 0, inline=True)
-make_system = by_net(rope=make_chain, grid=no_system, lines=no_system)
 make_room = by_net(rope=make_net_room, grid=make_net_room, lines=make_lines_room)
 
 
@@ -106,6 +122,41 @@ make_room = by_net(rope=make_net_room, grid=make_net_room, lines=make_lines_room
 def make_kick_room(x, p, h, with_account):
     """`KickRoom` of half-step kicks in steps of h [s]."""
     return make_room(x, p, 0.5 * h, kind_of(p, h), with_account)
+
+
+@kernel(noalias=True, allocates=False)
+def kick_whole(x, v, a, s, closing, room, p, ledger):
+    """Kick with links and drag in one system; room.mean is left with the mean velocities.
+
+    Returns the work [J] that moving pins did through the dampers. A solve that has not settled counts in ledger[2].
+    """
+    n, work, settled, limited = p.rows * p.cols, 0.0, True, may_be_limited(p.law)
+    if p.axial:
+        set_directions(x, v, p, room.dampers)
+    if limited:
+        set_whole(p, room.dampers)
+        factor(room.system, room.dampers, p)
+    for _ in range(MOST_CHANGES):
+        for j in range(3 * n):
+            room.force[j] = 0.0
+        if limited:
+            add_limited(p, room.dampers, room.force)
+        for e in range(3):
+            for j in range(n):
+                room.load[e * n + j] = a[e * n + j] + p.inverse_masses[j] * room.force[e * n + j]
+        settled = solve(v, room.load, s, closing, room.system, room.dampers, p, room.mean, room.force)
+        if not limited or limit_anew(x, room.mean, s, closing, p, room.dampers) == 0.0:
+            break
+        factor(room.system, room.dampers, p)
+    for e in range(3):
+        for j in range(n):
+            i, w = e * n + j, p.inverse_masses[j]
+            if w == 0.0:
+                work -= s * room.force[i] * v[i]
+            else:
+                v[i] += s * (a[i] + w * (room.force[i] - p.drag * room.mean[i]))
+    ledger[2] += 0.0 if settled else 1.0
+    return work
 
 
 @kernel(noalias=True, inline=True)
@@ -140,45 +191,64 @@ def close_kick(v, a, s, p, kinetic, put_in, mean, ledger):
     ledger[1] += put_in
 
 
-@kernel(inline=True)
-def kick_inside_net(x, v, a, s, closing, room, p, with_account, ledger):
-    """The forces of position, and the damping that is inside of their kick."""
-    n = np.uint64(p.rows * p.cols)
-    kinetic = 0.0
-    if room.kind == WHOLE:
+@kernel(allocates=False)
+def kick_points(x, v, a, t, s, room, p, with_account):
+    """Kick each point by itself, with drag and the normal damping of contact inside.
+
+    Returns the work [J] that a moving sphere did by its damping.
+    """
+    n, drag = np.uint64(p.rows * p.cols), p.drag if room.kind == FREE else 0.0
+    if touches(x, t, p, False) or touches(x, t, p, True):
+        return kick_touching(x, v, a, drag, t, s, p, room.mean)
+    if drag == 0.0:
         if with_account:
-            kinetic = kinetic_energy(v, p)
-        put_in = kick_whole(x, v, a, s, closing, room.system, p)
-        if with_account:
-            close_kick(v, a, s, p, kinetic, put_in, room.mean, ledger)
-    elif room.kind == FREE and p.drag > 0.0:
-        if with_account:
-            kinetic = kinetic_energy(v, p)
-            set_drag_mean(v, a, p, room.mean_share, room.mean)
-        for e in range(3):
-            kick_by_drag(v, a, p.inverse_masses, p.drag, room.share, np.uint64(e) * n, n)
-        if with_account:
-            close_kick(v, a, s, p, kinetic, 0.0, room.mean, ledger)
-    else:
+            set_sum(room.mean, v, 0.5 * s, a)
         add_scaled(v, s, a)
+        return 0.0
+    if with_account:
+        set_drag_mean(v, a, p, room.mean_share, room.mean)
+    for e in range(3):
+        kick_by_drag(v, a, p.inverse_masses, drag, room.share, np.uint64(e) * n, n)
+    return 0.0
 
 
-kick_inside_lines = kernel(lambda x, v, a, s, closing, room, p, with_account, ledger: add_scaled(v, s, a), inline=True)
+@kernel(inline=True)
+def kick_inside_net(x, v, a, t, s, closing, room, p, with_account, ledger):
+    """The forces of position, and the damping that is inside of their kick."""
+    if room.kind != WHOLE and not (p.has_floor or p.has_sphere or (room.kind == FREE and p.drag > 0.0)):
+        add_scaled(v, s, a)
+        return
+    kinetic = kinetic_energy(v, p) if with_account else 0.0
+    if room.kind == WHOLE:
+        put_in = kick_whole(x, v, a, s, closing, room, p, ledger)
+    else:
+        put_in = kick_points(x, v, a, t, s, room, p, with_account)
+    if with_account:
+        close_kick(v, a, s, p, kinetic, put_in, room.mean, ledger)
+
+
+kick_inside_lines = kernel(
+    lambda x, v, a, t, s, closing, room, p, with_account, ledger: add_scaled(v, s, a), inline=True
+)  # fmt: skip
 kick_inside = by_net(rope=kick_inside_net, grid=kick_inside_net, lines=kick_inside_lines)
-
-
-not_whole = kernel(lambda x, v, a, s, closing, room, p: 0.0, inline=True)
-kick_whole = by_net(rope=kick_chain, grid=not_whole)
 
 
 @kernel(inline=True)
 def damp_outside_net(x, v, t, s, decay, kind, p, reverse):
-    if kind == SPLIT:
-        return damp(x, v, t, s, decay, p, reverse)
-    return damp_others(x, v, t, s, p, reverse) if other_acts(p) else 0.0
+    work = 0.0
+    for turn in range(2):
+        if in_turn(turn, 2, reverse) == 0:
+            if kind == SPLIT:
+                damp_motion(x, v, s, decay, p, reverse)
+        elif other_acts(p):
+            if kind == WHOLE:
+                work += damp_others(x, v, t, s, p, reverse)
+            else:
+                work += damp_beside(x, v, t, s, p, reverse)
+    return work
 
 
-damp_outside_lines = kernel(lambda x, v, t, s, decay, kind, p, reverse: damp(x, v, t, s, decay, p, reverse))
+damp_outside_lines = kernel(lambda x, v, t, s, decay, kind, p, reverse: damp_lines(x, v, t, s, p, reverse), inline=True)
 # The damping that is taken apart; returns the work [J] that a moving sphere did.
 damp_outside = by_net(rope=damp_outside_net, grid=damp_outside_net, lines=damp_outside_lines)
 
@@ -189,7 +259,7 @@ def hold_net(x, v, t, s, room, p, foreseen, with_account, ledger):
         kinetic = open_damping(v, p, room.before) if with_account else 0.0
         by_sphere = hold_all(x, v, t, s, p, foreseen)
         if with_account:
-            close_damping(x, v, p, 0.0, kinetic, by_sphere, room.before, ledger)
+            close_damping(x, v, p, 0.0, kinetic, by_sphere, False, room.before, ledger)
 
 
 @kernel(inline=True)
@@ -217,10 +287,10 @@ def kick(x, v, a, t, s, decay, room, p, reverse, closing, with_account, ledger):
         foresee(x, v, t, p)
     for turn in range(2):
         if (turn == 0) == closing:
-            kick_inside(x, v, a, s, closing, room, p, with_account, ledger)
+            kick_inside(x, v, a, t, s, closing, room, p, with_account, ledger)
         else:
             kinetic = open_damping(v, p, room.before) if with_account else 0.0
             by_sphere = damp_outside(x, v, t, s, decay, room.kind, p, reverse)
             if with_account:
-                close_damping(x, v, p, s, kinetic, by_sphere, room.before, ledger)
+                close_damping(x, v, p, s, kinetic, by_sphere, room.kind == SPLIT, room.before, ledger)
     hold(x, v, t, s, room, p, closing, with_account, ledger)

@@ -196,7 +196,13 @@ class Net(PointSystem[Run]):
     @property
     def is_rope(self) -> bool:
         """One row of points, each linked to the next only."""
-        return self.x0.shape[1] == 1 and [f[:2] for f in self.families] == [(0, 1)]
+        return self.is_chain and self.x0.shape[1] == 1
+
+    @property
+    def is_chain(self) -> bool:
+        """One row or one column of points, each linked to the next only."""
+        offsets = [f[:2] for f in self.families]
+        return (offsets == [(0, 1)] and self.x0.shape[1] == 1) or (offsets == [(1, 0)] and self.x0.shape[2] == 1)
 
     @property
     def is_damped(self) -> bool:
@@ -214,7 +220,7 @@ class Net(PointSystem[Run]):
     @property
     def evaluation_cost(self) -> float:
         """Cost of one evaluation of the forces on all points, over that of one point of a rope."""
-        return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_rope else GRID_COST)
+        return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_chain else GRID_COST)
 
     def check_integrator(self, integrator: Integrator) -> None:
         """Raises ValueError for a damped net and a method that allows no damping."""
@@ -277,11 +283,11 @@ class Net(PointSystem[Run]):
         view = record_of(
             RopeArrays,
             self,
-            rows=rows,
-            cols=cols,
+            rows=1 if self.is_chain else rows,
+            cols=rows * cols if self.is_chain else cols,
             inverse_masses=self.inverse_masses(),
-            mass=float(self.mass),
-            offsets=np.reshape([f[:2] for f in self.families], (-1, 2)),
+            mass=self.masses.ravel(),
+            offsets=[(0, 1)] if self.is_chain else np.reshape([f[:2] for f in self.families], (-1, 2)),
             families=np.reshape([f[2:] for f in self.families], (-1, 3)),
             forces=declared(self.forces),
             damped=any(f.damping > 0 for f in self.families),
@@ -307,9 +313,8 @@ class Net(PointSystem[Run]):
             **components("sv", self.sphere_velocity),
             **components("grab_", grab.target),
         )
-        if self.is_rope and self.air is None and self.thickness == 0.0 and self.mass_ratios is None:
+        if self.is_chain and self.thickness == 0.0:
             return view
-        view = view._replace(mass=self.masses.ravel())
         air, (ends, links) = self.air or Air(), link_table(self.shape, self.families, float(self.side_ratio))
         wide = record_of(
             WideArrays,

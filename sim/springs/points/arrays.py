@@ -12,12 +12,12 @@ from sim.springs.points.line_arrays import LineArrays
 
 
 class RopeArrays(NamedTuple):
-    """Kernel data of a rope without air around it: flat numbers and arrays."""
+    """Kernel data of a chain: points in one row or one column, each linked to the next alone, that never touch."""
 
-    rows: int  # 1
+    rows: int  # 1, of a column too
     cols: int
     inverse_masses: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
-    mass: Any  # [kg] one number for all points; an array (rows cols,) in the records of other nets
+    mass: NDArray[np.float64]  # (rows cols,) [kg], of pinned points too
     drag: float  # [N s/m] per point
     gx: float  # gravity [m/s^2]
     gy: float
@@ -57,7 +57,7 @@ class RopeArrays(NamedTuple):
 
 
 class WideArrays(NamedTuple):
-    """Extra kernel data of nets that are not plain ropes."""
+    """Extra kernel data of nets that are no chains."""
 
     has_air: bool
     wind_x: float  # [m/s]
@@ -94,9 +94,8 @@ def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
     return chosen(variants if lines is None else {**variants, LineArrays: lines})
 
 
-grid_mass = kernel(lambda p, j: p.mass[j], inline=True)
-# Mass of point j [kg]. A rope of equal masses has one number for all, which its kernels need not load.
-mass_at = by_net(rope=kernel(lambda p, j: p.mass, inline=True), grid=grid_mass, lines=grid_mass)
+# Mass of point j [kg].
+mass_at = kernel(lambda p, j: p.mass[j], inline=True)
 
 every_point = kernel(lambda p: p.rows * p.cols, inline=True)
 # Number of points that forces act on. Of lines two more a body follow, for its displacement and its rotation.

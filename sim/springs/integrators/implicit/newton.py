@@ -145,7 +145,7 @@ def set_rope_blocks(p, points, links, numbers, diagonal, beside):
     for j in range(n):
         if p.inverse_masses[j] == 0.0:
             for e in range(9):
-                diagonal[j, e] = p.mass if e % 4 == 0 else 0.0
+                diagonal[j, e] = p.mass[j] if e % 4 == 0 else 0.0
 
 
 @kernel

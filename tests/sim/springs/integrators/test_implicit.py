@@ -67,7 +67,7 @@ def test_the_blocks_of_a_rope_s_points_are_all_of_their_matrix():
     newton.set_rope_blocks(p, points.ravel(), 0.0 * work.links, work.solver.numbers, diagonal, beside)
     xx, xy, xz, yy, yz, zz = points
     expected = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
-    expected[0] = p.mass * np.eye(3)  # the root
+    expected[0] = p.mass[0] * np.eye(3)  # the root
     assert diagonal.reshape(n, 3, 3) == pytest.approx(expected)
     assert np.all(beside[: n - 1] == 0.0)
 

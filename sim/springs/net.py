@@ -218,6 +218,12 @@ class Net(PointSystem[Run]):
         )
 
     @property
+    def is_isolated(self) -> bool:
+        """True if nothing but gravity acts on the net from outside."""
+        touched = self.floor is not None or self.sphere is not None or self.grab is not None
+        return not (self.pinned or touched or self.forces or self.drag > 0.0 or self.air is not None)
+
+    @property
     def evaluation_cost(self) -> float:
         """Cost of one evaluation of the forces on all points, over that of one point of a rope."""
         return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_chain else GRID_COST)
@@ -279,6 +285,7 @@ class Net(PointSystem[Run]):
             paths[p, :4] = path.coefficients
             paths[p, 4, 0] = path.start
         sphere = self.sphere or (0.0, 0.0, 0.0, 0.0)
+        damped = any(f.damping > 0.0 for f in self.families)
         grab = self.grab or Grab(0, 0, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
         view = record_of(
             RopeArrays,
@@ -290,7 +297,9 @@ class Net(PointSystem[Run]):
             offsets=[(0, 1)] if self.is_chain else np.reshape([f[:2] for f in self.families], (-1, 2)),
             families=np.reshape([f[2:] for f in self.families], (-1, 3)),
             forces=declared(self.forces),
-            damped=any(f.damping > 0 for f in self.families),
+            conserves_momentum=self.is_isolated,
+            conserves_spin=self.is_isolated and not (damped and self.damping_model == "isotropic"),
+            damped=damped,
             axial=self.damping_model == "axial",
             has_floor=self.floor is not None,
             floor=(self.floor or 0.0) + self.radius,
@@ -327,7 +336,6 @@ class Net(PointSystem[Run]):
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             side=self.side_ratio,
-            is_conserving=not self.is_damped or self.damping_model == "axial",
             ends=ends,
             links=links,
             **components("wind_", air.wind),

@@ -25,6 +25,8 @@ class RopeArrays(NamedTuple):
     offsets: NDArray[np.int64]  # (families, 2)
     families: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
     law: Any  # numbers of the links' law, see sim/springs/laws
+    conserves_momentum: bool  # nothing acts from outside but gravity
+    conserves_spin: bool  # and all forces point along links: the angular momentum stays as well
     forces: Any  # `Declared`: numbers of the forces that have any, see sim/springs/forces
     damped: bool  # any link damping
     axial: bool
@@ -74,7 +76,6 @@ class WideArrays(NamedTuple):
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # number of bands of rows; each thread computes the forces of one band
     side: float  # stiffness and damping of links along a side, over their family's
-    is_conserving: bool  # links and contacts keep the energy or the angular momentum exactly
     ends: NDArray[np.int64]  # (links, 3): both points of each, and its family
     links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m] of each
 

@@ -196,7 +196,13 @@ class Net(PointSystem[Run]):
     @property
     def is_rope(self) -> bool:
         """One row of points, each linked to the next only."""
-        return self.x0.shape[1] == 1 and [f[:2] for f in self.families] == [(0, 1)]
+        return self.is_chain and self.x0.shape[1] == 1
+
+    @property
+    def is_chain(self) -> bool:
+        """One row or one column of points, each linked to the next only."""
+        offsets = [f[:2] for f in self.families]
+        return (offsets == [(0, 1)] and self.x0.shape[1] == 1) or (offsets == [(1, 0)] and self.x0.shape[2] == 1)
 
     @property
     def is_damped(self) -> bool:
@@ -212,9 +218,15 @@ class Net(PointSystem[Run]):
         )
 
     @property
+    def is_isolated(self) -> bool:
+        """True if nothing but gravity acts on the net from outside."""
+        touched = self.floor is not None or self.sphere is not None or self.grab is not None
+        return not (self.pinned or touched or self.forces or self.drag > 0.0 or self.air is not None)
+
+    @property
     def evaluation_cost(self) -> float:
         """Cost of one evaluation of the forces on all points, over that of one point of a rope."""
-        return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_rope else GRID_COST)
+        return self.x0[0].size * (CONTACT_COST if self.thickness > 0.0 else 1.0 if self.is_chain else GRID_COST)
 
     def check_integrator(self, integrator: Integrator) -> None:
         """Raises ValueError for a damped net and a method that allows no damping."""
@@ -276,18 +288,21 @@ class Net(PointSystem[Run]):
             paths[p, :4] = path.coefficients
             paths[p, 4, 0] = path.start
         sphere = self.sphere or (0.0, 0.0, 0.0, 0.0)
+        damped = any(f.damping > 0.0 for f in self.families)
         grab = self.grab or Grab(0, 0, (0.0, 0.0, 0.0), 0.0, 0.0, 0.0)
         view = record_of(
             RopeArrays,
             self,
-            rows=rows,
-            cols=cols,
+            rows=1 if self.is_chain else rows,
+            cols=rows * cols if self.is_chain else cols,
             inverse_masses=self.inverse_masses(),
-            mass=float(self.mass),
-            offsets=np.reshape([f[:2] for f in self.families], (-1, 2)),
+            mass=self.masses.ravel(),
+            offsets=[(0, 1)] if self.is_chain else np.reshape([f[:2] for f in self.families], (-1, 2)),
             families=np.reshape([f[2:] for f in self.families], (-1, 3)),
             forces=declared(self.forces),
-            damped=any(f.damping > 0 for f in self.families),
+            conserves_momentum=self.is_isolated,
+            conserves_spin=self.is_isolated and not (damped and self.damping_model == "isotropic"),
+            damped=damped,
             axial=self.damping_model == "axial",
             has_floor=self.floor is not None,
             floor=(self.floor or 0.0) + self.radius,
@@ -313,9 +328,8 @@ class Net(PointSystem[Run]):
             **components("sv", self.sphere_velocity),
             **components("grab_", grab.target),
         )
-        if self.is_rope and self.air is None and self.thickness == 0.0 and self.mass_ratios is None:
+        if self.is_chain and self.thickness == 0.0:
             return view
-        view = view._replace(mass=self.masses.ravel())
         air, (ends, links) = self.air or Air(), link_table(self.shape, self.families, float(self.side_ratio))
         wide = record_of(
             WideArrays,
@@ -328,7 +342,6 @@ class Net(PointSystem[Run]):
             pairs=np.full((PAIRS * rows * cols + 1 if self.thickness > 0 else 1, 2), -1),
             seen=np.zeros(3 * rows * cols if self.thickness > 0 else 3),
             side=self.side_ratio,
-            is_conserving=not self.is_damped or self.damping_model == "axial",
             ends=ends,
             links=links,
             **components("wind_", air.wind),

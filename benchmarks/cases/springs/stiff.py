@@ -16,7 +16,7 @@ from app.scenes.cloth.scene import ClothScene
 from app.scenes.timer import effort_clock
 from sim.parameters import check_record
 from sim.springs import Net, State
-from sim.springs.integrators.implicit import newton
+from sim.springs.integrators.implicit import steps
 from sim.springs.integrators.implicit.blocks import set_near_blocks
 from sim.springs.integrators.implicit.dissection import DIRECTIONS, factorise, solve
 from sim.springs.state import advance
@@ -87,8 +87,8 @@ def sparse_matrix(p: Any, diagonal: np.ndarray, beside: np.ndarray) -> Any:
 def matrix_at(net: Net, state: State) -> tuple[Any, Any, Any]:
     """(kernels' view, solver, matrix) of a net at a state."""
     p = net.kernel_view(STEP)
-    work = newton.make_work(p, False)
-    newton.set_blocks(state.x.ravel(), STEP, state.t, p, state.x.ravel(), state.v.ravel(), work)
+    work = steps.make_work(p, False)
+    steps.set_blocks(state.x.ravel(), STEP, state.t, p, state.x.ravel(), state.v.ravel(), work)
     solver = work.solver
     set_near_blocks(p, work.links, work.points, solver.diagonal, solver.beside)
     return p, solver, sparse_matrix(p, solver.diagonal, solver.beside)

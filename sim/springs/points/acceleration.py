@@ -19,25 +19,26 @@ from sim.springs.points.line_points import accelerate_masses, set_inverse_masses
 
 
 @kernel(noalias=True, inline=True)
-def set_from_differences(f, v, w, a, o, of, n, load, c):
-    """a_j = w_j (f_j - f_{j-1} + load - c v_j); f is padded with a zero at both ends."""
+def set_from_differences(f, v, w, a, of, ov, ow, oa, n, g, c):
+    """a = w (f_j+1 - f_j - c v) + g of n points, 0 where pinned; each array from its own offset on."""
     for j in range(n):
-        a[o + j] = w[j] * (f[of + j + np.uint64(1)] - f[of + j] + load - c * v[o + j])
+        free = g if w[ow + j] > 0.0 else 0.0
+        a[oa + j] = w[ow + j] * (f[of + j + np.uint64(1)] - f[of + j] - c * v[ov + j]) + free
 
 
 @kernel(noalias=True, inline=True)
 def accelerate_rope(x, v, p, b, c, f, a):
     """One row of links: forces into f (3 (cols + 1),) with ends that stay zero, then differences into a."""
-    one = np.uint64(1)
+    zero, one = np.uint64(0), np.uint64(1)
     n = np.uint64(p.cols)
     m = n + one
     link_forces(
-        x, v, f, np.uint64(0), one, one, n - one, n, m,
+        x, v, f, zero, one, one, n - one, n, m,
         p.law, p.families[0, 1], b * p.families[0, 2], p.families[0, 0], p.axial and b > 0,
     )  # fmt: skip
-    set_from_differences(f, v, p.inverse_masses, a, np.uint64(0), np.uint64(0), n, p.mass * p.gx, c)
-    set_from_differences(f, v, p.inverse_masses, a, n, m, n, p.mass * p.gy, c)
-    set_from_differences(f, v, p.inverse_masses, a, n + n, m + m, n, p.mass * p.gz, c)
+    set_from_differences(f, v, p.inverse_masses, a, zero, zero, zero, zero, n, p.gx, c)
+    set_from_differences(f, v, p.inverse_masses, a, m, n, zero, n, n, p.gy, c)
+    set_from_differences(f, v, p.inverse_masses, a, m + m, n + n, zero, n + n, n, p.gz, c)
 
 
 @kernel(noalias=True, inline=True)

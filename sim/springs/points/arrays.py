@@ -12,12 +12,12 @@ from sim.springs.points.line_arrays import LineArrays
 
 
 class RopeArrays(NamedTuple):
-    """Kernel data of a rope without air around it: flat numbers and arrays."""
+    """Kernel data of a chain: points in one row or one column, each linked to the next alone, that never touch."""
 
-    rows: int  # 1
+    rows: int  # 1, of a column too
     cols: int
     inverse_masses: NDArray[np.float64]  # (rows cols,) inverse masses [1/kg], 0 where pinned
-    mass: Any  # [kg] one number for all points; an array (rows cols,) in the records of other nets
+    mass: NDArray[np.float64]  # (rows cols,) [kg], of pinned points too
     drag: float  # [N s/m] per point
     gx: float  # gravity [m/s^2]
     gy: float
@@ -25,6 +25,8 @@ class RopeArrays(NamedTuple):
     offsets: NDArray[np.int64]  # (families, 2)
     families: NDArray[np.float64]  # (families, 3): rest, stiffness, damping
     law: Any  # numbers of the links' law, see sim/springs/laws
+    conserves_momentum: bool  # nothing acts from outside but gravity
+    conserves_spin: bool  # and all forces point along links: the angular momentum stays as well
     forces: Any  # `Declared`: numbers of the forces that have any, see sim/springs/forces
     damped: bool  # any link damping
     axial: bool
@@ -60,7 +62,7 @@ class RopeArrays(NamedTuple):
 
 
 class WideArrays(NamedTuple):
-    """Extra kernel data of nets that are not plain ropes."""
+    """Extra kernel data of nets that are no chains."""
 
     has_air: bool
     wind_x: float  # [m/s]
@@ -77,7 +79,6 @@ class WideArrays(NamedTuple):
     seen: NDArray[np.float64]  # (3 rows cols,) positions when the pairs were found
     bands: int  # number of bands of rows; each thread computes the forces of one band
     side: float  # stiffness and damping of links along a side, over their family's
-    is_conserving: bool  # links and contacts keep the energy or the angular momentum exactly
     ends: NDArray[np.int64]  # (links, 3): both points of each, and its family
     links: NDArray[np.float64]  # (links, 3): rest length [m], stiffness [N/m], damping [N s/m] of each
 
@@ -97,9 +98,8 @@ def by_net(rope: Any, grid: Any, cloth: Any = None, lines: Any = None) -> Any:
     return chosen(variants if lines is None else {**variants, LineArrays: lines})
 
 
-grid_mass = kernel(lambda p, j: p.mass[j], inline=True)
-# Mass of point j [kg]. A rope of equal masses has one number for all, which its kernels need not load.
-mass_at = by_net(rope=kernel(lambda p, j: p.mass, inline=True), grid=grid_mass, lines=grid_mass)
+# Mass of point j [kg].
+mass_at = kernel(lambda p, j: p.mass[j], inline=True)
 
 every_point = kernel(lambda p: p.rows * p.cols, inline=True)
 # Number of points that forces act on. Of lines two more a body follow, for its displacement and its rotation.

@@ -17,7 +17,7 @@ from sim.springs.analysis.energy import add_power
 from sim.springs.damping import other_acts
 from sim.springs.forces import FORCES, each
 from sim.springs.forces.links import link_forces
-from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
+from sim.springs.points.acceleration import accelerate, make_scratch, set_from_differences, set_pins
 from sim.springs.points.arrays import by_net
 
 WHOLE = 160  # points: a rope no longer than this is one block
@@ -183,13 +183,6 @@ is_smooth = by_net(rope=is_smooth_net, grid=is_smooth_net, lines=kernel(lambda p
 
 
 @kernel(noalias=True, inline=True)
-def set_differences(f, v, w, k, of, ov, ow, ok, n, load, c):
-    """k = w (f_j+1 - f_j + load - c v) of n points, each array from its own offset on."""
-    for j in range(n):
-        k[ok + j] = w[ow + j] * (f[of + j + np.uint64(1)] - f[of + j] + load - c * v[ov + j])
-
-
-@kernel(noalias=True, inline=True)
 def accelerate_span(xs, vs, p, f, first, n, M, inner, count, k, o, N):
     """Accelerations of `count` points of a bare rope into k from o on, a component N further.
 
@@ -204,9 +197,9 @@ def accelerate_span(xs, vs, p, f, first, n, M, inner, count, k, o, N):
         b, of = np.uint64(e) * M + inner, np.uint64(e) * F
         # Beyond the rope's ends there is no link, and the point there is not read.
         f[of], f[of + n] = 0.0, 0.0
-        load = p.mass * (p.gx if e == 0 else p.gy if e == 1 else p.gz)
-        set_differences(
-            f, vs, p.inverse_masses, k, of + inner, b, first + inner, o + np.uint64(e) * N, count, load, p.drag
+        g = p.gx if e == 0 else p.gy if e == 1 else p.gz
+        set_from_differences(
+            f, vs, p.inverse_masses, k, of + inner, b, first + inner, o + np.uint64(e) * N, count, g, p.drag
         )  # fmt: skip
 
 

@@ -64,6 +64,31 @@ def set_point_blocks(x, v, t, g, p, points):
     add_blocks(x, v, t, g, p, points)
 
 
+@kernel(noalias=True, allocates=False)
+def set_rope_blocks(p, points, links, numbers, diagonal, beside):
+    """The matrix of a rope, row by row; rows of pinned points hold them still."""
+    n = p.cols
+    left = numbers - 3
+    for j in range(n):
+        xx, xy, xz = points[j], points[n + j], points[2 * n + j]
+        yy, yz, zz = points[3 * n + j], points[4 * n + j], points[5 * n + j]
+        diagonal[j, 0], diagonal[j, 1], diagonal[j, 2] = xx, xy, xz
+        diagonal[j, 3], diagonal[j, 4], diagonal[j, 5] = xy, yy, yz
+        diagonal[j, 6], diagonal[j, 7], diagonal[j, 8] = xz, yz, zz
+    for j in range(n - 1):
+        free = p.inverse_masses[j] > 0.0 and p.inverse_masses[j + 1] > 0.0
+        for e in range(3):
+            for m in range(3):
+                s = links[(left + e) * n + j] * links[(1 + m) * n + j] + (links[j] if e == m else 0.0)
+                diagonal[j, 3 * e + m] += s
+                diagonal[j + 1, 3 * e + m] += s
+                beside[j, 3 * e + m] = -s if free else 0.0
+    for j in range(n):
+        if p.inverse_masses[j] == 0.0:
+            for e in range(9):
+                diagonal[j, e] = p.mass[j] if e % 4 == 0 else 0.0
+
+
 @kernel(inline=True)
 def add_six(out, o, xx, xy, xz, yy, yz, zz):
     out[o] += xx

@@ -7,8 +7,7 @@ rectangle of few particles, is eliminated in a dense matrix of its own, its fron
 rectangle too and hands their rest, the Schur complement, to the front of the line that is eliminated next (the
 multifrontal method, Duff and Reid 1983).
 
-The factors are a preconditioner: single precision is enough, and twice as fast. A net of more than TILE rows or columns
-is cut into tiles, whose coupling is left out, as its factors would fill the memory.
+The factors are a preconditioner: single precision is enough, and twice as fast.
 """
 
 from typing import NamedTuple
@@ -18,7 +17,6 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 
-TILE = 256  # rows and columns
 LEAF = 16  # most particles of a rectangle that no line separates
 LANES = 16  # the length of a front's rows is a multiple of this, so that no loop over a row has a remainder
 PANEL = 12  # rows of the factor that are subtracted at once
@@ -53,9 +51,8 @@ def padded(count):
 
 @kernel(inline=True)
 def around(r0, r1, c0, c1, rows, cols):
-    """The rectangle with the particles around it, within its tile."""
-    r, c = r0 // TILE * TILE, c0 // TILE * TILE
-    return max(r, r0 - 1), min(rows, r + TILE, r1 + 1), max(c, c0 - 1), min(cols, c + TILE, c1 + 1)
+    """The rectangle with the particles around it."""
+    return max(0, r0 - 1), min(rows, r1 + 1), max(0, c0 - 1), min(cols, c1 + 1)
 
 
 @kernel(inline=True)
@@ -120,17 +117,12 @@ def dissect(rows, cols):
     first; a part's two children come after it.
     """
     n = rows * cols
-    tiles = ((rows + TILE - 1) // TILE) * ((cols + TILE - 1) // TILE)
     rectangles = np.zeros((2 * n + 1, 4), np.int64)
     nodes = np.zeros((2 * n + 1, 5), np.int64)
-    waiting = np.zeros((tiles + 64, 4), np.int64)
+    waiting = np.zeros((64, 4), np.int64)
     order, sequence = np.zeros(n, np.int64), np.zeros(n, np.int64)
-    top = 0
-    for r in range(0, rows, TILE):
-        for c in range(0, cols, TILE):
-            waiting[top] = np.array([r, min(rows, r + TILE), c, min(cols, c + TILE)])
-            top += 1
-    parts, left = 0, n
+    waiting[0] = np.array([0, rows, 0, cols])
+    top, parts, left = 1, 0, n
     while top > 0:
         top -= 1
         r0, r1, c0, c1 = waiting[top, 0], waiting[top, 1], waiting[top, 2], waiting[top, 3]
@@ -329,7 +321,7 @@ def add_matrix(diagonal, beside, inverse_masses, q, grid, w, row):
                 dr, dc = -dr, -dc
             s, t = r + dr, c + dc
             b = s * cols + t
-            if not (0 <= s < rows and 0 <= t < cols and s // TILE == r // TILE and t // TILE == c // TILE):
+            if not (0 <= s < rows and 0 <= t < cols):
                 continue
             if order[b] > order[a] and inverse_masses[b] > 0.0:
                 k = 6 * (4 * (a if e < 4 else b) + e % 4)

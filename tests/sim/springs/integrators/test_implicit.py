@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sim.springs import INTEGRATORS, Air, Contact, cloth, rope, simulate
-from sim.springs.integrators.implicit import blocks, newton
+from sim.springs.integrators.implicit import blocks, steps
 from sim.springs.integrators.implicit.block_tridiagonal import solve_block_tridiagonal
 from sim.springs.integrators.implicit.dissection import DIRECTIONS
 from sim.springs.points.acceleration import set_acceleration
@@ -61,13 +61,13 @@ def air_matrix(net, v, g):
 def test_the_blocks_of_a_rope_s_points_are_all_of_their_matrix():
     """Beside no links: nine entries of the six that are kept, and the mass where a point is pinned."""
     p, n = rope(4).kernel_view(1.0), 4
-    work = newton.make_work(p, False)
+    work = steps.make_work(p, False)
     points = np.random.default_rng(3).standard_normal((6, n))
     diagonal, beside = np.full((n, 9), np.nan), np.full((n, 9), np.nan)
-    newton.set_rope_blocks(p, points.ravel(), 0.0 * work.links, work.solver.numbers, diagonal, beside)
+    blocks.set_rope_blocks(p, points.ravel(), 0.0 * work.links, work.solver.numbers, diagonal, beside)
     xx, xy, xz, yy, yz, zz = points
     expected = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
-    expected[0] = p.mass * np.eye(3)  # the root
+    expected[0] = p.mass[0] * np.eye(3)  # the root
     assert diagonal.reshape(n, 3, 3) == pytest.approx(expected)
     assert np.all(beside[: n - 1] == 0.0)
 
@@ -75,8 +75,8 @@ def test_the_blocks_of_a_rope_s_points_are_all_of_their_matrix():
 def near_matrix(net, x, v, g):
     """The matrix that a net's factors are made of, dense, of the free points."""
     p, n = net.kernel_view(1.0), net.x0[0].size
-    work = newton.make_work(p, False)
-    newton.set_blocks(x, g, 0.0, p, x, v, work)
+    work = steps.make_work(p, False)
+    steps.set_blocks(x, g, 0.0, p, x, v, work)
     diagonal, beside = work.solver.diagonal, work.solver.beside
     blocks.set_near_blocks(p, work.links, work.points, diagonal, beside)
     dense, six = np.zeros((3, n, 3, n)), ([0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2])
@@ -141,9 +141,9 @@ def test_a_net_s_stage_solves_its_equation(model):
     net, g = folded_patch(model), 0.01
     p, x0 = net.kernel_view(1.0), net.x0.ravel()
     v0 = np.random.default_rng(1).normal(0.0, 0.1, x0.size) * np.tile(net.inverse_masses().ravel() > 0.0, 3)
-    x, v, work = x0.copy(), v0.copy(), newton.make_work(p, False)
-    exactness = newton.Exactness(share=0.0, usable=0.0, most=100)
-    taken, evals, settled, usable = newton.solve_stage(x0, v0, g, 0.0, exactness, p, x, v, work)
+    x, v, work = x0.copy(), v0.copy(), steps.make_work(p, False)
+    limits = steps.OF_EULER._replace(error=0.0, usable=0.0, most=100)
+    taken, evals, settled, usable = steps.solve_stage(x0, v0, 0.0 * v0, g, 0.0, limits, p, x, v, work)
     assert settled
     assert usable
     assert taken < min(evals, 60)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.forces import each
+from sim.springs.forces import FORCES, each
 from sim.springs.forces.under_water.water import inertia_power
 from sim.springs.points.acceleration import accelerate, make_scratch
 from sim.springs.points.arrays import by_net, mass_at, point_count
@@ -80,6 +80,8 @@ def add_power(x, v, t, p, with_damping, weight, ledger):
 
 # Power [W] that moving pins put in through all damping.
 pins_damping_power = each("pins_power", "x, v, p", "sum")
+# The same without that of the links' damping.
+pins_contact_power = each("pins_power", "x, v, p", "sum", [force for force in FORCES if force.name != "links"])
 
 
 @kernel(inline=True)
@@ -97,17 +99,18 @@ def open_damping(v, p, before):
 
 
 @kernel(allocates=False)
-def close_damping(x, v, p, s, kinetic, by_sphere, before, ledger):
+def close_damping(x, v, p, s, kinetic, by_sphere, with_links, before, ledger):
     """Book the work of damping in a time s [s] since `open_damping`, which returned `kinetic`.
 
     The particles' loss is exact, and so is the work of a moving sphere, `by_sphere` [J]. What moving pins put in
-    through damping forces is that at the mean velocity. All that is put in so is dissipated too.
+    through damping forces is that at the mean velocity. All that is put in so is dissipated too. with_links: True if
+    the links were damped, too.
     """
     put_in = by_sphere
     if p.pins.shape[0] > 0:
         for j in range(v.shape[0]):
             before[j] = 0.5 * (before[j] + v[j])
-        put_in += s * pins_damping_power(x, before, p)
+        put_in += s * (pins_damping_power(x, before, p) if with_links else pins_contact_power(x, before, p))
     ledger[0] += kinetic - kinetic_energy(v, p) + put_in
     ledger[1] += put_in
 

@@ -23,7 +23,7 @@ from sim.mooring import (
 from sim.mooring.motion import FARTHEST, PIECE, MooringFrames
 from sim.mooring.rest.statics import Rest
 from sim.springs.analysis.energy import energies, power
-from sim.springs.damping import damp_lines, make_decay
+from sim.springs.damping import damp_lines
 from sim.springs.integrators import integrator_named
 from sim.springs.points.acceleration import set_acceleration
 from sim.water import Water
@@ -70,7 +70,7 @@ def test_water_acts_on_a_float_by_its_volume_and_areas_alike_in_all_directions(w
     assert a[1::2] == pytest.approx((np.array((0.0, 0.0, lift)) - drag * 2.0 * v[1::2]) / heavy, rel=1e-6)
     assert energies(x, v, 0.0, p)[2] == pytest.approx(45.0 * lift, rel=1e-6)
     assert power(x, v, 0.0, p, True)[0] == pytest.approx(drag * 2.0**3, rel=1e-6)
-    damp_lines(x, v, 0.0, 0.3, make_decay(p, 0.3), p, False)
+    damp_lines(x, v, 0.0, 0.3, p, False)
     assert v[1::2] == pytest.approx(2.0 * np.array(way) / (1.0 + drag * 2.0 * 0.3 / heavy), rel=1e-6)
 
 
@@ -348,7 +348,7 @@ def test_damping_of_a_body_decays_exactly_and_limits_no_step(rate):
     x, v = np.zeros((3, 4)), np.zeros((3, 4))
     v[:, 2:] = rng.normal(size=(3, 2))
     expected = expm(-s * np.linalg.solve(mass, damping)) @ v[:, 2:].T.reshape(-1)
-    damp_lines(x.reshape(-1), v.reshape(-1), 0.0, s, make_decay(p, s), p, False)
+    damp_lines(x.reshape(-1), v.reshape(-1), 0.0, s, p, False)
     assert v[:, 2:].T.reshape(-1) == pytest.approx(expected, abs=1e-8)
     assert v[:, 1] == pytest.approx(v[:, 2], abs=1e-12)  # the fairlead moves with the body
 

@@ -96,7 +96,9 @@ def test_the_error_of_a_fall_is_that_of_its_terminal_speed(name, y):
     advance(net, state, record, h, 60)
     measured = (before - state.x[2, 0, 1]) / (9.81 / rate)
     declared = error_of(name, 1e-3 * rate, rate, h)
-    assert abs(measured - 1.0) == pytest.approx(declared, rel=0.05, abs=1e-5)
+    # The leapfrog's drag is exact where no link is damped, which its declared error does not know.
+    least = 0.0 if name == "leapfrog" else 0.95 * declared - 1e-5
+    assert least <= abs(measured - 1.0) <= 1.05 * declared + 1e-5
 
 
 def damped(name, damping):

@@ -12,7 +12,17 @@ from sim.springs.net import Air, Contact, Family, Grab, Net, PinPath
 from sim.springs.rope import lab_units, rope
 from sim.springs.run import Run
 from sim.springs.simulate import simulate
-from sim.springs.stability import Gauge, Mode, critical_step, critical_stiffness, gauge, step_limit, top_modes
+from sim.springs.stability import (
+    Gauge,
+    Mode,
+    accurate_methods,
+    accurate_step,
+    critical_step,
+    critical_stiffness,
+    gauge,
+    step_limit,
+    top_modes,
+)
 from sim.springs.state import State, advance
 from sim.springs.statics import Equilibrium, catenary, equilibrium, hanging_chain
 
@@ -20,7 +30,7 @@ INTEGRATORS: dict[str, Integrator] = discover()
 
 __all__ = [
     "INTEGRATORS", "LAWS", "Air", "Contact", "EnergyHistory", "Equilibrium", "Family", "Gauge", "Grab", "Integrator",
-    "Mode", "Net", "PinPath", "Run", "State", "Stiffening", "advance", "catenary", "cloth", "critical_step",
-    "critical_stiffness", "equilibrium", "gauge", "hanging_chain", "lab_units", "rope", "simulate", "step_limit",
-    "top_modes", "vertical_cloth",
+    "Mode", "Net", "PinPath", "Run", "State", "Stiffening", "accurate_methods", "accurate_step", "advance", "catenary",
+    "cloth", "critical_step", "critical_stiffness", "equilibrium", "gauge", "hanging_chain", "lab_units", "rope",
+    "simulate", "step_limit", "top_modes", "vertical_cloth",
 ]  # fmt: skip

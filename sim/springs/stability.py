@@ -10,6 +10,10 @@ no such combination, as in a cloth, two more modes lie between the stiffest and 
 right to 1 % (`springtide stability`). Explicit Euler's limit depends on the least damped of all modes and is only a
 guide.
 
+Stable is not yet right. Beside the stable step stands the one up to which a method is right to 1 %, of the damping and
+the oscillation of the motion that gravity causes (`sim.springs.analysis.accuracy`). That motion is one of a few smooth
+modes, as the net's weight in any direction moves them. What no spring holds swings as a pendulum of the net's size.
+
 Each link is given the stiffness it would have at the largest strain now present in the net: a slack line is about to be
 taut, and a wave carries the strain of one link of a stiffening rope to the others. Larger strains later need a shorter
 step.
@@ -17,7 +21,7 @@ step.
 
 import functools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,12 +29,26 @@ from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
 from sim.numerics.root import narrowed
+from sim.springs.analysis.accuracy import (
+    STILL,
+    Motion,
+    coarse_shapes,
+    longest_accurate,
+    motion_errors,
+    motion_of,
+)
 from sim.springs.analysis.strain import strain_range
 from sim.springs.forces import OWN
 from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
 from sim.springs.forces.self_contact import count_touching
-from sim.springs.integrators import Integrator, integrator_named
-from sim.springs.integrators.implicit.tangent import has_friction, quotients, set_lanczos, set_tangent
+from sim.springs.integrators import Integrator, discover, integrator_named
+from sim.springs.integrators.implicit.tangent import (
+    has_friction,
+    quotients,
+    set_lanczos,
+    set_products,
+    set_tangent,
+)
 from sim.springs.laws import largest_stiffness
 from sim.springs.net import Net
 from sim.springs.points.line_arrays import LineArrays
@@ -47,6 +65,8 @@ STIFF = 0.4  # omega^2 over the largest one, above which a less damped mode may 
 DAMPED = 0.2  # damping ratio of the stiffest mode of a net, below which it is the first
 SECANTS = 8  # most of them, to 1e-4 of a step
 NEARLY = 1e-7  # relative width at which the search for a stiffness ends
+TOLERANCE = 0.01  # relative error of oscillation and damping up to which a step is right
+SHAPES_ALONG, SHAPES_ACROSS = 12, 4  # coarse shapes of the motion along a rope, and along each side of a cloth
 FURTHER, LARGEST_RATIO = 4.0, 3.0  # ratio of the ends of its steps, and the logarithm of the largest first one
 
 
@@ -86,11 +106,19 @@ class Gauge(NamedTuple):
     critical_step: float  # [s]
     step: float  # h [s]
     highest: float  # highest frequency of the net [rad/s], at which another method may be nearest to its limit
+    accurate_step: float = math.nan  # [s] up to which the method is right; NaN: not assessed
+    error: float = math.nan  # relative error of oscillation and damping at `step`; NaN: not assessed
+    accurate_method: str = ""  # where the method is stable but not right: one that is both at `step`, or ""
 
     @property
     def share(self) -> float:
         """The step over the largest stable one: above 1 the motion grows."""
         return self.step / self.critical_step if self.critical_step > 0.0 else math.inf
+
+    @property
+    def is_wrong(self) -> bool:
+        """True if the step is stable, but its oscillation or damping is not right to `TOLERANCE`."""
+        return self.share <= 1.0 and self.error > TOLERANCE
 
 
 def most_touching(net: Net, x: NDArray[np.float64] | None) -> int:
@@ -373,6 +401,101 @@ def critical_step(system: PointSystem, integrator: str | Integrator, state: Stat
     return min((step_limit(mode, record) for mode in modes_at(system, state)), default=math.inf)
 
 
+def moved_modes(system: PointSystem, x: NDArray[np.float64] | None = None, t: float = 0.0) -> Motion:
+    """The modes about positions x [m] (None: of the start) at time t [s] that a pull on all masses alike moves.
+
+    x: (3, rows, cols) of a net, (3, n) of lines. No modes if nothing is free to move, or nothing holds it.
+    """
+    x = system.start() if x is None else x
+    if not np.isfinite(x).all():
+        return STILL
+    p = system.kernel_view(1.0)
+    flat = np.ascontiguousarray(x).reshape(-1)
+    if isinstance(p, LineArrays):
+        root_mass = np.sqrt(np.where(p.inverse_masses > 0.0, p.mass, 0.0))
+        root_mass[p.nodes :: 2] = np.sqrt(p.mass[p.nodes :: 2])  # displacements of bodies
+        loads = np.tile(root_mass, 3)[None]
+        if not loads.any():
+            return STILL
+        shapes = ritz(flat, loads[0] / np.linalg.norm(loads), t, p, STIFFEST)[2]
+    else:
+        root_mass = np.divide(
+            1.0, np.sqrt(p.inverse_masses), out=np.zeros_like(p.inverse_masses), where=p.inverse_masses > 0.0
+        )
+        loads = np.kron(np.eye(3), root_mass)
+        rows, cols = x.shape[1:]
+        most = SHAPES_ACROSS if min(rows, cols) > 1 else SHAPES_ALONG
+        smooth = np.kron(coarse_shapes(rows, most), coarse_shapes(cols, most)) * root_mass
+        smooth = smooth[smooth.any(axis=1)]
+        if not len(smooth):
+            return STILL
+        shapes = np.kron(np.eye(3), smooth)
+    stiff, damped = np.empty_like(shapes), np.empty_like(shapes)
+    set_products(flat, shapes, t, p, STIFFEST, stiff)
+    set_products(flat, shapes, t, p, DAMPING, damped)
+    span = float(np.ptp(x.reshape(3, -1), axis=1).max())
+    return motion_of(shapes, stiff, damped, loads, math.hypot(p.gx, p.gy, p.gz) / span if span > 0.0 else 0.0)
+
+
+def motion_at(system: PointSystem, state: State | None) -> Motion:
+    """The `moved_modes` of a state, None: of the start."""
+    return moved_modes(system) if state is None else moved_modes(system, state.x, state.t)
+
+
+def accurate_step(
+    system: PointSystem, integrator: str | Integrator, state: State | None = None, tolerance: float = TOLERANCE
+) -> float:
+    """The step [s] up to which a method is right: stable, with an error of at most `tolerance`.
+
+    The error is that of oscillation and damping in the motion that gravity causes about `state`, relative to both: the
+    mean over its modes, each weighted by how far the weight of the net displaces it (`sim.springs.analysis.accuracy`).
+    Ripples that gravity does not cause do not count, nor does a delay by up to a step.
+
+    system: a net or mooring lines. state: None: a net as it was built, or lines in their state of rest.
+    0 if no step is right, inf if every step is. Raises ValueError for an unknown integrator or a tolerance that is not
+    above 0, and ConvergenceError for lines without a state of rest.
+
+    >>> from sim.springs import accurate_step, rope
+    >>> round(accurate_step(rope(points=10, stiffness=800.0), "implicit_euler"), 4)  # [s]
+    0.0091
+    """
+    check_positive("tolerance", tolerance, "")
+    record = integrator_named(integrator)
+    longest = critical_step(system, record, state)
+    return longest_accurate(record.changes, motion_at(system, state), longest, tolerance)
+
+
+def accurate_methods(
+    system: PointSystem, h: float, state: State | None = None, tolerance: float = TOLERANCE
+) -> tuple[str, ...]:
+    """The methods that are right at steps of h [s], see `accurate_step`: the cheapest first.
+
+    system, state: as of `accurate_step`. Raises ValueError for a step or a tolerance that is not above 0.
+
+    >>> from sim.springs import accurate_methods, rope
+    >>> accurate_methods(rope(points=10, stiffness=800.0), 1 / 60)[0]
+    'leapfrog'
+    """
+    check_positive("h", h, "s")
+    check_positive("tolerance", tolerance, "")
+    return tuple(accurate_at(modes_at(system, state), motion_at(system, state), h, tolerance))
+
+
+def accurate_at(modes: list[Mode], motion: Motion, h: float, tolerance: float = TOLERANCE) -> Iterator[str]:
+    """The methods that are right at steps of h [s], explicit ones first, of fewer force evaluations first.
+
+    modes, motion: `top_modes` and `moved_modes` of the state.
+    """
+    is_damped = any(mode.rate > 0.0 for mode in modes)
+    for record in sorted(discover().values(), key=lambda r: (r.implicit, r.evals, -r.order)):
+        if (
+            not (record.undamped_only and is_damped)
+            and motion_errors(record.changes, motion, np.array([h]))[0] <= tolerance
+            and all(step_limit(mode, record) >= h for mode in modes)
+        ):
+            yield record.name
+
+
 def critical_stiffness(
     net: Net, integrator: str | Integrator, h: float, state: State | None = None, modes: list[Mode] | None = None
 ) -> float:
@@ -449,19 +572,34 @@ def last_stable(margin: Callable[[float], float], start: float) -> float:
     return math.exp(stable)
 
 
-def gauge(net: Net, integrator: str | Integrator, h: float, state: State, modes: list[Mode] | None = None) -> Gauge:
-    """h omega of the mode nearest to its limit at step h [s], and that limit.
+def gauge(
+    net: Net,
+    integrator: str | Integrator,
+    h: float,
+    state: State,
+    modes: list[Mode] | None = None,
+    motion: Motion | None = None,
+) -> Gauge:
+    """h omega of the mode nearest to its limit at step h [s], that limit, and whether the step is right.
 
-    modes: the `top_modes` of the state, if known.
+    modes, motion: the `top_modes` and `moved_modes` of the state, if known.
     """
-    return gauge_of(modes_at(net, state) if modes is None else modes, integrator_named(integrator), h)
+    modes = modes_at(net, state) if modes is None else modes
+    return gauge_of(modes, integrator_named(integrator), h, motion_at(net, state) if motion is None else motion)
 
 
-def gauge_of(modes: list[Mode], record: Integrator, h: float) -> Gauge:
-    """h omega of the mode nearest to its limit at step h [s], and that limit; 0 without modes."""
+def gauge_of(modes: list[Mode], record: Integrator, h: float, motion: Motion = STILL) -> Gauge:
+    """The `gauge` of known modes and motion; 0 without modes. Without a motion, accuracy is not assessed."""
     mode = min(modes, key=lambda mode: step_limit(mode, record), default=Mode(0.0, 0.0, 0.0))
     longest = step_limit(mode, record)
     # Of a mode that slides the damping depends on the step, so that the limit is that of the longest step.
     is_sliding = mode.omega > 0.0 and mode.sliding >= LEAST_SLIDING
     limit = longest * mode.omega if is_sliding else record.limit(mode.zeta)
-    return Gauge(mode.omega, mode.zeta, h * mode.omega, limit, longest, h, max((m.omega for m in modes), default=0.0))
+    found = Gauge(mode.omega, mode.zeta, h * mode.omega, limit, longest, h, max((m.omega for m in modes), default=0.0))
+    if not len(motion.omega):
+        return found
+    found = found._replace(
+        accurate_step=longest_accurate(record.changes, motion, longest, TOLERANCE),
+        error=float(motion_errors(record.changes, motion, np.array([h]))[0]),
+    )
+    return found._replace(accurate_method=next(accurate_at(modes, motion, h), "")) if found.is_wrong else found

@@ -197,11 +197,14 @@ def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -
                 f'<rect x="{LEFT + left:.1f}" y="{y:.1f}" width="{right - left:.1f}" height="{height + 0.3:.1f}" '
                 f'fill="{colours[int(row.outcomes[a])]}"/>'
             )
-    limits = [
-        f"{across.at(math.log10(row.critical)):.1f},{TOP + HIGH - i * height:.1f}"
-        for i, row in enumerate(rows)
-        if 0.0 < row.critical < math.inf
-    ]
+    limits, right = (
+        " ".join(
+            f"{across.at(math.log10(step)):.1f},{TOP + HIGH - i * height:.1f}"
+            for i, step in enumerate(steps)
+            if 0.0 < step < math.inf
+        )
+        for steps in ([row.critical for row in rows], [row.accurate for row in rows])
+    )
     x = across.at(math.log10(params.time_step))
     y = up.at(math.log10(max(getattr(params, axes.parameter), 1e-300)))
     done = len(rows) == ROWS
@@ -223,8 +226,10 @@ def picture(axes: Axes, rows: list[MapRow], params: SpringParams, slider: str) -
         f'class="springtide-map" role="img" aria-label="Stability over time step and stiffness" fill="currentColor" '
         f'onclick="{send}">{clip}<g clip-path="url(#springtide-map)" shape-rendering="crispEdges">{"".join(parts)}'
         f'</g><g clip-path="url(#springtide-map)">'
-        f'<polyline points="{" ".join(limits)}" fill="none" stroke="#000" stroke-width="1.6"/>'
+        f'<polyline points="{limits}" fill="none" stroke="#000" stroke-width="1.6"/>'
+        f'<polyline points="{right}" fill="none" stroke="#000" stroke-width="1.6" stroke-dasharray="5 3"/>'
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="#fff" stroke="#000" stroke-width="2"/></g>'
         f"{draw_axes(across, up, grid=False)}</svg>"
-        f"{words}<br>Line: critical step by theory. Dot: the settings now. Click to go there.{progress}{stale}</div>"
+        f"{words}<br>Line: critical step by theory; dashed: right to 1 % up to there. "
+        f"Dot: the settings now. Click to go there.{progress}{stale}</div>"
     )

@@ -10,7 +10,9 @@ from typing import LiteralString
 import markupsafe
 
 # Declared in `js/page.css`, once for the light and once for the dark panel.
-GOOD_COLOUR, WARNING_COLOUR, ERROR_COLOUR = (f"var(--springtide-{name})" for name in ("good", "warning", "error"))
+GOOD_COLOUR, WARNING_COLOUR, ERROR_COLOUR, WRONG_COLOUR = (
+    f"var(--springtide-{name})" for name in ("good", "warning", "error", "wrong")
+)
 
 # Text that is HTML: any other text is escaped where it becomes part of it. What is handed to viser is converted by
 # `str` first, as viser's encoder refuses subclasses of `str`.

@@ -8,6 +8,7 @@ from app.scenes.cloth.scene import PLOTS, SERIES, ClothScene, needs, warm_up
 from app.scenes.contract import SceneKind
 from app.scenes.springs.divergence import holding_step
 from app.scenes.springs.laws import pieces_on_use
+from app.scenes.springs.speed_advice import step_warnings
 
 SCENE = SceneKind(
     name="cloth",
@@ -27,5 +28,6 @@ SCENE = SceneKind(
     frame_units={"points": "m", "strain": "", "student": "m, a student's cloth beside the program's"},
     quantities=QUANTITIES,
     instant=ClothInstant,
+    warnings=lambda scene: step_warnings(scene.motion.method, scene.readings().stability),
     remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
 )

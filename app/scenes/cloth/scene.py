@@ -24,6 +24,7 @@ from app.scenes.springs.thread_tuner import ThreadTuner
 from app.scenes.springs.tracking import CriticallyDampedTracker
 from app.scenes.springs.warmup import GAUGE, integrator_pieces
 from sim.springs import Air, Net, cloth
+from sim.springs.analysis.accuracy import STILL
 from sim.springs.analysis.extremes import Extremes, extremes
 from sim.springs.analysis.strain import structural_strain
 from sim.springs.stability import Mode, gershgorin
@@ -234,11 +235,11 @@ class ClothScene(NetScene[ClothParams]):
 
     def assess_stability(self) -> None:
         """Compare the step with its limit: at the state as it is where that is quick, else by a bound for all."""
-        exact, modes = self.particles <= MAX_ASSESSED_PARTICLES, None
+        exact, modes, motion = self.particles <= MAX_ASSESSED_PARTICLES, None, None
         if not exact:
             omega, rate = gershgorin(self.net, self.state.x)
-            modes = [Mode(omega**2, omega**2, rate)]
-        stability, corrections = self.motion.gauge(modes), self.motion.corrections
+            modes, motion = [Mode(omega**2, omega**2, rate)], STILL  # accuracy is not assessed
+        stability, corrections = self.motion.gauge(modes, motion), self.motion.corrections
         readings = ClothReadings(stability, exact, corrections, self.fallback_note, self.tuner.threads)
         self.stability = self.recent.worst(self.state.t, readings)
         self.assessed_at = self.state.t

@@ -173,7 +173,10 @@ class ClothView(SpringView[ClothParams, ClothFrame, ClothReadings]):
     def marks(self, snapshot: ClothSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step that is stable with the others as they are."""
         readings = snapshot.readings
-        return {"integrator": readings.note, "time_step": step_mark(readings.stability.critical_step)}
+        return {
+            "integrator": readings.note,
+            "time_step": step_mark(readings.stability.critical_step, readings.stability.accurate_step),
+        }
 
 
 VIEW = ClothView

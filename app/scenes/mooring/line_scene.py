@@ -26,7 +26,7 @@ from sim.floating.motion.rotation import quaternion_by_vector
 from sim.mooring import System
 from sim.springs import INTEGRATORS
 from sim.springs.forces.under_water.bending import set_line_tensions
-from sim.springs.stability import Gauge, Mode, gauge_of, top_modes
+from sim.springs.stability import Gauge, Mode, gauge_of, moved_modes, top_modes
 from sim.springs.state import State, advance, velocities
 from sim.validation import DivergenceError
 from sim.waves import AMPLITUDE, Waves
@@ -179,11 +179,14 @@ class LineScene(abc.ABC):
     def assess_stability(self) -> None:
         """Find the modes about the state, and with them the longest stable step."""
         self.step_modes: list[Mode] = top_modes(self.system, self.state.x)
+        self.step_motion = moved_modes(self.system, self.state.x)
         self.take_step()
 
     def take_step(self) -> None:
         """Compare the time step with the last modes found."""
-        self.stability: Gauge = gauge_of(self.step_modes, INTEGRATORS[self.params.integrator], self.step)
+        self.stability: Gauge = gauge_of(
+            self.step_modes, INTEGRATORS[self.params.integrator], self.step, self.step_motion
+        )
 
     def driven(self) -> dict[str, NDArray[np.float64]]:
         """Fields of the kernels' view that change with time: waves and current, which begin smoothly."""

@@ -12,6 +12,8 @@ from app.scenes.mooring.line_scene import ANCHOR_SERIES, LINE_SERIES, LineScene
 from app.scenes.mooring.parameters import EXPLICIT, OF_NO_FILE, MooringParams
 from app.scenes.mooring.start_check import raised_points
 from app.scenes.springs.divergence import holding_step
+from app.scenes.springs.speed_advice import step_warnings
+from sim.springs import INTEGRATORS
 
 PLOTS = {
     "plot_tension": PlotAxes("Tension", "kN", (*LINE_SERIES, "largest so far"), least=1.0, dashed=True),
@@ -66,6 +68,7 @@ def advice(snapshot: Any) -> Advice | None:
 def warnings(scene: LineScene) -> list[str]:
     """Sentences on the state at the start."""
     said = [] if scene.start.fault is None else [scene.start.fault.said]
+    said += step_warnings(INTEGRATORS[scene.params.integrator], scene.stability)
     return [*said, *(raised_points(opened(scene.params)) if scene.params.moordyn_file else ())]
 
 

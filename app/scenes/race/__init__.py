@@ -9,6 +9,8 @@ from app.scenes.race.quantities import QUANTITIES
 from app.scenes.race.scene import RaceScene, needs, warm_up
 from app.scenes.springs.laws import pieces_on_use
 from app.scenes.springs.rope_parameters import build_rope, stiffness_parameter
+from app.scenes.springs.speed_advice import step_warnings
+from sim.springs import INTEGRATORS
 
 SCENE = SceneKind(
     name="race",
@@ -29,4 +31,9 @@ SCENE = SceneKind(
     frame_units={"ropes": "m, side by side", "references": "m"},
     stability_map=StabilityMap(stiffness_parameter, build_rope),
     quantities=QUANTITIES,
+    warnings=lambda scene: [
+        f"Rope {one.number}: {said}"
+        for one in scene.readings().results
+        for said in step_warnings(INTEGRATORS[one.integrator], one.gauge)
+    ],
 )

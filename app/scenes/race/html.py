@@ -1,14 +1,27 @@
 """The table of a race's results as HTML. Only the view imports it."""
 
 from app.formats.formatting import metres, metres_above, number, percent, seconds
-from app.render.markup.html import ERROR_COLOUR, Html, bold, coloured, escape, fill, info, join, table_head, table_row
+from app.render.markup.html import (
+    ERROR_COLOUR,
+    WRONG_COLOUR,
+    Html,
+    bold,
+    coloured,
+    escape,
+    fill,
+    info,
+    join,
+    table_head,
+    table_row,
+)
 from app.scenes.charts import PALETTE
 from app.scenes.race.entrants import RaceReadings, Result
 from app.scenes.race.names import rope_name
 
 MIN_SHOWN_ENERGY = 1e-10  # [J]: less is round-off and is shown as 0
 TABLE_INFO = (
-    "Step: the time step relative to the largest stable one; above 100 % a rope diverges. Forces: evaluations per "
+    "Step: the time step relative to the largest stable one; above 100 % a rope diverges; not right: frequency and "
+    "decay are off by more than 1 %. Forces: evaluations per "
     "second of the run; time: of one step on this computer."
 )
 HEAD = (("error", ""), ("energy error", "J"), ("step", "of limit"), ("forces", "a second"), ("time", "a step"))
@@ -32,6 +45,8 @@ def stability_text(result: Result) -> Html:
     if gauge.critical_step <= 0.0:
         return coloured("none", ERROR_COLOUR)
     text = percent(gauge.share)
+    if gauge.is_wrong:
+        return fill("{}, {}", text, coloured("not right", WRONG_COLOUR))
     return escape(text) if gauge.share <= 1.0 else coloured(text, ERROR_COLOUR)
 
 

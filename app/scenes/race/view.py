@@ -234,8 +234,8 @@ class RaceView(RopesView[RaceParams, RaceFrame, RaceReadings]):
 
     def marks(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """Parameter -> the line under its control: the largest step of rope 1 that is stable."""
-        step = snapshot.readings.results[0].gauge.critical_step
-        return {"time_step": step_mark(step)}
+        gauge = snapshot.readings.results[0].gauge
+        return {"time_step": step_mark(gauge.critical_step, gauge.accurate_step)}
 
     def notes(self, snapshot: RaceSnapshot) -> dict[str, str]:
         """The table of results."""

@@ -9,6 +9,7 @@ from app.scenes.rope.scene import PLOTS, SERIES, RopeScene, build, needs, warm_u
 from app.scenes.springs.divergence import holding_step
 from app.scenes.springs.laws import pieces_on_use
 from app.scenes.springs.rope_parameters import stiffness_parameter
+from app.scenes.springs.speed_advice import step_warnings
 
 SCENE = SceneKind(
     name="rope",
@@ -28,6 +29,7 @@ SCENE = SceneKind(
     plots=PLOTS,
     frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
     stability_map=StabilityMap(stiffness_parameter, build),
+    warnings=lambda scene: step_warnings(scene.motion.method, scene.readings().stability),
     remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
     quantities=QUANTITIES,
     instant=RopeInstant,

@@ -5,6 +5,7 @@ from typing import TypeAlias
 
 from app.messages import Vector
 from sim.springs import Net
+from sim.springs.analysis.accuracy import Motion
 from sim.springs.analysis.energy_account import EnergyAccount
 from sim.springs.analysis.extremes import Extremes
 from sim.springs.integrators import Integrator
@@ -85,9 +86,9 @@ class NetMotion:
             self.corrections = max(0.0, self.evals - self.method.evals_outside_corrections)
         self.counted = self.state.force_evals, self.state.steps
 
-    def gauge(self, modes: list[Mode] | None = None) -> Gauge:
-        """The step and its limit in the present state. modes: the fastest of the net, if they are known."""
-        return gauge(self.net, self.method, self.step, self.state, modes)
+    def gauge(self, modes: list[Mode] | None = None, motion: Motion | None = None) -> Gauge:
+        """The step and its limits in the present state. modes, motion: the fastest and the moved ones, if known."""
+        return gauge(self.net, self.method, self.step, self.state, modes, motion)
 
     def stored_energy(self) -> float:
         """Stored energy [J]."""

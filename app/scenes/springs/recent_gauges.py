@@ -1,7 +1,7 @@
 """The worst of the last gauges of a moving net: the share of its largest stable step rises and falls as it swings."""
 
 import collections
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from sim.springs.stability import Gauge
 
@@ -14,6 +14,10 @@ class Gauged(Protocol):
     @property
     def stability(self) -> Gauge:
         """Stability of the time step."""
+        ...
+
+    def _replace(self, **fields: Any) -> Any:
+        """The readings with other values, as a NamedTuple has it."""
         ...
 
 
@@ -31,8 +35,19 @@ class RecentGauges(Generic[R]):
         self.readings.clear()
 
     def worst(self, t: float, readings: R) -> R:
-        """The readings with the largest fraction of the stable step among these, of time t [s], and those before."""
+        """The readings with the largest fraction of the stable step among these, of time t [s], and those before.
+
+        Their accuracy is that of the readings with the largest error.
+        """
         self.readings.append((t, readings))
         while self.readings[0][0] < t - SPAN:
             self.readings.popleft()
-        return max(self.readings, key=lambda entry: entry[1].stability.share)[1]
+        worst = max(self.readings, key=lambda entry: entry[1].stability.share)[1]
+        least_right = max((entry[1].stability for entry in self.readings), key=lambda gauge: gauge.error)
+        return worst._replace(
+            stability=worst.stability._replace(
+                accurate_step=min(least_right.accurate_step, worst.stability.critical_step),
+                error=least_right.error,
+                accurate_method=least_right.accurate_method,
+            )
+        )

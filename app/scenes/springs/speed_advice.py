@@ -1,6 +1,6 @@
-"""Advice on faster steps of a spring network."""
+"""Advice on the step of a spring network: faster ones, and those that are right."""
 
-from app.formats.formatting import longest_step
+from app.formats.formatting import longest_step, percent, time_step
 from app.scenes.springs.methods import method_name
 from sim.springs import INTEGRATORS
 from sim.springs.integrators import Integrator
@@ -30,3 +30,26 @@ def either(proposals: list[str]) -> str:
     """One or more things in a sentence: a, b or c."""
     *others, last = proposals
     return f"{', '.join(others)} or {last}" if others else last
+
+
+def accurate_steps(gauge: Gauge) -> str:
+    """A sentence for a step that is stable but not right: the method that is, and the step up to which its own is."""
+    other = f"{method_name(gauge.accurate_method)} at this step" if gauge.accurate_method else ""
+    with_own = f"this method up to {longest_step(gauge.accurate_step)}" if gauge.accurate_step > 0.0 else ""
+    right = [words for words in (other, with_own) if words]
+    return f"Right: {either(right)}." if right else "No method is right at this step."
+
+
+def error_text(error: float) -> str:
+    """The relative error of oscillation and damping, in words."""
+    return f"{percent(error)} off" if error < 1.0 else "more than 100\u00a0% off"
+
+
+def step_warnings(integrator: Integrator, gauge: Gauge) -> list[str]:
+    """A sentence for a run without a page, if the step is stable but not right."""
+    if not gauge.is_wrong:
+        return []
+    return [
+        f"The time step of {time_step(gauge.step)} is stable with {method_name(integrator.name)} but not right: "
+        f"oscillation and damping are {error_text(gauge.error)}. {accurate_steps(gauge)}"
+    ]

@@ -13,6 +13,7 @@ from app.study.stability.linear import LinearMap, extra_damping
 from app.study.stability.rope import RopeMap
 from app.study.tables import MARKERS, draw_map
 from sim.springs import INTEGRATORS
+from sim.springs.stability import TOLERANCE
 
 COLUMNS = 4  # of maps in a figure
 GROWTH_COLOUR = "#D55E00"  # Okabe and Ito's vermilion
@@ -37,7 +38,7 @@ def panels(count: int, title: str) -> tuple[Any, list[Any], list[Any]]:
 
 
 def linear_figure(maps: list[LinearMap]) -> Any:
-    """Damping that the method adds in colours, growth in one colour, and both limits as lines and marks."""
+    """Damping that the method adds in colours, growth in one, limits as lines and marks, and a line of 1 % error."""
     from matplotlib.colors import ListedColormap
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -54,6 +55,9 @@ def linear_figure(maps: list[LinearMap]) -> Any:
         if not np.isnan(found.measured[1:]).all():
             limits = [INTEGRATORS[found.name].limit(float(z)) for z in fine]
             axes.plot(limits, fine, color="black", linewidth=1.4)
+        wrong = np.where(found.rates > 0.0, np.nan, found.errors)
+        if np.isfinite(wrong[1:]).any():
+            axes.contour(*plane, wrong, levels=[TOLERANCE], colors="black", linestyles="dashed", linewidths=1.2)
         every = max(1, len(found.zetas) // 20)
         shown = np.where(np.isfinite(found.measured), found.measured, np.nan)[::every]
         axes.plot(shown, found.zetas[::every], "o", color="white", markeredgecolor="black", markersize=3.5)
@@ -70,15 +74,16 @@ def linear_figure(maps: list[LinearMap]) -> Any:
         handles=[
             Patch(color=GROWTH_COLOUR, label="grows"),
             Line2D([], [], color="black", label="limit of theory"),
+            Line2D([], [], color="black", linestyle="dashed", label="right to 1 %"),
             Line2D([], [], color="white", marker="o", markeredgecolor="black", label="measured limit"),
         ],
-        loc="outside lower center", ncols=3, frameon=False,
+        loc="outside lower center", ncols=4, frameon=False,
     )  # fmt: skip
     return figure
 
 
 def rope_figure(maps: list[RopeMap]) -> Any:
-    """Outcomes in three colours, and `critical_step` as a line."""
+    """Outcomes in three colours, and `critical_step` and `accurate_step` as lines."""
     from matplotlib.colors import ListedColormap
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -89,6 +94,7 @@ def rope_figure(maps: list[RopeMap]) -> Any:
         plane = found.steps, found.stiffnesses
         draw_map(axes, *plane, found.outcomes, log=(True, True), cmap=colours, vmin=0, vmax=2)
         axes.plot(found.theory, found.stiffnesses, color="black", linewidth=1.4)
+        axes.plot(found.accurate, found.stiffnesses, color="black", linewidth=1.2, linestyle="dashed")
         axes.set_title(found.name.replace("_", " "), fontsize=10)
     for axes in lowest:
         axes.set_xlabel("step h [s]")
@@ -96,7 +102,8 @@ def rope_figure(maps: list[RopeMap]) -> Any:
         axes.set_ylabel("stiffness k [N/m]")
     handles: list[Any] = [Patch(color=colour, label=name) for name, colour in OUTCOME_COLOURS.items()]
     handles.append(Line2D([], [], color="black", label="critical_step"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
+    handles.append(Line2D([], [], color="black", linestyle="dashed", label="accurate_step"))
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False)
     return figure
 
 

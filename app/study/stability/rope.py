@@ -23,6 +23,7 @@ class RopeMap(NamedTuple):
     outcomes: NDArray[np.int64]  # (rows, cols) STABLE, BOUNDED_GROWTH or EXPLODING
     measured: NDArray[np.float64]  # (rows,) [s] of `MapRow`
     theory: NDArray[np.float64]  # (rows,) [s] critical_step
+    accurate: NDArray[np.float64]  # (rows,) [s] accurate_step
 
 
 def row(name: str, net: Net, stiffness: float, steps: NDArray[np.float64], max_steps: int) -> MapRow:
@@ -63,10 +64,18 @@ def rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
                 "disagree": int(wrong.sum()),
                 "step off, median [%]": 100.0 * float(np.median(apart)) if len(apart) else None,
                 "at most [%]": 100.0 * float(apart.max()) if len(apart) else None,
+                "right in % of stable cells": right_share(m),
                 "at k [N/m]": float(m.stiffnesses[within][int(apart.argmax())]) if len(apart) else None,
             }
         )
     return table
+
+
+def right_share(m: RopeMap) -> float | None:
+    """Percentage of the stable cells at which the method is right; None without stable cells."""
+    stable = m.outcomes == STABLE
+    right = stable & (m.steps[None, :] <= m.accurate[:, None])
+    return 100.0 * float(right.sum()) / float(stable.sum()) if stable.any() else None
 
 
 def boundary_rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
@@ -77,7 +86,8 @@ def boundary_rows(maps: list[RopeMap]) -> list[dict[str, Any]]:
             "stiffness [N/m]": float(k),
             "step measured [s]": float(a),
             "critical_step [s]": float(b),
+            "accurate_step [s]": float(c),
         }
         for m in maps
-        for k, a, b in zip(m.stiffnesses, m.measured, m.theory, strict=True)
+        for k, a, b, c in zip(m.stiffnesses, m.measured, m.theory, m.accurate, strict=True)
     ]

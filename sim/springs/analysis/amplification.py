@@ -7,9 +7,10 @@ above it. In this unit a limit stays between 1 and 10 at every damping ratio zet
 import functools
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.interruption import raise_if_stopped
 
@@ -34,6 +35,58 @@ def eigenvalues(zeta: float) -> tuple[complex, complex]:
         first = complex(-zeta, math.sqrt(1.0 - zeta * zeta))
         return first, first.conjugate()
     return -1.0 + 0j, -1.0 / fastest(1.0, 2.0 * zeta) ** 2 + 0j
+
+
+def exponents(omega: NDArray[np.float64], rate: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """The two eigenvalues [1/s] of x'' + rate x' + omega^2 x = 0, (2, ...): the faster one first."""
+    half = 0.5 * rate
+    root = np.sqrt((half - omega) * (half + omega) + 0j)
+    fast = -half - root
+    # Their product is omega^2: the difference of two large numbers would lose the slow one.
+    return np.array(
+        [fast, np.divide(np.square(omega), fast, out=np.zeros_like(fast), where=fast != 0.0)], np.complex128
+    )
+
+
+Changes: TypeAlias = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]], NDArray[np.complex128]]
+
+
+def changes_of_function(function: Callable[[NDArray[np.complex128]], NDArray[np.complex128]]) -> Changes:
+    """`changes` of a one-step method: function(s) is its R(s) - 1, s the step times an eigenvalue."""
+    return lambda omega, rate, h: function(h * exponents(omega, rate))
+
+
+def changes_of_polynomial(coefficients: tuple[float, ...]) -> Changes:
+    """`changes` of an explicit Runge-Kutta method with R(s) = sum c_i s^i, c_0 = 1."""
+    return changes_of_function(lambda s: s * np.polynomial.polynomial.polyval(s, coefficients[1:]))
+
+
+def changes_of_matrix(trace: NDArray[np.float64], determinant: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """`changes` of a method, from trace and determinant of A - I."""
+    half = 0.5 * trace
+    root = np.sqrt(half * half - determinant + 0j)
+    large = half + np.where(half < 0.0, -root, root)
+    # Their product is the determinant: the difference of two near numbers would lose the small one.
+    return np.array(
+        [large, np.divide(determinant + 0j, large, out=np.zeros_like(large), where=large != 0.0)], np.complex128
+    )
+
+
+def changes_of_nystroem(
+    step: tuple[Any, Any, Any], omega: NDArray[np.float64], rate: NDArray[np.float64], h: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """`changes` of an explicit Nystroem method. step: the first arguments of `nystroem_growth`."""
+    c, velocity, position = step
+    square, damping = (h * omega) ** 2, h * rate
+    ends = []
+    for x, v in ((1.0, 0.0), (0.0, 1.0)):
+        k = np.zeros((len(c), *square.shape))
+        for i, time in enumerate(c):
+            xs = x + time * v + np.tensordot(position[i], k, 1)
+            k[i] = -square * xs - damping * (v + np.tensordot(velocity[i], k, 1))
+        ends.append((v + np.tensordot(position[-1], k, 1), np.tensordot(velocity[-1], k, 1)))
+    (a, b), (c0, d) = ends
+    return changes_of_matrix(a + d, a * d - b * c0)
 
 
 def stable_step_of(limit: Callable[[float], float], omega: float, rate: float) -> float:

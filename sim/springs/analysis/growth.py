@@ -33,6 +33,18 @@ def oscillator(zeta: float) -> Net:
     return dataclasses.replace(net, families=(Family(0, 1, 0.0, 1.0, 2.0 * zeta),))
 
 
+def step_changes(integrator: Integrator, zeta: float, z: float) -> NDArray[np.complex128]:
+    """Eigenvalues (2,) of A - I, measured: A is the matrix of one step of the oscillator, omega = 1 and h = z."""
+    p = oscillator(zeta).kernel_view(z)
+    columns = []
+    for start in ((1.0, 0.0), (0.0, 1.0)):
+        x, v = np.zeros(6), np.zeros(6)
+        x[1], v[1] = start
+        integrator.advance(x, v, np.zeros(3), 0.0, z, 1, p, False)
+        columns.append((x[1] - start[0], v[1] - start[1]))
+    return np.linalg.eigvals(np.array(columns).T).astype(np.complex128)
+
+
 def growth(integrator: Integrator, zeta: float, z: float, most: int = 1 << 17) -> float:
     """Logarithm per step of an oscillator's amplitude, omega = 1 and h = z, measured over up to `most` steps.
 

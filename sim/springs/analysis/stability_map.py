@@ -1,5 +1,6 @@
-"""Maps of stability over the time step: a spring network at rest, disturbed and run, beside its critical step.
+"""Maps of stability over the time step: a spring network at rest, disturbed and run, beside theory.
 
+Theory is its critical step, and the step up to which the method is right.
 A map has a row for each network, as of a range of stiffnesses. It is measured and drawn row after row.
 """
 
@@ -15,7 +16,7 @@ from sim.springs.analysis.growth import STABLE, outcome
 from sim.springs.analysis.settling import find_rest_positions
 from sim.springs.integrators import Integrator
 from sim.springs.net import Net
-from sim.springs.stability import critical_step
+from sim.springs.stability import accurate_step, critical_step
 from sim.springs.state import State
 
 LIMIT_RESOLUTION = 1.005  # ratio of two steps between which a limit is located
@@ -29,6 +30,7 @@ class MapRow(NamedTuple):
     outcomes: NDArray[np.int64]  # (steps,) STABLE, BOUNDED_GROWTH or EXPLODING
     measured: float  # step [s] at which a disturbance begins to grow; inf: none does; NaN: not located
     critical: float  # critical_step [s]
+    accurate: float  # accurate_step [s]
 
 
 def map_row(
@@ -47,7 +49,7 @@ def map_row(
         measured = located(
             steps, found != STABLE, lambda h: outcome(method, net, h, state.x, LONGER * max_steps) != STABLE
         )
-    return MapRow(found, measured, critical_step(net, method, state))
+    return MapRow(found, measured, critical_step(net, method, state), accurate_step(net, method, state))
 
 
 def located(steps: NDArray[np.float64], grows: NDArray[np.bool_], grows_at: Callable[[float], bool]) -> float:

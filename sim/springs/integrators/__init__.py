@@ -10,7 +10,9 @@ To add one, write a module in this folder with
 2. `stable_step(omega, rate)`: the largest stable step [s] of x'' + rate x' + omega^2 x = 0, with omega [rad/s] and
    rate [1/s] from 0 on, in closed form or from the largest step at which the method's amplification stays within 1.
    0 if no step is stable, inf if every step is.
-3. `RECORD = Integrator(...)`, which declares what the tests then check.
+3. `changes(omega, rate, h)`: the two eigenvalues of A - I, complex (2, ...), of the matrix A of one step of the same
+   oscillator. The arguments are arrays of one shape. A - I, as a slow mode hardly changes in a short step.
+4. `RECORD = Integrator(...)`, which declares what the tests then check.
 """
 
 import functools
@@ -19,6 +21,7 @@ import pkgutil
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from sim.springs.analysis.amplification import Changes
 from sim.validation import check_choice
 
 
@@ -32,6 +35,7 @@ class Integrator(NamedTuple):
     stable_step: Callable[[float, float], float]  # omega [rad/s], damping rate [1/s] -> largest stable step [s]
     advance: Callable[..., int]
     summary: str  # when to choose it
+    changes: Changes  # omega [rad/s], damping rate [1/s], h [s] -> eigenvalues of A - I, see above
     lag: float = 0.0  # v is stored this part of a step before x
     undamped_order: int = 0  # where it differs from `order`
     implicit: bool = False  # a force evaluation is then one correction of the solver, `evals` the least number

@@ -6,7 +6,7 @@ errors below 1e-8. Coefficients of Hairer's dop853.f: Hairer, Norsett & Wanner (
 
 from functools import partial
 
-from sim.springs.analysis.amplification import polynomial_of, stable_step_of_polynomial
+from sim.springs.analysis.amplification import changes_of_polynomial, polynomial_of, stable_step_of_polynomial
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.embedded.march import march
 from sim.springs.integrators.embedded.stages import tableau, take_steps
@@ -59,5 +59,5 @@ def stable_step(omega: float, rate: float) -> float:
 RECORD = Integrator(
     "dop853", 8, False, 12, stable_step, partial(take_steps, METHOD),
     "For references: eighth order, chooses its own steps, errors to 1e-12.",
-    march=partial(march, METHOD),
+    changes_of_polynomial(POLYNOMIAL), march=partial(march, METHOD),
 )  # fmt: skip

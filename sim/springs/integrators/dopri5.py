@@ -7,7 +7,7 @@ Coefficients: Dormand & Prince (1980), J. Comp. Appl. Math. 6, table 2.
 
 from functools import partial
 
-from sim.springs.analysis.amplification import polynomial_of, stable_step_of_polynomial
+from sim.springs.analysis.amplification import changes_of_polynomial, polynomial_of, stable_step_of_polynomial
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.embedded.march import march
 from sim.springs.integrators.embedded.stages import tableau, take_steps
@@ -41,5 +41,5 @@ def stable_step(omega: float, rate: float) -> float:
 RECORD = Integrator(
     "dopri5", 5, False, 6, stable_step, partial(take_steps, METHOD),
     "For a known error: chooses its own steps, errors of 1e-5 to 1e-8.",
-    march=partial(march, METHOD),
+    changes_of_polynomial(POLYNOMIAL), march=partial(march, METHOD),
 )  # fmt: skip

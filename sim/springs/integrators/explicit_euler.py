@@ -6,7 +6,7 @@ Unstable without damping at every step size: a mode's energy grows by 1 + (h ome
 import math
 from functools import partial
 
-from sim.springs.analysis.amplification import fastest
+from sim.springs.analysis.amplification import changes_of_function, fastest
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.symplectic_euler import take_euler_steps
 
@@ -21,5 +21,5 @@ def stable_step(omega: float, rate: float) -> float:
 
 RECORD = Integrator(
     "explicit_euler", 1, False, 1, stable_step, partial(take_euler_steps, False),
-    "To see an instability: the lab text's Euler, never stable undamped.",
+    "To see an instability: the lab text's Euler, never stable undamped.", changes_of_function(lambda s: s),
 )  # fmt: skip

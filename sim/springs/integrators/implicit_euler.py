@@ -7,6 +7,7 @@ A step that Newton's method cannot take whole is taken in halves, quarters, ...,
 import math
 from functools import partial
 
+from sim.springs.analysis.amplification import changes_of_function
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import EULER, advance_implicit
 
@@ -19,5 +20,6 @@ def stable_step(omega: float, rate: float) -> float:
 RECORD = Integrator(
     "implicit_euler", 1, False, 1, stable_step, partial(advance_implicit, EULER),
     "For appearance at any stiffness: damps what its step does not resolve.",
+    changes_of_function(lambda s: s / (1.0 - s)),
     implicit=True, l_stable=True,
 )  # fmt: skip

@@ -11,6 +11,7 @@ longer parts again after an easy one.
 import math
 from functools import partial
 
+from sim.springs.analysis.amplification import changes_of_function
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import MIDPOINT, advance_implicit
 
@@ -23,5 +24,6 @@ def stable_step(omega: float, rate: float) -> float:
 RECORD = Integrator(
     "implicit_midpoint", 2, False, 1, stable_step, partial(advance_implicit, MIDPOINT),
     "For energy at any stiffness: keeps it, damps nothing.",
+    changes_of_function(lambda s: s / (1.0 - 0.5 * s)),
     implicit=True,
 )  # fmt: skip

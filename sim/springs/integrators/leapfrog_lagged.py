@@ -6,10 +6,10 @@ The step is symplectic Euler's; only the half-step start differs.
 """
 
 from sim.springs.integrators import Integrator
-from sim.springs.integrators.symplectic_euler import advance, stable_step
+from sim.springs.integrators.symplectic_euler import advance, changes, stable_step
 
 RECORD = Integrator(
     "leapfrog_lagged", 1, True, 1, stable_step, advance,
-    "To compare: the lab text read literally, first order once damped.",
+    "To compare: the lab text read literally, first order once damped.", changes,
     lag=0.5, undamped_order=2,
 )  # fmt: skip

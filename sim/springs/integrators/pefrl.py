@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
-from sim.springs.analysis.amplification import limit_of
+from sim.springs.analysis.amplification import changes_of_matrix, limit_of
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
@@ -23,14 +23,19 @@ DRIFTS = (XI, CHI, 1.0 - 2.0 * (CHI + XI), CHI, XI)
 KICKS = (0.5 - LAMBDA, LAMBDA, LAMBDA, 0.5 - LAMBDA)
 
 
-def growth(z: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Largest eigenvalue of a step of x'' = -x with h = z."""
+def half_trace(z: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Half the trace of the matrix of a step of x'' = -x with h = z; its determinant is 1."""
     x, v = np.multiply.outer([1.0, 0.0], z**0), np.multiply.outer([0.0, 1.0], z**0)  # from (1, 0) and from (0, 1)
     for i, drift in enumerate(DRIFTS):
         x = x + drift * z * v
         if i < len(KICKS):
             v = v - KICKS[i] * z * x
-    half = np.maximum(1.0, abs(0.5 * (x[0] + v[1])))  # of the trace; the determinant is 1
+    return 0.5 * (x[0] + v[1])
+
+
+def growth(z: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Size of the largest eigenvalue of that step."""
+    half = np.maximum(1.0, abs(half_trace(z)))
     return half + np.sqrt(half * half - 1.0)
 
 
@@ -42,6 +47,12 @@ def stable_step(omega: float, rate: float) -> float:
     if rate > 2e-9 * omega:
         return 0.0
     return UNDAMPED_LIMIT / omega if omega > 0.0 else math.inf
+
+
+def changes(omega: NDArray[np.float64], rate: NDArray[np.float64], h: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Without damping, which it refuses: the determinant is 1."""
+    missing = 2.0 - 2.0 * half_trace(h * omega)
+    return changes_of_matrix(-missing, missing)
 
 
 @kernel(noalias=True)
@@ -65,6 +76,6 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
 
 
 RECORD = Integrator(
-    "pefrl", 4, True, 4, stable_step, advance, "For long undamped motions: symplectic, fourth order; refuses damping.",
-    undamped_only=True,
+    "pefrl", 4, True, 4, stable_step, advance,
+    "For long undamped motions: symplectic, fourth order; refuses damping.", changes, undamped_only=True,
 )  # fmt: skip

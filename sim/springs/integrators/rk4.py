@@ -7,16 +7,18 @@ x_{n+1} = x + h v + h^2/6 (a1 + a2 + a3) and v_{n+1} = v + h/6 (a1 + 2 a2 + 2 a3
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.analysis.amplification import stable_step_of_polynomial
+from sim.springs.analysis.amplification import changes_of_polynomial, stable_step_of_polynomial
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.vector_ops import set_sum
 
+POLYNOMIAL = (1.0, 1.0, 1 / 2, 1 / 6, 1 / 24)
+
 
 def stable_step(omega: float, rate: float) -> float:
     """Limit at which |1 + s + s^2/2 + s^3/6 + s^4/24| exceeds 1 on the ray of s = h lambda; 2 sqrt 2 undamped."""
-    return stable_step_of_polynomial((1.0, 1.0, 1 / 2, 1 / 6, 1 / 24), omega, rate)
+    return stable_step_of_polynomial(POLYNOMIAL, omega, rate)
 
 
 @kernel(noalias=True, inline=True)
@@ -62,5 +64,6 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
 
 
 RECORD = Integrator(
-    "rk4", 4, False, 4, stable_step, advance, "For accuracy: the lab's Runge-Kutta, errors under 0.1 mm."
-)
+    "rk4", 4, False, 4, stable_step, advance, "For accuracy: the lab's Runge-Kutta, errors under 0.1 mm.",
+    changes_of_polynomial(POLYNOMIAL),
+)  # fmt: skip

@@ -16,7 +16,7 @@ itself small.
 
 import functools
 
-from sim.springs.analysis.amplification import stable_step_of_nystroem
+from sim.springs.analysis.amplification import changes_of_nystroem, stable_step_of_nystroem
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.embedded.march import march
 from sim.springs.integrators.embedded.stages import rows_of, tableau_of_rows, take_steps
@@ -73,5 +73,6 @@ def stable_step(omega: float, rate: float) -> float:
 RECORD = Integrator(
     "rkn8", 5, False, 8, stable_step, functools.partial(take_steps, METHOD),
     "For references of stiff or weakly damped nets: chooses its own steps.",
+    functools.partial(changes_of_nystroem, STEP),
     undamped_order=8, march=functools.partial(march, METHOD),
 )  # fmt: skip

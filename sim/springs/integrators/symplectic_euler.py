@@ -4,8 +4,10 @@ import math
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sim.jit import kernel
+from sim.springs.analysis.amplification import changes_of_matrix
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
@@ -16,6 +18,12 @@ def stable_step(omega: float, rate: float) -> float:
     """h^2 omega^2 + 2 h rate < 4 by the Jury conditions of the 2 x 2 step matrix."""
     slope = rate + math.hypot(rate, 2.0 * omega)
     return 4.0 / slope if slope > 0.0 else math.inf
+
+
+def changes(omega: NDArray[np.float64], rate: NDArray[np.float64], h: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Of the step matrix [[1 - z^2, h (1 - h rate)], [-h omega^2, 1 - h rate]], z = h omega."""
+    square = (h * omega) ** 2
+    return changes_of_matrix(-h * rate - square, square)
 
 
 @kernel(noalias=True, inline=True)
@@ -58,4 +66,5 @@ RECORD = Integrator(
     stable_step,
     advance,
     "For the lab's code, which calls it Euler: cheap, stable, first order.",
+    changes,
 )

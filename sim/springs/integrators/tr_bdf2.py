@@ -8,6 +8,10 @@ halves, quarters, ..., in longer parts again after an easy one.
 import math
 from functools import partial
 
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.springs.analysis.amplification import changes_of_function
 from sim.springs.integrators import Integrator
 from sim.springs.integrators.implicit.steps import TR_BDF2, advance_implicit
 
@@ -17,8 +21,15 @@ def stable_step(omega: float, rate: float) -> float:
     return math.inf
 
 
+def change(s: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """R(s) - 1 of R(s) = (1 + (sqrt 2 - 1) s) / (1 - g s)^2, g = 1 - 1/sqrt 2: both stages divide by 1 - g s."""
+    g = 1.0 - math.sqrt(0.5)
+    return s * (1.0 - g * g * s) / (1.0 - g * s) ** 2
+
+
 RECORD = Integrator(
     "tr_bdf2", 2, False, 3, stable_step, partial(advance_implicit, TR_BDF2),
     "For stiff ropes with some accuracy: L-stable and second order.",
+    changes_of_function(change),
     implicit=True, l_stable=True, evals_outside_corrections=1,
 )  # fmt: skip

@@ -148,7 +148,8 @@ def readout_of(snapshot: Snapshot) -> Html:
 def marks_of(snapshot: Snapshot) -> dict[str, str]:
     """Parameter -> the line under its control."""
     found: MooringReadings = snapshot.readings
-    lines = {"time_step": step_mark(read(QUANTITIES, "critical_step", snapshot)), **dict.fromkeys(BLAMED, "")}
+    now = found.stability
+    lines = {"time_step": step_mark(now.critical_step, now.accurate_step), **dict.fromkeys(BLAMED, "")}
     is_known = snapshot.params.breaking_load > 0.0
     lines["breaking_load"] = "" if is_known else "unknown: no tension is given as a percentage of it"
     if found.fault is not None and found.fault.parameter:

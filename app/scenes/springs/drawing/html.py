@@ -4,31 +4,62 @@ import math
 
 from app.formats.formatting import longest_step, number, percent
 from app.render.colormap import css_scale
-from app.render.markup.html import ERROR_COLOUR, GOOD_COLOUR, WARNING_COLOUR, Html, coloured, faint, fill, info
+from app.render.markup.html import (
+    ERROR_COLOUR,
+    GOOD_COLOUR,
+    WARNING_COLOUR,
+    WRONG_COLOUR,
+    Html,
+    coloured,
+    faint,
+    fill,
+    info,
+)
 from app.scenes.springs.divergence import limit_text
 from app.scenes.springs.recent_gauges import SPAN
-from sim.springs.stability import Gauge
+from app.scenes.springs.speed_advice import accurate_steps, error_text
+from sim.springs.stability import TOLERANCE, Gauge
 
 STEP_INFO = (
     "The worst of the last {:g} s: {}. hω is the time step h times the highest frequency ω of the springs. Above its "
-    "limit, which depends on the damping ratio ζ = {}, the motion grows without end."
+    "limit, which depends on the damping ratio ζ = {}, the motion grows without end. A stable step is right if "
+    "frequency and decay of the motion that gravity causes are off by at most {}."
 )
 WARNING_SHARE = 0.8  # of the largest stable step, from which the step is shown in the colour of a warning
+UNLIMITED = 2.0  # steps that are right, in the length of the bar of a method that is stable at every step
 
 
 def stability_bar(gauge: Gauge, *, exact: bool = True) -> Html:
-    """The step relative to the largest stable one, as a bar. exact: it is that of the state, not a bound of it."""
-    share = gauge.share
-    colour = GOOD_COLOUR if share < WARNING_SHARE else WARNING_COLOUR if share <= 1.0 else ERROR_COLOUR
+    """The step relative to the largest stable one, and whether it is right, as a bar with a text.
+
+    The bar is hatched from the step on up to which the method is right. exact: the largest stable step is that of the
+    state, not a bound of it.
+    """
+    colour = verdict_colour(gauge)
+    full = gauge.critical_step if gauge.critical_step < math.inf else UNLIMITED * gauge.accurate_step
+    used = gauge.step / full if full > 0.0 else math.inf
+    right = gauge.accurate_step / full if 0.0 < full < math.inf else 1.0
+    wrong = fill('<div class="wrong" style="left:{:.0f}%"></div>', 100.0 * right) if right < 1.0 else Html("")
     return fill(
-        '<div><span class="springtide-step-share">{}</span> {}</div>'
-        '<div style="height:8px;border-radius:4px;background:rgba(128,128,128,.25);margin:2px 0 4px">'
-        '<div style="height:8px;border-radius:4px;width:{:.0f}%;background:{}"></div></div>',
+        '<div><span class="springtide-step-share">{}</span>{} {}</div>'
+        '<div class="springtide-step"><div class="used" style="width:{:.0f}%;background:{}"></div>{}</div>{}',
         share_text(gauge, colour, exact=exact),
-        info(STEP_INFO.format(SPAN, limit_text(gauge), number(gauge.zeta, 2)), "1. Springs"),
-        100.0 * min(share, 1.0),
+        accuracy_text(gauge, colour),
+        info(STEP_INFO.format(SPAN, limit_text(gauge), number(gauge.zeta, 2), percent(TOLERANCE)), "1. Springs"),
+        100.0 * min(used, 1.0) if used == used else 0.0,
         colour,
+        wrong,
+        fill("<div>{}</div>", accurate_steps(gauge)) if gauge.is_wrong else "",
     )
+
+
+def verdict_colour(gauge: Gauge) -> str:
+    """The colour of a step: unstable, stable but not right, near its limit, or right."""
+    if gauge.share > 1.0:
+        return ERROR_COLOUR
+    if gauge.is_wrong:
+        return WRONG_COLOUR
+    return GOOD_COLOUR if gauge.share < WARNING_SHARE else WARNING_COLOUR
 
 
 def share_text(gauge: Gauge, colour: str, *, exact: bool) -> Html:
@@ -42,13 +73,36 @@ def share_text(gauge: Gauge, colour: str, *, exact: bool) -> Html:
     )
 
 
-def step_mark(critical_step: float) -> str:
-    """The line below the control of the time step. critical_step: the largest stable step [s], 0 or infinity too."""
-    if critical_step == math.inf:
-        return "every step is stable"
+def accuracy_text(gauge: Gauge, colour: str) -> Html:
+    """Whether a stable step is right, in words; empty if it is unstable or not assessed."""
+    if gauge.share > 1.0 or math.isnan(gauge.error):
+        return Html("")
+    if gauge.is_wrong:
+        return fill(", {}", coloured(f"not right: {error_text(gauge.error)}", colour))
+    return fill(", right to {}", percent(TOLERANCE))
+
+
+def step_mark(critical_step: float, accurate_step: float = math.nan) -> str:
+    """The line below the control of the time step.
+
+    critical_step: the largest stable step [s], 0 or infinity too. accurate_step: the one up to which the method is
+    right [s]; NaN: not assessed.
+    """
     if critical_step <= 0.0:
         return "no step is stable with this method"
-    return f"limit {longest_step(-1.0 / held(-1.0 / critical_step))}"
+    limit = (
+        "every step is stable" if critical_step == math.inf else f"limit {longest_step(rounded_down(critical_step))}"
+    )
+    if math.isnan(accurate_step) or (accurate_step == critical_step == math.inf):
+        return limit
+    if accurate_step >= critical_step:
+        return f"{limit}, right below it"
+    return f"{limit}, right up to {longest_step(rounded_down(accurate_step))}" if accurate_step > 0.0 else limit
+
+
+def rounded_down(step: float) -> float:
+    """A step [s] with two figures, as further ones change all the time in a moving net."""
+    return -1.0 / held(-1.0 / step)
 
 
 def held(limit: float) -> float:

@@ -84,6 +84,15 @@ def set_tangent(x, y, t, p, part, longest, out):
     turn_forces(out, p)
 
 
+@kernel(noalias=True)
+def set_products(x, vectors, t, p, part, products):
+    """The products (count, 3 rows cols) of `set_tangent`, of the vectors (count, 3 rows cols)."""
+    longest = longest_strain(x, p)
+    set_masses(x, p)
+    for i in range(vectors.shape[0]):
+        set_tangent(x, vectors[i], t, p, part, longest, products[i])
+
+
 @kernel(noalias=True, inline=True)
 def dot(a, b):
     total = 0.0

@@ -77,7 +77,13 @@ def test_the_critical_step_is_where_growth_begins_at_every_damping(net, name):
 def test_the_table_of_the_rope_names_the_stiffness_that_is_off_most():
     steps, stiffnesses = np.array([0.01, 0.1, 1.0]), np.array([1.0, 10.0, 100.0])
     found = rope.RopeMap(
-        "rk4", steps, stiffnesses, np.zeros((3, 3), int), np.array([0.2, 0.13, 0.1]), np.array([0.2] * 3)
+        "rk4",
+        steps,
+        stiffnesses,
+        np.zeros((3, 3), int),
+        np.array([0.2, 0.13, 0.1]),
+        np.array([0.2] * 3),
+        np.array([0.05] * 3),
     )
     (row,) = rope.rows([found])
     assert (row["at k [N/m]"], row["at most [%]"]) == (100.0, pytest.approx(50.0))

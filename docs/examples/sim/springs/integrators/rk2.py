@@ -3,16 +3,18 @@
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.analysis.amplification import stable_step_of_polynomial
+from sim.springs.analysis.amplification import changes_of_polynomial, stable_step_of_polynomial
 from sim.springs.analysis.energy import add_power
 from sim.springs.integrators import Integrator
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
 from sim.springs.points.vector_ops import set_sum
 
+POLYNOMIAL = (1.0, 1.0, 1 / 2)
+
 
 def stable_step(omega: float, rate: float) -> float:
     """Step at which |1 + s + s^2/2| leaves 1; never stable undamped."""
-    return stable_step_of_polynomial((1.0, 1.0, 1 / 2), omega, rate) if rate > 0.0 else 0.0
+    return stable_step_of_polynomial(POLYNOMIAL, omega, rate) if rate > 0.0 else 0.0
 
 
 @kernel(noalias=True)
@@ -36,4 +38,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     return 2 * steps
 
 
-RECORD = Integrator("rk2", 2, False, 2, stable_step, advance, "To see second order without a splitting.")
+RECORD = Integrator(
+    "rk2", 2, False, 2, stable_step, advance, "To see second order without a splitting.",
+    changes_of_polynomial(POLYNOMIAL),
+)  # fmt: skip

@@ -69,7 +69,9 @@ class System(MooringParts):
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
     bed_damping: float = 3e5  # [Pa s/m]
     friction: float = 0.0  # Coulomb coefficient
-    slack_damping: bool = False  # internal damping acts in slack links that lengthen, too; in MoorDyn in all
+    # False: a slack segment has no tension, and a taut one never pushes. True: internal damping acts at any length, as
+    # in MoorDyn, so that a slack segment pulls where it lengthens and pushes where it shortens.
+    slack_damping: bool = False
     current: Vector = (0.0, 0.0, 0.0)  # [m/s]; it pushes lines and points, but no body
     waves: Waves | None = None  # on the same water; None: still water
     forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces, at most one of each

@@ -72,7 +72,7 @@ class LineArrays(NamedTuple):
     forces: Any  # `Declared`: numbers of the forces that have any, see sim/springs/forces
     damped: bool  # any damping of links
     axial: bool  # True: it acts along them
-    slack_damping: bool  # it acts in slack links, too
+    slack_damping: bool  # it acts whole in slack links, too, as in MoorDyn
     ends: NDArray[np.int64]  # (links, 2) nodes
     # (links, 5): rest length [m], stiffness [N/m], damping [N s/m], first row and number of rows in `curves`, or 0
     links: NDArray[np.float64]

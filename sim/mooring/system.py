@@ -35,6 +35,7 @@ from sim.springs.points.line_arrays import (
     LineArrays,
     record_of,
 )
+from sim.springs.points.line_solver import coupling_of
 from sim.validation import (
     argument_error,
     check_choice,
@@ -241,6 +242,7 @@ class System(MooringParts):
             curves=curves.table,
             ends=ends,
             links=links,
+            **coupling_of(ends, inverse > 0.0, carried)._asdict(),
             places=places,
             parts=parts,
             bed=-self.depth,

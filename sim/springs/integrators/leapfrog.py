@@ -11,12 +11,12 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping
+from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping, take_kick
 from sim.springs.damping import damp, is_odd, make_decay
 from sim.springs.forces.air import air_scratch_size, drift
 from sim.springs.integrators import Integrator
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.points.vector_ops import add_scaled
+from sim.springs.points.line_kick import make_kick_room
 from sim.springs.rope_gap import cross_gap, gaps_merge, make_gap
 
 
@@ -32,6 +32,7 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     decay = make_decay(p, 0.5 * h)
     merged = gaps_merge(p) and not with_account
     gap = make_gap(p, decay)
+    room = make_kick_room(p)
     spare = np.empty(air_scratch_size(x, p))
     middle = np.empty_like(spare)
     before = np.empty(account_size(x, with_account))
@@ -47,14 +48,14 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
             by_sphere = damp(x, v, now, 0.5 * h, decay, p, odd)
             if with_account:
                 close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
-            add_scaled(v, 0.5 * h, a)
+            take_kick(x, v, a, now, 0.5 * h, p, True, room, with_account, before, ledger)
         drift(x, v, h, p, f, spare, middle, with_account, ledger)
         set_pins(x, v, now + h, p)
         accelerate(x, v, now + h, p, False, f, a)
         if merged and s + 1 < steps:
             cross_gap(v, a, 0.5 * h, gap, p, not odd)
             continue
-        add_scaled(v, 0.5 * h, a)
+        take_kick(x, v, a, now + h, 0.5 * h, p, False, room, with_account, before, ledger)
         if with_account:
             kinetic = open_damping(v, p, before)
         by_sphere = damp(x, v, now + h, 0.5 * h, decay, p, not odd)

@@ -76,6 +76,11 @@ class LineArrays(NamedTuple):
     ends: NDArray[np.int64]  # (links, 2) nodes
     # (links, 5): rest length [m], stiffness [N/m], damping [N s/m], first row and number of rows in `curves`, or 0
     links: NDArray[np.float64]
+    link_order: NDArray[np.int64]  # this one and the next four: `Coupling` of `sim.springs.points.line_solver`
+    columns_below: NDArray[np.int64]
+    rows_below: NDArray[np.int64]
+    link_targets: NDArray[np.int64]
+    products: NDArray[np.int64]
     curves: NDArray[np.float64]  # (rows, 3): strain, tension [N], energy per length [N], see `sim.springs.laws.curve`
     bends: NDArray[np.float64]  # (bends, 12): see `sim.springs.forces.under_water.bending`
     loads: NDArray[np.float64]  # (n, 3) [N] steady forces on nodes, or (0, 3) without any

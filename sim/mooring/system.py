@@ -22,20 +22,20 @@ from sim.mooring.rest.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
 from sim.springs.forces import check_forces, declared
 from sim.springs.integrators import Integrator, discover
+from sim.springs.kicks.line_solver import coupling_of
 from sim.springs.points.line_arrays import (
     BODY_MASS,
+    BODY_ROW,
     DAMPING,
-    DECAY_PARTS,
-    DECAY_RATES,
-    DECAY_SHAPES,
     INVERSE_MASS,
+    INVERSE_ROOT,
+    MASS_ROOT,
     PART,
     PLACE,
     STIFFNESS,
     LineArrays,
     record_of,
 )
-from sim.springs.points.line_solver import coupling_of
 from sim.validation import (
     argument_error,
     check_choice,
@@ -276,7 +276,7 @@ class System(MooringParts):
                 body = self.bodies[index[point.body]]
                 carried.append((i, index[point.body]))
                 arms.append(np.subtract(point.position, body.place))
-        rows = np.zeros((len(self.bodies), DECAY_RATES + 6))
+        rows = np.zeros((len(self.bodies), BODY_ROW))
         for b, body in enumerate(self.bodies):
             full = np.array(body.mass, dtype=np.float64)
             for (node, owner), arm in zip(carried, arms, strict=True):
@@ -288,14 +288,11 @@ class System(MooringParts):
             rows[b, STIFFNESS:DAMPING] = np.ravel(body.stiffness)
             damping = np.zeros((6, 6)) if body.damping is None else np.array(body.damping, dtype=np.float64)
             rows[b, DAMPING:PLACE] = damping.ravel()
-            rows[b, PLACE:DECAY_SHAPES] = body.place
-            # M^-1 B = M^-1/2 U diag(rates) U^T M^1/2 with M^-1/2 B M^-1/2 = U diag(rates) U^T
+            rows[b, PLACE:MASS_ROOT] = body.place
             squares, axes = np.linalg.eigh(full)
-            root, inverse_root = (axes * squares**power @ axes.T for power in (0.5, -0.5))
-            rates, shapes = np.linalg.eigh(inverse_root @ damping @ inverse_root)
-            rows[b, DECAY_SHAPES:DECAY_PARTS] = (inverse_root @ shapes).ravel()
-            rows[b, DECAY_PARTS:DECAY_RATES] = (shapes.T @ root).ravel()
-            rows[b, DECAY_RATES:] = np.maximum(rates, 0.0)
+            root, inverse_root = (axes * squares**power @ axes.T for power in (-0.5, 0.5))
+            rows[b, MASS_ROOT:INVERSE_ROOT] = root.ravel()
+            rows[b, INVERSE_ROOT:] = inverse_root.ravel()
         return (
             np.array(carried, dtype=np.int64).reshape(-1, 2),
             np.array(arms, dtype=np.float64).reshape(-1, 3),

@@ -15,7 +15,8 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.forces import each
+from sim.springs.forces import FORCES, each
+from sim.springs.forces.contact import LEFT_OF_DAMPING
 from sim.springs.forces.links import lengthening
 from sim.springs.laws import by_damping, lost_share
 from sim.springs.points.arrays import by_net, span
@@ -231,7 +232,7 @@ damp_all_links = by_damping(whole=damp_whole, limited=damp_limited)
 
 
 @kernel(noalias=True, inline=True)
-def damp_motion(x, v, s, decay, p, reverse):
+def damp_rope_motion(x, v, s, decay, p, reverse):
     """Link damping, then drag, or in reverse. Drag scales every free velocity; moving pins keep theirs."""
     n = np.uint64(p.rows * p.cols)
     keep = decay[p.offsets.shape[0]]
@@ -245,8 +246,21 @@ def damp_motion(x, v, s, decay, p, reverse):
             scale(v, keep, n + n, n)
 
 
+@kernel(noalias=True, allocates=False)
+def damp_wide_motion(x, v, s, decay, p, reverse):
+    """`damp_motion` of any other net, compiled once for all places of a kernel that call it."""
+    damp_rope_motion(x, v, s, decay, p, reverse)
+
+
+# Damping of links and drag for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards. That
+# of a rope is over so soon that a call would count.
+damp_motion = by_net(rope=damp_rope_motion, grid=damp_wide_motion)
+
 other_acts = each("acts", "p", "truth", having="accelerate", inline=True)
 damp_others = each("damp", "x, v, t, s, p, reverse", "sum", turns=True, allocates=False)
+# The same where the normal damping of contact is inside the kick of each point, so that only friction is left of it.
+beside = [LEFT_OF_DAMPING if force.name == "contact" else force for force in FORCES]
+damp_beside = each("damp", "x, v, t, s, p, reverse", "sum", beside, turns=True, allocates=False)
 
 
 @kernel(inline=True)
@@ -255,32 +269,8 @@ def is_odd(t, h, s):
     return (math.floor(t / h + 0.5) + s) % 2 == 1
 
 
-@kernel(inline=True)
-def damp_inline(x, v, t, s, decay, p, reverse):
-    """`damp` of a rope, which is over so soon that a call would count."""
-    work = 0.0
-    outside = other_acts(p)
-    if outside and reverse:
-        work += damp_others(x, v, t, s, p, reverse)
-    damp_motion(x, v, s, decay, p, reverse)
-    if outside and not reverse:
-        work += damp_others(x, v, t, s, p, reverse)
-    return work
-
-
 @kernel(allocates=False)
-def damp_wide(x, v, t, s, decay, p, reverse):
-    """`damp` of any other net, compiled once for all places of a kernel that call it."""
-    return damp_inline(x, v, t, s, decay, p, reverse)
-
-
-@kernel(allocates=False)
-def damp_lines(x, v, t, s, decay, p, reverse):
-    """`damp` of lines, with the inverse masses at the place where the step is."""
+def damp_lines(x, v, t, s, p, reverse):
+    """All damping of lines for a time s [s], with the inverse masses at the place where the step is."""
     set_inverse_masses(x, p)
     return damp_others(x, v, t, s, p, reverse)
-
-
-# All damping for a time s [s], with decay = make_decay(p, s); `reverse` runs through it backwards. Returns the work [J]
-# that a moving sphere did.
-damp = by_net(rope=damp_inline, grid=damp_wide, lines=damp_lines)

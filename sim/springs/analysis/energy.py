@@ -14,9 +14,7 @@ from sim.springs.forces.under_water.water import inertia_power
 from sim.springs.points.acceleration import accelerate, make_scratch
 from sim.springs.points.arrays import by_net, mass_at, point_count
 from sim.springs.points.line_arrays import BODY_MASS
-from sim.springs.points.line_kick import kick_lines
 from sim.springs.points.line_points import half_form, six
-from sim.springs.points.vector_ops import add_scaled
 
 
 class Energy(NamedTuple):
@@ -112,34 +110,6 @@ def close_damping(x, v, p, s, kinetic, by_sphere, before, ledger):
         put_in += s * pins_damping_power(x, before, p)
     ledger[0] += kinetic - kinetic_energy(v, p) + put_in
     ledger[1] += put_in
-
-
-@kernel(noalias=True, inline=True)
-def kick_net(x, v, a, t, s, p, begins, room, with_account, before, ledger):
-    add_scaled(v, s, a)
-
-
-@kernel(noalias=True, allocates=False)
-def kick_lines_with_account(x, v, a, t, s, p, begins, room, with_account, before, ledger):
-    """The damping takes what is missing of the work that the other forces do at the mean velocity."""
-    if not with_account:
-        kick_lines(x, v, a, t, s, p, begins, room)
-        return
-    kinetic = open_damping(v, p, before)
-    put_in = kick_lines(x, v, a, t, s, p, begins, room)
-    lost = kinetic - kinetic_energy(v, p)
-    for j in range(v.shape[0]):
-        before[j] = 0.5 * (before[j] + v[j]) + s * a[j]
-    lost += 0.5 * kinetic_energy(before, p)
-    add_scaled(before, -2.0 * s, a)
-    lost -= 0.5 * kinetic_energy(before, p)
-    ledger[0] += lost + put_in
-    ledger[1] += put_in
-
-
-# Kick v for a time s [s] by the accelerations a without damping; of lines with it, which the account then has. begins:
-# the kick begins at the time t of the positions, else it ends there.
-take_kick = by_net(rope=kick_net, grid=kick_net, lines=kick_lines_with_account)
 
 
 # (elastic, gravity, contact) [J].

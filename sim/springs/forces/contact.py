@@ -13,6 +13,7 @@ from sim import point_laws
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING, FRICTION, TRANSVERSE, add_block, add_product
 from sim.springs.forces.record import SPRING_NETS, Force
+from sim.springs.kicks.formula import relaxed, shares
 from sim.springs.points.arrays import mass_at, push
 from sim.springs.points.each_link import TINY
 from sim.springs.points.order import in_turn
@@ -74,54 +75,160 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 
 @kernel(allocates=False)
-def damp_on(x, v, t, s, p, on_sphere, reverse):
-    """Contact damping and friction of every touching point, exact or capped at standstill.
-
-    Friction takes the normal force of the velocity before the normal damping, in reverse of the one after it: the two
-    together are then symmetric, and of second order.
-    """
+def rub_on(x, v, t, s, p, on_sphere):
+    """Friction of every touching point for a time s [s]; returns the work [J] that a moving sphere did."""
     work = 0.0
     if not touches(x, t, p, on_sphere):
         return work
     n = p.rows * p.cols
     su, sv, sw = surface_velocity(p, on_sphere)
-    moves = su != 0.0 or sv != 0.0 or sw != 0.0
     for j in range(n):
         w = p.inverse_masses[j]
         depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
         if depth <= 0.0 or w == 0.0:
             continue
         ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
-        b = p.contact_b
-        if p.lab_contact:
-            keep = math.exp(-(b * depth if on_sphere else b) * w * s)
-            ru, rv, rw = ru * keep, rv * keep, rw * keep
-        else:
-            vn = ru * nx + rv * ny + rw * nz
-            tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
-            # The whole normal force, k depth - b v_n, never pulls: separating, damping takes at most k depth.
-            after = max(vn * math.exp(-b * w * s), vn - p.contact_k * depth * w * s)
-            normal = max(0.0, p.contact_k * depth - b * (after if reverse else vn))
-            speed = math.sqrt(tx * tx + ty * ty + tz * tz)
-            slow = p.friction * normal * w * s
-            keep = 1.0 - slow / speed if slow < speed else 0.0
-            ru, rv, rw = keep * tx + after * nx, keep * ty + after * ny, keep * tz + after * nz
-        if moves:
-            work += ((ru + su - v[j]) * su + (rv + sv - v[n + j]) * sv + (rw + sw - v[2 * n + j]) * sw) / w
-        v[j], v[n + j], v[2 * n + j] = ru + su, rv + sv, rw + sw
+        vn = ru * nx + rv * ny + rw * nz
+        tx, ty, tz = ru - vn * nx, rv - vn * ny, rw - vn * nz
+        speed = math.sqrt(tx * tx + ty * ty + tz * tz)
+        slow = p.friction * max(0.0, p.contact_k * depth - p.contact_b * vn) * w * s
+        lost = slow / speed if slow < speed else 1.0
+        work -= lost * (tx * su + ty * sv + tz * sw) / w
+        v[j] -= lost * tx
+        v[n + j] -= lost * ty
+        v[2 * n + j] -= lost * tz
+    return work
+
+
+@kernel(inline=True)
+def rub(x, v, t, s, p, reverse):
+    """Friction alone: capped at standstill. Each surface is a constant, which LLVM makes use of."""
+    work = 0.0
+    for turn in range(2):
+        if in_turn(turn, 2, reverse) == 1:
+            if p.has_sphere:
+                work += rub_on(x, v, t, s, p, True)
+        elif p.has_floor:
+            work += rub_on(x, v, t, s, p, False)
+    return work
+
+
+@kernel(inline=True)
+def clipped_flow(u, pull, free_pull, damped_rate, free_rate, edge, s):
+    """Normal velocity after a time s [s] of u' = pull - damped_rate u, or free_pull - free_rate u above `edge`.
+
+    Also its mean. Above, contact takes no more than its whole push. Both are one acceleration at the edge, so that the
+    velocity crosses it once at most.
+    """
+    below = u < edge
+    first_pull, first_rate = (pull, damped_rate) if below else (free_pull, free_rate)
+    after, mean = relaxed(u, first_pull, first_rate, s)
+    if below != (after < edge):
+        w = first_pull - first_rate * u
+        part = first_rate * (edge - u) / w
+        time = (edge - u) / w if abs(part) < 1e-8 else -math.log1p(-part) / first_rate
+        _, before = relaxed(u, first_pull, first_rate, time)
+        second_pull, second_rate = (free_pull, free_rate) if below else (pull, damped_rate)
+        after, mean = relaxed(edge, second_pull, second_rate, s - time)
+        mean = (time * before + (s - time) * mean) / s
+    return after, mean
+
+
+@kernel(inline=True)
+def push_point(v, mean, j, depth, nx, ny, nz, ax, ay, az, drag, s, p, on_sphere):
+    """Move the velocity of a touching point by its acceleration, the damping of contact along its normal, and drag.
+
+    Sets its mean too, if there is room. Returns the work [J] that a moving sphere did by its damping.
+    """
+    n, w = p.rows * p.cols, p.inverse_masses[j]
+    su, sv, sw = surface_velocity(p, on_sphere)
+    c, b = drag * w, p.contact_b * w
+    ax, ay, az = ax - c * su, ay - c * sv, az - c * sw  # drag is that of the whole velocity
+    ru, rv, rw = v[j] - su, v[n + j] - sv, v[2 * n + j] - sw
+    if p.lab_contact:
+        b *= depth if on_sphere else 1.0
+        (u, mu), (q, mv), (r, mw) = relaxed(ru, ax, b + c, s), relaxed(rv, ay, b + c, s), relaxed(rw, az, b + c, s)
+    else:
+        push = p.contact_k * depth * w
+        pull, vn = ax * nx + ay * ny + az * nz, ru * nx + rv * ny + rw * nz
+        edge = push / b if b > 0.0 else math.inf
+        after, normal = clipped_flow(vn, pull, pull - push, b + c, c, edge, s)
+        first, second = shares(c, s)
+        wx, wy, wz = ax - pull * nx, ay - pull * ny, az - pull * nz
+        wx, wy, wz = wx - c * (ru - vn * nx), wy - c * (rv - vn * ny), wz - c * (rw - vn * nz)
+        u, q, r = ru + first * wx, rv + first * wy, rw + first * wz
+        mu, mv, mw = ru + second * wx, rv + second * wy, rw + second * wz
+        u, q, r = u + (after - vn) * nx, q + (after - vn) * ny, r + (after - vn) * nz
+        mu, mv, mw = mu + (normal - vn) * nx, mv + (normal - vn) * ny, mw + (normal - vn) * nz
+    if mean.shape[0] > 0:
+        mean[j], mean[n + j], mean[2 * n + j] = mu + su, mv + sv, mw + sw
+    v[j], v[n + j], v[2 * n + j] = u + su, q + sv, r + sw
+    # What is left of its change of momentum is that of the damping.
+    du, dv, dw = u - ru - s * (ax - c * mu), q - rv - s * (ay - c * mv), r - rw - s * (az - c * mw)
+    return (du * su + dv * sv + dw * sw) / w
+
+
+@kernel(allocates=False)
+def kick_touching(x, v, a, drag, t, s, p, mean):
+    """Move each point's velocity for a time s [s] by its acceleration, the normal damping of contact, and drag: exact.
+
+    a: accelerations (3 points,) [m/s2] by all forces of position. drag: [N s/m]. mean: set to mean velocities, or
+    empty. Of a point that touches both surfaces the damping of the sphere follows alone. Returns the work [J] that a
+    moving sphere did by its damping.
+    """
+    n, work = p.rows * p.cols, 0.0
+    for j in range(n):
+        w, kicked = p.inverse_masses[j], False
+        if w == 0.0:
+            continue
+        ax, ay, az = a[j], a[n + j], a[2 * n + j]
+        if p.has_floor:
+            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, False)
+            if depth > 0.0:
+                work += push_point(v, mean, j, depth, nx, ny, nz, ax, ay, az, drag, s, p, False)
+                kicked = True
+        if p.has_sphere:
+            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, True)
+            if depth > 0.0 and not kicked:
+                work += push_point(v, mean, j, depth, nx, ny, nz, ax, ay, az, drag, s, p, True)
+                kicked = True
+            elif depth > 0.0:
+                work += push_point(v, mean[:0], j, depth, nx, ny, nz, 0.0, 0.0, 0.0, 0.0, s, p, True)
+        if not kicked:
+            first, second = shares(drag * w, s)
+            for e in range(3):
+                i = e * n + j
+                change = a[i] - drag * w * v[i]
+                if mean.shape[0] > 0:
+                    mean[i] = v[i] + second * change
+                v[i] += first * change
+    return work
+
+
+@kernel(allocates=False)
+def hold(x, v, t, s, p):
+    """Normal damping alone for a time s [s]: exact. Returns the work [J] that a moving sphere did."""
+    n, work, none = p.rows * p.cols, 0.0, v[:0]
+    for surface in range(2):
+        on_sphere = surface == 1
+        if not touches(x, t, p, on_sphere):
+            continue
+        for j in range(n):
+            depth, nx, ny, nz = touching(x[j], x[n + j], x[2 * n + j], t, p, on_sphere)
+            if depth > 0.0 and p.inverse_masses[j] > 0.0:
+                work += push_point(v, none, j, depth, nx, ny, nz, 0.0, 0.0, 0.0, 0.0, s, p, on_sphere)
     return work
 
 
 @kernel(inline=True)
 def damp(x, v, t, s, p, reverse):
-    """The floor's, then the sphere's, or in reverse; each with its surface as a constant, which LLVM makes use of."""
+    """Friction, then normal damping, or in reverse: friction takes the normal force of the velocity that it meets."""
     work = 0.0
     for turn in range(2):
         if in_turn(turn, 2, reverse) == 1:
-            if p.has_sphere:
-                work += damp_on(x, v, t, s, p, True, reverse)
-        elif p.has_floor:
-            work += damp_on(x, v, t, s, p, False, reverse)
+            work += hold(x, v, t, s, p)
+        elif p.friction > 0.0 and not p.lab_contact:
+            work += rub(x, v, t, s, p, reverse)
     return work
 
 
@@ -224,4 +331,9 @@ def blocks(x, v, t, g, p, points):
 FORCE = Force(
     "contact", rank=40, nets=SPRING_NETS, acts="p.has_floor or p.has_sphere", accelerate=accelerate, damp=damp,
     energy=energy, power=power, tangent=tangent, blocks=blocks, stores="contact",
+)  # fmt: skip
+# What is left of its damping where `kick_touching` has the rest inside.
+LEFT_OF_DAMPING = Force(
+    "friction", rank=40, nets=SPRING_NETS, damp=rub,
+    acts="p.friction > 0.0 and not p.lab_contact and (p.has_floor or p.has_sphere)",
 )  # fmt: skip

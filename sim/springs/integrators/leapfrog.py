@@ -11,12 +11,12 @@ import math
 import numpy as np
 
 from sim.jit import kernel
-from sim.springs.analysis.energy import account_size, add_power, close_damping, open_damping, take_kick
-from sim.springs.damping import damp, is_odd, make_decay
+from sim.springs.analysis.energy import add_power
+from sim.springs.damping import is_odd, make_decay
 from sim.springs.forces.air import air_scratch_size, drift
 from sim.springs.integrators import Integrator
+from sim.springs.kicks.kick import SPLIT, kick, make_kick_room
 from sim.springs.points.acceleration import accelerate, make_scratch, set_pins
-from sim.springs.points.line_kick import make_kick_room
 from sim.springs.rope_gap import cross_gap, gaps_merge, make_gap
 
 
@@ -30,37 +30,27 @@ def advance(x, v, ledger, t, h, steps, p, with_account):
     a = np.empty_like(x)
     f = make_scratch(p)
     decay = make_decay(p, 0.5 * h)
-    merged = gaps_merge(p) and not with_account
+    room = make_kick_room(x, p, h, with_account)
+    merged = gaps_merge(p) and room.kind == SPLIT and not with_account
     gap = make_gap(p, decay)
-    room = make_kick_room(p)
     spare = np.empty(air_scratch_size(x, p))
     middle = np.empty_like(spare)
-    before = np.empty(account_size(x, with_account))
-    kinetic = 0.0
     set_pins(x, v, t, p)
     accelerate(x, v, t, p, False, f, a)
     for s in range(steps):
         now, odd = t + s * h, is_odd(t, h, s)
         if with_account:
             add_power(x, v, now, p, False, 0.5 * h, ledger)
-            kinetic = open_damping(v, p, before)
         if s == 0 or not merged:
-            by_sphere = damp(x, v, now, 0.5 * h, decay, p, odd)
-            if with_account:
-                close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
-            take_kick(x, v, a, now, 0.5 * h, p, True, room, with_account, before, ledger)
+            kick(x, v, a, now, 0.5 * h, decay, room, p, odd, False, with_account, ledger)
         drift(x, v, h, p, f, spare, middle, with_account, ledger)
         set_pins(x, v, now + h, p)
         accelerate(x, v, now + h, p, False, f, a)
         if merged and s + 1 < steps:
             cross_gap(v, a, 0.5 * h, gap, p, not odd)
             continue
-        take_kick(x, v, a, now + h, 0.5 * h, p, False, room, with_account, before, ledger)
+        kick(x, v, a, now + h, 0.5 * h, decay, room, p, not odd, True, with_account, ledger)
         if with_account:
-            kinetic = open_damping(v, p, before)
-        by_sphere = damp(x, v, now + h, 0.5 * h, decay, p, not odd)
-        if with_account:
-            close_damping(x, v, p, 0.5 * h, kinetic, by_sphere, before, ledger)
             add_power(x, v, now + h, p, False, 0.5 * h, ledger)
     return steps + 1
 

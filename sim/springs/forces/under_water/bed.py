@@ -42,7 +42,7 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 @kernel(allocates=False)
 def damp_part(x, v, s, p, i):
-    """Friction on part i; the other damping of the bed is in `sim.springs.points.line_kick`."""
+    """Friction on part i; the other damping of the bed is in `sim.springs.kicks.lines`."""
     n, j = p.cols, p.places[i, 0]
     depth = p.bed - x[2 * n + j]
     if depth <= 0.0:

@@ -6,7 +6,7 @@ import pytest
 
 from sim.jit import kernel
 from sim.springs import INTEGRATORS, Air, Contact, Grab, PinPath, State, advance, cloth, rope
-from sim.springs.damping import damp, make_decay
+from sim.springs.damping import damp_motion, damp_others, make_decay
 from sim.springs.points.acceleration import accelerate, make_scratch, set_acceleration
 from sim.springs.state import energy
 from tests import naive
@@ -20,7 +20,8 @@ def set_undamped(x, v, t, p, a):
 
 @kernel
 def damp_for(x, v, t, s, p, reverse):
-    damp(x, v, t, s, make_decay(p, s), p, reverse)
+    damp_motion(x, v, s, make_decay(p, s), p, reverse)
+    damp_others(x, v, t, s, p, reverse)
 
 
 def shaken(net, seed=1):

@@ -28,10 +28,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.jit import kernel
+from sim.springs.analysis.energy import kinetic_energy, open_damping
 from sim.springs.forces.under_water.water import submerged, water_at
+from sim.springs.kicks.line_solver import factorise, solve_factorised
 from sim.springs.laws import damping, tension
-from sim.springs.points.arrays import by_net, link_at, span
 from sim.springs.pins import set_paths
+from sim.springs.points.arrays import link_at, span
 from sim.springs.points.each_link import TINY, stretch
 from sim.springs.points.line_arrays import BODY_MASS, DAMPING
 from sim.springs.points.line_points import (
@@ -39,12 +41,13 @@ from sim.springs.points.line_points import (
     carried_motion,
     matrix_times,
     moment_of,
+    over_mass,
     set_carried,
     set_six,
     six,
+    symmetric_times,
     tangent_at,
 )
-from sim.springs.points.line_solver import factorise, solve_factorised
 from sim.springs.points.vector_ops import add_scaled
 
 GAMMA, STRETCH = 1.0 - math.sqrt(0.5), 1.0 + math.sqrt(2.0)
@@ -53,8 +56,8 @@ MAX_ROUNDS = 40
 NONE, ACTS, LIMITED = 0, 1, 2  # damping of a link
 
 
-class KickRoom(NamedTuple):
-    """Arrays of `kick` of lines: n points, nodes first."""
+class LinesRoom(NamedTuple):
+    """Arrays of `kick_lines`: n points, nodes first."""
 
     flow: NDArray[np.float64]  # (3 n,) water's velocity at nodes
     along: NDArray[np.float64]  # (parts, 3) tangents
@@ -73,13 +76,14 @@ class KickRoom(NamedTuple):
 
 
 @kernel
-def make_line_room(p):
+def make_lines_system(p):
     n, links = p.cols, p.ends.shape[0]
     parts, bodies = p.places.shape[0], p.bodies.shape[0]
-    return KickRoom(
+    values = np.zeros(links + p.rows_below.shape[0])
+    return LinesRoom(
         np.zeros(3 * n), np.zeros((parts, 3)), np.zeros((parts, 4)), np.zeros(n), np.zeros(6 * n),
-        np.zeros((bodies, 36)), np.zeros((links, 6)), np.zeros(links, np.int64), np.zeros(links + p.rows_below.shape[0]),
-        np.zeros(links), np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n),
+        np.zeros((bodies, 36)), np.zeros((links, 6)), np.zeros(links, np.int64), values, np.zeros(links),
+        np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n),
     )  # fmt: skip
 
 
@@ -140,13 +144,6 @@ def invert(m, b):
                     m[b, 6 * i + j] -= part * m[b, 6 * k + j]
 
 
-@kernel(inline=True)
-def node_times(m, n, j, x, y, z):
-    """The symmetric matrix of node j, six numbers in m (6 n,), times (x, y, z)."""
-    xy, xz, yz = m[n + j], m[2 * n + j], m[4 * n + j]
-    return m[j] * x + xy * y + xz * z, xy * x + m[3 * n + j] * y + yz * z, xz * x + yz * y + m[5 * n + j] * z
-
-
 @kernel(noalias=True, allocates=False)
 def set_mobilities(p, tau, room):
     """Set E^-1 of nodes and bodies. p.inertia holds M^-1 of the nodes."""
@@ -175,7 +172,7 @@ def set_mobilities(p, tau, room):
                 1.0 if k == 3 else 0.0, 1.0 if k == 4 else 0.0, 1.0 if k == 5 else 0.0,
             )  # fmt: skip
             ux, uy, uz = carried_motion(p, i, unit)
-            fx, fy, fz = node_times(m, n, j, ux, uy, uz)
+            fx, fy, fz = symmetric_times(m, n, j, ux, uy, uz)
             mx, my, mz = moment_of(p, i, fx, fy, fz)
             room.of_bodies[b, k] += fx
             room.of_bodies[b, 6 + k] += fy
@@ -191,9 +188,10 @@ def set_mobilities(p, tau, room):
         # E^-1 = (I + M^-1 C)^-1 M^-1 with C in m, so that neither M nor a C of 0 is inverted.
         cxx, cxy, cxz, cyy, cyz, czz = m[j], m[n + j], m[2 * n + j], m[3 * n + j], m[4 * n + j], m[5 * n + j]
         wxx, wxy, wxz, wyy, wyz, wzz = w[j], w[n + j], w[2 * n + j], w[3 * n + j], w[4 * n + j], w[5 * n + j]
-        a, b, c = 1.0 + wxx * cxx + wxy * cxy + wxz * cxz, wxx * cxy + wxy * cyy + wxz * cyz, wxx * cxz + wxy * cyz + wxz * czz
-        d, e, f = wxy * cxx + wyy * cxy + wyz * cxz, 1.0 + wxy * cxy + wyy * cyy + wyz * cyz, wxy * cxz + wyy * cyz + wyz * czz
-        g, h, i = wxz * cxx + wyz * cxy + wzz * cxz, wxz * cxy + wyz * cyy + wzz * cyz, 1.0 + wxz * cxz + wyz * cyz + wzz * czz
+        a, d, g = over_mass(p, j, cxx, cxy, cxz)
+        b, e, h = over_mass(p, j, cxy, cyy, cyz)
+        c, f, i = over_mass(p, j, cxz, cyz, czz)
+        a, e, i = 1.0 + a, 1.0 + e, 1.0 + i
         aa, ab, ac = e * i - f * h, c * h - b * i, b * f - c * e
         over = 1.0 / (a * aa + d * ab + g * ac)
         ba, bb, bc = f * g - d * i, a * i - c * g, c * d - a * f
@@ -249,7 +247,7 @@ def set_pushed(v, y, p, room):
         mx, my, mz = moment_of(p, i, fx, fy, fz)
         add_six(w, n, p.nodes + 2 * p.carried[i, 1], (fx, fy, fz, mx, my, mz))
     for j in range(p.nodes):
-        dx, dy, dz = node_times(room.mobility, n, j, w[j], w[n + j], w[2 * n + j])
+        dx, dy, dz = symmetric_times(room.mobility, n, j, w[j], w[n + j], w[2 * n + j])
         if p.inverse_masses[j] == 0.0:
             dx = dy = dz = 0.0
         v[j], v[n + j], v[2 * n + j] = y[j] + dx, y[n + j] + dy, y[2 * n + j] + dz
@@ -282,14 +280,12 @@ def set_link_matrix(p, tau, room):
         fairlead, sign = p.products[m, 6], tau if (p.ends[q, 0] == j) == (p.ends[k, 0] == other) else -tau
         nx, ny, nz = room.links[k, 0], room.links[k, 1], room.links[k, 2]
         if fairlead < 0:
-            nx, ny, nz = node_times(room.mobility, p.cols, j, nx, ny, nz)
+            nx, ny, nz = symmetric_times(room.mobility, p.cols, j, nx, ny, nz)
         else:
             mx, my, mz = moment_of(p, fairlead, nx, ny, nz)
             moved = matrix_times(room.of_bodies, p.carried[fairlead, 1], 0, (nx, ny, nz, mx, my, mz))
             nx, ny, nz = carried_motion(p, p.products[m, 5], moved)
-        room.values[p.products[m, 0]] += sign * (
-            nx * room.links[q, 0] + ny * room.links[q, 1] + nz * room.links[q, 2]
-        )
+        room.values[p.products[m, 0]] += sign * (nx * room.links[q, 0] + ny * room.links[q, 1] + nz * room.links[q, 2])
 
 
 @kernel(noalias=True, allocates=False)
@@ -311,9 +307,8 @@ def is_settled(v, p, tau, room):
     for q in range(p.ends.shape[0]):
         if room.state[q] == ACTS and not p.slack_damping and room.links[q, 5] < -room.links[q, 4]:
             room.state[q], same = LIMITED, False
-        elif room.state[q] == LIMITED:
-            if rate_of(v, p, room, q) > -room.links[q, 4] * room.links[q, 3]:
-                room.state[q], same = ACTS, False
+        elif room.state[q] == LIMITED and rate_of(v, p, room, q) > -room.links[q, 4] * room.links[q, 3]:
+            room.state[q], same = ACTS, False
     return same and change < SETTLED
 
 
@@ -393,6 +388,20 @@ def kick_lines(x, v, a, t, s, p, begins, room):
     return work + holders_work(v, GAMMA * s, p, room)
 
 
-make_no_room = kernel(lambda p: None, inline=True)
-# Arrays of `kick_lines`.
-make_kick_room = by_net(rope=make_no_room, grid=make_no_room, lines=make_line_room)
+@kernel(noalias=True, allocates=False)
+def kick_lines_with_account(x, v, a, t, s, p, begins, room, before, ledger):
+    """`kick_lines`, and book what its damping took: what is missing of the work of a at the mean velocity.
+
+    before: scratch (3 n,).
+    """
+    kinetic = open_damping(v, p, before)
+    put_in = kick_lines(x, v, a, t, s, p, begins, room)
+    lost = kinetic - kinetic_energy(v, p)
+    # a M u = 1/4 (K(u + a) - K(u - a)) of the quadratic K = u M u; `kinetic_energy` is half of it.
+    for j in range(v.shape[0]):
+        before[j] = 0.5 * (before[j] + v[j]) + s * a[j]
+    lost += 0.5 * kinetic_energy(before, p)
+    add_scaled(before, -2.0 * s, a)
+    lost -= 0.5 * kinetic_energy(before, p)
+    ledger[0] += lost + put_in
+    ledger[1] += put_in

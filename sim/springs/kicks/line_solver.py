@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from sim.jit import kernel
 
-
 # Links that meet at a free node or at a body: link, node and fairlead or -1.
 Meeting = dict[tuple[str, int], list[tuple[int, int, int]]]
 
@@ -48,7 +47,7 @@ def coupling_of(ends: NDArray[np.int64], free: NDArray[np.bool_], carried: NDArr
         rows = {int(row_of[q]) for q, _, _ in links}
         for row in rows:
             below[row] |= {other for other in rows if other > row}
-    for row, others in enumerate(below):
+    for others in below:
         if others:
             first = min(others)
             below[first] |= others - {first}

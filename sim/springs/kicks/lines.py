@@ -18,7 +18,8 @@ Drag is c (water's velocity - u) with c = D |water's velocity - u|, by Newton's 
 constant, where c alone would swing for ever. A link that only pulls takes f = -tension where b r would be less.
 
 Links turn while the step drifts. A stiff damper would resist a rate that is not there, so each stage has the directions
-of its own time, by the velocities at the start of the kick, and the velocities of moved nodes of that time.
+of its own time, by the velocities of the drift, and the velocities of moved nodes of that time. The kick before a drift
+knows these from its first stage, the one after it from its start.
 """
 
 import math
@@ -70,6 +71,7 @@ class LinesRoom(NamedTuple):
     values: NDArray[np.float64]  # of the matrix
     y: NDArray[np.float64]  # (links,)
     start: NDArray[np.float64]  # (3 n,) velocities before the kick
+    turning: NDArray[np.float64]  # (3 n,) by which links turn: those of the drift, as far as they are known
     w: NDArray[np.float64]  # (3 n,)
     pushes: NDArray[np.float64]  # (3 n,) impulses on nodes and bodies
     scratch: NDArray[np.float64]  # (3 n,)
@@ -83,7 +85,7 @@ def make_lines_system(p):
     return LinesRoom(
         np.zeros(3 * n), np.zeros((parts, 3)), np.zeros((parts, 4)), np.zeros(n), np.zeros(6 * n),
         np.zeros((bodies, 36)), np.zeros((links, 6)), np.zeros(links, np.int64), values, np.zeros(links),
-        np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n),
+        np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n), np.zeros(3 * n),
     )  # fmt: skip
 
 
@@ -319,7 +321,7 @@ def open_stage(x, t, offset, p, room):
     set_paths(room.scratch, room.w, t + offset, p)
     for q in range(p.ends.shape[0]):
         rx, ry, rz = span(x, n, p.ends[q, 0], p.ends[q, 1])
-        du, dv, dw = span(room.start, n, p.ends[q, 0], p.ends[q, 1])
+        du, dv, dw = span(room.turning, n, p.ends[q, 0], p.ends[q, 1])
         rx, ry, rz = rx + offset * du, ry + offset * dv, rz + offset * dw
         over = 1.0 / math.sqrt(rx * rx + ry * ry + rz * rz + TINY)
         room.links[q, 0], room.links[q, 1], room.links[q, 2] = over * rx, over * ry, over * rz
@@ -377,12 +379,14 @@ def kick_lines(x, v, a, t, s, p, begins, room):
     """
     rounds, begin = 2 if open_kick(x, v, t, p, room) else 1, 0.0 if begins else -s
     for j in range(v.shape[0]):
-        room.start[j] = room.w[j] = v[j]
+        room.start[j] = room.turning[j] = room.w[j] = v[j]
     open_stage(x, t, begin + GAMMA * s, p, room)
     take_stage(v, a, GAMMA * s, p, room, rounds)
     work = holders_work(v, (1.0 - GAMMA) * s, p, room)
     for j in range(v.shape[0]):
-        room.w[j] = room.start[j] + STRETCH * (v[j] - room.start[j])
+        gained = v[j] - room.start[j]
+        room.w[j] = room.start[j] + STRETCH * gained
+        room.turning[j] += gained / GAMMA if begins else 0.0
     open_stage(x, t, begin + s, p, room)
     take_stage(v, a, GAMMA * s, p, room, rounds)
     return work + holders_work(v, GAMMA * s, p, room)

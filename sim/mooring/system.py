@@ -22,13 +22,14 @@ from sim.mooring.rest.statics import Rest, at_rest
 from sim.mooring.tangent import motion_of
 from sim.springs.forces import check_forces, declared
 from sim.springs.integrators import Integrator, discover
+from sim.springs.kicks.line_solver import coupling_of
 from sim.springs.points.line_arrays import (
     BODY_MASS,
+    BODY_ROW,
     DAMPING,
-    DECAY_PARTS,
-    DECAY_RATES,
-    DECAY_SHAPES,
     INVERSE_MASS,
+    INVERSE_ROOT,
+    MASS_ROOT,
     PART,
     PLACE,
     STIFFNESS,
@@ -69,7 +70,9 @@ class System(MooringParts):
     bed_stiffness: float = 3e6  # [Pa/m]; 0: no bed
     bed_damping: float = 3e5  # [Pa s/m]
     friction: float = 0.0  # Coulomb coefficient
-    slack_damping: bool = False  # internal damping acts in slack links that lengthen, too; in MoorDyn in all
+    # False: a slack segment has no tension, and a taut one never pushes. True: internal damping acts at any length, as
+    # in MoorDyn, so that a slack segment pulls where it lengthens and pushes where it shortens.
+    slack_damping: bool = False
     current: Vector = (0.0, 0.0, 0.0)  # [m/s]; it pushes lines and points, but no body
     waves: Waves | None = None  # on the same water; None: still water
     forces: tuple[Any, ...] = ()  # numbers of forces of sim/springs/forces, at most one of each
@@ -239,6 +242,7 @@ class System(MooringParts):
             curves=curves.table,
             ends=ends,
             links=links,
+            **coupling_of(ends, inverse > 0.0, carried)._asdict(),
             places=places,
             parts=parts,
             bed=-self.depth,
@@ -272,7 +276,7 @@ class System(MooringParts):
                 body = self.bodies[index[point.body]]
                 carried.append((i, index[point.body]))
                 arms.append(np.subtract(point.position, body.place))
-        rows = np.zeros((len(self.bodies), DECAY_RATES + 6))
+        rows = np.zeros((len(self.bodies), BODY_ROW))
         for b, body in enumerate(self.bodies):
             full = np.array(body.mass, dtype=np.float64)
             for (node, owner), arm in zip(carried, arms, strict=True):
@@ -284,14 +288,11 @@ class System(MooringParts):
             rows[b, STIFFNESS:DAMPING] = np.ravel(body.stiffness)
             damping = np.zeros((6, 6)) if body.damping is None else np.array(body.damping, dtype=np.float64)
             rows[b, DAMPING:PLACE] = damping.ravel()
-            rows[b, PLACE:DECAY_SHAPES] = body.place
-            # M^-1 B = M^-1/2 U diag(rates) U^T M^1/2 with M^-1/2 B M^-1/2 = U diag(rates) U^T
+            rows[b, PLACE:MASS_ROOT] = body.place
             squares, axes = np.linalg.eigh(full)
-            root, inverse_root = (axes * squares**power @ axes.T for power in (0.5, -0.5))
-            rates, shapes = np.linalg.eigh(inverse_root @ damping @ inverse_root)
-            rows[b, DECAY_SHAPES:DECAY_PARTS] = (inverse_root @ shapes).ravel()
-            rows[b, DECAY_PARTS:DECAY_RATES] = (shapes.T @ root).ravel()
-            rows[b, DECAY_RATES:] = np.maximum(rates, 0.0)
+            root, inverse_root = (axes * squares**power @ axes.T for power in (-0.5, 0.5))
+            rows[b, MASS_ROOT:INVERSE_ROOT] = root.ravel()
+            rows[b, INVERSE_ROOT:] = inverse_root.ravel()
         return (
             np.array(carried, dtype=np.int64).reshape(-1, 2),
             np.array(arms, dtype=np.float64).reshape(-1, 3),

@@ -46,8 +46,8 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
     """The System of a MoorDyn file of version 1 or 2.
 
     Coupled bodies become coupled points at their places. A free one becomes a Body, which turns by small angles with
-    the stiffness that its lines at rest give it. Rods become points or stiff lines: see `rods`. Slack links
-    are damped too, as in MoorDyn. Steady forces on points are in N.
+    the stiffness that its lines at rest give it. Rods become points or stiff lines: see `rods`. Internal
+    damping acts in slack links, too, as in MoorDyn: `System.slack_damping` is True. Steady forces on points are in N.
 
     say: takes a line on each omitted part of the file. None: a UserWarning on those that may change forces.
     content: text to use instead of the file's, as of `changed_moordyn`.

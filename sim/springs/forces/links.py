@@ -9,10 +9,9 @@ from sim.springs.forces.matrices import DAMPING, FRICTION, STIFFEST, TRANSVERSE
 from sim.springs.forces.record import Force, of_nets
 from sim.springs.laws import damping as damping_of
 from sim.springs.laws import energy as link_energy
-from sim.springs.laws import force_density, lost_share, stiffness, tension
+from sim.springs.laws import force_density, stiffness, tension
 from sim.springs.points.arrays import add_pair, by_net, is_moving, link_at, push, span
 from sim.springs.points.each_link import TINY, acting_damping, each_link, stretch
-from sim.springs.points.line_points import kick, mobility
 
 
 @kernel(noalias=True, inline=True)
@@ -99,20 +98,6 @@ def accelerate(link, x, v, t, p, with_damping, f, a):
         s += damping * rate / length
     push(p, a, link.a, s * rx, s * ry, s * rz)
     push(p, a, link.b, -s * rx, -s * ry, -s * rz)
-
-
-@each_link("sum")
-def damp(link, x, v, t, s, p, reverse):
-    """Damp lines: the closing speed of a link's nodes decays exactly. For nets: `sim.springs.damping`."""
-    rx, ry, rz, _ = stretch(x, p, link)
-    length, rate, damping = lengthening(x, v, p, link)
-    rx, ry, rz = rx / length, ry / length, rz / length
-    both = mobility(p, link.a, rx, ry, rz) + mobility(p, link.b, rx, ry, rz)
-    impulse = lost_share(link.damping, damping, both, s) * rate
-    if impulse != 0.0:
-        kick(p, v, link.a, impulse * rx, impulse * ry, impulse * rz)
-        kick(p, v, link.b, -impulse * rx, -impulse * ry, -impulse * rz)
-    return 0.0
 
 
 @each_link("sum")
@@ -239,7 +224,7 @@ def tangent(link, x, u, t, p, part, longest, out):
 
 
 FORCE = Force(
-    "links", rank=10, accelerate=of_nets(lines=accelerate), damp=of_nets(lines=damp),
-    energy=energy, power=power, pins_power=pins_power, tangent=tangent, stores="elastic",
+    "links", rank=10, accelerate=of_nets(lines=accelerate), energy=energy, power=power,
+    pins_power=of_nets(springs=pins_power), tangent=tangent, stores="elastic",
     is_smooth=True,
 )  # fmt: skip

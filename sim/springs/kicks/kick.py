@@ -29,6 +29,7 @@ from sim.springs.kicks.dampers import (
     set_whole,
 )
 from sim.springs.kicks.formula import shares
+from sim.springs.kicks.lines import kick_lines, kick_lines_with_account, make_lines_system
 from sim.springs.kicks.sheet import make_sheet, solve_sheet
 from sim.springs.points.arrays import by_net, mass_at
 from sim.springs.points.each_link import each_link
@@ -84,7 +85,7 @@ class KickRoom(NamedTuple):
     load: NDArray[np.float64]  # (3 points,) accelerations by all but linear dampers [m/s2]
     force: NDArray[np.float64]  # (3 points,) mean forces of dampers [N]
     dampers: Dampers
-    system: Any  # `Chain` of a rope, `Sheet` of another net
+    system: Any  # `Chain` of a rope, `Sheet` of another net, `LinesRoom` of lines
 
 
 make_system = by_net(rope=make_chain, grid=kernel(lambda p, s, wanted: make_sheet(p, wanted)))
@@ -112,7 +113,7 @@ def make_net_room(x, p, s, kind, with_account):
 def make_lines_room(x, p, s, kind, with_account):
     none = np.empty(0)
     before = np.empty(account_size(x, with_account))
-    return KickRoom(kind, none, none, none, before, none, none, make_dampers(p, False), 0)
+    return KickRoom(kind, none, none, none, before, none, none, make_dampers(p, False), make_lines_system(p))
 
 
 make_room = by_net(rope=make_net_room, grid=make_net_room, lines=make_lines_room)
@@ -227,9 +228,14 @@ def kick_inside_net(x, v, a, t, s, closing, room, p, with_account, ledger):
         close_kick(v, a, s, p, kinetic, put_in, room.mean, ledger)
 
 
-kick_inside_lines = kernel(
-    lambda x, v, a, t, s, closing, room, p, with_account, ledger: add_scaled(v, s, a), inline=True
-)  # fmt: skip
+@kernel(inline=True)
+def kick_inside_lines(x, v, a, t, s, closing, room, p, with_account, ledger):
+    if with_account:
+        kick_lines_with_account(x, v, a, t, s, p, not closing, room.system, room.before, ledger)
+    else:
+        kick_lines(x, v, a, t, s, p, not closing, room.system)
+
+
 kick_inside = by_net(rope=kick_inside_net, grid=kick_inside_net, lines=kick_inside_lines)
 
 

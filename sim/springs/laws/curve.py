@@ -3,6 +3,8 @@
 Between two rows of a table the tension is linear in the strain, and beyond the last as steep as before it. A table
 begins at strain 0 without tension, and both numbers grow from row to row: so the energy is convex, and to each tension
 belongs one length.
+
+Damping acts as in `slack`, or as in MoorDyn: whole at any length, so that a slack link resists its ends like a dashpot.
 """
 
 from typing import NamedTuple
@@ -21,7 +23,7 @@ class TensionCurve(NamedTuple):
     table: NDArray[np.float64]  # (rows, 3) of all links: strain, tension [N], energy per length [N]
     first: float  # row of the link's own table
     rows: float  # their number; 0: a constant stiffness
-    slack_damping: bool  # damping acts in slack links, too
+    slack_damping: bool  # as in MoorDyn
 
 
 @kernel(allocates=False)
@@ -60,9 +62,9 @@ def energy(law, k, rest, length):
 
 @kernel(inline=True)
 def damping(law, k, b, rest, length, rate):
-    if law.slack_damping or length > rest:
-        return slack.without_push(b, length * force_density(law, k, rest, length), rate)
-    return 0.0
+    if law.slack_damping:
+        return b
+    return slack.without_push(b, length * force_density(law, k, rest, length), rate) if length > rest else 0.0
 
 
 OF_LINES = Law(

@@ -23,10 +23,10 @@ PART = np.dtype([
     ("bed_area", "f8"),  # [m^2]
     ("height", "f8"),  # [m] of its volume
 ])  # fmt: skip
-# Where a row of `bodies` holds its (6, 6) matrices, flat, and its place. With its mass M and damping B,
-# M^-1 B = DECAY_SHAPES diag(DECAY_RATES) DECAY_PARTS.
+# Where a row of `bodies` holds its (6, 6) matrices, flat, and its place. MASS_ROOT is the root of the inverse mass, and
+# INVERSE_ROOT the inverse of that.
 INVERSE_MASS, BODY_MASS, STIFFNESS, DAMPING, PLACE = 0, 36, 72, 108, 144
-DECAY_SHAPES, DECAY_PARTS, DECAY_RATES = 147, 183, 219
+MASS_ROOT, INVERSE_ROOT, BODY_ROW = 147, 183, 219
 
 Record = TypeVar("Record")
 # A kernel is compiled for the types of its record's fields: each field always gets the type that it declares.
@@ -72,10 +72,15 @@ class LineArrays(NamedTuple):
     forces: Any  # `Declared`: numbers of the forces that have any, see sim/springs/forces
     damped: bool  # any damping of links
     axial: bool  # True: it acts along them
-    slack_damping: bool  # it acts in slack links, too
+    slack_damping: bool  # it acts whole in slack links, too, as in MoorDyn
     ends: NDArray[np.int64]  # (links, 2) nodes
     # (links, 5): rest length [m], stiffness [N/m], damping [N s/m], first row and number of rows in `curves`, or 0
     links: NDArray[np.float64]
+    link_order: NDArray[np.int64]  # this one and the next four: `Coupling` of `sim.springs.kicks.line_solver`
+    columns_below: NDArray[np.int64]
+    rows_below: NDArray[np.int64]
+    link_targets: NDArray[np.int64]
+    products: NDArray[np.int64]
     curves: NDArray[np.float64]  # (rows, 3): strain, tension [N], energy per length [N], see `sim.springs.laws.curve`
     bends: NDArray[np.float64]  # (bends, 12): see `sim.springs.forces.under_water.bending`
     loads: NDArray[np.float64]  # (n, 3) [N] steady forces on nodes, or (0, 3) without any
@@ -93,7 +98,7 @@ class LineArrays(NamedTuple):
     paths: NDArray[np.float64]  # (pins, 5, 3): four coefficients, and the start time in [4, 0]
     carried: NDArray[np.int64]  # (fairleads, 2): node, body
     arms: NDArray[np.float64]  # (fairleads, 3) [m] from the body's reference point
-    # (bodies, 225): inverse mass, mass, stiffness and damping matrix; place at rest [m]; how damping decays
+    # (bodies, 219): inverse mass, mass, stiffness and damping matrix; place at rest [m]; roots of the inverse mass
     bodies: NDArray[np.float64]
     steady: NDArray[np.float64]  # (bodies, 6) [N, N m] steady forces on bodies
     # (bodies, 12, waves) [N/m, N]: real, then imaginary part of X, see `sim.springs.forces.under_water.bodies`

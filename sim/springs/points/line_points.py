@@ -14,7 +14,7 @@ from sim.jit import kernel
 from sim.springs.pins import set_paths
 from sim.springs.points.arrays import span
 from sim.springs.points.each_link import TINY
-from sim.springs.points.line_arrays import DECAY_PARTS, DECAY_SHAPES, INVERSE_MASS, PLACE
+from sim.springs.points.line_arrays import INVERSE_MASS, INVERSE_ROOT, MASS_ROOT, PLACE
 
 
 @kernel(inline=True)
@@ -151,11 +151,16 @@ def set_carried_mass(p, i):
 
 
 @kernel(inline=True)
+def symmetric_times(m, n, j, x, y, z):
+    """The symmetric matrix of point j, six numbers in m (6 n,), times (x, y, z)."""
+    xy, xz, yz = m[n + j], m[2 * n + j], m[4 * n + j]
+    return m[j] * x + xy * y + xz * z, xy * x + m[3 * n + j] * y + yz * z, xz * x + yz * y + m[5 * n + j] * z
+
+
+@kernel(inline=True)
 def over_mass(p, j, x, y, z):
     """M^-1 (x, y, z) of node j, by `p.inertia`."""
-    n, w = p.cols, p.inertia
-    xy, xz, yz = w[n + j], w[2 * n + j], w[4 * n + j]
-    return w[j] * x + xy * y + xz * z, xy * x + w[3 * n + j] * y + yz * z, xz * x + yz * y + w[5 * n + j] * z
+    return symmetric_times(p.inertia, p.cols, j, x, y, z)
 
 
 @kernel(inline=True)
@@ -230,7 +235,7 @@ def set_root_motion(y, p, out):
         out[j], out[n + j], out[2 * n + j] = xx * a, xy * a + yy * b, xz * a + yz * b + zz * c
     for b in range(p.bodies.shape[0]):
         j = p.nodes + 2 * b
-        set_six(out, n, j, matrix_times(p.bodies, b, DECAY_SHAPES, six(y, n, j)))
+        set_six(out, n, j, matrix_times(p.bodies, b, MASS_ROOT, six(y, n, j)))
     set_carried(out, p)
 
 
@@ -245,9 +250,8 @@ def turn_to_root_forces(f, p):
         f[j], f[n + j], f[2 * n + j] = xx * a + xy * b + xz * c, yy * b + yz * c, zz * c
     for b in range(p.bodies.shape[0]):
         j = p.nodes + 2 * b
-        # DECAY_SHAPES is such an L of the body's, and DECAY_PARTS its inverse.
         moved = matrix_times(p.bodies, b, INVERSE_MASS, six(f, n, j))
-        set_six(f, n, j, matrix_times(p.bodies, b, DECAY_PARTS, moved))
+        set_six(f, n, j, matrix_times(p.bodies, b, INVERSE_ROOT, moved))
 
 
 @kernel(inline=True)

@@ -73,7 +73,7 @@ def test_an_end_on_the_bed_has_no_weight_and_one_above_it_has():
 
 @pytest.mark.parametrize("slack_damping", [False, True])
 @pytest.mark.parametrize("seed", range(3))
-def test_no_link_pushes_however_fast_it_shortens(seed, slack_damping):
+def test_no_link_pushes_however_fast_it_shortens_except_by_the_law_of_moordyn(seed, slack_damping):
     rng = np.random.default_rng(seed)
     kind = LineType("wire", 0.02, 1.0, 4000.0, 50.0)
     points = (Point(1, "fixed", (0.0, 0.0, 0.0)), Point(2, "fixed", (0.0, 4.0, 0.0)))
@@ -85,14 +85,17 @@ def test_no_link_pushes_however_fast_it_shortens(seed, slack_damping):
         x, v = rng.normal(0.0, 0.5, 3 * n), rng.normal(0.0, 50.0, 3 * n)
         tension, a = np.empty(8), np.empty(3 * n)
         set_tensions(x, v, p, tension)
-        assert tension.min() >= 0.0
         r, dv = (np.diff(one.reshape(3, n)[:, system.nodes_of[1]]) for one in (x, v))
         length = np.linalg.norm(r, axis=0)
         rest, k, c = p.links[0, :3]
         elastic = k * np.maximum(length - rest, 0.0)
-        damping = np.where((length > rest) | slack_damping, c * (r * dv).sum(axis=0) / length, 0.0)
-        assert tension == pytest.approx(np.maximum(elastic + damping, 0.0), rel=1e-9, abs=1e-9)
-        pushes += int((elastic + damping < 0.0).sum())
+        damping = c * (r * dv).sum(axis=0) / length
+        expected = elastic + damping
+        pushes += int((expected < 0.0).sum())
+        if not slack_damping:
+            expected = np.where(length > rest, np.maximum(expected, 0.0), 0.0)
+            assert tension.min() >= 0.0
+        assert tension == pytest.approx(expected, rel=1e-9, abs=1e-9)
         set_acceleration(x, v, 0.0, p, a)
         inner, pull = system.nodes_of[1][1:-1], tension * r / length
         expected = np.diff(pull) / p.mass[inner] + [[0.0], [0.0], [-9.81]]
@@ -101,12 +104,15 @@ def test_no_link_pushes_however_fast_it_shortens(seed, slack_damping):
 
 
 @pytest.mark.parametrize("integrator", ["leapfrog", "rk4"])
-def test_a_chain_that_snaps_and_goes_slack_never_pushes(integrator):
-    """Its damping in slack links, of a file, pushed by up to 7 kN; the account of the energy balances."""
-    system = dataclasses.replace(chain(8, -2.0), slack_damping=True)
+@pytest.mark.parametrize("slack_damping", [False, True])
+def test_a_chain_that_snaps_and_goes_slack_pushes_only_by_the_law_of_moordyn(integrator, slack_damping):
+    """The account of the energy balances."""
+    system = dataclasses.replace(chain(8, -2.0), slack_damping=slack_damping)
     motion = {2: Shaking((195.0, 0.0, -2.0), 0, 12.0, 4.0)}
     run = simulate(system, 6.0, 121, 2.5e-4, integrator=integrator, motion=motion, with_account=True)
-    assert run.tension[1].min() >= 0.0
-    assert (run.tension[1] == 0.0).any()
+    if slack_damping:
+        assert run.tension[1].min() < -1000.0
+    else:
+        assert run.tension[1].min() == 0.0
     assert math.isfinite(run.tension[1].max())
     assert np.abs(run.energy.error).max() < 2e-3 * np.abs(run.energy.work).max()

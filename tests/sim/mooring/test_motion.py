@@ -23,9 +23,10 @@ from sim.mooring import (
 from sim.mooring.motion import FARTHEST, PIECE, MooringFrames
 from sim.mooring.rest.statics import Rest
 from sim.springs.analysis.energy import energies, power
-from sim.springs.damping import damp_lines
 from sim.springs.integrators import integrator_named
+from sim.springs.kicks.lines import kick_lines, make_lines_system
 from sim.springs.points.acceleration import set_acceleration
+from sim.springs.points.line_points import set_inverse_masses
 from sim.water import Water
 from sim.waves import Waves
 from tests.sim.mooring.systems import Shaking, chain_on_bed, floating_body, in_vacuum, taut_rope
@@ -57,6 +58,14 @@ def test_tension_of_a_shaken_line_is_that_of_moordyn(system, motion, period, mea
     assert found[1] == pytest.approx(first, rel=0.02)
 
 
+def damped_alone(p, x, v, s) -> np.ndarray:
+    """The velocities after damping alone for a time s [s]."""
+    found = v.copy()
+    set_inverse_masses(x, p)
+    kick_lines(x, found, np.zeros_like(found), 0.0, s, p, True, make_lines_system(p))
+    return found
+
+
 @pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, 0.6, 0.8)])
 def test_water_acts_on_a_float_by_its_volume_and_areas_alike_in_all_directions(way):
     hair = LineType("hair", 1e-9, 1e-9, 1.0)  # slack, and nothing beside the float
@@ -70,8 +79,9 @@ def test_water_acts_on_a_float_by_its_volume_and_areas_alike_in_all_directions(w
     assert a[1::2] == pytest.approx((np.array((0.0, 0.0, lift)) - drag * 2.0 * v[1::2]) / heavy, rel=1e-6)
     assert energies(x, v, 0.0, p)[2] == pytest.approx(45.0 * lift, rel=1e-6)
     assert power(x, v, 0.0, p, True)[0] == pytest.approx(drag * 2.0**3, rel=1e-6)
-    damp_lines(x, v, 0.0, 0.3, p, False)
-    assert v[1::2] == pytest.approx(2.0 * np.array(way) / (1.0 + drag * 2.0 * 0.3 / heavy), rel=1e-6)
+    for _ in range(30):
+        v = damped_alone(p, x, v, 0.01)
+    assert v[1::2] == pytest.approx(2.0 * np.array(way) / (1.0 + drag * 2.0 * 0.3 / heavy), rel=1e-4)
 
 
 @pytest.mark.parametrize("integrator", ["leapfrog", "rk4"])
@@ -233,7 +243,8 @@ def test_a_line_diverges_at_the_step_of_the_gauge(lines, integrator):
         rest = system.at_rest()
         h = critical_step(system, integrator, State.still(rest.nodes))
         assert not grows(system, rest, integrator, 0.95 * h)
-        assert grows(system, rest, integrator, 1.05 * h)
+        # Inside the leapfrog's kick damping makes longer steps stable, at most twice as long here.
+        assert grows(system, rest, integrator, (2.0 if integrator == "leapfrog" else 1.05) * h)
 
 
 def test_a_path_is_made_of_short_pieces_and_one_number_out_of_bounds_ends_a_run():
@@ -335,8 +346,8 @@ def test_a_moved_point_needs_no_velocity_and_one_without_motion_stays():
 
 
 @pytest.mark.parametrize("rate", [0.3, 20.0, 2e3, 2e5])
-def test_damping_of_a_body_decays_exactly_and_limits_no_step(rate):
-    """By a full damping matrix, against the closed form exp(-M^-1 B t) (scipy's expm), in one step of any length."""
+def test_damping_of_a_body_decays_as_the_closed_form_and_limits_no_step(rate):
+    """By a full damping matrix, against exp(-M^-1 B t) (scipy's expm): of second order, and stable in any step."""
     rng = np.random.default_rng(3)
     square = rng.normal(size=(6, 6))
     mass, damping = np.diag([2e4, 2e4, 3e4, 8e4, 8e4, 9e4]), rate * 1e4 * (square @ square.T)
@@ -348,9 +359,16 @@ def test_damping_of_a_body_decays_exactly_and_limits_no_step(rate):
     x, v = np.zeros((3, 4)), np.zeros((3, 4))
     v[:, 2:] = rng.normal(size=(3, 2))
     expected = expm(-s * np.linalg.solve(mass, damping)) @ v[:, 2:].T.reshape(-1)
-    damp_lines(x.reshape(-1), v.reshape(-1), 0.0, s, p, False)
-    assert v[:, 2:].T.reshape(-1) == pytest.approx(expected, abs=1e-8)
-    assert v[:, 1] == pytest.approx(v[:, 2], abs=1e-12)  # the fairlead moves with the body
+    errors, begin = [], v.copy()
+    for count in (1, 200, 400):
+        v = begin.reshape(-1)
+        for _ in range(count):
+            v = damped_alone(p, x.reshape(-1), v, s / count)
+        v = v.reshape(3, 4)
+        errors.append(np.abs(v[:, 2:].T.reshape(-1) - expected).max())
+        assert v[:, 1] == pytest.approx(v[:, 2], abs=1e-12)  # the fairlead moves with the body
+    assert errors[0] < 1.5 * np.abs(begin).max()
+    assert errors[2] < 0.3 * errors[1] + 1e-12
 
 
 def damped(rate: float) -> System:
@@ -388,5 +406,4 @@ def test_a_strongly_damped_body_creeps_as_rk4_has_it():
         )
         for step in (4e-3, 2e-3)
     ]
-    assert errors[0] < 0.06 * expected
-    assert errors[1] < 0.3 * errors[0]
+    assert max(errors) < 1e-4 * expected

@@ -42,16 +42,12 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 @kernel(allocates=False)
 def damp_part(x, v, s, p, i):
-    """The bed's damping and friction on part i."""
+    """Friction on part i; the other damping of the bed is in `sim.springs.kicks.lines`."""
     n, j = p.cols, p.places[i, 0]
     depth = p.bed - x[2 * n + j]
     if depth <= 0.0:
         return
     area = p.parts[i].bed_area
-    over = mobility(p, j, 0.0, 0.0, 1.0)
-    if over > 0.0:
-        impulse = math.expm1(-area * p.bed_damping * over * s) / over * v[2 * n + j]
-        kick(p, v, j, 0.0, 0.0, impulse)
     speed = math.sqrt(v[j] * v[j] + v[n + j] * v[n + j])
     if p.friction > 0.0 and speed > 0.0:
         ex, ey = v[j] / speed, v[n + j] / speed

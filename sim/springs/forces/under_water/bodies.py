@@ -1,19 +1,15 @@
 """Floating bodies that hold lines, by linear theory: M q'' + B q' + C q = forces, steady ones and those of waves.
 
-Their masses and what they carry are in `sim.springs.points.line_points`. Damping alone is exact: with
-M^-1 B = S diag(r) P the six velocities become S diag(exp(-r s)) P of them.
+Their masses and what they carry are in `sim.springs.points.line_points`.
 """
-
-import math
 
 from sim.jit import kernel
 from sim.springs.forces.matrices import DAMPING as OF_DAMPING
 from sim.springs.forces.matrices import STIFFEST
 from sim.springs.forces.matrices import STIFFNESS as OF_STIFFNESS
 from sim.springs.forces.record import LINES, Force
-from sim.springs.points.line_arrays import DAMPING, DECAY_PARTS, DECAY_RATES, DECAY_SHAPES, PLACE, STIFFNESS
-from sim.springs.points.line_points import add_six, half_form, matrix_times, set_carried, set_six, six
-from sim.springs.points.order import in_turn
+from sim.springs.points.line_arrays import DAMPING, PLACE, STIFFNESS
+from sim.springs.points.line_points import add_six, half_form, matrix_times, six
 from sim.waves import AMPLITUDE, sums_at
 
 
@@ -43,20 +39,6 @@ def accelerate(x, v, t, p, with_damping, f, a):
                 e[3] - k[3] - s * d[3], e[4] - k[4] - s * d[4], e[5] - k[5] - s * d[5],
             ),
         )  # fmt: skip
-
-
-@kernel(allocates=False)
-def damp(x, v, t, s, p, reverse):
-    n, bodies = p.cols, p.bodies.shape[0]
-    for turn in range(bodies):
-        b = in_turn(turn, bodies, reverse)
-        j = p.nodes + 2 * b
-        set_six(v, n, j, matrix_times(p.bodies, b, DECAY_PARTS, six(v, n, j)))
-        for e in range(6):
-            v[e % 3 * n + j + e // 3] *= math.exp(-p.bodies[b, DECAY_RATES + e] * s)
-        set_six(v, n, j, matrix_times(p.bodies, b, DECAY_SHAPES, six(v, n, j)))
-    set_carried(v, p)
-    return 0.0
 
 
 @kernel(allocates=False)
@@ -92,6 +74,6 @@ def tangent(x, u, t, p, part, longest, out):
 
 
 FORCE = Force(
-    "bodies", rank=80, nets=LINES, accelerate=accelerate, damp=damp, energy=energy, power=power, tangent=tangent,
+    "bodies", rank=80, nets=LINES, accelerate=accelerate, energy=energy, power=power, tangent=tangent,
     stores="elastic", is_smooth=True,
 )  # fmt: skip

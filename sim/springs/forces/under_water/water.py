@@ -24,8 +24,7 @@ from sim.jit import kernel
 from sim.springs.forces.matrices import STIFFEST, STIFFNESS
 from sim.springs.forces.record import LINES, Force
 from sim.springs.points.arrays import is_moving, push
-from sim.springs.points.line_points import kick, mobility, tangent_at
-from sim.springs.points.order import in_turn
+from sim.springs.points.line_points import tangent_at
 from sim.waves import AMPLITUDE, sums_at
 
 PIECES = 8  # of a segment at the surface
@@ -137,42 +136,6 @@ def accelerate(x, v, t, p, with_damping, f, a):
 
 
 @kernel(allocates=False)
-def drag_along(v, s, p, j, drag, x, y, z):
-    """Quadratic drag against the relative velocity (x, y, z) of node j for a time s: |w| falls as w/(1 + D w s/m)."""
-    speed = math.sqrt(x * x + y * y + z * z)
-    if speed == 0.0 or drag == 0.0:
-        return
-    x, y, z = x / speed, y / speed, z / speed
-    over = mobility(p, j, x, y, z)
-    impulse = drag * speed * speed * s / (1.0 + drag * over * speed * s)
-    kick(p, v, j, impulse * x, impulse * y, impulse * z)
-
-
-@kernel(allocates=False)
-def damp_part(x, v, t, s, p, i, reverse):
-    """Drag across and along part i."""
-    n, j = p.cols, p.places[i, 0]
-    qx, qy, qz = tangent_at(x, p, i)
-    u, w, c, _, _, _, elevation = water_at(x, t, p, j)
-    wet = submerged(x, p, i, elevation)
-    for turn in range(2):
-        rx, ry, rz = u - v[j], w - v[n + j], c - v[2 * n + j]
-        along = rx * qx + ry * qy + rz * qz
-        if in_turn(turn, 2, reverse) == 0:
-            drag_along(v, s, p, j, wet * p.parts[i].drag_across, rx - along * qx, ry - along * qy, rz - along * qz)
-        else:
-            drag_along(v, s, p, j, wet * p.parts[i].drag_along, along * qx, along * qy, along * qz)
-
-
-@kernel(allocates=False)
-def damp(x, v, t, s, p, reverse):
-    count = p.places.shape[0]
-    for turn in range(count):
-        damp_part(x, v, t, s, p, in_turn(turn, count, reverse), reverse)
-    return 0.0
-
-
-@kernel(allocates=False)
 def energy(x, t, p):
     """Energy of buoyancy in still water [J], that of prescribed nodes too: it depends on the free ones beside them."""
     up, total = 2 * p.cols, 0.0
@@ -228,5 +191,5 @@ def tangent(x, u, t, p, part, longest, out):
 
 
 FORCE = Force(
-    "water", rank=60, nets=LINES, accelerate=accelerate, damp=damp, energy=energy, power=power, tangent=tangent,
+    "water", rank=60, nets=LINES, accelerate=accelerate, energy=energy, power=power, tangent=tangent,
 )  # fmt: skip

@@ -85,6 +85,8 @@ def unreadable(name: str, path: object, error: OSError) -> ValueError:
 
 def as_float(value: object) -> float:
     """A real number of any kind as a float; NaN for anything else, True and "1" included."""
+    if type(value) is float:
+        return value
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
         return math.nan
     try:

@@ -23,6 +23,10 @@ MAX_REASONS = 12  # of refusals in one message
 Kind = TypeVar("Kind")
 
 
+class ApproximationWarning(UserWarning):
+    """The result is an approximation whose error nothing bounds; the message says which, and what would be right."""
+
+
 class ConvergenceError(RuntimeError):
     """A solver that ended without a solution, although its arguments are allowed; its message is one line."""
 

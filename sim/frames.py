@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from sim.validation import argument_error, check_positive, is_whole_number
 
 MAX_FRAMES = 10_000_000  # capacity of memory, for a small system
+ROUND_OFF = 1e-9  # relative, of an interval over a step, that adds no step
+SAME = 1e-14  # the same, of an interval that steps fill
 
 Progress = Callable[[int, int], None] | None  # called with (frames done, frames)
 
@@ -57,7 +59,16 @@ def check_steps(duration: float, step: float, most: float, is_given: bool) -> No
 
 def steps_for(interval: float, step: float) -> int:
     """Steps that fill `interval` [s] with none longer than `step` [s], forgiving round-off in their ratio."""
-    return max(1, math.ceil(interval / step * (1.0 - 1e-9)))
+    return max(1, math.ceil(interval / step * (1.0 - ROUND_OFF)))
+
+
+def equal_steps(interval: float, step: float) -> tuple[int, float]:
+    """Number and length [s] of the equal steps that fill `interval` [s], none longer than `step` [s].
+
+    The length is exactly `step` where that fills the interval to round-off, whatever times the interval lies between.
+    """
+    count = steps_for(interval, step)
+    return count, step if math.isclose(count * step, interval, rel_tol=SAME) else interval / count
 
 
 def run_frames(motion: Sampled, frames: int, progress: Progress) -> int:

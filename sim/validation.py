@@ -23,6 +23,10 @@ MAX_REASONS = 12  # of refusals in one message
 Kind = TypeVar("Kind")
 
 
+class ApproximationWarning(UserWarning):
+    """The result is an approximation whose error nothing bounds; the message says which, and what would be right."""
+
+
 class ConvergenceError(RuntimeError):
     """A solver that ended without a solution, although its arguments are allowed; its message is one line."""
 
@@ -85,6 +89,8 @@ def unreadable(name: str, path: object, error: OSError) -> ValueError:
 
 def as_float(value: object) -> float:
     """A real number of any kind as a float; NaN for anything else, True and "1" included."""
+    if type(value) is float:
+        return value
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | float | np.integer | np.floating):
         return math.nan
     try:

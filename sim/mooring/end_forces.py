@@ -31,15 +31,11 @@ class LineEnds(NamedTuple):
     parts: NDArray[np.int64]  # (m,)
     links: NDArray[np.int64]  # (m,)
 
-    @classmethod
-    def of(cls, p: LineArrays, nodes: NDArray[np.int64], links: NDArray[np.int64]) -> "LineEnds":
-        """The ends at nodes (m,) of links (m,)."""
-        parts = []
-        for node, link in zip(nodes, links, strict=True):
-            other = p.ends[link].sum() - node
-            beside = (p.places[:, 1] == other) | (p.places[:, 2] == other)
-            parts.append(np.flatnonzero((p.places[:, 0] == node) & beside)[0])
-        return cls(np.asarray(nodes, np.int64), np.array(parts, np.int64), np.asarray(links, np.int64))
+    def of(self, nodes: NDArray[np.int64], links: NDArray[np.int64]) -> "LineEnds":
+        """Those of these ends that are at nodes (n,) of links (n,), in this order."""
+        known = {key: i for i, key in enumerate(zip(self.nodes.tolist(), self.links.tolist(), strict=True))}
+        index = [known[key] for key in zip(nodes.tolist(), links.tolist(), strict=True)]
+        return LineEnds(*(values[index] for values in self))
 
     def forces(self, x: Array, v: Array, t: float, p: LineArrays) -> Array:
         """Forces (m, 3) [N] at positions x (3, n) and velocities v (3, n) at the time t [s]."""

@@ -4,14 +4,13 @@
 `point_forces` are the forces at them.
 """
 
-import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.frames import Progress, check_steps, run_frames, steps_for
+from sim.frames import Progress, check_steps, equal_steps, run_frames
 from sim.mooring.parts import Point
 from sim.mooring.rest.statics import at_rest
 from sim.mooring.run import MooringRun
@@ -28,7 +27,7 @@ from sim.validation import argument_error, check_positive, check_vector
 
 SAFETY = 0.5  # of the critical step at the start
 PIECE = 0.05  # [s] of a moved point's path in one cubic
-DIFFERENCE = 1e-4  # [s] either side, of a motion without a velocity of its own
+DIFFERENCE = 1e-4  # [s] between the three places that give the velocity of a motion without one of its own
 MOST_STEPS = 1e9
 FARTHEST = 1e6  # [m], beyond which a node has diverged
 
@@ -36,25 +35,25 @@ Array = NDArray[np.float64]
 Motion = Callable[[float], Any]
 
 
-def check_motion(system: System, motion: Mapping[int, Motion]) -> None:
-    """Raises ValueError for a motion of a point that is not coupled, or that is no function."""
+def check_motion(system: System, motion: Mapping[int, Motion], t: float) -> None:
+    """Raises ValueError for a motion of a point that is not coupled, or that gives no place at time t [s]."""
     coupled = list(system.coupled_nodes)
     for one, function in motion.items():
         if one not in coupled:
             raise argument_error("motion", one, f"the id of a coupled point: {coupled}")
         if not callable(function):
             raise argument_error(f"motion[{one}]", function, "a function of the time [s]")
-        check_vector(f"motion[{one}](0)", function(0.0), "m")
+        check_vector(f"motion[{one}]({t:g})", function(t), "m")
 
 
 def place_and_velocity(function: Motion, t: float) -> tuple[Array, Array]:
-    """Position [m] and velocity [m/s] of a motion at time t [s]."""
+    """Position [m] and velocity [m/s] of a motion at time t [s]. It is not called at times before t."""
     place = np.asarray(function(t), dtype=np.float64)
     velocity = getattr(function, "velocity", None)
     if velocity is not None:
         return place, np.asarray(velocity(t), dtype=np.float64)
-    before, after = np.asarray(function(t - DIFFERENCE), float), np.asarray(function(t + DIFFERENCE), float)
-    return place, (after - before) / (2.0 * DIFFERENCE)
+    near, far = (np.asarray(function(t + steps * DIFFERENCE), float) for steps in (1, 2))
+    return place, (4.0 * near - 3.0 * place - far) / (2.0 * DIFFERENCE)
 
 
 def cubic(x0: Array, v0: Array, x1: Array, v1: Array, t: float, duration: float) -> Array:
@@ -146,16 +145,12 @@ class MooringFrames:
         start: State,
         with_account: bool,
     ) -> None:
-        """step: [s] the longest allowed."""
-        self.system, self.motion, self.record, self.t, self.with_account = system, motion, record, t, with_account
-        self.state, interval = State(start.x.copy(), start.v.copy(), lag=start.lag), float(t[1])
-        for i, point in enumerate(system.points):
-            if point.id in motion:
-                self.state.x[:, i], self.state.v[:, i] = place_and_velocity(motion[point.id], 0.0)
-        self.pieces = max(1, math.ceil(interval / PIECE - 1e-9)) if motion else 1
-        self.piece = interval / self.pieces  # [s] of paths
-        self.steps = steps_for(self.piece, step)
-        self.h = self.piece / self.steps
+        """t (frames,) [s]: since the start; step: [s] the longest allowed."""
+        self.system, self.motion, self.record, self.with_account = system, motion, record, with_account
+        self.t, self.evals, self.state, interval = start.t + t, start.force_evals, start.copy(), float(t[1])
+        self.place_moved()
+        self.pieces, self.piece = equal_steps(interval, PIECE if motion else interval)  # [s] of paths
+        self.steps, self.h = equal_steps(self.piece, step)
         self.p = system.kernel_view(self.h)
         self.x = np.full((len(t), *start.x.shape), np.nan)
         self.v, self.force = np.full_like(self.x, np.nan), np.full_like(self.x, np.nan)
@@ -165,13 +160,19 @@ class MooringFrames:
 
     def advance(self, frame: int) -> None:
         """Advance from the previous frame to this one, along the paths of the coupled points."""
-        for piece in range(self.pieces):
-            self.state.t = float(self.t[frame - 1]) + piece * self.piece
+        for _ in range(self.pieces):
             paths = paths_of(self.system, self.state, self.motion, self.piece)
             advance(
                 self.system, self.state, self.record, self.h, self.steps,
                 with_account=self.with_account, driven={"paths": paths},
             )  # fmt: skip
+            self.place_moved()
+
+    def place_moved(self) -> None:
+        """Put the moved points where their motions are at the state's time."""
+        for i, point in enumerate(self.system.points):
+            if point.id in self.motion:
+                self.state.x[:, i], self.state.v[:, i] = place_and_velocity(self.motion[point.id], self.state.t)
 
     @property
     def is_bounded(self) -> bool:
@@ -216,10 +217,11 @@ class MooringFrames:
             self.by_body(self.x),
             self.by_body(self.v),
             energy_history(self.ledger, self.with_account),
-            self.state.force_evals,
+            self.state.force_evals - self.evals,
             diverged_at,
             self.h,
             self.record.name,
+            self.state,
         )
 
 
@@ -233,20 +235,21 @@ def run_mooring(
     motion: Mapping[int, Motion] | None = None,
     start: State | None = None,
 ) -> MooringRun:
-    """The run of a mooring at the times t [s], with the arguments of `simulate`."""
+    """The run of a mooring at the times t [s] since its start, with the arguments of `simulate`."""
     motion = dict(motion or {})
-    check_motion(system, motion)
+    if start is not None:
+        check_state(system, start, "start")
+    check_motion(system, motion, 0.0 if start is None else start.t)
     record = integrator_named(integrator)
     system.check_integrator(record)
     if start is None:
         placed = {one: np.asarray(f(0.0), dtype=np.float64) for one, f in motion.items()}
         start = State.still(at_rest(system, placed).nodes)
-    check_state(system, start, "start")
     h = step or SAFETY * critical_step(system, record, start)
     check_steps(float(t[-1]), h, MOST_STEPS, step is not None)
     kept = MooringFrames(system, motion, record, t, h, start, with_account)
     done = run_frames(kept, len(t), progress)
-    return kept.run(None if done == len(t) else float(t[done]))
+    return kept.run(None if done == len(t) else float(kept.t[done]))
 
 
 SIMULATED[System] = Simulated(run_mooring, 10.0, 101, "leapfrog", ("motion", "start"))

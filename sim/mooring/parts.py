@@ -89,6 +89,11 @@ class MooringParts(PointSystem[MooringRun]):
     bodies: tuple[MooredBody, ...]
 
     @functools.cached_property
+    def node_of_point(self) -> dict[int, int]:
+        """The node of each point, by its id."""
+        return {point.id: i for i, point in enumerate(self.points)}
+
+    @functools.cached_property
     def coupled_nodes(self) -> dict[int, int]:
         """The node of each coupled point, by its id."""
         return {point.id: i for i, point in enumerate(self.points) if point.kind == "coupled"}
@@ -96,8 +101,7 @@ class MooringParts(PointSystem[MooringRun]):
     @functools.cached_property
     def nodes_of(self) -> dict[int, NDArray[np.int64]]:
         """Node numbers of each line (segments + 1,), by its id: points first, in their order, then inner nodes."""
-        index = {point.id: i for i, point in enumerate(self.points)}
-        found, used = {}, len(self.points)
+        index, found, used = self.node_of_point, {}, len(self.points)
         for line in self.lines:
             inner = np.arange(used, used + line.segments - 1)
             found[line.id] = np.concatenate(([index[line.start]], inner, [index[line.end]])).astype(np.int64)
@@ -113,9 +117,14 @@ class MooringParts(PointSystem[MooringRun]):
     @functools.cached_property
     def line_ends(self) -> LineEnds:
         """The start and the end of each line in turn."""
-        nodes = np.concatenate([self.nodes_of[line.id][[0, -1]] for line in self.lines])
-        links = np.concatenate([[self.links_of[line.id].start, self.links_of[line.id].stop - 1] for line in self.lines])
-        return LineEnds.of(self.kernel_view(1.0), nodes, links)
+        nodes, links, parts, part = [], [], [], 0
+        for line in self.lines:
+            at, own = self.nodes_of[line.id], self.links_of[line.id]
+            nodes += [at[0], at[-1]]
+            links += [own.start, own.stop - 1]
+            parts += [part, part + line.segments]  # as `part_tables` has them: one at each node, line after line
+            part += line.segments + 1
+        return LineEnds(*(np.array(values, np.int64) for values in (nodes, parts, links)))
 
     @functools.cached_property
     def node_count(self) -> int:

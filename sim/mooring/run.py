@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.analysis.energy_history import EnergyHistory
+from sim.springs.state import State
 
 Array = NDArray[np.float64]
 
@@ -13,7 +14,7 @@ Array = NDArray[np.float64]
 class MooringRun(NamedTuple):
     """A simulated motion."""
 
-    t: Array  # (frames,) [s]
+    t: Array  # (frames,) [s] from the time of the start
     x: dict[int, Array]  # by line: (frames, segments + 1, 3) [m]
     v: dict[int, Array]  # by line: (frames, segments + 1, 3) [m/s]
     tension: dict[int, Array]  # by line: (frames, segments) [N], internal damping included
@@ -26,3 +27,4 @@ class MooringRun(NamedTuple):
     diverged_at: float | None  # [s]
     step: float  # [s] that was taken
     integrator: str
+    state: State  # at the end: `simulate` continues from it

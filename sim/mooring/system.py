@@ -8,7 +8,7 @@ import dataclasses
 import functools
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 import numpy as np
@@ -101,11 +101,14 @@ class System(MooringParts):
         for body in self.bodies:
             check_body(body, 0 if self.waves is None else len(self.waves.kx))
         check_ids("points", self.points)
+        bodies = dict.fromkeys(body.id for body in self.bodies).keys()
         for point in self.points:
-            self.check_point(point)
+            self.check_point(point, bodies)
         check_ids("lines", self.lines)
         if not self.lines:
             raise argument_error("lines", (), "at least one line")
+        for kind in {id(line.type): line.type for line in self.lines}.values():  # lines share their types
+            check_type(kind)
         for line in self.lines:
             self.check_line(line)
         ended = {end for line in self.lines for end in (line.start, line.end)}
@@ -134,7 +137,8 @@ class System(MooringParts):
         """The water around the lines."""
         return Water(self.depth, self.gravity, self.density)
 
-    def check_point(self, point: Point) -> None:
+    def check_point(self, point: Point, bodies: Collection[int]) -> None:
+        """Raises ValueError for a point that is not allowed. bodies: their ids."""
         name = f"point {point.id}"
         check_choice(f"{name}: kind", point.kind, KINDS)
         x, y, z = check_vector(f"{name}: position", point.position, "m")
@@ -147,16 +151,15 @@ class System(MooringParts):
         check_vector(f"{name}: force", point.force, "N")
         if (point.kind == "body") != (point.body is not None):
             raise argument_error(f"{name}: body", point.body, "the id of a body, for points of kind 'body' only")
-        if point.body is not None and point.body not in [body.id for body in self.bodies]:
-            raise argument_error(f"{name}: body", point.body, f"one of {[body.id for body in self.bodies]}")
+        if point.body is not None and point.body not in bodies:
+            raise argument_error(f"{name}: body", point.body, f"one of {list(bodies)}")
 
     def check_line(self, line: Line) -> None:
         name = f"line {line.id}"
-        check_type(line.type)
-        ids = [point.id for point in self.points]
         for field in ("start", "end"):
-            if getattr(line, field) not in ids:
-                raise argument_error(f"{name}: {field}", getattr(line, field), f"the id of a point: {ids}")
+            if getattr(line, field) not in self.node_of_point:
+                allowed = f"the id of a point: {list(self.node_of_point)}"
+                raise argument_error(f"{name}: {field}", getattr(line, field), allowed)
         if line.start == line.end:
             raise argument_error(f"{name}: end", line.end, "another point than its start")
         check_number(f"{name}: length", line.length, "m", 0, FARTHEST, above=True)
@@ -171,7 +174,7 @@ class System(MooringParts):
             return
         if not math.sqrt(sum(c * c for c in check_vector(name, direction, ""))) > 0.0:
             raise argument_error(name, direction, "a direction")
-        if kind.bending == 0.0 or self.points[[p.id for p in self.points].index(end)].kind not in ("fixed", "coupled"):
+        if kind.bending == 0.0 or self.points[self.node_of_point[end]].kind not in ("fixed", "coupled"):
             raise argument_error(name, direction, "None, except for a line with EI at a fixed or coupled point")
 
     def at_rest(self) -> Rest:

@@ -28,7 +28,9 @@ class SurfaceAt(NamedTuple):
 
     height: np.ndarray  # (n,) [m]
     slope: np.ndarray  # (n, 2)
-    velocity: np.ndarray  # (n, 3) [m/s] of the fluid at the surface
+    # The motion of the water that is there now: of its waves, without their growth or decay. That of linear waves is
+    # `kinematics` at z = 0 where this water rests, at `label`, whatever the choppiness.
+    velocity: np.ndarray  # (n, 3) [m/s]
     acceleration: np.ndarray  # (n,) [m/s2], upwards
     interface: np.ndarray  # (n,) [m] about its mean
     interface_slope: np.ndarray  # (n, 2)

@@ -1,17 +1,20 @@
 """`Run`: the record of a simulated net."""
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sim.springs.analysis.energy_history import EnergyHistory
 
+if TYPE_CHECKING:
+    from sim.springs.state import State
+
 
 class Run(NamedTuple):
     """A simulated motion. Ropes have (frames, points, 3), other nets (frames, rows, cols, 3)."""
 
-    t: NDArray[np.float64]  # (frames,) [s]
+    t: NDArray[np.float64]  # (frames,) [s] from the time of the start
     x: NDArray[np.float64]  # [m]
     v: NDArray[np.float64]  # [m/s]
     energy: EnergyHistory  # by name, (frames,) each [J]
@@ -21,3 +24,4 @@ class Run(NamedTuple):
     integrator: str  # that ran: what "auto" took
     left_out: int = 0  # most particles at once that self-contact left out, its list of pairs being full
     unsettled: int = 0  # steps of implicit methods that were taken before Newton's method had settled
+    state: "State | None" = None  # at the end: `simulate` continues from it

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sim.frames import Progress, check_steps, frame_times, run_frames, steps_for, warn_of_divergence
+from sim.frames import Progress, check_steps, equal_steps, frame_times, run_frames, warn_of_divergence
 from sim.interruption import raise_if_stopped
 from sim.springs.analysis.energy import energies
 from sim.springs.analysis.energy_history import energy_history
@@ -20,7 +20,7 @@ from sim.springs.net import PAIRS, Net
 from sim.springs.points.point_system import PointSystem, RunT, check_system
 from sim.springs.run import Run
 from sim.springs.stability import critical_step, gershgorin
-from sim.springs.state import State, advance, energy, velocities
+from sim.springs.state import State, advance, check_state, energy, set_lag, velocities
 from sim.validation import argument_error, as_array, check_kind, check_number
 
 CALM = 1e-3 * DIVERGENCE_BOUND  # [m]: a net within this has not yet been out of the sane bound
@@ -61,7 +61,7 @@ def simulate(
     with_account: bool = False,
     progress: Progress = None,
 ) -> RunT:
-    """Integrate a net or a mooring and sample it at `frames` equal times from 0 to `duration` [s].
+    """Integrate a net or a mooring for `duration` [s] and sample it at `frames` equal times from its start on.
 
     Returns a `Run` of a net, a `MooringRun` of a mooring.
 
@@ -75,6 +75,9 @@ def simulate(
     with_account: also integrate the energy dissipated by damping and put in by moved points and water; stored energies
     are always computed.
     progress: called with (frames done, frames).
+    start: the `State` to start from, at its time, with which the run's times begin. None: time 0, a net as it was built
+    and a mooring at rest, its moved points at their first places. `state` of a run is the last one: with equal steps, a
+    run that continues from it is bitwise the run in one piece, if it has the same `step`.
 
     Of a net only:
     x, v: positions [m] and velocities [m/s] at the start, (points, 3) of a rope, (rows, cols, 3) of another net, as a
@@ -84,8 +87,8 @@ def simulate(
 
     Of a mooring only:
     motion: by the id of a coupled point, a function of the time [s] that gives its place (3,) [m]; its velocity is that
-    from `function.velocity(t)` if it exists, else from differences. Other points stay in place.
-    start: initial state; None: at rest, with moved points at their first places. The run's time begins at 0.
+    from `function.velocity(t)` if it exists, else from differences. It is never called at times before the start.
+    Other points stay in place.
 
     A run that diverges ends there: `diverged_at` is the time of the first step of a net, or the first frame of a
     mooring, outside all sane bounds, or at which an adaptive method found no step short enough. Later frames are NaN,
@@ -128,9 +131,15 @@ def run_net(
     v: ArrayLike | None = None,
     rtol: float | None = None,
     atol: float | None = None,
+    start: State | None = None,
 ) -> Run:
-    """The run of a net at the times t [s], with the arguments of `simulate`."""
+    """The run of a net at the times t [s] since its start, with the arguments of `simulate`."""
+    if start is not None:
+        check_state(system, start, "start")
+        if x is not None or v is not None:
+            raise argument_error("start", "a State beside x or v", "a State alone, or x and v")
     net, velocity = begun(system, x, v)
+    state = State(net.x0.copy(), velocity) if start is None else start.copy()
     record = None if isinstance(integrator, str) and integrator == AUTO else integrator_named(integrator)
     for name, value, least in (("rtol", rtol, LEAST_RTOL), ("atol", atol, LEAST_ATOL)):
         if value is not None:
@@ -151,11 +160,11 @@ def run_net(
         may_be_endless = duration * max(gershgorin(net)) > MOST_STEPS
         longest = (may_be_endless and critical_step(net, record)) or math.inf  # 0 where no step stays stable
         check_steps(duration, longest, MOST_STEPS, False)
-        run = marched(net, velocity, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
+        run = marched(net, state, record, t, rtol or RTOL, atol or ATOL, with_account, progress)
     else:
         h = step or default_step(net, record)
         check_steps(duration, h, MOST_STEPS, step is not None)
-        run = stepped(net, velocity, record, t, h, with_account, progress)
+        run = stepped(net, state, record, t, h, with_account, progress)
     if run.left_out > 0:
         warnings.warn(
             f"self-contact left out up to {run.left_out} particles, the last of the net: more than {PAIRS} pairs a "
@@ -166,7 +175,7 @@ def run_net(
     return run
 
 
-SIMULATED[Net] = Simulated(run_net, 2.0, 61, "rk4", ("x", "v", "rtol", "atol"))
+SIMULATED[Net] = Simulated(run_net, 2.0, 61, "rk4", ("x", "v", "rtol", "atol", "start"))
 
 
 def begun(net: Net, x: ArrayLike | None, v: ArrayLike | None) -> tuple[Net, NDArray[np.float64]]:
@@ -204,11 +213,10 @@ class NetFrames:
     def __init__(
         self, net: Net, start: State, record: Integrator, t: NDArray[np.float64], step: float, with_account: bool
     ) -> None:
-        """step: [s] the longest allowed."""
-        self.net, self.state, self.record, self.t, self.with_account = net, start, record, t, with_account
+        """start: it is advanced; t (frames,) [s]: since the start; step: [s] the longest allowed."""
+        self.net, self.state, self.record, self.t, self.with_account = net, start, record, start.t + t, with_account
         interval = float(t[-1]) / (len(t) - 1)
-        self.steps = steps_for(interval, step)
-        self.h = interval / self.steps
+        self.steps, self.h = equal_steps(interval, step)
         self.calm, self.calm_frame = start.copy(), 0
         self.x = np.full((len(t), *net.x0.shape), np.nan)
         self.v = np.full_like(self.x, np.nan)
@@ -242,34 +250,36 @@ class NetFrames:
 
 def stepped(
     net: Net,
-    velocity: NDArray[np.float64],
+    state: State,
     record: Integrator,
     t: NDArray[np.float64],
     step: float,
     with_account: bool,
     progress: Progress,
 ) -> Run:
-    """The run at times `t` [s] in equal steps of at most `step` [s]."""
-    kept = NetFrames(net, State(net.x0.copy(), velocity.copy()), record, t, step, with_account)
+    """The run at times `t` [s] since the state's, which is advanced in equal steps of at most `step` [s]."""
+    evals, unsettled = state.force_evals, state.unsettled
+    kept = NetFrames(net, state, record, t, step, with_account)
     done = run_frames(kept, len(t), progress)
     diverged_at = None if done == len(t) else kept.end_at_divergence(done)
     return Run(
-        t,
+        kept.t,
         per_point(net, kept.x),
         per_point(net, kept.v),
         energy_history(kept.ledger, with_account or is_closed(net)),
-        kept.state.force_evals,
+        state.force_evals - evals,
         diverged_at,
         kept.h,
         record.name,
-        kept.state.left_out,
-        kept.state.unsettled,
+        state.left_out,
+        state.unsettled - unsettled,
+        state,
     )
 
 
 def marched(
     net: Net,
-    velocity: NDArray[np.float64],
+    state: State,
     record: Integrator,
     t: NDArray[np.float64],
     rtol: float,
@@ -277,15 +287,18 @@ def marched(
     with_account: bool,
     progress: Progress,
 ) -> Run:
-    """The run at times `t` [s] in steps of an adaptive method's own choosing."""
+    """The run at times `t` [s] since the state's, in steps of an adaptive method's own choosing."""
     assert record.march is not None
+    set_lag(net, state, 0.0)
+    t = state.t + t
     xs = np.full((len(t), net.x0.size), np.nan)
     vs = np.full_like(xs, np.nan)
     taken = np.zeros((len(t), 2))
-    x, v = net.x0.reshape(-1).copy(), velocity.reshape(-1).copy()
+    x, v = state.x.reshape(-1).copy(), state.v.reshape(-1).copy()
     p = net.kernel_view(FRICTION_STEP)
     evals, _, filled, stopped_at = record.march(x, v, t, rtol, atol, p, with_account, xs, vs, taken)
     raise_if_stopped()
+    taken += state.dissipated, state.work
     shape = (len(t), *net.x0.shape)
     xs[filled:], vs[filled:] = np.nan, np.nan
     ledger = np.full((len(t), 6), np.nan)
@@ -297,7 +310,14 @@ def marched(
     x_frames, v_frames = per_point(net, xs.reshape(shape)), per_point(net, vs.reshape(shape))
     left_out = max(0, int(p.pairs[-1, 1])) if net.thickness > 0.0 else 0
     energies_of = energy_history(ledger, with_account or is_closed(net))
-    return Run(t, x_frames, v_frames, energies_of, evals, diverged_at, None, record.name, left_out)
+    last = max(filled - 1, 0)
+    state.x[:], state.v[:], state.t = xs[last].reshape(net.x0.shape), vs[last].reshape(net.x0.shape), float(t[last])
+    state.dissipated, state.work = taken[last].tolist()
+    state.force_evals += evals
+    state.left_out = max(state.left_out, left_out)
+    return Run(
+        t, x_frames, v_frames, energies_of, evals, diverged_at, None, record.name, state.left_out, 0, state
+    )  # fmt: skip
 
 
 def is_closed(net: Net) -> bool:

@@ -55,4 +55,4 @@ class LineRows(NamedTuple):
 def ends_of(system: System, before: NDArray[np.int64], after: NDArray[np.int64], links: NDArray[np.int64]) -> LineEnds:
     """`LineRows.ends` of its fields."""
     nodes, at = np.concatenate((before[:, 0], after[:, -1])), np.concatenate((links[:, 0], links[:, -1]))
-    return LineEnds.of(system.kernel_view(1.0), nodes, at)
+    return system.line_ends.of(nodes, at)

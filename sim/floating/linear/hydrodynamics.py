@@ -31,7 +31,7 @@ from sim.floating.linear.linear_table import LinearTable, table_of
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, equilibrium_draft, upright
 from sim.floating.statics.hydrostatics import AT_SURFACE, Submerged, add_pressure, displaced
 from sim.interruption import pieces, raise_if_stopped
-from sim.validation import ConvergenceError, argument_error
+from sim.validation import ApproximationWarning, ConvergenceError, argument_error
 from sim.water import SAME_WATER
 
 # Poles of the memory in units of sqrt(g/length); chosen once for the least error over all tables
@@ -54,6 +54,10 @@ LEVEL_MOTIONS = [0, 1, 5]  # surge, sway, yaw: water that is higher, and level, 
 # Signs of the motions under a mirror that turns x, or y
 MIRROR_X = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
 MIRROR_Y = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+
+
+TABLED = ("box", "cylinder", "sphere")  # shapes that have tables
+ADVICE = "`with_dataset` takes a table by Capytaine, and `springtide hydrodynamics` makes one for a mesh file"
 
 
 class PlaneForce(NamedTuple):
@@ -238,8 +242,8 @@ def outside_table(hull: Hull, draft: float) -> str:
 def check_water_depth(name: str, hull: Hull, depth: float) -> None:
     """Raises ValueError for a hull with a dataset of water of a finite depth in water of another one [m].
 
-    A dataset of deep water is right for waves that are short for the depth: in water of a finite depth a UserWarning
-    says so. Tables of deep water without a density are those of shapes, which are used in water of any depth.
+    A dataset of deep water is right for waves that are short for the depth: in water of a finite depth an
+    `ApproximationWarning` says so. Tables of deep water without a density are those of shapes, for any depth.
     """
     table = hull.shape.table
     if table is None:
@@ -250,34 +254,48 @@ def check_water_depth(name: str, hull: Hull, depth: float) -> None:
             return
         words = f"{name}: a hull with a dataset of water inf m deep, in water of {depth:.6g} m"
         right = f"its coefficients are right for waves up to {2.0 * depth:.3g} m long"
-        warnings.warn(f"{words}; {right}", UserWarning, stacklevel=3)
+        warnings.warn(f"{words}; {right}", ApproximationWarning, stacklevel=3)
     elif not abs(depth - own) <= SAME_WATER * own:
         given = f"a hull with a dataset of water {own:.6g} m deep, in water of {depth:.6g} m"
         raise argument_error(name, given, "water of the dataset's depth, or a dataset of the water's")
 
 
-def check_water_density(hull: Hull, layers: Layers) -> None:
-    """Raises ValueError for a hull with a dataset of water of one density in water of another one.
-
-    The water is the lowest of the layers.
-    """
-    own, given = hull.shape.table.density if hull.shape.table is not None else math.nan, float(layers[-1][0])
-    if abs(given - own) > SAME_WATER * own:  # False for nan: any
-        words = f"a hull with a dataset of water of {own:.6g} kg/m3, in water of {given:.6g} kg/m3"
-        raise argument_error("layers", words, "water of the dataset's density, or a dataset of the water's")
+def check_bed(name: str, hull: Hull, draft: float, depth: float) -> None:
+    """Raises ValueError for a hull that is afloat at a draft [m] in water of a depth [m] that is less."""
+    if min(draft, float(hull.size[2])) > depth:
+        given = f"a hull of draft {draft:.6g} m, in water {depth:.6g} m deep"
+        raise argument_error(name, given, "water that is deeper than its draft")
 
 
 def linear_hull(hull: Hull, draft: float) -> LinearHull:
     """The linear coefficients of a hull upright at a draft [m].
 
-    Outside its table a hull has the coefficients at the border, and a UserWarning names the quantity.
+    Outside its table a hull has the coefficients at the border, and one without a table those of a box. An
+    `ApproximationWarning` says so.
     """
-    raise_if_stopped()
-    beyond = outside_table(hull, draft)
+    words = approximation_of(hull, draft)
+    if words:
+        warnings.warn(words, ApproximationWarning, stacklevel=2)
+    return table_hull(hull, draft)
+
+
+def approximation_of(hull: Hull, draft: float) -> str:
+    """The words for coefficients that are not those of the hull at its draft [m]; "" for its own."""
+    causes, beyond = [], outside_table(hull, draft)
+    if hull.shape.table is None and hull.shape.linear not in TABLED and not is_sunken(hull, draft):
+        place = place_in_table(hull, draft)
+        across = 2.0 * place.length / math.sqrt(place.aspect)
+        x, y = (across, across * place.aspect) if place.is_turned else (across * place.aspect, across)
+        box = f"a box {x:.3g} m long, {y:.3g} m wide, of draft {place.depth * place.length:.3g} m"
+        causes.append(f"added mass, damping and wave forces are those of {box}, of its volume and waterplane")
     if beyond:
-        advice = "`with_dataset` takes a table by Capytaine, and `springtide hydrodynamics` makes one for a mesh file"
-        words = f"{hull.shape.name}: {beyond} is outside; added mass, damping and wave forces are taken from the edge"
-        warnings.warn(f"{words}; {advice}", UserWarning, stacklevel=2)
+        causes.append(f"{beyond} is outside; added mass, damping and wave forces are taken from the edge")
+    return f"{hull.shape.name}: {'; '.join(causes)}; {ADVICE}" if causes else ""
+
+
+def table_hull(hull: Hull, draft: float) -> LinearHull:
+    """`linear_hull` without its warning."""
+    raise_if_stopped()
     low = float(hull.extents[2, 0])
     if is_sunken(hull, draft):
         draft = DEEPEST * float(hull.size[2])
@@ -470,17 +488,25 @@ class Afloat(NamedTuple):
     linear: LinearHull
     memory: Memory
     wet_area: np.ndarray  # (3,) [m2] wet at rest across each axis, int |n_i| dA
+    approximation: str  # of the coefficients, in words; "": none
 
 
-@functools.lru_cache(maxsize=256)
 def afloat(hull: Hull, density: float, layers: Layers = SEA_WATER) -> Afloat:
     """The linear coefficients of a hull of `density` [kg/m3] upright at its draft in these layers.
 
-    One that sinks has those of the deepest draft.
+    One that sinks has those of the deepest draft. An `ApproximationWarning` as of `linear_hull`.
     """
-    check_water_density(hull, layers)
+    found = coefficients_afloat(hull, density, layers)
+    if found.approximation:
+        warnings.warn(found.approximation, ApproximationWarning, stacklevel=2)
+    return found
+
+
+@functools.lru_cache(maxsize=256)
+def coefficients_afloat(hull: Hull, density: float, layers: Layers) -> Afloat:
+    """`afloat` without its warning."""
     draft = equilibrium_draft(hull, density, layers)
-    linear = linear_hull(hull, draft)
+    linear = table_hull(hull, draft)
     cut = upright(hull, draft)
     own = np.zeros(6)
     own[2] = natural_frequency(linear, 2, cut.volume, cut.area)
@@ -491,7 +517,8 @@ def afloat(hull: Hull, density: float, layers: Layers = SEA_WATER) -> Afloat:
     memory = memory_of(linear, own)
     # with the added mass that `step` has, or a long wave would not carry the body as far as the water
     linear = linear._replace(long=long_wave_force(linear.plane, cut, linear.infinite + memory.slow_added_mass()))
-    return Afloat(linear, memory, wet_area(hull, min(draft, float(hull.size[2]))))
+    area = wet_area(hull, min(draft, float(hull.size[2])))
+    return Afloat(linear, memory, area, approximation_of(hull, draft))
 
 
 def plane_force(hull: Hull, draft: float) -> PlaneForce:

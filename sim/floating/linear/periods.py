@@ -3,7 +3,7 @@
 import math
 
 from sim.floating.hulls.hull import Hull
-from sim.floating.linear.hydrodynamics import check_water_density, linear_hull, natural_frequency
+from sim.floating.linear.hydrodynamics import linear_hull, natural_frequency
 from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, density_steps, equilibrium_draft, upright
 from sim.validation import argument_error, check_number, is_whole_number
 from sim.water import EARTH_GRAVITY
@@ -33,7 +33,6 @@ def heave_period_at(
     """`heave_period` of a hull with a known equilibrium draft [m]."""
     if math.isinf(draft):
         return math.inf
-    check_water_density(hull, layers)
     cuts = [(change, upright(hull, draft - top)) for change, top in density_steps(layers)]
     fluid = density * hull.volume / cuts[0][1].volume  # [kg/m3] mean density of the displaced fluids
     stiffness = sum(change * cut.area for change, cut in cuts) / fluid
@@ -66,7 +65,6 @@ def roll_period(
     draft = equilibrium_draft(hull, density, layers, gravity)
     if math.isinf(draft):
         return math.inf
-    check_water_density(hull, layers)
     stiffness = 0.0
     for change, top in density_steps(layers):
         cut = upright(hull, draft - top)

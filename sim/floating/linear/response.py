@@ -13,10 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sim.dispersion import wavenumber
 from sim.floating.linear.hydrodynamics import (
     DIRECTIONS,
     LEVEL_MOTIONS,
-    check_water_density,
+    LinearHull,
+    PlaneForce,
+    check_bed,
+    check_water_depth,
     lagrange,
     linear_hull,
     plane_force,
@@ -26,7 +30,7 @@ from sim.floating.statics.equilibrium import SEA_WATER, Layers, check_layers, de
 from sim.floating.statics.righting import about_rest
 from sim.floating.statics.stability import is_stable
 from sim.numerics.angles import within_half_turn, within_turn
-from sim.validation import argument_error, as_array, check_angle, check_positive
+from sim.validation import argument_error, as_array, check_positive
 from sim.water import EARTH_GRAVITY
 
 MAX_TRIM = 1e-3  # [rad] of a body that counts as upright: a hull from a file is never quite symmetric
@@ -36,7 +40,7 @@ MAX_MISS = 1e-6  # [rad] from the only heading of a dataset
 class LinearForces(NamedTuple):
     """Linear forces of a body about its centre of gravity: (-w^2 (M + A) - i w B + C) xi = X in waves of amplitude 1 m.
 
-    ...: the shape of the frequencies, () for a single one.
+    ...: the shape of the frequencies, () for a single one; of X the common shape of frequencies and headings.
     """
 
     mass: np.ndarray  # M (6, 6) [kg, kg m, kg m2]
@@ -48,22 +52,31 @@ class LinearForces(NamedTuple):
 
 
 def response_amplitude(
-    body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = EARTH_GRAVITY
+    body: Body,
+    frequency: ArrayLike,
+    heading: ArrayLike = 0.0,
+    layers: Layers = SEA_WATER,
+    gravity: float = EARTH_GRAVITY,
+    depth: float | None = None,
 ) -> np.ndarray:
-    """Motion (..., 6) of the body's centre of gravity at frequencies (...) [rad/s], for waves of amplitude 1 m.
+    """Motion (..., 6) of the body's centre of gravity at frequencies [rad/s] and headings [rad], in waves of 1 m.
+
+    frequency and heading are numbers or arrays, (...) their common shape: frequencies[:, None] and headings (m,) give
+    (n, m, 6).
 
     Complex: surge, sway, heave [m/m], roll, pitch, yaw [rad/m] along and about the body's axes, x = Re(xi e^(-i w t))
     in the wave cos(k.x - w t), x from the centre of gravity. heading [rad]: where the waves go to, from the body's x.
-    It solves (C - w^2 (M + A) - i w B) xi = X (Newman 1977, section 6.20), upright, without drag, on deep water, or
-    that of the hull's dataset. C is computed from the hull even if the dataset contains one; A and B are symmetrised.
+    It solves (C - w^2 (M + A) - i w B) xi = X (Newman 1977, section 6.20), upright, without drag. depth [m]: of the
+    water, by default that of the hull's dataset, else inf. The waves are those of this depth; A and B of a shape are
+    those of deep water. C is computed from the hull even if the dataset contains one; A and B are symmetrised.
     Above the table's frequencies A and B are those of its end and X fades. Below them A is that of its first frequency,
     and X tends to the force of long waves, so that the body moves with the water and leans as the wave is steep. In
     layers the coefficients have the mean density of what is displaced, and the interface follows the surface.
 
-    Raises ValueError for a value that is not allowed, a heading or a density of the water that the hull's dataset does
+    Raises ValueError for a value that is not allowed, a heading or a depth of the water that the hull's dataset does
     not have, and for a body that sinks, has a trim, or is not stable upright.
     """
-    f = linear_forces(body, frequency, heading, layers, gravity)
+    f = linear_forces(body, frequency, heading, layers, gravity, depth)
     w = np.asarray(frequency, dtype=float)[..., None, None]
     D = f.stiffness - w * w * (f.mass + f.added) - 1j * w * f.damping
     # motions without a restoring force in units of 1/w, or their rows would be lost in long waves beside the stiffness
@@ -74,19 +87,87 @@ def response_amplitude(
 
 
 def linear_forces(
-    body: Body, frequency: ArrayLike, heading: float = 0.0, layers: Layers = SEA_WATER, gravity: float = EARTH_GRAVITY
+    body: Body,
+    frequency: ArrayLike,
+    heading: ArrayLike = 0.0,
+    layers: Layers = SEA_WATER,
+    gravity: float = EARTH_GRAVITY,
+    depth: float | None = None,
 ) -> LinearForces:
     """The terms of the equation that `response_amplitude` solves, with the same arguments and errors."""
-    check_body("body", body)
-    check_pose(body)
     given = as_array("frequency", frequency, "finite numbers above 0 rad/s")
     if not ((given > 0.0) & (given < math.inf)).all():
         raise argument_error("frequency", given.tolist(), "finite numbers above 0 rad/s")
-    w = given.ravel()
-    heading, gravity = check_angle("heading", heading), check_positive("gravity", gravity, "m/s2")
+    headings = as_array("heading", heading, "angles from -2 pi to 2 pi rad")
+    if not (np.abs(headings) <= 2.0 * math.pi).all():
+        raise argument_error("heading", headings.tolist(), "angles from -2 pi to 2 pi rad")
+    try:
+        np.broadcast_shapes(given.shape, headings.shape)
+    except ValueError:
+        allowed = f"a shape that goes with that of frequency, {given.shape}"
+        raise argument_error("heading", headings.shape, allowed) from None
+    if depth is not None:
+        check_body("body", body)
+        check_water_depth("depth", body.hull, check_positive("depth", depth, "m", allow_infinite=True))
+    own = upright_body(body, layers, gravity, depth)
+    return LinearForces(
+        own.mass, own.stiffness, *own.radiation(given), own.excitation(given, headings), own.centre
+    )  # fmt: skip
+
+
+class UprightBody(NamedTuple):
+    """A body at rest upright, with its linear coefficients: the terms of `LinearForces`."""
+
+    linear: LinearHull
+    planes: list[tuple[float, PlaneForce]]  # steps of the density [kg/m3] from the top, and the force of a plane there
+    mass: np.ndarray  # (6, 6) [kg, kg m, kg m2]
+    stiffness: np.ndarray  # (6, 6) [N/m, N, N m]
+    fluid: float  # [kg/m3] mean density of the displaced fluids
+    gravity: float  # [m/s2]
+    depth: float  # [m] of the water
+    centre: tuple[float, float, float]  # [m] of the centre of gravity
+
+    def radiation(self, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A and B (..., 6, 6) at frequencies (...) [rad/s]."""
+        root = math.sqrt(self.gravity)
+        at = [self.linear.at(one / root) for one in frequency.ravel()]
+        A, B = (np.reshape([one[i] for one in at], (*frequency.shape, 6, 6)) for i in range(2))
+        return self.fluid * A, self.fluid * root * B
+
+    def excitation(self, frequency: np.ndarray, heading: np.ndarray) -> np.ndarray:
+        """X (..., 6) of the common shape of frequencies [rad/s] and headings [rad].
+
+        It follows from the wavenumber. In other water than that of the coefficients, waves of the same length are
+        slower, and so is the vertical acceleration of their water. Raises ValueError for a heading that the hull's
+        dataset does not have.
+        """
+        linear = self.linear
+        away = np.abs(within_half_turn(heading - linear.heading)) > MAX_MISS  # False for nan: all headings
+        if away.any():
+            allowed = f"{linear.heading:g} rad, the only one that the hull's dataset has"
+            raise argument_error("heading", float(heading[away].flat[0]), allowed)
+        k = wavenumber(frequency / math.sqrt(self.gravity), 1.0, self.depth)
+        index, weights = lagrange(np.append(DIRECTIONS, 2.0 * math.pi), within_turn(heading))
+        beyond, is_long = linear.beyond_long_waves(k.ravel())
+        which, _ = np.broadcast_arrays(np.arange(k.size).reshape(k.shape), heading)
+        X = np.einsum("...d,...dm->...m", weights, beyond[which[..., None], index % len(DIRECTIONS)])
+        kx, ky = k * np.cos(heading), k * np.sin(heading)
+        long = linear.long.at(kx, ky, linear.depth)
+        X = X + is_long[which][..., None] * long + (linear.long.at(kx, ky, self.depth) - long)
+        # the pressure under a plane that follows the wave, in each fluid instead of the mean one
+        for density_step, plane in [*self.planes, (-self.fluid, linear.plane)]:
+            slope = kx[..., None] * plane.slope[0] + ky[..., None] * plane.slope[1]
+            X = X + density_step / self.fluid * (plane.rise + 1j * slope)
+        return self.fluid * self.gravity * X
+
+
+def upright_body(body: Body, layers: Layers, gravity: float, depth: float | None) -> UprightBody:
+    """A body at rest in water of a depth [m], by default that of its dataset. Raises ValueError as `linear_forces`."""
+    check_body("body", body)
+    check_pose(body)
+    gravity = check_positive("gravity", gravity, "m/s2")
     layers = check_layers(layers)
     hull, density = body.loaded()
-    check_water_density(hull, layers)
     draft = body.draft(layers)
     _, rest = about_rest(body, layers)
     if not is_stable(hull, rest):
@@ -95,24 +176,11 @@ def linear_forces(
         raise argument_error("center_of_gravity", body.center_of_gravity, "one over the centre of buoyancy")
     planes = [(change, plane_force(hull, draft - top)) for change, top in density_steps(layers) if draft > top]
     linear, C = linear_hull(hull, draft), np.zeros((6, 6))
+    depth = linear.depth if depth is None else depth
+    check_bed("depth", hull, draft, depth)
     for change, plane in planes:  # water that is higher towards +y, or +x, is a hull that leans there
         forces = np.stack([plane.rise, plane.slope[1], -plane.slope[0]], axis=1)
         C[2:5, 2:5] += gravity * change * forces[2:5]
-    fluid = density * hull.volume / linear.volume  # [kg/m3] mean density of the displaced fluids
     mass = density * np.block([[hull.volume * np.eye(3), np.zeros((3, 3))], [np.zeros((3, 3)), hull.inertia]])
-    if abs(within_half_turn(heading - linear.heading)) > MAX_MISS:  # False for nan: all headings
-        raise argument_error("heading", heading, f"{linear.heading:g} rad, the only one that the hull's dataset has")
-    index, weights = lagrange(np.append(DIRECTIONS, 2.0 * math.pi), float(within_turn(heading)))
-    k = linear.wavenumber(w / math.sqrt(gravity))
-    beyond, is_long = linear.beyond_long_waves(k)
-    X = np.einsum("d,ndm->nm", weights, beyond[:, index % len(DIRECTIONS)])
-    X = fluid * (X + is_long[:, None] * linear.long.at(k * math.cos(heading), k * math.sin(heading), linear.depth))
-    # the pressure under a plane that follows the wave, in each fluid instead of the mean one
-    for density_step, plane in [*planes, (-fluid, linear.plane)]:
-        slope = math.cos(heading) * plane.slope[0] + math.sin(heading) * plane.slope[1]
-        X += density_step * (plane.rise + 1j * k[:, None] * slope)
-    root = math.sqrt(gravity)
     centre = (float(body.position[0]), float(body.position[1]), -draft - float(hull.extents[2, 0]))
-    at = [linear.at(one / root) for one in w]
-    added, damping = (fluid * np.reshape([one[i] for one in at], (*given.shape, 6, 6)) for i in range(2))
-    return LinearForces(mass, C, added, root * damping, gravity * X.reshape(*given.shape, 6), centre)
+    return UprightBody(linear, planes, mass, C, density * hull.volume / linear.volume, gravity, depth, centre)

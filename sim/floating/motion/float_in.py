@@ -17,13 +17,13 @@ from typing import NamedTuple
 import numpy as np
 
 from sim.floating.linear.excitation import LAST_RATES, WaveExcitation, rate_of_change
-from sim.floating.linear.hydrodynamics import check_water_depth
+from sim.floating.linear.hydrodynamics import check_bed, check_water_depth
 from sim.floating.motion.body import Body, make_fleet
 from sim.floating.motion.fluid_state import make_water
 from sim.floating.motion.motion import STANDARD, MotionCoefficients, step
-from sim.floating.statics.equilibrium import Layers, check_layers
+from sim.floating.statics.equilibrium import Layers, check_layers, equilibrium_draft
 from sim.floating.statics.stability import Loaded, is_stable, near_upright
-from sim.frames import Progress, frame_times, run_frames, steps_for
+from sim.frames import Progress, equal_steps, frame_times, run_frames
 from sim.interruption import raise_if_stopped
 from sim.ocean.any_sea import AnySea, SurfaceAt
 from sim.validation import argument_error, check_kind, check_number, is_whole_number
@@ -34,7 +34,7 @@ LONGEST_STEP = 1 / 60  # [s]
 class FloatRun(NamedTuple):
     """n bodies at frames of equal spacing."""
 
-    t: np.ndarray  # (frames,) [s]
+    t: np.ndarray  # (frames,) [s] of the sea
     x: np.ndarray  # (frames, n, 3) [m] of the centres of gravity
     rotation: np.ndarray  # (frames, n, 4) quaternions (w, x, y, z) from body to world
     velocity: np.ndarray  # (frames, n, 3) [m/s]
@@ -45,7 +45,10 @@ class FloatRun(NamedTuple):
 
 
 class FloatState:
-    """Bodies in a sea at time t [s]: `advance` takes them on, with the pulls in `fleet.mooring` (n, 6) [N, N m].
+    """Bodies in a sea at its time t [s]: `advance` steps them, with the pulls in `fleet.mooring` (n, 6) [N, N m].
+
+    The gravity is that of the sea at each step. The coefficients of linear theory are those of the sea's fluids at the
+    start.
 
     >>> from sim.floating import Body, FloatState, Hull
     >>> from sim.ocean import Sea
@@ -58,22 +61,30 @@ class FloatState:
     (0.1, (1, 3))
     """
 
-    def __init__(self, sea: AnySea, bodies: Sequence[Body], coefficients: MotionCoefficients = STANDARD) -> None:
-        """At the sea's time 0, where the bodies are. Raises ValueError as `float_in`."""
+    def __init__(
+        self,
+        sea: AnySea,
+        bodies: Sequence[Body],
+        coefficients: MotionCoefficients = STANDARD,
+        begin: float | None = None,
+    ) -> None:
+        """The bodies where they are at time `begin` [s], by default the sea's own. Raises ValueError as `float_in`."""
         check_kind("sea", sea, AnySea, "a Sea, a NonlinearSea or a RadialSea")
         check_kind("coefficients", coefficients, MotionCoefficients, "MotionCoefficients")
-        self.sea, self.layers, self.gravity = sea, sea.layers, sea.water.gravity
-        self.coefficients = coefficients._replace(gravity=self.gravity)
+        self.sea, self.layers, self.coefficients = sea, sea.layers, coefficients
         self.fleet = make_fleet(bodies, self.layers)
         for i, body in enumerate(bodies):
             check_water_depth(f"bodies[{i}]", body.hull, sea.water.depth)
+            if not math.isinf(sea.water.depth):
+                draft = equilibrium_draft(*body.loaded(), self.layers)
+                check_bed(f"bodies[{i}]", body.hull, draft, sea.water.depth)
         self.widths = np.array([math.sqrt(float(body.hull.size[0] * body.hull.size[1])) for body in bodies])
         self.excitation = WaveExcitation(bodies, self.widths, self.layers) if sea.is_sum_of_waves else None
-        self.t = 0.0
+        self.t = sea.time if begin is None else check_number("begin", begin, "s")
         self.rises: tuple[np.ndarray, ...] = ()  # (n,) [m/s] of the water in the last steps, of h [s]
         self.h = 0.0
         # (n,) [m] height of the water at the bodies, in the middle of the last step
-        self.surface = sea.at(self.fleet.position[:, :2], 0.0, self.widths).height if len(bodies) else np.zeros(0)
+        self.surface = sea.at(self.fleet.position[:, :2], self.t, self.widths).height if len(bodies) else np.zeros(0)
 
     def advance(self, h: float, steps: int) -> None:
         """Continue by `steps` steps of h [s], of 1/60 s at most. Raises FloatingPointError as `step`."""
@@ -84,15 +95,20 @@ class FloatState:
             self.h, self.rises = h, ()
             if self.excitation is not None:
                 self.excitation.impulses = ()
-        begin = self.t
-        for i in range(steps if len(self.fleet.mass) else 0):
+        for _ in range(steps):
             raise_if_stopped()
-            self.take_step(begin + (i + 0.5) * h, h)
-            self.t = begin + (i + 1) * h
+            if len(self.fleet.mass):
+                self.take_step(self.t + 0.5 * h, h)
+            self.t += h  # step by step, so that it does not depend on how steps are shared out among the calls
+
+    @property
+    def gravity(self) -> float:
+        """[m/s2] of the sea."""
+        return self.sea.water.gravity
 
     def take_step(self, middle: float, h: float) -> None:
         """A step of h [s] with the water of its middle [s]."""
-        sea, fleet = self.sea, self.fleet
+        sea, fleet, gravity = self.sea, self.fleet, self.gravity
         at = sea.at(fleet.position[:, :2], middle, self.widths)
         forces, acceleration = None, at.acceleration
         if self.excitation is not None:
@@ -100,13 +116,13 @@ class FloatState:
         else:  # along the way of the bodies, so that it has no mean (excitation.py)
             self.rises = (at.velocity[:, 2].copy(), *self.rises[: len(LAST_RATES)])
             if len(self.rises) > len(LAST_RATES):
-                acceleration = np.clip(rate_of_change(self.rises, h), -self.gravity, self.gravity)
+                acceleration = np.clip(rate_of_change(self.rises, h), -gravity, gravity)
         interface = {} if len(self.layers) == 1 else interface_of(at, self.layers[0][1])
         water = make_water(
             fleet, self.layers, at.height, slope=at.slope, velocity=at.velocity, acceleration=acceleration,
             excitation=forces, lead=h / 2, **interface,
         )  # fmt: skip
-        step(fleet, water, h, self.coefficients)
+        step(fleet, water, h, self.coefficients._replace(gravity=gravity))
         self.surface = at.height
 
 
@@ -115,14 +131,13 @@ class FloatFrames:
 
     def __init__(self, state: FloatState, t: np.ndarray, h: float, steps: int) -> None:
         fleet = state.fleet
-        self.state, self.t, self.h, self.steps = state, t, h, steps
+        self.state, self.h, self.steps = state, h, steps
         self.arrays = (fleet.position, fleet.rotation, fleet.velocity, fleet.spin, fleet.lift)
         self.results = [np.empty((len(t), *array.shape)) for array in self.arrays]
         self.surface = np.empty((len(t), len(fleet.mass)))
 
     def advance(self, frame: int) -> None:
         """Continue to a frame from the one before."""
-        self.state.t = float(self.t[frame - 1])
         self.state.advance(self.h, self.steps)
 
     @property
@@ -145,9 +160,13 @@ def float_in(
     step: float = LONGEST_STEP,
     *,
     coefficients: MotionCoefficients = STANDARD,
+    begin: float | None = None,
     progress: Progress = None,
 ) -> FloatRun:
-    """Let bodies float in a sea from its time 0 for a duration [s]; `Body.afloat` lets them begin at rest.
+    """Let bodies float in a sea for a duration [s]; `Body.afloat` lets them begin at rest.
+
+    begin: time [s] of the start, by default the sea's own, `sea.time`, which is then that of the end. A run continues
+    where the last one of its sea ended; begin=0.0 repeats it in a sea that can go back.
 
     On a sum of waves they feel linear wave forces; on the tiles those of waves long beside the hull (motion.py). The
     gravity is the sea's.
@@ -158,14 +177,16 @@ def float_in(
     """
     t = frame_times(duration, frames, step, progress)
     check_number("step", step, "s", 0, LONGEST_STEP, above=True)
-    state = FloatState(sea, bodies, coefficients)
+    state = FloatState(sea, bodies, coefficients, begin)
+    start = state.t
     for words in unstable(bodies, state.layers):
         warnings.warn(words, UserWarning, stacklevel=2)
-    steps = steps_for(float(t[1]), step)
-    kept = FloatFrames(state, t, float(t[1]) / steps, steps)
+    steps, h = equal_steps(float(t[1]), step)
+    kept = FloatFrames(state, t, h, steps)
     run_frames(kept, len(t), progress)
+    sea.at(np.empty((0, 2)), state.t)  # the last step has asked for its middle
     x, rotation, velocity, spin, lift = kept.results
-    return FloatRun(t, x, rotation, velocity, spin, lift, kept.surface)
+    return FloatRun(start + t, x, rotation, velocity, spin, lift, kept.surface)
 
 
 def unstable(bodies: Sequence[Body], layers: Layers) -> list[str]:

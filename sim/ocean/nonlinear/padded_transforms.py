@@ -5,6 +5,8 @@ cut off afterwards (Ducrozet et al. 2016, Comput. Phys. Commun. 203:245). Only r
 transformed: at M = 3 that takes 0.75 of the time of a whole transform.
 """
 
+from typing import Any
+
 import numpy as np
 
 from sim.jit import kernel
@@ -67,6 +69,10 @@ class PaddedTransforms:
             self._columns = make_plan(self._other[:, :columns], self.result, (0,), "FFTW_FORWARD")
         self._half[...] = 0.0
         self.spectrum[...] = 0.0
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the shapes and the account of the work: plans belong to a process."""
+        return PaddedTransforms, (self.shape, self.spectrum.shape[1], self.work)
 
     def set_grid(self, plane: np.ndarray) -> None:
         """Set a plane to the field of `spectrum`."""

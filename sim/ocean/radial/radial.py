@@ -304,7 +304,6 @@ def set_surface(labels, surface, responses, out):
         out[p, 1], out[p, 2] = sums.slope
         xx, yy, xy = sums.strain
         out[p, 3], out[p, 4], out[p, 5] = 1.0 + s.choppiness * xx, 1.0 + s.choppiness * yy, s.choppiness * xy
-        u, v, w = sums.velocity
-        out[p, 6], out[p, 7], out[p, 8] = s.choppiness * u, s.choppiness * v, w
+        out[p, 6], out[p, 7], out[p, 8] = sums.velocity
         out[p, 9] = sums.acceleration[2]
         out[p, 10], out[p, 11], out[p, 12], out[p, 13], _, _ = sums.response

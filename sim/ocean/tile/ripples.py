@@ -111,6 +111,12 @@ class Ripples:
             self.version += 1
         self.time = t
 
+    def add_quadrature(self, q: np.ndarray, t: float) -> None:
+        """Add the rings to the spectrum of `TileHeights.quadrature` at time t [s]."""
+        t = self.check_time(t)
+        if self.alive:
+            add_heights(self._odd, self._even, self._rate, self._fade(t), self.time - t, *self._scratch, q)
+
     def add_to(self, h: np.ndarray, t: float) -> None:
         """Add the rings at time t [s] to a half spectrum given as its real view (N, N + 2)."""
         t = self.check_time(t)

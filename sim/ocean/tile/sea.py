@@ -302,7 +302,7 @@ class Sea(TileSurface, AnySea):
         target = np.sqrt(S) * dk
         raise_if_stopped()
         self.spectrum, self.conditions, self.medium, self._given = chosen, conditions, medium, given
-        return DrawnWaves(unit, target, omega, decay)
+        return DrawnWaves(unit, target, omega, decay, conditions.depth)
 
 
 def checked_conditions(

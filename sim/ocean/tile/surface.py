@@ -18,6 +18,7 @@ class SurfaceSource(Protocol):
     transforms: Transforms
 
     def spectrum(self, t: float) -> np.ndarray: ...
+    def quadrature(self, t: float) -> np.ndarray: ...
     def set_input(self, t: float, choppiness: float) -> None: ...
     def mean_height(self, t: float, choppiness: float) -> float: ...
 
@@ -74,7 +75,7 @@ class Surface:
 
     @field
     def displacement(self) -> np.ndarray:
-        """Horizontal displacement (size, size, 2) [m], choppiness included. Two transforms; none at choppiness 0.
+        """Horizontal displacement (size, size, 2) [m] as drawn. Two transforms; none at choppiness 0.
 
         D(k) = i choppiness (k/|k|) h(k): Tessendorf (2001), eq. 44, with the sign that he leaves to the factor. Water
         of a deep wave a cos(kx - omega t) moves by -a sin(kx - omega t) along it (Lamb, Art. 229): to the crests.
@@ -83,8 +84,7 @@ class Surface:
         if self.choppiness > 0.0:
             rows = self.numbers.rows
             chop = rows["k"] * rows["k"].dtype.type(self.choppiness)
-            self._set_field(set_imaginary_multiple, chop, rows["1"], "1/k", out[..., 0])
-            self._set_field(set_imaginary_multiple, rows["1"], chop, "1/k", out[..., 1])
+            self._set_gradient(chop, self.numbers.radial["1/k"], self.heights.spectrum(self.t), out)
         else:
             out[...] = 0.0
         return out
@@ -92,10 +92,29 @@ class Surface:
     @field
     def slope(self) -> np.ndarray:
         """Slope (size, size, 2) of the height along x and y, by label. Two transforms."""
-        rows, out = self.numbers.rows, self._two_planes()
-        self._set_field(set_imaginary_multiple, rows["k"], rows["1"], "1", out[..., 0])
-        self._set_field(set_imaginary_multiple, rows["1"], rows["k"], "1", out[..., 1])
+        out = self._two_planes()
+        self._set_gradient(self.numbers.rows["k"], self.numbers.radial["1"], self.heights.spectrum(self.t), out)
         return out
+
+    @field
+    def flow(self) -> np.ndarray:
+        """Horizontal velocity (size, size, 2) [m/s] of the water by label, whatever the choppiness. Two transforms.
+
+        u(k) = i (k/|k|) coth(kh) omega q(k), at z = 0 (Lamb, Art. 229), q the quadrature of the heights.
+        """
+        out = self._two_planes()
+        self._set_gradient(self.numbers.rows["k"], self.heights.waves.flow, self.heights.quadrature(self.t), out)
+        return out
+
+    @field
+    def rise(self) -> np.ndarray:
+        """Upward velocity (size, size) [m/s] of the water by label: omega q(k). One transform."""
+        return self._multiple(self.heights.waves.rise, self.heights.quadrature(self.t))
+
+    @field
+    def lift(self) -> np.ndarray:
+        """Upward acceleration (size, size) [m/s2] of the water by label: -omega^2 h(k). One transform."""
+        return self._multiple(self.heights.waves.lift, self.heights.spectrum(self.t))
 
     @field
     def strain(self) -> np.ndarray:
@@ -103,9 +122,10 @@ class Surface:
         rows, out = self.numbers.rows, self.transforms.grids.take(3)
         out[...] = 0.0
         if self.choppiness > 0.0:
-            chop = -rows["1"].dtype.type(self.choppiness)
+            chop, inverse = -rows["1"].dtype.type(self.choppiness), self.numbers.radial["1/k"]
+            h = self.heights.spectrum(self.t)
             for i, (row, column) in enumerate((("k2", "1"), ("1", "k2"), ("k", "k"))):
-                self._set_field(set_real_multiple, chop * rows[row], rows[column], "1/k", out[i])
+                self._set_field(set_real_multiple, chop * rows[row], rows[column], inverse, h, out[i])
         return out
 
     @field
@@ -117,7 +137,21 @@ class Surface:
     def _two_planes(self) -> np.ndarray:
         return np.moveaxis(self.transforms.grids.take(2), 0, -1)
 
-    def _set_field(self, multiple: Multiple, row: np.ndarray, column: np.ndarray, radial: str, out: np.ndarray) -> None:
-        spectrum = self.transforms.spectrum.view(row.dtype)
-        multiple(self.heights.spectrum(self.t), row, column, self.numbers.radial[radial], spectrum)
+    def _multiple(self, radial: np.ndarray, h: np.ndarray) -> np.ndarray:
+        """The field (size, size) of a spectrum times a factor of |k|."""
+        one, out = self.numbers.rows["1"], self.transforms.grids.take(1)[0]
+        self._set_field(set_real_multiple, one, one, radial, h, out)
+        return out
+
+    def _set_gradient(self, row: np.ndarray, radial: np.ndarray, h: np.ndarray, out: np.ndarray) -> None:
+        """Set out (size, size, 2) to the fields of i row(kx) and i row(ky) times radial(|k|) h(k)."""
+        one = self.numbers.rows["1"]
+        self._set_field(set_imaginary_multiple, row, one, radial, h, out[..., 0])
+        self._set_field(set_imaginary_multiple, one, row, radial, h, out[..., 1])
+
+    def _set_field(
+        self, multiple: Multiple, row: np.ndarray, column: np.ndarray, radial: np.ndarray, h: np.ndarray,
+        out: np.ndarray,
+    ) -> None:  # fmt: skip
+        multiple(h, row, column, radial, self.transforms.spectrum.view(row.dtype))
         self.transforms.set_grid(out)

@@ -24,6 +24,7 @@ class TileHeights:
         self.scratch = np.empty(numbers.size, numbers.real), np.empty(numbers.size, numbers.real)
         self.heights: np.ndarray | None = None  # made on first use
         self.evolved: tuple | None = None  # key of time and state
+        self.later: tuple[tuple | None, np.ndarray | None] = None, None  # the same of `quadrature`, and its array
         self.mean: tuple[tuple | None, float] = None, 0.0  # the same, and the mean [m]
 
     def copied(self, waves: TileWaves, memo: dict[int, Any]) -> "TileHeights":
@@ -51,15 +52,36 @@ class TileHeights:
             self.heights = np.zeros((numbers.size, numbers.size + 2), numbers.real)
         if self.evolved != self.key(t):
             even, odd = waves.planes_at(t)
-            fade = numbers.radial["1"]
-            if waves.decays:
-                fade = np.exp(waves.fall * numbers.real(t - waves.base))
             copied = self.transforms.spectrum.view(numbers.real)
-            set_heights(even, odd, waves.rate, fade, t - waves.base, *self.scratch, self.heights, copied)
+            set_heights(even, odd, waves.rate, self.fade(t), t - waves.base, *self.scratch, self.heights, copied)
             if self.ripples is not None:
                 self.ripples.add_to(self.heights, t)
             self.evolved = self.key(t)
         return self.heights
+
+    def fade(self, t: float) -> np.ndarray:
+        """Fraction of each wave that its decay since the last change leaves at time t [s], a quarter plane."""
+        waves, numbers = self.waves, self.waves.numbers
+        return np.exp(waves.fall * numbers.real(t - waves.base)) if waves.decays else numbers.radial["1"]
+
+    def quadrature(self, t: float) -> np.ndarray:
+        """q(k, t) with rings, as `spectrum`: each wave a quarter of its period later, as high as at time t [s].
+
+        The surface rises at omega q, apart from decay and growth.
+        """
+        waves, numbers = self.waves, self.waves.numbers
+        key, out = self.later
+        if out is None:
+            out = np.zeros((numbers.size, numbers.size + 2), numbers.real)
+        if key != self.key(t):
+            even, odd = waves.planes_at(t)
+            copied = self.transforms.spectrum.view(numbers.real)
+            # odd cos(omega t) - even sin(omega t)
+            set_heights(odd, even, waves.rate, self.fade(t), waves.base - t, *self.scratch, out, copied)
+            if self.ripples is not None:
+                self.ripples.add_quadrature(out, t)
+            self.later = self.key(t), out
+        return out
 
     def mean_height(self, t: float, choppiness: float) -> float:
         """Mean height [m] of the displaced points: see `Surface.mean_height`."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from sim.jit import kernel
 from sim.ocean.any_sea import RadialSurface, SurfaceAt
 from sim.ocean.radial.radial_grid import FADE, RadialGrid
-from sim.ocean.tile.query import bicubic, query, sample
+from sim.ocean.tile.query import bicubic, evaluate_grid, grid_fields, query, sample
 from sim.validation import check_positions
 from sim.water import Water
 from sim.waves import Kinematics
@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     from sim.ocean.nonlinear.surface import NonlinearSurface
     from sim.ocean.tile.surface import Surface
 
-INSTANT = 1 / 60  # [s] between the three heights from which rise and acceleration are differences
-REACH = 0.05  # [m] of the differences that give the slope at a point
+LEAST_JACOBIAN = 0.1  # by which slopes are divided where the surface folds
 
 
 class TileSurface:
@@ -62,20 +61,20 @@ class TileSurface:
 
     def at(self: Any, points: ArrayLike, t: float, size: ArrayLike = 0.0) -> SurfaceAt:
         """The sea above points (n, 2) [m] at time t [s]; `size` is not used, the tile has no shorter waves than its
-        cells. Velocity is that of the water that is there now, acceleration that of the surface above the point."""
-        where = check_positions("points", points)
-        n = len(where)
-        around = np.concatenate([where + REACH * np.array(d) for d in ((1, 0), (-1, 0), (0, 1), (0, -1))])
-        east, west, north, south = self.height_at(around, t)[0].reshape(4, n)
-        slope = np.column_stack([east - west, north - south]) / (2 * REACH)
-        now, residual, label = query(self.surface(t), where)
-        above, moved = [], []
-        for instant in (-INSTANT, INSTANT):
-            above.append(self.height_at(where, t + instant)[0])
-            moved.append(particles(self.surface(t + instant), self.length / self.size, label))
-        velocity = (moved[1] - moved[0]) / (2 * INSTANT)
-        rise, acceleration = (above[1] - above[0]) / (2 * INSTANT), (above[1] - 2 * now + above[0]) / INSTANT**2
-        return SurfaceAt(now, slope, velocity, acceleration, now.copy(), slope.copy(), rise, label, residual)
+        cells. Between grid points fields are bicubic, as those of `height_at`."""
+        where, surface, cell = check_positions("points", points), self.surface(t), self.length / self.size
+        height, residual, label = query(surface, where)
+        fields = (*(f[..., i] for f in (surface.flow, surface.slope) for i in range(2)), surface.rise, surface.lift)
+        found = np.empty((6, len(where)))
+        for field, row in zip(fields, found, strict=True):
+            sample(label, np.ascontiguousarray(field), cell, row)
+        u, v, hx, hy, w, acceleration = found
+        slope, velocity = np.column_stack([hx, hy]), np.column_stack([u, v, w])
+        if surface.choppiness > 0.0:
+            turn_slopes(label, grid_fields(surface), slope)
+        rise = w - (velocity[:, :2] * slope).sum(axis=1)
+        return SurfaceAt(height, slope, velocity, acceleration.copy(), height.copy(), slope.copy(), rise,
+                         label, residual)  # fmt: skip
 
     def kinematics(self: Any, points: ArrayLike, t: float, stretching: str = "constant") -> Kinematics:
         """Velocity, acceleration and pressure of the water at points (n, 3) [m] at time t, by the sum over all waves.
@@ -114,13 +113,14 @@ def sampled(
     return RadialSurface(vertices, slopes, jacobian)
 
 
-def particles(surface: "Surface", cell: float, label: np.ndarray) -> np.ndarray:
-    """Displacement (n, 3) [m] of the water that rests at labels (n, 2) [m], by a surface of cells of `cell` [m]."""
-    fields = (surface.displacement[..., 0], surface.displacement[..., 1], surface.height)
-    out = np.empty((3, len(label)))
-    for field, row in zip(fields, out, strict=True):
-        sample(label, np.ascontiguousarray(field), cell, row)
-    return out.T
+@kernel
+def turn_slopes(labels, fields, slope):
+    """Turn slopes (n, 2) by label into those of the displaced surface: (dz/dx, dz/dy) (I + grad D) = slope."""
+    for p in range(labels.shape[0]):
+        _, _, _, xx, xy, yx, yy = evaluate_grid(fields, p, labels[p, 0], labels[p, 1])
+        hx, hy = slope[p, 0], slope[p, 1]
+        inverse = 1.0 / max((1.0 + xx) * (1.0 + yy) - xy * yx, LEAST_JACOBIAN)
+        slope[p, 0], slope[p, 1] = ((1.0 + yy) * hx - yx * hy) * inverse, ((1.0 + xx) * hy - xy * hx) * inverse
 
 
 @kernel

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sim.dispersion import tanh_depth
 from sim.interruption import raise_if_stopped
 from sim.ocean.fluids.medium import Medium
 from sim.ocean.spectra import Conditions
@@ -28,6 +29,7 @@ class DrawnWaves(NamedTuple):
     target: np.ndarray  # sqrt(S dk^2) [m], a full plane
     omega: np.ndarray  # [rad/s], a quarter plane
     decay: np.ndarray  # decay rate [1/s], a quarter plane
+    depth: float  # [m] of the water
 
 
 class TileWaves:
@@ -40,6 +42,10 @@ class TileWaves:
     decay: np.ndarray  # decay rate [1/s], a quarter plane
     decays: bool  # any wave does
     fall: np.ndarray  # -decay in the precision of the planes
+    # Factors on heights and on their quadrature, quarter planes in the precision of the planes.
+    rise: np.ndarray  # omega [rad/s]
+    flow: np.ndarray  # omega coth(kh)/k [m/s]
+    lift: np.ndarray  # -omega^2 [rad2/s2]
 
     def __init__(self, numbers: Wavenumbers, drawn: DrawnWaves) -> None:
         """The waves from time 0 on."""
@@ -92,6 +98,10 @@ class TileWaves:
     def _set_drawn(self, drawn: DrawnWaves) -> None:
         self.target, self.rate, self.decay = drawn.target, drawn.omega / (2.0 * np.pi), drawn.decay
         self.decays, self.fall = bool(self.decay.any()), (-self.decay).astype(self.numbers.real)
+        k, omega = self.numbers.quarter, drawn.omega
+        below = k * tanh_depth(k, drawn.depth)
+        flow = np.divide(omega, below, out=np.zeros_like(k), where=below > 0.0)
+        self.rise, self.flow, self.lift = (each.astype(self.numbers.real) for each in (omega, flow, -np.square(omega)))
 
     def checked_time(self, t: float) -> float:
         """Raises ValueError for a time that is not finite, or before the last change where waves decay or relax."""

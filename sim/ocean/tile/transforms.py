@@ -36,6 +36,11 @@ class Transforms:
         self._plan = make_plan(self.spectrum, self.grids.take(1)[0], (0, 1), "FFTW_BACKWARD", "FFTW_DESTROY_INPUT")
         self.spectrum[...] = 0.0
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the size and the precision: plans belong to a process."""
+        precision = next(name for name, (real, _) in PRECISIONS.items() if real is self.grids.real)
+        return Transforms, (self.grids.size, precision), {"count": self.count}
+
     def set_grid(self, grid: np.ndarray) -> None:
         """`spectrum` as the sum of its waves on `grid` (size, size); the spectrum is overwritten."""
         import pyfftw

@@ -16,8 +16,8 @@ class EnergyHistory(NamedTuple):
     elastic: NDArray[np.float64]
     gravity: NDArray[np.float64]
     contact: NDArray[np.float64]
-    dissipated: NDArray[np.float64]  # by damping since the start
-    work: NDArray[np.float64]  # put in since the start, by pins, wind, waves and other moved things
+    dissipated: NDArray[np.float64]  # by damping since the account of the state began
+    work: NDArray[np.float64]  # put in since then, by pins, wind, waves and other moved things
 
     @property
     def total(self) -> NDArray[np.float64]:

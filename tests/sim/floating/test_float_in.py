@@ -69,7 +69,7 @@ def test_steps_from_outside_are_those_of_a_run(kind):
     run = float_in(sea, [BUOY.afloat()], 3.0, 31, 1 / 80, progress=lambda *done: told.append(done))
     assert told[0] == (1, 31)
     assert told[-1] == (31, 31)
-    state, changed = FloatState(sea, [BUOY.afloat()]), FloatState(sea, [BUOY.afloat()])
+    state, changed = FloatState(sea, [BUOY.afloat()], begin=0.0), FloatState(sea, [BUOY.afloat()], begin=0.0)
     for steps in (1, 7, 0, 232):
         state.advance(1 / 80, steps)
     assert state.t == pytest.approx(3.0)

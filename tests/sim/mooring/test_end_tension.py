@@ -116,3 +116,52 @@ def test_a_chain_that_snaps_and_goes_slack_pushes_only_by_the_law_of_moordyn(int
         assert run.tension[1].min() == 0.0
     assert math.isfinite(run.tension[1].max())
     assert np.abs(run.energy.error).max() < 2e-3 * np.abs(run.energy.work).max()
+
+
+@pytest.mark.parametrize("segments", [1, 2])
+@pytest.mark.parametrize("turned", [(1, 2), (2, 1)])
+def test_lines_side_by_side_have_the_end_tensions_that_each_has_alone(segments, turned):
+    """A heavy chain beside a light, taut rope, in either order and direction, between the same two points."""
+    chain, rope = LineType("chain", 0.1, 200.0, 1e8), LineType("rope", 0.05, 5.0, 1e7)
+    points = (Point(1, "fixed", (-60.0, 0.0, -30.0)), Point(2, "coupled", (0.0, 0.0, -1.0)))
+    lines = (Line(1, chain, 1, 2, 70.0, segments), Line(2, rope, *turned, 60.0, segments))
+    alone = {
+        line.id: System((line,), points, 100.0, bed_stiffness=0.0).at_rest().end_tension[line.id] for line in lines
+    }
+    for order in (lines, lines[::-1]):
+        rest = System(order, points, 100.0, bed_stiffness=0.0).at_rest()
+        for one, expected in alone.items():
+            assert rest.end_tension[one] == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_system_of_lines_costs_in_proportion_to_their_number():
+    """Counted in comparisons of their ids, as time is noisy."""
+
+    def comparisons(n: int) -> int:
+        points = tuple(
+            point for i in range(n)
+            for point in (
+                Point(CountedId(2 * i + 1), "fixed", (-60.0, i, -30.0)),
+                Point(CountedId(2 * i + 2), "coupled", (0.0, i, -1.0)),
+            )
+        )  # fmt: skip
+        lines = tuple(Line(i + 1, CHAIN, CountedId(2 * i + 1), CountedId(2 * i + 2), 70.0, 2) for i in range(n))
+        CountedId.compared = 0
+        _ = System(lines, points, 30.0).line_ends
+        return CountedId.compared
+
+    few, many = comparisons(50), comparisons(200)
+    assert 0 < few < many < 4.5 * few
+
+
+class CountedId(int):
+    """An id that counts how often it is compared."""
+
+    compared = 0
+
+    def __eq__(self, other: object) -> bool:
+        CountedId.compared += 1
+        return int(self) == other
+
+    def __hash__(self) -> int:
+        return int(self)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.floating import Body, FloatState, Hull
+from sim.floating import Body, FloatState, Hull, MotionCoefficients, float_in
 from sim.ocean import RadialSea, Sea
 from sim.ocean.any_sea import AnySea
 from sim.ocean.nonlinear import NonlinearSea
@@ -59,7 +59,7 @@ def test_still_water_is_still(kind: str) -> None:
     sea = sea_of(kind, (4, 0), math.inf, amplitude=0.0)
     assert isinstance(sea, AnySea)
     at, flow = sea.at(POINTS, 3.0), sea.kinematics(np.column_stack([POINTS, np.full(20, -1.0)]), 3.0)
-    assert sea.time == 3.0 or kind == "tile"  # its rates are differences in time
+    assert sea.time == 3.0
     for values in (at.height, at.slope, at.velocity, at.acceleration, *flow, sea.waves_at().amplitude):
         assert not np.asarray(values).any()
     assert sea.significant_height == 0.0
@@ -110,6 +110,77 @@ def test_the_water_below_is_the_same_in_every_sea(kind: str, n: tuple[int, int],
             assert found == pytest.approx(expected, abs=slack * np.abs(expected).max())
         slack += k * AMPLITUDE  # of a stretching
     assert_refused("stretching", lambda: sea.kinematics(places, T, "linear"))
+
+
+@pytest.mark.parametrize(("kind", "depth", "choppiness"), [
+    (kind, depth, choppiness)
+    for kind in KINDS
+    for depth in (math.inf, 50.0, 20.0, 8.0, 3.0)
+    for choppiness in (0.0, 1.0, 1.5)
+    if (kind != "sum" or math.isinf(depth)) and (kind in ("tile", "sum") or choppiness == 0.0)
+])  # fmt: skip
+def test_the_water_of_the_surface_moves_as_that_at_z_0_whatever_the_drawing(
+    kind: str, depth: float, choppiness: float
+) -> None:
+    """Waves so low that second order is below rounding, at corners of cells, where the fields of a tile are exact."""
+    sea = sea_of(kind, (3, -2), depth, amplitude=1e-8)
+    if choppiness > 0.0:
+        sea = with_choppiness(sea, choppiness)
+    corners = LENGTH / 64 * np.array([[0.0, 0.0], [5.0, -3.0], [40.0, 11.0], [-9.0, 30.0]])
+    for t in (0.0, 2.9, T, 500.0):
+        at, water = sea.at(corners, t), sea.kinematics(np.column_stack([corners, np.zeros(4)]), t)
+        for component in range(3):
+            of_both = at.velocity[:, component], water.velocity[:, component]
+            assert of_both[0] == pytest.approx(of_both[1], abs=1e-6 * np.abs(water.velocity[:, component]).max())
+        greatest = np.abs(water.acceleration[:, 2]).max()
+        assert at.acceleration == pytest.approx(water.acceleration[:, 2], abs=1e-6 * greatest)
+    one = wave((3, -2), depth, 1e-8)
+    speed = one.amplitude * one.omega / np.tanh(one.k * min(depth, 1e6))
+    along = np.hypot(*sea.at(POINTS, 510.0).velocity[:, :2].T).max()
+    assert along == pytest.approx(float(speed[0]), rel=0.05)
+
+
+def test_in_single_precision_the_water_of_the_surface_moves_as_that_at_z_0_within_1e_6() -> None:
+    sea = Sea(64, LENGTH, "jonswap", wind_speed=8.0, depth=20.0, choppiness=0.0)
+    corners = LENGTH / 64 * np.array([[0.0, 0.0], [5.0, -3.0], [40.0, 11.0], [-9.0, 30.0]])
+    at, water = sea.at(corners, 12.3), sea.kinematics(np.column_stack([corners, np.zeros(4)]), 12.3)
+    assert at.velocity == pytest.approx(water.velocity, abs=1e-6 * np.abs(water.velocity).max())
+    assert at.acceleration == pytest.approx(water.acceleration[:, 2], abs=1e-6 * np.abs(water.acceleration).max())
+
+
+def with_choppiness(sea: AnySea, choppiness: float) -> AnySea:
+    if isinstance(sea, RadialSea):
+        return RadialSea(sea.waves, choppiness=choppiness)
+    assert isinstance(sea, Sea)
+    sea.choppiness = choppiness
+    return sea
+
+
+@pytest.mark.parametrize(("kind", "depth", "choppiness"), [
+    *(("tile", depth, choppiness) for depth in (math.inf, 8.0, 4.0) for choppiness in (0.0, 1.0)),
+    *(("linear march", depth, 0.0) for depth in (math.inf, 8.0, 4.0)),
+    ("sum", math.inf, 0.0),
+])  # fmt: skip
+def test_a_small_body_without_drag_surges_and_sways_as_the_water(kind: str, depth: float, choppiness: float) -> None:
+    """By coth(kh) in a long wave of 12 s, along both axes."""
+    omega = 2.0 * math.pi / 12.0
+    k = float(Water(depth).wavenumber(np.array(omega)))
+    length, height = 2.0 * math.pi / k, 0.02
+    one = Waves([0.6 * k], [0.8 * k], [0.5 * height], [0.0], water=Water(depth))
+    # waves (3, 4) of a tile of five wavelengths
+    if kind == "tile":
+        sea = Sea(
+            96, 5.0 * length, "regular", wave_height=height, wave_period=12.0, wind_speed=0.0, depth=depth,
+            wind_direction=math.atan2(4.0, 3.0), choppiness=choppiness, precision="double",
+        )  # fmt: skip
+    else:
+        sea = RadialSea(one, choppiness=0.0) if kind == "sum" else NonlinearSea(64, 5.0 * length, 1, start=one)
+    body = Body(Hull.box(0.5, 0.5, 0.25), density=512.5).afloat()
+    run = float_in(sea, [body], 30.0, frames=301, coefficients=MotionCoefficients(quadratic_drag=0.0))
+    wanted = 1.0 / math.tanh(min(k * depth, 300.0)) * 0.5 * height * np.array([0.6, 0.8])
+    shape = np.column_stack([np.cos(omega * run.t), np.sin(omega * run.t), np.ones(301), run.t])[60:]
+    found = np.linalg.lstsq(shape, run.x[60:, 0, :2], rcond=None)[0]
+    assert np.hypot(found[0], found[1]) == pytest.approx(wanted, rel=5e-3)
 
 
 @pytest.mark.parametrize("kind", KINDS)

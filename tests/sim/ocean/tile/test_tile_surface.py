@@ -10,7 +10,7 @@ from sim.ocean.radial.gerstner import draw_waves
 from sim.ocean.radial.radial import RadialSea
 from sim.ocean.radial.radial_grid import RadialGrid
 from sim.ocean.spectra import SPECTRA
-from sim.ocean.tile.tile_surface import particles, sample_mesh
+from sim.ocean.tile.tile_surface import sample_mesh
 
 
 def tile(choppiness: float = 1.0) -> Sea:
@@ -18,26 +18,69 @@ def tile(choppiness: float = 1.0) -> Sea:
 
 
 POINTS = np.array([[3.0, 4.0], [-20.0, 31.0], [60.0, -5.5]])
+CORNERS = 4.0 * np.array([[0.0, 0.0], [3.0, 17.0], [-5.0, 8.0], [20.0, 31.0]])  # of cells, where fields are exact
+STILL = np.column_stack([CORNERS, np.zeros(4)])
 
 
 def test_what_rides_the_surface_goes_where_its_velocity_says() -> None:
-    sea, dt = tile(), 0.02
-    at = sea.at(POINTS, 5.0)
-    cell = sea.length / sea.size
-    before, after = (at.label + particles(sea.surface(5.0 + s), cell, at.label)[:, :2] for s in (-dt, dt))
-    np.testing.assert_allclose((after - before) / (2 * dt), at.velocity[:, :2], rtol=0, atol=2e-3)
+    """In deep water, where the drawn displacement is that of the water."""
+    sea, dt, rows = tile(), 0.01, ([1, 40, 13], [5, 22, 60])
+    label = 2.0 * np.column_stack(rows)
+
+    def ridden(t: float) -> np.ndarray:
+        surface = sea.surface(t)
+        height = surface.height[rows] - surface.mean_height
+        return np.column_stack([label + surface.displacement[rows], height]).astype(float)
+
+    before, here, after = (ridden(5.0 + s) for s in (-dt, 0.0, dt))
+    at = sea.at(here[:, :2], 5.0)
+    np.testing.assert_allclose(at.label, label, atol=1e-5)
+    np.testing.assert_allclose((after - before) / (2 * dt), at.velocity, rtol=0, atol=1e-3)
+    np.testing.assert_allclose((after - 2 * here + before)[:, 2] / dt**2, at.acceleration, rtol=0, atol=2e-2)
     assert np.abs(at.velocity[:, :2]).max() > 0.2
-    here = at.label + particles(sea.surface(5.0), cell, at.label)[:, :2]
-    np.testing.assert_allclose(here, POINTS, atol=1e-3)
-    # and stays on the surface: w = d eta/dt + u . grad eta
-    rise = at.interface_rise + (at.velocity[:, :2] * at.slope).sum(axis=1)
-    np.testing.assert_allclose(at.velocity[:, 2], rise, atol=0.02)
+    assert np.abs(at.acceleration).max() > 0.3
 
 
-def test_without_choppiness_nothing_moves_along() -> None:
-    at = tile(0.0).at(POINTS, 5.0)
-    assert (at.velocity[:, :2] == 0.0).all()
-    np.testing.assert_allclose(at.velocity[:, 2], at.interface_rise, atol=1e-6)
+@pytest.mark.parametrize("choppiness", [0.0, 1.0])
+def test_slopes_at_points_are_those_of_the_heights(choppiness: float) -> None:
+    sea, d = Sea(64, 128.0, "jonswap", wind_speed=8.0, choppiness=choppiness, precision="double", low_pass=12.0), 1e-3
+    around = [sea.height_at(POINTS + step, 5.0)[0] for step in ((d, 0.0), (-d, 0.0), (0.0, d), (0.0, -d))]
+    slope = np.column_stack([around[0] - around[1], around[2] - around[3]]) / (2 * d)
+    np.testing.assert_allclose(sea.at(POINTS, 5.0).slope, slope, rtol=0, atol=0.02 * np.abs(slope).max())
+
+
+def test_rings_move_the_water_of_the_surface() -> None:
+    sea = Sea(64, 128.0, wind_speed=0.0, depth=4.0, precision="double", choppiness=0.0)
+    sea.ripples.add(0.0, [[64.0, 64.0]], width=5.0, volume=20.0)
+    # The spreading hump takes its volume with it: eta_t = -h div of the mean velocity, and W = eta_t.
+    places, dt = np.array([[64.0, 64.0], [70.0, 64.0], [64.0, 50.0]]), 1e-3
+    before, now, after = (sea.height_at(places, 1.0 + s)[0] for s in (-dt, 0.0, dt))
+    at = sea.at(places, 1.0)
+    np.testing.assert_allclose(at.velocity[:, 2], (after - before) / (2 * dt), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(at.acceleration, (after - 2 * now + before) / dt**2, rtol=0, atol=1e-5)
+    assert np.abs(at.velocity[:, 2]).max() > 0.01
+    assert at.velocity[1, 0] > 10.0 * abs(at.velocity[1, 1])
+    assert at.velocity[2, 1] < -10.0 * abs(at.velocity[2, 0])
+
+
+@pytest.mark.parametrize("choppiness", [0.0, 1.0])
+@pytest.mark.parametrize("medium", [{"viscosity": 1e-3}, {"relax": 5.0}, {"relax": 5.0, "viscosity": 1e-3}])
+def test_a_sea_that_decays_or_relaxes_moves_as_its_waves_from_its_own_first_instant_on(medium, choppiness) -> None:
+    viscosity = medium.get("viscosity", 0.0)
+    sea = Sea(32, 128.0, "sea_state", hs=1e-6, tp=6.0, choppiness=choppiness, precision="double", viscosity=viscosity)
+    at = [(0.0, sea.at(CORNERS, 0.0))]
+    kinematics = [sea.kinematics(STILL, 0.0)]
+    if "relax" in medium:
+        sea.change(7.0, relax=medium["relax"], hs=3e-6, depth=6.0)
+    for t in (7.0, 9.0, 30.0):
+        at.append((t, sea.at(CORNERS, t)))
+        kinematics.append(sea.kinematics(STILL, t))
+    for (t, surface), water in zip(at, kinematics, strict=True):
+        greatest = np.abs(water.velocity).max()
+        assert surface.velocity == pytest.approx(water.velocity, abs=1e-6 * greatest), t
+        assert surface.acceleration == pytest.approx(
+            water.acceleration[:, 2], abs=1e-6 * np.abs(water.acceleration).max()
+        )
 
 
 def test_the_jacobian_is_that_of_the_mesh() -> None:

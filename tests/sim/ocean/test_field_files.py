@@ -375,7 +375,7 @@ def test_a_record_is_read_with_its_units_and_without_missing_ends(head, times, h
     lines = [mark.join([*row, *(["1"] if "flag" in head else [])]) for row in rows]
     path = tmp_path / "record.csv"
     path.write_text("\n".join([*([head] if head else []), *lines]) + "\n", encoding="utf-8")
-    record = read_record(path)
+    record = read_record(path, missing=999.0 if missing == "999.00" else None)
     count = len(T) - bool(missing)
     assert record.t == pytest.approx(T[:count], abs=1e-6)
     assert record.height == pytest.approx(ETA[:count], abs=1e-7)

@@ -211,7 +211,7 @@ def with_clock(head: Row, rows: list[Row]) -> Row:
     if not rows or len(rows[0].words) != len(head.words) + 1:
         return head
     for i, (word, after) in enumerate(itertools.pairwise(rows[0].words)):
-        if is_time(word) and "-" in word + "/" and is_time(after) and ":" in after:
+        if is_time(word) and ":" not in word and is_time(after) and ":" in after:
             return Row(head.number, [*head.words[:i], "date", "clock", *head.words[i + 1 :]])
     return head
 

@@ -145,22 +145,25 @@ def stamps(words: Sequence[str], missing: frozenset[str]) -> tuple[Clock | None,
         fall = np.diff(seconds, prepend=seconds[:1])
         period = 3600.0 if SHORT.fullmatch(begin) else DAY
         return Clock(seconds - seconds[0] + period * np.cumsum(fall < -0.5 * period), resolution, "clocks", begin), -1
-    trials = []
+    trials, wrong = [], 0
     for is_month_first in (False, True):
-        try:
-            days: dict[str, int] = {}
-            ordinals = np.full(len(parts), math.nan)
-            for i, (found, _) in enumerate(parts):
-                if found is not None:
-                    key = found[0][: found.end("c") if found["c"] else found.end("d")]
-                    if key not in days:
-                        days[key] = day_of(found, is_month_first)
-                    ordinals[i] = days[key]
+        days: dict[str, int] = {}
+        ordinals = np.full(len(parts), math.nan)
+        for i, (found, _) in enumerate(parts):
+            if found is None:
+                continue
+            key = found[0][: found.end("c") if found["c"] else found.end("d")]
+            try:
+                if key not in days:
+                    days[key] = day_of(found, is_month_first)
+            except ValueError:
+                wrong = max(wrong, i)
+                break
+            ordinals[i] = days[key]
+        else:
             trials.append((ordinals - ordinals[np.isfinite(ordinals)][0]) * DAY + seconds)
-        except ValueError:
-            continue
     if not trials:
-        return None, 0
+        return None, wrong
     best = min(trials, key=lambda t: (not (np.diff(t) >= 0.0).all(), float(np.ptp(t[np.isfinite(t)]))))
     return Clock(best - best[np.isfinite(best)][0], resolution, "stamps", begin), -1
 

@@ -56,8 +56,7 @@ def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum
     whole = np.isfinite(density.values).sum(axis=1) >= 3
     if not whole.any():
         raise argument_error("path", str(path), "a file with a record of at least three densities")
-    rows = np.flatnonzero(whole)
-    i = rows[nearest([density.time[row] for row in rows], when, path)]
+    i = nearest(density.time, when, path, whole)
     time, there = density.time[i], np.isfinite(density.values[i])
     order = np.argsort(density.frequency[there])
     f, S = density.frequency[there][order], density.values[i][there][order]
@@ -231,13 +230,11 @@ def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spect
             found = [system_of([row[one] for one in columns], s, path, number) for *columns, s in SUMMARIES[kind]]
         except KeyError as missing:
             raise line_error(path, 1, f"the columns of {kind}; {missing} is not here") from None
-        systems = [system for system in found if system is not None]
-        if systems:
-            times.append(clock_time(words[:clock], path, number))
-            rows.append(systems)
-    if not rows:
+        times.append(clock_time(words[:clock], path, number))
+        rows.append([system for system in found if system is not None])
+    if not any(rows):
         raise argument_error("path", str(path), f"{kind} with a record of waves")
-    i = nearest(times, when, path)
+    i = nearest(times, when, path, [bool(systems) for systems in rows])
     f, systems = SUMMARY_FREQUENCIES, rows[i]
     notes = [f"{kind}, without a spectrum: heights and periods in the shape of JONSWAP"]
     heights = [S for S, _, _ in systems]

@@ -64,12 +64,28 @@ def unrepeated(direction: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, 
     return (direction[:-1], density[:, :-1]) if is_repeated else (direction, density)
 
 
-def nearest(times: list[datetime.datetime], when: datetime.datetime | None, path: Path) -> int:
-    """Index of the record nearest to a time, or of the last one. Raises ValueError if none is near."""
+def nearest(
+    times: Sequence[datetime.datetime],
+    when: datetime.datetime | None,
+    path: Path,
+    has_data: Sequence[bool] | np.ndarray | None = None,
+) -> int:
+    """Index of the record nearest to a time, or of the last one with data. has_data: of each record, None for all.
+
+    Raises ValueError if none is near, or if the nearest one has no data.
+    """
+    whole = [True] * len(times) if has_data is None else [bool(one) for one in has_data]
+    known = [one for one, has in zip(times, whole, strict=True) if has]
     if when is None:
-        return max(range(len(times)), key=times.__getitem__)
+        return max((j for j in range(len(times)) if whole[j]), key=times.__getitem__)
     i = min(range(len(times)), key=lambda j: abs(times[j] - when))
     if abs(times[i] - when) > NEAREST:
-        allowed = f"{min(times):%Y-%m-%d %H:%M} to {max(times):%Y-%m-%d %H:%M}, near a record of {path.name}"
+        allowed = f"{min(known):%Y-%m-%d %H:%M} to {max(known):%Y-%m-%d %H:%M}, near a record of {path.name}"
+        raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
+    if not whole[i]:
+        next_one = min(known, key=lambda one: abs(one - when))
+        allowed = (
+            f"a time with data; the record at {times[i]:%Y-%m-%d %H:%M} has none, that at {next_one:%Y-%m-%d %H:%M} has"
+        )
         raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
     return i

@@ -75,7 +75,7 @@ def read_rod_type(row: Row) -> RodType:
 def read_rod(row: Row, types: Mapping[str, RodType], bodies: Mapping[int, FileBody]) -> Rod:
     """ID RodType Attachment Xa Ya Za Xb Yb Zb NumSegs [Outputs]; on a body the ends are at places in its axes."""
     where = f"{RODS}, line {row.number}"
-    words = check_columns(where, row.words[:11] + check_columns(where, row.words[11:], 0, 0, 0), 10, 11)
+    words = check_columns(where, row.words, 10, 11, 11)
     if words[1] not in types:
         raise argument_error(f"{where}: type", words[1], f"one of {listed(types)}")
     ends = np.array([number_in(where, text) for text in words[3:9]]).reshape(2, 3)

@@ -248,7 +248,7 @@ def read_line(
     A negative length is in distances of the ends. rod_ends: those of "1a", "1b".
     """
     where = f"{LINES}, line {row.number}"
-    words = check_columns(where, row.words[:7] + check_columns(where, row.words[7:], 0, 0, 0), 6, 7)
+    words = check_columns(where, row.words, 6, 7, 7)
     if words[1] not in types:
         raise argument_error(f"{where}: type", words[1], f"one of {listed(types)}")
     first, numbers = (words[2:4], words[4:6]) if ends_first else (words[4:6], words[2:4])

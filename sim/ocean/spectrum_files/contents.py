@@ -9,7 +9,7 @@ import numpy as np
 
 from sim.ocean.records.measured import measured_spectrum
 from sim.ocean.spectra.record import Spectrum
-from sim.ocean.spectrum_files.sea_summary import summary_of
+from sim.ocean.spectrum_files.sea_summary import spike_of, summary_of
 from sim.validation import argument_error
 
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 2.5))  # of spreadings that are made of moments
@@ -46,7 +46,8 @@ def made(path: Path, time: datetime.datetime | None, *given: Any, notes: Sequenc
         found = measured_spectrum(*given, name=titled(path, time))
     except ValueError as error:
         raise ValueError(f"path: {path}: {error}") from None
-    return found._replace(notes=(*summary_of(found), *notes))
+    total = np.asarray(given[1]) if len(given) == 2 else np.asarray(given[1]).sum(axis=1)
+    return found._replace(notes=(*summary_of(found), *spike_of(np.asarray(given[0]), total), *notes))
 
 
 def filled(frequency: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:

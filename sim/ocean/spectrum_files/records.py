@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sim.inputs.bounds import beyond
 from sim.ocean.records.wave_record import zero_crossings
 from sim.ocean.spectrum_files.sea_summary import warnings_of
 from sim.tables import Meaning, line_error, read_table, read_text
@@ -87,4 +88,8 @@ def summary_of_record(t: np.ndarray, height: np.ndarray) -> list[str]:
     """A line with Hs, Tz and duration of a record of heights (n,) [m] at times (n,) [s], and warnings."""
     Hs, Tz = 4.0 * float(height.std()), zero_crossings(t, height).mean_period
     line = f"Hs {Hs:.3g} m, Tz {Tz:.3g} s, {t[-1] - t[0]:.4g} s long in {len(t)} samples"
-    return [line, *(warnings_of(Hs, Tz, name="Tz") if np.isfinite(Tz) else [])]
+    far = np.abs(height - height.mean())
+    at, ratio = int(far.argmax()), float(far.max() / height.std()) if height.std() > 0.0 else 0.0
+    said = f"the height {height[at]:.3g} m, {ratio:.3g} standard deviations from the mean,"
+    spike = beyond("record", "largest height over the standard deviation", ratio, f"t = {t[at]:g} s", said)
+    return [line, *(warnings_of(Hs, Tz, name="Tz") if np.isfinite(Tz) else []), *spike]

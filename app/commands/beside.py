@@ -2,7 +2,7 @@
 
 import argparse
 
-from app.commands.options import add_address, say_missing_files, serving
+from app.commands.options import add_address, say_missing_files, say_without_effect, serving
 from app.scenes.comparisons import COMPARISONS
 
 
@@ -22,4 +22,5 @@ def run(arguments: argparse.Namespace) -> int:
     first, *others = read_comparison(arguments.setups)
     for setup in (first, *others):
         say_missing_files(setup)
+        say_without_effect(setup)
     return serve_lab(first.scene, lambda: first.params, **serving(arguments), others=others)

@@ -108,6 +108,7 @@ def read_params(scene: Any, arguments: argparse.Namespace, preset: str | None = 
         params = with_mooring(params, arguments.mooring, setup)
     if arguments.spectrum is not None:
         params = with_spectrum(params, arguments.spectrum, arguments.spectrum_time, "length" in setup.values)
+    say_without_effect(setup._replace(params=params))
     file = arguments.mooring or arguments.spectrum
     if file is not None:
         for note in scene.notes(params):
@@ -121,6 +122,14 @@ def check_files_named(arguments: argparse.Namespace) -> None:
                            ("spectrum_time", "spectrum")):  # fmt: skip
         if getattr(arguments, option) and getattr(arguments, needed) is None:
             raise ValueError(f"--{option.replace('_', '-')}: it needs --{needed} FILE")
+
+
+def say_without_effect(setup: Any) -> None:
+    """Say on the error stream which parameters of a set-up have no effect with the others."""
+    from app.scenes.setups import without_effect
+
+    for line in without_effect(setup):
+        say_on_error_stream(line)
 
 
 def say_missing_files(setup: Any, arguments: argparse.Namespace | None = None) -> None:

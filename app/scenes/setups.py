@@ -11,6 +11,7 @@ has its name, `"hull": "boat.stl"`, and the changes made to it in the panel; its
 A replay (HTML) holds such a file in a block, and a recording (.npz) all parameters: both open like one.
 """
 
+import contextlib
 import dataclasses
 import difflib
 import io
@@ -35,6 +36,7 @@ from sim.parameters import (
     changed_names,
     check_record,
     choice_error,
+    clamp_value,
     parameters_of,
     parse_value,
     unknown_parameter,
@@ -114,6 +116,32 @@ def missing_files(setup: Setup, present: object = None) -> str:
         f"The {option} {name} is missing: the set-up only names it. Restart with --{option} {name} to add the file{end}"
         for option, name in missing
     )
+
+
+def without_effect(setup: Setup) -> list[str]:
+    """A line on each parameter that a set-up names beside its preset and that has no effect with the others."""
+    kind = scene_named(setup.scene)
+    preset = kind.presets.get(setup.preset, NO_VALUES)
+    hidden = kind.hidden(setup.params)
+    named = [name for name, value in setup.values.items() if name in hidden and preset.get(name) != value]
+    return [f"{name} has no effect with {cause_of(kind, setup, name)}" for name in named]
+
+
+def cause_of(kind: AnyKind, setup: Setup, name: str) -> str:
+    """The parameter, or the file, without which a parameter would have an effect, for a sentence."""
+    params = setup.params
+    known = parameters_of(params)
+    for other in sorted(known, key=lambda one: one not in setup.values):  # those that are named first
+        parameter, present = known[other], getattr(params, other)
+        numbers = () if parameter.choices or parameter.kind is bool else (0, 1, parameter.low, parameter.high)
+        for value in (*(parameter.choices or ()), *(() if numbers else (not present,)), *numbers):
+            changed = clamp_value(parameter, value)
+            if other != name and changed != present:
+                with contextlib.suppress(ValueError):  # one that the others do not allow
+                    if name not in kind.hidden(dataclasses.replace(params, **{other: changed})):
+                        return f"{other}={write_value(present)}"
+    files = added_files(params)
+    return " and ".join(f"the {option} {file}" for option, file in files.items()) or "the other parameters"
 
 
 def with_changes(params: BaseParams, setup: Setup) -> BaseParams:

@@ -4,9 +4,11 @@ from sim.tables.columns import Column, ColumnTable, Kind, Meaning, factor_of, re
 from sim.tables.numbers import is_value, number_of, values_of
 from sim.tables.rows import Row, line_error, split_rows
 from sim.tables.text import read_text
-from sim.tables.units import measure_of
+from sim.tables.times import NAMES as TIME_NAMES
+from sim.units import measure_of
 
 __all__ = [
+    "TIME_NAMES",
     "Column",
     "ColumnTable",
     "Kind",

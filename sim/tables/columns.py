@@ -6,17 +6,19 @@ A quantity that a column may hold is a `Meaning`. A unit or a value that cannot 
 without a meaning is left out, with a line that names it.
 """
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from sim.tables.headers import Header, read_header
-from sim.tables.numbers import is_value, values_of
+from sim.tables.headers import Convention, Header, read_header
+from sim.tables.numbers import MISSING, beyond_others, is_value, number_of, of_nines, values_of
 from sim.tables.rows import Row, line_error, split_rows
-from sim.tables.units import UnitMeasure, measure_of
+from sim.tables.times import check_step, evened, is_time, joined, of_numbers, stamps
+from sim.units import UnitMeasure, measure_of
 from sim.validation import argument_error
 from sim.water import EARTH_GRAVITY, SEA_DENSITY
 
@@ -51,7 +53,7 @@ ENERGY = {"[mass]": 1.0, "[time]": -1.0}  # dimensions of J/m2/Hz
 DIRECTION = Kind("rad", "deg, rad", -2.0 * TURN, 2.0 * TURN, {}, (1.0,), nines=360.0, doubt=TURN + 1e-6)
 SPREAD = Kind("rad", "deg, rad", 0.0, math.radians(120.0), {}, (1.0,), doubt=1.5)
 SHARE = Kind("1", "1, %", 0.0, 100.0, {}, nines=100.0)
-TIME = Kind("s", "s, ms, min, h", -math.inf, math.inf, {"[time]": 1.0}, nines=math.inf)
+TIME = Kind("s", "s, ms, min, h, d", -math.inf, math.inf, {"[time]": 1.0}, nines=math.inf)
 LENGTH = Kind("m", "m, cm, mm, ft", -1e3, 1e3, {"[length]": 1.0})
 STRAIN = Kind("1", "1, %", -1.0, 10.0, {}, nines=math.inf)
 FORCE = Kind("N", "N, kN, MN, lbf", -1e12, 1e12, {"[mass]": 1.0, "[length]": 1.0, "[time]": -2.0}, nines=math.inf)
@@ -72,6 +74,8 @@ class Column(NamedTuple):
     header: str
     values: np.ndarray  # (n,) in the unit of its kind; nan if missing
     is_angular: bool | None  # a frequency in rad/s, or a density per rad/s; None for a density that does not say
+    nines: np.ndarray | None = None  # (n,) the numbers of digits of 9 that may mean missing ones; nan elsewhere
+    begin: str = ""  # stamp or clock of the first row, of a time
 
 
 class ColumnTable(NamedTuple):
@@ -82,22 +86,40 @@ class ColumnTable(NamedTuple):
     notes: tuple[str, ...]  # a line on each thing that was left out or assumed
 
 
-def read_table(text: str, path: Path, meanings: Sequence[Meaning], nameless: tuple[str, ...]) -> ColumnTable:
+def read_table(
+    text: str,
+    path: Path,
+    meanings: Sequence[Meaning],
+    nameless: tuple[str, ...],
+    missing: Collection[float] | None = None,
+) -> ColumnTable:
     """The columns of a table with names, or without them those of the keys `nameless`.
 
-    Raises ValueError that names the line and the column.
+    missing: numbers that stand for a missing value, as written; None for digits of 9 that no value can be, or that are
+    far beyond all others. Raises ValueError that names the line and the column.
     """
-    return read_columns(*split_rows(text, path), path, meanings, nameless)
+    return read_columns(*split_rows(text, path), path, meanings, nameless, missing)
 
 
 def read_columns(
-    rows: list[Row], comments: list[Row], path: Path, meanings: Sequence[Meaning], nameless: tuple[str, ...]
+    rows: list[Row],
+    comments: list[Row],
+    path: Path,
+    meanings: Sequence[Meaning],
+    nameless: tuple[str, ...],
+    missing: Collection[float] | None = None,
 ) -> ColumnTable:
-    """The columns of rows, with their names in the first one, or in a comment before it."""
+    """The columns of rows, with their names in the first one, or in a comment before it. missing: as `read_table`."""
     by_name = {name: meaning for meaning in meanings for name in meaning.names}
     if not rows:
         raise argument_error("path", str(path), "a table with rows of numbers")
-    if all(is_value(word) for word in rows[0].words):
+    has_time = any(meaning.kind is TIME for meaning in meanings)
+    notes: list[str] = []
+    before = lines_before(rows)
+    if before:
+        notes.append(f"{before} {'line' if before == 1 else 'lines'} before the names of the columns left out")
+        rows = rows[before:]
+    if all(is_value(word) or (has_time and is_time(word)) for word in rows[0].words):
         default = {meaning.key: meaning for meaning in reversed(meanings)}
         keys = [default[key] for key in nameless]
         head = names_in_comments(comments, keys, len(rows[0].words), by_name, path)
@@ -112,27 +134,86 @@ def read_columns(
             head = Row(head.number, [f"{name} ({unit.strip('[]()')})" if unit.strip("[]()-") else name
                                      for name, unit in zip(head.words, rows[0].words, strict=True)])  # fmt: skip
             rows = rows[1:]
+    if has_time:
+        head = with_clock(head, rows)
     count = len(head.words)
     for row in rows:
         if len(row.words) != count:
             raise line_error(path, row.number, f"{count} columns, not {len(row.words)}")
     found: dict[str, Column] = {}
     left: list[str] = []
-    notes: list[str] = []
+    rows_lost = rows_of_nines(head, rows, by_name, path) if missing is None else False
+    times = joined(head.words, rows) if has_time else None
+    if times is not None:
+        meaning = next(one for one in meanings if one.kind is TIME)
+        text = " and ".join(head.words[i] for i in (times.places[0], times.places[-1]))
+        header = Header("", "", Convention(0.0, 1, False), False)
+        found[meaning.key] = read_time(header, text, times.words, rows, path, notes)
     for i, text in enumerate(head.words):
+        if times is not None and i in times.places:
+            continue
         header = header_of(text[:MAX_HEADER], by_name, path, head.number)
         meaning = by_name.get(header.name)
         if meaning is None:
             left.append(shown(text) or f"number {i + 1}, without a name")
             continue
+        if meaning.kind is TIME and times is not None:
+            left.append(shown(text))
+            continue
         if meaning.key in found:
             both = f"'{shown(found[meaning.key].header)}' and '{shown(text)}'"
             raise argument_error("path", f"{path}, line {head.number}, columns {both}", f"one column of {meaning.key}")
-        found[meaning.key] = read_column(header, text, meaning, [row.words[i] for row in rows], rows, path, notes)
+        found[meaning.key] = read_column(header, text, meaning, [row.words[i] for row in rows], rows, path, notes,
+                                         missing, rows_lost)  # fmt: skip
     if left:
         more = f" and {len(left) - MAX_LISTED} more" if len(left) > MAX_LISTED else ""
         notes.append(f"columns left out: {', '.join(left[:MAX_LISTED])}{more}")
     return ColumnTable(found, [row.number for row in rows], tuple(notes))
+
+
+def impossible_nines(words: list[str], kind: Kind, factor: float) -> np.ndarray:
+    """True (n,) for digits of 9 that no value of a kind can be. factor: of the unit."""
+    numbers = np.array([(number_of(word) or 0.0) * factor for word in words])
+    return of_nines(words) & ((numbers < kind.low) | (numbers > kind.high))
+
+
+def rows_of_nines(head: Row, rows: list[Row], names: dict[str, Meaning], path: Path) -> np.ndarray:
+    """True (n,) for rows with digits of 9 in a column in which no value can be so: 999 degrees."""
+    found = np.zeros(len(rows), bool)
+    for i, text in enumerate(head.words):
+        header = header_of(text[:MAX_HEADER], names, path, head.number)
+        meaning = names.get(header.name)
+        if meaning is None or meaning.kind is TIME:
+            continue
+        words = [row.words[i] for row in rows]
+        measure = measure_of(header.unit or meaning.default) if of_nines(words).any() else None
+        factor = None if measure is None else factor_of(meaning.kind, measure)[0]
+        if factor is not None:
+            found |= impossible_nines(words, meaning.kind, factor)
+    return found
+
+
+def lines_before(rows: list[Row]) -> int:
+    """Number of lines of words before the names of the columns, as programs write them; 0 for most tables.
+
+    The names are the first line of words from which on all have equally many.
+    """
+    count = len(rows[-1].words)
+    if count < 2 or len(rows[0].words) == count or any(is_value(word) for word in rows[0].words):
+        return 0
+    first = next((i for i in range(len(rows) - 1, -1, -1) if len(rows[i].words) != count), -1) + 1
+    is_named = first + 1 < len(rows) and not any(is_value(word) for word in rows[first].words)
+    return first if is_named and not any(is_value(word) for row in rows[:first] for word in row.words[:1]) else 0
+
+
+def with_clock(head: Row, rows: list[Row]) -> Row:
+    """The names of the columns, and one more if a stamp is a date and a clock with a space between them."""
+    if not rows or len(rows[0].words) != len(head.words) + 1:
+        return head
+    for i, (word, after) in enumerate(itertools.pairwise(rows[0].words)):
+        if is_time(word) and ":" not in word and is_time(after) and ":" in after:
+            return Row(head.number, [*head.words[:i], "date", "clock", *head.words[i + 1 :]])
+    return head
 
 
 def header_of(text: str, names: dict[str, Meaning], path: Path, number: int) -> Header:
@@ -176,33 +257,113 @@ def is_units(words: list[str], count: int) -> bool:
 
 
 def read_column(
-    header: Header, text: str, meaning: Meaning, words: list[str], rows: list[Row], path: Path, notes: list[str]
+    header: Header,
+    text: str,
+    meaning: Meaning,
+    words: list[str],
+    rows: list[Row],
+    path: Path,
+    notes: list[str],
+    missing: Collection[float] | None = None,
+    rows_lost: np.ndarray | bool = False,
 ) -> Column:
-    """A column of words. Raises ValueError that names the line and the header."""
+    """A column of words. Raises ValueError that names the line and the header.
+
+    rows_lost (n,): rows in which digits of 9 are missing values, as another column has some that no value can be.
+    """
     kind = meaning.kind
-    measure = measure_of(header.unit or meaning.default)
+    if kind is TIME:
+        return read_time(header, text, words, rows, path, notes, missing or ())
+    unit = header.unit or meaning.default
+    measure = measure_of(unit)
     factor, is_angular = (None, None) if measure is None else factor_of(kind, measure)
     if factor is None:
         raise argument_error("path", f"{path}, column '{shown(text)}'", f"a unit such as {kind.units}")
     if measure is not None and measure.dimensions == ENERGY:
         notes.append(f"'{shown(text)}' is divided by rho g of sea water, {WEIGHT:.0f} N/m3")
-    values, wrong = values_of(words, min(kind.nines, kind.high / factor))
+    values, wrong = values_of(words, missing or (), header.unit)
     if wrong is not None:
         raise line_error(path, rows[wrong].number, f"numbers in the column '{shown(text)}'")
+    nines = of_nines(words) & np.isfinite(values)
+    nines &= ~((values >= 0.0) & (values <= min(kind.nines, kind.high / factor)))
+    written = np.where(nines, values, np.nan)
+    if missing is None:
+        lost = impossible_nines(words, kind, factor) | beyond_others(values, nines)
+        values = np.where(nines & (lost | rows_lost), np.nan, values)
     if not header.unit and in_doubt(values, kind.doubt):
         raise argument_error("path", f"{path}, column '{shown(text)}'", f"its unit in the header, such as {kind.units}")
-    values = values * (factor * (2.0 if header.is_two_sided and kind is DENSITY else 1.0))
+    scale = factor * (2.0 if header.is_two_sided and kind is DENSITY else 1.0)
+    values = values * scale
     bad = ~(np.isnan(values) | ((values >= kind.low) & (values <= kind.high)))
     if bad.any():
         i = int(bad.argmax())
         raise line_error(
             path, rows[i].number,
             f"{plainly(kind.low, factor)} to {plainly(kind.high, factor)} in the column '{shown(text)}'; "
-            f"{words[i]} is no {meaning.key} in {header.unit or meaning.default}",
+            f"{words[i]} is no {meaning.key} in {unit}; missing={words[i]} leaves out such numbers",
         )  # fmt: skip
     if kind is DIRECTION:
         values = header.convention.towards(values)
-    return Column(text, values, is_angular)
+    return Column(text, values, is_angular, written * scale)
+
+
+def read_time(
+    header: Header,
+    text: str,
+    words: list[str],
+    rows: list[Row],
+    path: Path,
+    notes: list[str],
+    missing: Collection[float] = (),
+) -> Column:
+    """A column of times [s]: numbers, stamps or clocks. Raises ValueError that names the line and the header."""
+    if any(is_time(word) for word in words[:3]):
+        clock, wrong = stamps(words, frozenset(MISSING))
+        if clock is None:
+            raise line_error(path, rows[wrong].number, f"a time such as {words[0]} in the column '{shown(text)}'")
+    else:
+        unit = header.unit.partition(" since ")[0]
+        measure = measure_of(unit) if unit else None
+        factor = None if measure is None else factor_of(TIME, measure)[0]
+        if unit and factor is None:
+            raise argument_error("path", f"{path}, column '{shown(text)}'", f"a unit such as {TIME.units}")
+        values, wrong = values_of(words, missing, unit)
+        if wrong is not None:
+            raise line_error(path, rows[wrong].number, f"numbers or times in the column '{shown(text)}'")
+        clock = of_numbers(words, values, factor, header.name)
+        if not clock.form:
+            check_step(clock.seconds, factor is not None, shown(text), path, rows[0].number)
+    if clock.form:
+        begin = f", from {clock.begin}" if clock.begin else ""
+        notes.append(f"'{shown(text)}': {clock.form}{begin}, as seconds from the first row")
+    seconds, note = evened(clock)
+    if note:
+        notes.append(note)
+    return Column(text, seconds, None, None, clock.begin)
+
+
+def notes_on_nines(column: Column, energy: np.ndarray, lines: Sequence[int]) -> list[str]:
+    """A line on the numbers of digits of 9 in a column that may mean missing values, and the energy that they hold.
+
+    energy (n,): of each row, over that of a value of 1 in the column's unit squared or not, as the caller weighs it.
+    """
+    if column.nines is None or not np.isfinite(column.nines).any():
+        return []
+    there = np.isfinite(column.nines)
+    left = there & np.isnan(column.values)
+    found = []
+    total = float(np.nansum(energy))
+    for chosen, said in ((left, "counts as missing; missing=() takes it for a value, with"),
+                         (there & ~left, "is taken for a value; missing=... leaves it out, with")):  # fmt: skip
+        part = float(np.nansum(energy[chosen])) / total if total > 0.0 else 0.0
+        if chosen.any() and part > LEAST_NAMED:
+            i = int(chosen.argmax())
+            more = f" and {int(chosen.sum()) - 1} more like it" if chosen.sum() > 1 else ""
+            found.append(f"line {lines[i]}: a number of digits of 9{more} {said} {100.0 * part:.3g} % of the energy")
+    return found
+
+
+LEAST_NAMED = 0.01  # fraction of the energy in digits of 9, from which on they are named
 
 
 def in_doubt(values: np.ndarray, largest: float) -> bool:

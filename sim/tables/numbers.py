@@ -2,15 +2,17 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
+
+from sim.quantities import number_alone, read_number
 
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?", re.ASCII)
 MISSING = {"", "-", "--", "nan", "na", "n/a", "null", "none", "mm", "missing", "nodata"}  # in small letters
 NINES = re.compile(r"-?(?:99+(?:\.(?:0*|9*))?)", re.ASCII)
 FILL = 1e20  # from which on a value is the fill value of a netCDF file: no quantity of a table is so large
-NEAR = 2.0  # ratio of a value to its neighbours, up to which digits of 9 are a value like theirs
+BEYOND = 2.0  # times the largest of the other values, from which on digits of 9 are no value like them
 
 
 def is_value(word: str) -> bool:
@@ -20,41 +22,48 @@ def is_value(word: str) -> bool:
 
 def number_of(word: str) -> float | None:
     """A word as a number, also with the D of Fortran's exponents; inf for a huge one, None for another word."""
-    if not NUMBER.fullmatch(word):
+    if NUMBER.fullmatch(word):
+        return float(word.replace("D", "e").replace("d", "e"))
+    try:
+        return number_alone(word)
+    except ValueError:  # 1,000
         return None
-    return float(word.replace("D", "e").replace("d", "e"))
 
 
-def values_of(words: Sequence[str], trusted: float = 0.0) -> tuple[np.ndarray, int | None]:
+def with_unit(word: str, unit: str) -> float | None:
+    """A word with a unit as a number in the unit of its column, as `read_number` reads it; None for another word."""
+    try:
+        return read_number(word, unit) if unit else None
+    except ValueError:
+        return None
+
+
+def values_of(words: Sequence[str], missing: Collection[float] = (), unit: str = "") -> tuple[np.ndarray, int | None]:
     """Numbers (n,) of the words of a column, nan where one is missing; and the first word that is neither, or None.
 
-    Missing are empty words, MM, nan and the like, and numbers of two or more nines that their neighbours do not
-    come near: 99.00 among densities below 4 is missing, 99 between 95 and 104 is not. Those from 0 to `trusted` are
-    values.
+    Missing are empty words, MM, nan and the like, fill values of netCDF, and numbers of `missing`. unit: of the column;
+    a word may have another one of the same quantity.
     """
-    values, nines = np.full(len(words), math.nan), np.zeros(len(words), bool)
+    values = np.full(len(words), math.nan)
     for i, word in enumerate(words):
         number = number_of(word)
         if number is None:
-            if word.strip().lower() not in MISSING:
-                return values, i
-        elif math.isinf(number):
+            if word.strip().lower() in MISSING:
+                continue
+            number = with_unit(word, unit)
+        if number is None or math.isinf(number):
             return values, i
-        elif abs(number) < FILL:
+        if abs(number) < FILL and number not in missing:
             values[i] = number
-            nines[i] = NINES.fullmatch(word) is not None and not 0.0 <= number <= trusted
-    return without_nines(values, nines), None
+    return values, None
 
 
-def without_nines(values: np.ndarray, nines: np.ndarray) -> np.ndarray:
-    """The values (n,), nan in place of those of digits of 9 that are not near both neighbours; an end has one."""
-    whole = np.flatnonzero(np.isfinite(values) & ~nines)
-    found = values.copy()
-    for i in np.flatnonzero(nines):
-        at = int(np.searchsorted(whole, i))
-        beside = values[whole[max(at - 1, 0) : at + 1]]
-        is_near = len(beside) and all(abs(values[i]) <= NEAR * abs(b) and abs(b) <= NEAR * abs(values[i])
-                                      and b * values[i] > 0.0 for b in beside)  # fmt: skip
-        if not is_near:
-            found[i] = math.nan
-    return found
+def of_nines(words: Sequence[str]) -> np.ndarray:
+    """True (n,) for words of two or more digits of 9, which many programs write for a missing value."""
+    return np.array([word[:1] in "9-" and NINES.fullmatch(word) is not None for word in words], bool)
+
+
+def beyond_others(values: np.ndarray, nines: np.ndarray) -> np.ndarray:
+    """True (n,) for values of digits of 9 that are more than BEYOND times all other ones (n,)."""
+    others = np.abs(values[~nines & np.isfinite(values)])
+    return nines & (np.abs(values) > BEYOND * float(others.max(initial=0.0)))

@@ -1,10 +1,15 @@
 """Numbers as people write them."""
 
+import math
 import random
+import re
+from pathlib import Path
 
 import pytest
 
+from app.commands.options import quantity
 from sim.quantities import plain, read_number, write_number
+from sim.tables import number_of, split_rows, values_of
 
 
 @pytest.mark.parametrize(
@@ -19,6 +24,44 @@ from sim.quantities import plain, read_number, write_number
 )  # fmt: skip
 def test_a_number_is_read_in_the_ways_that_people_write_it(text: str, unit: str, value: float) -> None:
     assert read_number(text, unit) == value
+
+
+WRITTEN = [  # text, unit of the quantity, value
+    ("0.1125 m", "m", 0.1125), ("112.5 mm", "m", 0.1125), ("0.1125 metres", "m", 0.1125), ("0,1125", "m", 0.1125),
+    ("4,004,001", "", 4004001.0), ("4 004 001", "", 4004001.0), ("4.004.001", "", 4004001.0), ("1'000", "", 1000.0),
+    ("1.234,5", "", 1234.5), ("1,234.5", "", 1234.5), ("1.125*10^-1", "", 0.1125), ("1.125 x 10^-1", "", 0.1125),
+    ("1,125e-1", "", 0.1125), ("1.125\u00b710\u207b\u00b9", "", 0.1125), ("10^4", "", 1e4), ("1.5D+03", "", 1500.0),
+    ("\u22120.1125", "", -0.1125), ("\u20130,5", "", -0.5), ("90/800", "", 0.1125), ("9.81 m/s2", "m/s\u00b2", 9.81),
+    ("10 Ns/m", "N s/m", 10.0), ("10 N*s/m", "N s/m", 10.0), ("10 N-s/m", "N s/m", 10.0), ("36 km/h", "m/s", 10.0),
+    ("5 d", "s", 432000.0), ("3 t", "kg", 3000.0), ("180 deg", "rad", math.pi), ("5 mPas", "Pa s", 0.005),
+    ("2 m2/(rad/s)", "m2 s/rad", 2.0), ("5 %", "1", 0.05), ("50 cm/s", "m/s", 0.5), ("1,000.5 kg", "kg", 1000.5),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "unit", "value"), WRITTEN)
+def test_a_number_has_any_form_and_unit_of_its_quantity(text: str, unit: str, value: float) -> None:
+    assert read_number(text, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(("text", "unit", "value"), [one for one in WRITTEN if one[0] != "90/800"])
+def test_a_table_and_an_option_take_a_number_as_the_panel_does(
+    text: str, unit: str, value: float, tmp_path: Path
+) -> None:
+    assert quantity(unit)(text) == pytest.approx(value, rel=1e-15)
+    if not any(letter.isalpha() or letter in "%" for letter in re.sub(r"[eD][-+]?\d| x ", "", text)):
+        assert number_of(text) == pytest.approx(value, rel=1e-15)
+    rows, _ = split_rows(f"a;b\n{text};1\n", tmp_path)
+    assert values_of([rows[1].words[0]], unit=unit)[0] == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [("5 c", "m/s"), ("5 kg", "m"), ("5 m/s", "m"), ("1,2,3", ""), ("1.234.5", ""), ("12,34,567", ""),
+     ("2 x 3", ""), ("10^9999", "")],
+)  # fmt: skip
+def test_another_quantity_and_groups_of_other_lengths_are_refused(text: str, unit: str) -> None:
+    with pytest.raises(ValueError, match=r"\w"):
+        read_number(text, unit)
 
 
 @pytest.mark.parametrize(
@@ -39,7 +82,7 @@ def test_m_alone_is_refused_where_it_is_no_metre(unit: str, clear: str) -> None:
         read_number("5m", unit)
 
 
-@pytest.mark.parametrize("text", ["1,000", "-12,345", "1,000,000"])
+@pytest.mark.parametrize("text", ["1,000", "-12,345", "30,000 N"])
 def test_a_comma_that_may_mean_two_things_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="two things"):
         read_number(text)

@@ -6,8 +6,7 @@ import numpy as np
 
 from sim.floating import Hull, equilibrium_draft
 from sim.floating.hulls.hull import MeshReading
-
-LONGEST, SHORTEST = 500.0, 0.05  # [m] of a hull, outside which its file is likely to have another unit
+from sim.inputs.bounds import beyond
 
 
 def hull_line(name: str, hull: Hull, density: float) -> str:
@@ -26,7 +25,7 @@ def size_text(size: np.ndarray) -> str:
 def size_warning(name: str, size: np.ndarray, reading: MeshReading) -> str:
     """A sentence about a hull of unlikely size (3,) [m], "" for any other."""
     longest = float(size.max())
-    if SHORTEST <= longest <= LONGEST:
-        return ""
-    unit = reading.unit or "m"
-    return f"Warning: {name} is {longest:.4g} m long, read in {unit}; --hull-unit takes m, cm, mm or ft"
+    said = f"{name}, {longest:.4g} m long, read in {reading.unit or 'm'},"
+    return "".join(
+        f"{text}; --hull-unit takes m, cm, mm or ft" for text in beyond("hull", "length", longest, said=said)
+    )

@@ -33,6 +33,7 @@ from app.scenes.setups import (
     added_files,
     missing_files,
     read_file,
+    without_effect,
     write_file,
     write_query,
 )
@@ -150,6 +151,9 @@ class Share:
             missing = missing_files(subject, self.settings.params_with_files(subject.scene))
             if missing:
                 client.add_notification("A file is missing", missing, color="orange", auto_close_seconds=30.0)
+            unused = "; ".join(without_effect(subject))
+            if unused:
+                client.add_notification("Without effect", unused, color="orange", auto_close_seconds=30.0)
         if isinstance(subject, Setup) and is_shown:
             self.turn(subject)
             self.place(subject, client)

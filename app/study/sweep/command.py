@@ -42,6 +42,8 @@ def sweep(spec_path: Path, out: Path, scheduler: str | None = None, *, fresh: bo
     failures.
     """
     spec = read_spec(spec_path)
+    for line in spec.notes:
+        say(line)
     if out.suffix != ".nc":
         raise argument_error("--out", str(out), "a name that ends in .nc")
     figures = [draft_of(out.with_suffix(suffix)).name for suffix in FIGURE_SUFFIXES]

@@ -14,7 +14,7 @@ import numpy as np
 
 from app.scenes import NAMES, scene_named
 from app.scenes.contract import SceneKind
-from app.scenes.setups import file_name, make_setup, preset_setup, with_values
+from app.scenes.setups import Setup, file_name, make_setup, preset_setup, with_values, without_effect
 from app.study.sweep.design import MAX_CASES, Axis, Listed, Range, grid, grid_values, hypercube, size
 from sim.parameters import Parameter, check_value, parameters_of, unknown_parameter
 from sim.validation import argument_error, check_choice, check_number, is_whole_number, unreadable
@@ -40,6 +40,7 @@ class Spec:
     swept: dict[str, tuple[Any, ...]]  # the values of each swept parameter: along its axis, or case by case
     cases: list[dict[str, Any]]  # the swept parameters of each case
     text: str  # as read; of the path of a preset the file name only
+    notes: tuple[str, ...] = ()  # a line on each parameter of [set] that has no effect in any case
 
     @property
     def times(self) -> tuple[float, ...]:
@@ -129,7 +130,18 @@ def make_spec(content: dict[str, Any], text: str = "", folder: Path | None = Non
             text = text.replace(path, file_name(preset))
     spec = Spec(scene.name, seconds, frames, design, seed, fixed, values, cases, text)
     check_swept_parameters_matter(spec, scene)
-    return spec
+    return dataclasses.replace(spec, notes=unused_in_all(spec, table(content, "set")))
+
+
+def unused_in_all(spec: Spec, given: dict[str, Any]) -> tuple[str, ...]:
+    """Lines on the given parameters without effect in all cases, by the others of the first case."""
+    unused = set(given)
+    for index in range(len(spec.cases)):
+        unused &= spec.kind.hidden(spec.params(index))
+        if not unused:
+            return ()
+    first = Setup(spec.scene, spec.params(0), {name: value for name, value in given.items() if name in unused})
+    return tuple(without_effect(first))
 
 
 def fixed_parameters(scene: SceneKind[Any, Any, Any], content: dict[str, Any], folder: Path | None) -> dict[str, Any]:

@@ -20,6 +20,7 @@ import numpy as np
 from sim.dispersion import wavenumber
 from sim.floating.hulls.closed_mesh import ClosedMesh, check_hull
 from sim.floating.hulls.hull import Hull
+from sim.floating.linear.dataset_checks import doubts_of_damping, doubts_of_forces, doubts_of_matrices
 from sim.floating.linear.hydrodynamics import (
     DIRECTIONS,
     MIRROR_X,
@@ -29,6 +30,7 @@ from sim.floating.linear.hydrodynamics import (
     velocity_at,
 )
 from sim.floating.linear.linear_table import LinearTable, not_finite
+from sim.inputs.bounds import WARNING
 from sim.numerics.angles import once_around, within_half_turn
 from sim.validation import Refusals, argument_error, check_angle, check_kind, check_positive, check_vector
 
@@ -65,7 +67,8 @@ def with_dataset(
     draft [m]: that of the dataset, where it does not say. body: name of one of several; the others are held. depth [m],
     or inf: one of several. heading [rad]: one of several, where they are too few to interpolate; a hull with one
     heading answers waves of that heading only. rotation_center (3,) [m]: of the motions, where the dataset does not
-    say. A UserWarning names frequencies that are left out, as they have no numbers.
+    say. A UserWarning names frequencies that are left out, as they have no numbers, and coefficients that physics
+    contradicts: damping below 0, a spike, asymmetry, and damping that the exciting force contradicts.
 
     Raises ValueError for a file that is no such dataset, or does not fit; ModuleNotFoundError without xarray
     (`pip install xarray netCDF4`).
@@ -143,6 +146,9 @@ def converted(
     if (in_range & ~whole).any():
         left_out = ", ".join(f"{one:.4g}" for one in omega[in_range & ~whole])
         warnings.warn(f"{path}: not numbers, and left out, at omega {left_out} rad/s", UserWarning, stacklevel=3)
+    doubts = doubts_of_matrices(
+        omega[waves], by_omega["added_mass"][waves], by_omega["radiation_damping"][waves], MOTIONS
+    )
     length = table_length(mesh)
     offset = centre_of(dataset, path, chosen, rotation_center) - [mesh.centre[0], mesh.centre[1], 0.0]
     S = velocity_at(*offset)  # from the middle of the waterline to the centre of rotation
@@ -158,6 +164,7 @@ def converted(
     k = wavenumber(omega[waves] / math.sqrt(g), 1.0, water)
     headings, places = once_around(numbers(dataset, "wave_direction", ("wave_direction",), path))
     X = np.sum([by_omega[name][waves][:, places] for name in FORCES], axis=0)
+    doubts += doubts_of_forces(omega[waves], X, MOTIONS)
     path_length = mesh.centre[0] * np.cos(headings) + mesh.centre[1] * np.sin(headings)
     phase = np.exp(-1j * k[:, None] * path_length)[:, :, None]
     X = X @ S * phase / (rho * g * unit * length)
@@ -181,6 +188,8 @@ def converted(
     )
     if not_finite(table):
         raise argument_error("path", path, f"a dataset of finite coefficients; {not_finite(table)} is not")
+    for text in doubts or doubts_of_damping(omega[waves], table, MOTIONS):
+        warnings.warn(f"{path}: {text.removeprefix(WARNING)}", UserWarning, stacklevel=3)
     return table
 
 

@@ -7,7 +7,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from sim.inputs.bounds import WARNING
 from sim.mooring.moordyn.bodies import drag_of, free_body, is_point, least_inertia, merge
+from sim.mooring.moordyn.meant import doubts
 from sim.mooring.moordyn.options import read_options
 from sim.mooring.moordyn.rods import Rod, add_ends, add_lines, read_rod, read_rod_type
 from sim.mooring.moordyn.rows import ends_first, read_body, read_line, read_point, read_type
@@ -29,13 +31,6 @@ from sim.mooring.system import System
 from sim.mooring.turning import with_turning
 from sim.tables import Row
 from sim.validation import ConvergenceError, Refusals, argument_error
-
-HELD = (
-    1e-6  # of a free body's weight on an arm of 1 m, as stiffness of rotation: statics need one where no line turns it
-)
-
-LIGHT = 1e-3  # of the mass of the ends of its lines: that of a free body without its own
-SAME_PLACE = 1e-6  # [m]
 
 LARGE_TURN, MOST_TURN = 0.2, 0.6  # [rad] of a free body from its place in the file: beyond, it is said, and refused
 
@@ -82,6 +77,7 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
     depth = depth_of(options.fields, points.values(), options.warnings)
     fields: dict[str, Any] = {name: value for name, value in options.fields.items() if name != "depth"}
     left.extend(add_lines(rods.values(), ends, lines))
+    options.warnings.extend(doubts(kinds.values(), points, lines, depth, options.fields))
     used = {end for line in lines.values() for end in (line.start, line.end)}
     for one in {end.point for end in ends.values() if points[end.point].kind in ("fixed", "coupled")} - used:
         del points[one]
@@ -104,7 +100,7 @@ def read_moordyn(path: str | Path, say: Callable[[str], None] | None = None, con
         for text in filter(None, left):
             say(text)
     for text in options.warnings:
-        say(text) if say is not None else warnings.warn(f"{path.name}: {text}", stacklevel=2)
+        say(text) if say is not None else warnings.warn(f"{path.name}: {text.removeprefix(WARNING)}", stacklevel=2)
     return system
 
 

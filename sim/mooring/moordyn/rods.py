@@ -63,7 +63,7 @@ class Rod(NamedTuple):
 def read_rod_type(row: Row) -> RodType:
     """Name Diam Mass Cd Ca CdEnd CaEnd, and a further column of MoorDyn-F that has to be 0."""
     where = f"{ROD_TYPES}, line {row.number}"
-    name, *rest = check_columns(where, row.words, 7, 8)
+    name, *rest = check_columns(where, row.words, 7, 8, 7)
     diameter, mass, drag, added, *_ = numbers = [number_in(where, text) for text in rest]
     if min(numbers) < 0.0 or diameter == 0.0:
         raise argument_error(where, " ".join(row.words), "a diameter above 0, and no number below 0")
@@ -75,7 +75,7 @@ def read_rod_type(row: Row) -> RodType:
 def read_rod(row: Row, types: Mapping[str, RodType], bodies: Mapping[int, FileBody]) -> Rod:
     """ID RodType Attachment Xa Ya Za Xb Yb Zb NumSegs [Outputs]; on a body the ends are at places in its axes."""
     where = f"{RODS}, line {row.number}"
-    words = check_columns(where, row.words, 10, 11)
+    words = check_columns(where, row.words, 10, 11, 11)
     if words[1] not in types:
         raise argument_error(f"{where}: type", words[1], f"one of {listed(types)}")
     ends = np.array([number_in(where, text) for text in words[3:9]]).reshape(2, 3)

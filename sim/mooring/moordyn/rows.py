@@ -61,7 +61,7 @@ class RodEnd(NamedTuple):
 def read_type(row: Row, folder: Path) -> LineType:
     """Name Diam Mass EA BA/-zeta EI Cd Ca CdAx CaAx [Cl dF cF], or as of version 1: EI Can Cat Cdn Cdt without EI."""
     where = f"{TYPES}, line {row.number}"
-    name, *rest = check_columns(where, row.words, 9, 13)
+    name, *rest = check_columns(where, row.words, 9, 13, 9)
     is_first_version = len(rest) == 8
     diameter, mass = number_in(where, rest[0]), number_in(where, rest[1])
     stiffness, curve = read_stiffness(where, rest[2], folder)
@@ -144,7 +144,7 @@ def read_kind(where: str, text: str) -> tuple[str, int | None]:
 def read_body(row: Row) -> FileBody:
     """ID Attachment X0 Y0 Z0 r0 p0 y0 Mass CG I Volume CdA Ca; angles in degrees."""
     where = f"{BODIES}, line {row.number}"
-    words = check_columns(where, row.words, 14, 14)
+    words = check_columns(where, row.words, 14, 14, 14)
     kind, _ = read_kind(f"{where}: attachment", words[1])
     if kind == "body":
         raise argument_error(f"{where}: attachment", words[1], "Fixed, Coupled or Free")
@@ -178,7 +178,7 @@ def read_point(row: Row, bodies: Mapping[int, FileBody]) -> Point:
     A tenth column is an index of MoorDyn-F for points of other programs. MoorDyn does not read it.
     """
     where = f"{POINTS}, line {row.number}"
-    words = check_columns(where, row.words, 8, 12)
+    words = check_columns(where, row.words, 8, 12, 8)
     if len(words) == 11:
         raise argument_error(where, " ".join(words), "8 to 10 columns, or 12 with a force")
     words = words[:9] if len(words) == 10 else words
@@ -248,7 +248,7 @@ def read_line(
     A negative length is in distances of the ends. rod_ends: those of "1a", "1b".
     """
     where = f"{LINES}, line {row.number}"
-    words = check_columns(where, row.words, 6, 7)
+    words = check_columns(where, row.words, 6, 7, 7)
     if words[1] not in types:
         raise argument_error(f"{where}: type", words[1], f"one of {listed(types)}")
     first, numbers = (words[2:4], words[4:6]) if ends_first else (words[4:6], words[2:4])

@@ -114,10 +114,13 @@ def check_names(section: str, number: int, line: str, words: list[str]) -> None:
 
 
 def number_in(where: str, text: str) -> float:
-    """The finite number that `text` is; raises ValueError otherwise."""
-    value = number_of(text)
+    """The finite number that `text` is, with or without a comma behind it; raises ValueError otherwise."""
+    plain = text.removesuffix(",")
+    value = number_of(plain)
     if value is None or math.isinf(value):
         raise argument_error(where, text, "a finite number")
+    if "," in plain:
+        raise argument_error(where, text, f"a number with a decimal point; MoorDyn reads {plain.partition(',')[0]}")
     return value
 
 
@@ -137,8 +140,14 @@ def numbers_in(where: str, text: str, counts: tuple[int, ...]) -> list[float]:
     return [number_in(where, word) for word in words]
 
 
-def check_columns(where: str, words: list[str], least: int, most: int) -> list[str]:
-    """The words. Raises ValueError unless there are as many as a row of that section has."""
+def check_columns(where: str, words: list[str], least: int, most: int, numbers: int | None = None) -> list[str]:
+    """The words. Raises ValueError unless there are as many as a row of that section has.
+
+    numbers: number of columns from which on a word that is no number begins a comment, as in MoorDyn; None for no such.
+    """
+    if numbers is not None:
+        end = next((i for i, word in enumerate(words) if i >= numbers and number_of(word.strip(",")) is None), None)
+        words = words[:end]
     if not least <= len(words) <= most:
         counts = f"{least}" if least == most else f"{least} to {most}"
         raise argument_error(where, " ".join(words), f"{counts} columns")

@@ -56,7 +56,9 @@ def recorded_waves(
         raise argument_error("t", times.shape if times.ndim != 1 or len(times) < MIN_SAMPLES else times, allowed)
     n, step = len(times), float(times[-1] - times[0]) / (len(times) - 1)
     if not step > 0.0 or np.abs(times - times[0] - step * np.arange(n)).max() > UNEVEN * step:
-        raise argument_error("t", times, allowed)
+        gap = int(np.argmax(np.diff(times)))
+        given = f"times with a step of {float(np.median(np.diff(times))):.4g} s, and one of"
+        raise argument_error("t", f"{given} {times[gap + 1] - times[gap]:.4g} s after t = {times[gap]:g} s", allowed)
     if heights.shape != times.shape:
         raise argument_error("height", heights.shape, f"finite heights, one for each of {n} times")
     bad = ~np.isfinite(heights)

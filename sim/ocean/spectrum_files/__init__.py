@@ -7,6 +7,7 @@ those that waves go to, from +x, which is east, towards +y, north.
 """
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import from_buoy, from_summary
 from sim.ocean.spectrum_files.contents import FORMS, read_time
 from sim.ocean.spectrum_files.instruments import from_awac, from_datawell, is_datawell
+from sim.ocean.spectrum_files.records import missing_numbers
 from sim.ocean.spectrum_files.swan import from_swan
 from sim.ocean.spectrum_files.tables import from_table
 from sim.ocean.spectrum_files.wave_models import NETCDF, from_wavespectra, text_reader
@@ -23,11 +25,18 @@ from sim.validation import argument_error, check_kind, is_whole_number
 __all__ = ["read_spectrum"]
 
 
-def read_spectrum(path: str | Path, time: str | None = None, place: int | None = None) -> Spectrum[Any]:
+def read_spectrum(
+    path: str | Path,
+    time: str | None = None,
+    place: int | None = None,
+    missing: float | Sequence[float] | None = None,
+) -> Spectrum[Any]:
     """The spectrum in a file, or its record nearest to a time, "2020-01-02 05:00", by default its last one.
 
-    place: of a file with several, from 1; by default the first one with data. With directions the spectrum has those of
-    the file, else waves spread about the wind's direction. Its `notes` say what was read, and what was left out.
+    place: of a file with several, from 1; by default the first one with data at any time. missing: numbers that stand
+    for a missing value in a table; None for digits of 9 far beyond all other values.
+    With directions the spectrum has those of the file, else waves spread about the wind's direction. Its `notes` say
+    what was read, and what was left out.
 
     Raises ValueError for a file that holds none, in one line; ModuleNotFoundError without `wavespectra` or xarray,
     where the format needs them.
@@ -36,7 +45,7 @@ def read_spectrum(path: str | Path, time: str | None = None, place: int | None =
     path = Path(path)
     if place is not None and not (is_whole_number(place) and place > 0):
         raise argument_error("place", place, "a whole number of at least 1")
-    when = None if time is None else read_time(time)
+    when, numbers = None if time is None else read_time(time), missing_numbers(missing)
     if path.suffix.lower() in NETCDF:
         return from_wavespectra(path, when, place)
     text = read_text(path, FORMS)
@@ -57,4 +66,4 @@ def read_spectrum(path: str | Path, time: str | None = None, place: int | None =
         return from_buoy(text, path, when) if is_spectrum else from_summary(text, path, when)
     if when is not None:
         raise argument_error("time", time, "a time for a file with records of several times; this is a table of one")
-    return from_datawell(text, path) if is_datawell(text) else from_table(text, path)
+    return from_datawell(text, path) if is_datawell(text) else from_table(text, path, numbers)

@@ -6,6 +6,7 @@ https://www.ndbc.noaa.gov/faq/measdes.shtml describes them: alpha1 and alpha2 ar
 import datetime
 import math
 import re
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +23,9 @@ REALTIME = {".swdir": "alpha1", ".swdir2": "alpha2", ".swr1": "r1", ".swr2": "r2
 HISTORY = {"d": "alpha1", "i": "alpha2", "j": "r1", "k": "r2"}  # letter in 44013w2020.txt, which is w for the density
 HISTORY_NAME = re.compile(r"^(.{5})([a-z])(\d{4}\w*\.txt(?:\.gz)?)$")  # station, letter, year
 LARGEST = 30.0  # [m2/Hz] that whole numbers in a file of unknown letter may be densities
+MISSING = (999.0, 9999.0)  # for what is missing, of any kind
+MISSING_SEA = (99.0, *MISSING)  # of a height or a period; densities and shares of 99 may be values, too
+NEAR = 2.0  # ratio of a density of 99 to those beside it, up to which it is a value like them
 TURN, PERCENT = 360.0, 100.0  # largest values of alpha1, alpha2, and of r1, r2
 WIND_SEA_EXPONENT = 10.0  # s of cos2s of wind waves (Goda 2010, Sec. 2.3)
 # Files of heights and periods: columns of height [m], period [s] and direction, and s of the spreading.
@@ -45,14 +49,14 @@ class Records(NamedTuple):
 def from_buoy(text: str, path: Path, when: datetime.datetime | None) -> Spectrum[Any]:
     """The spectrum of an NDBC file of densities, with the directions of the files beside it."""
     density = records_of(text, path)
+    density = density._replace(values=without_99(density.values))
     kind = kind_of(text, path, density)
     if kind != "density":
         raise argument_error("path", str(path), f"{file_of_densities(path)}; this is of {kind}")
     whole = np.isfinite(density.values).sum(axis=1) >= 3
     if not whole.any():
         raise argument_error("path", str(path), "a file with a record of at least three densities")
-    rows = np.flatnonzero(whole)
-    i = rows[nearest([density.time[row] for row in rows], when, path)]
+    i = nearest(density.time, when, path, whole)
     time, there = density.time[i], np.isfinite(density.values[i])
     order = np.argsort(density.frequency[there])
     f, S = density.frequency[there][order], density.values[i][there][order]
@@ -108,6 +112,8 @@ def moment_at(path: Path, kind: str, time: datetime.datetime, frequency: np.ndar
     Raises ValueError for values impossible for this kind, as in files with exchanged names.
     """
     records = records_of(read_text(path, FORMS), path)
+    if kind.startswith("r") and not (records.values[records.values != 99.0] > 1.0).any():  # no percents
+        records = records._replace(values=np.where(records.values == 99.0, math.nan, records.values))
     largest = TURN if kind.startswith("alpha") else PERCENT
     if (records.values > largest).any():
         raise argument_error(
@@ -181,11 +187,27 @@ def clock_time(words: list[str], path: Path, number: int) -> datetime.datetime:
         raise line_error(path, number, "year, month, day, hour and minute") from None
 
 
-def floats(words: list[str], path: Path, number: int) -> np.ndarray:
-    """Numbers of a line, nan where one is missing. Raises ValueError that names the line."""
-    found, wrong = values_of(words)
+def floats(words: list[str], path: Path, number: int, missing: Collection[float] = MISSING) -> np.ndarray:
+    """Numbers of a line, nan where one is missing. Raises ValueError that names the line.
+
+    missing: numbers that NDBC writes for a missing value of this kind.
+    """
+    found, wrong = values_of(words, missing)
     if wrong is not None:
         raise line_error(path, number, "numbers")
+    return found
+
+
+def without_99(values: np.ndarray) -> np.ndarray:
+    """Densities (n, m), nan in place of a 99, NDBC's other sign of a missing one, that those beside it are not near."""
+    found = values.copy()
+    for row, column in np.argwhere(values == 99.0):
+        line = values[row]
+        whole = np.flatnonzero(np.isfinite(line) & (line != 99.0))
+        at = int(np.searchsorted(whole, column))
+        beside = line[whole[max(at - 1, 0) : at + 1]]
+        if not len(beside) or (beside * NEAR < 99.0).any() or (beside > NEAR * 99.0).any():
+            found[row, column] = math.nan
     return found
 
 
@@ -208,13 +230,11 @@ def from_summary(text: str, path: Path, when: datetime.datetime | None) -> Spect
             found = [system_of([row[one] for one in columns], s, path, number) for *columns, s in SUMMARIES[kind]]
         except KeyError as missing:
             raise line_error(path, 1, f"the columns of {kind}; {missing} is not here") from None
-        systems = [system for system in found if system is not None]
-        if systems:
-            times.append(clock_time(words[:clock], path, number))
-            rows.append(systems)
-    if not rows:
+        times.append(clock_time(words[:clock], path, number))
+        rows.append([system for system in found if system is not None])
+    if not any(rows):
         raise argument_error("path", str(path), f"{kind} with a record of waves")
-    i = nearest(times, when, path)
+    i = nearest(times, when, path, [bool(systems) for systems in rows])
     f, systems = SUMMARY_FREQUENCIES, rows[i]
     notes = [f"{kind}, without a spectrum: heights and periods in the shape of JONSWAP"]
     heights = [S for S, _, _ in systems]
@@ -232,12 +252,12 @@ def system_of(
     The direction is of the compass or in degrees; None if it is missing. None for waves that are missing.
     """
     # each by itself: they are no neighbours
-    H, T = (float(floats([word], path, number)[0]) for word in words[:2])
+    H, T = (float(floats([word], path, number, MISSING_SEA)[0]) for word in words[:2])
     if not (math.isfinite(H) and math.isfinite(T)):
         return None
     if H > 0.0 and not 1.0 <= T <= 60.0:
         raise line_error(path, number, "periods of 1 to 60 s")
-    bearing = 22.5 * COMPASS.index(words[2]) if words[2] in COMPASS else float(values_of(words[2:3], TURN)[0][0])
+    bearing = 22.5 * COMPASS.index(words[2]) if words[2] in COMPASS else float(values_of(words[2:3], MISSING)[0][0])
     if not bearing <= TURN and not math.isnan(bearing):
         raise line_error(path, number, f"directions of 0 to {TURN:g} degrees")
     f = SUMMARY_FREQUENCIES

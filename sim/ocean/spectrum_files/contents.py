@@ -9,7 +9,7 @@ import numpy as np
 
 from sim.ocean.records.measured import measured_spectrum
 from sim.ocean.spectra.record import Spectrum
-from sim.ocean.spectrum_files.sea_summary import summary_of
+from sim.ocean.spectrum_files.sea_summary import spike_of, summary_of
 from sim.validation import argument_error
 
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 2.5))  # of spreadings that are made of moments
@@ -46,7 +46,8 @@ def made(path: Path, time: datetime.datetime | None, *given: Any, notes: Sequenc
         found = measured_spectrum(*given, name=titled(path, time))
     except ValueError as error:
         raise ValueError(f"path: {path}: {error}") from None
-    return found._replace(notes=(*summary_of(found), *notes))
+    total = np.asarray(given[1]) if len(given) == 2 else np.asarray(given[1]).sum(axis=1)
+    return found._replace(notes=(*summary_of(found), *spike_of(np.asarray(given[0]), total), *notes))
 
 
 def filled(frequency: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -64,12 +65,28 @@ def unrepeated(direction: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, 
     return (direction[:-1], density[:, :-1]) if is_repeated else (direction, density)
 
 
-def nearest(times: list[datetime.datetime], when: datetime.datetime | None, path: Path) -> int:
-    """Index of the record nearest to a time, or of the last one. Raises ValueError if none is near."""
+def nearest(
+    times: Sequence[datetime.datetime],
+    when: datetime.datetime | None,
+    path: Path,
+    has_data: Sequence[bool] | np.ndarray | None = None,
+) -> int:
+    """Index of the record nearest to a time, or of the last one with data. has_data: of each record, None for all.
+
+    Raises ValueError if none is near, or if the nearest one has no data.
+    """
+    whole = [True] * len(times) if has_data is None else [bool(one) for one in has_data]
+    known = [one for one, has in zip(times, whole, strict=True) if has]
     if when is None:
-        return max(range(len(times)), key=times.__getitem__)
+        return max((j for j in range(len(times)) if whole[j]), key=times.__getitem__)
     i = min(range(len(times)), key=lambda j: abs(times[j] - when))
     if abs(times[i] - when) > NEAREST:
-        allowed = f"{min(times):%Y-%m-%d %H:%M} to {max(times):%Y-%m-%d %H:%M}, near a record of {path.name}"
+        allowed = f"{min(known):%Y-%m-%d %H:%M} to {max(known):%Y-%m-%d %H:%M}, near a record of {path.name}"
+        raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
+    if not whole[i]:
+        next_one = min(known, key=lambda one: abs(one - when))
+        allowed = (
+            f"a time with data; the record at {times[i]:%Y-%m-%d %H:%M} has none, that at {next_one:%Y-%m-%d %H:%M} has"
+        )
         raise argument_error("time", f"{when:%Y-%m-%d %H:%M}", allowed)
     return i

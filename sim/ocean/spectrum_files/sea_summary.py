@@ -5,11 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from sim.inputs.bounds import beyond
 from sim.ocean.spectra.record import Conditions, Spectrum, SpreadConditions
 
-HIGHEST = 20.0  # [m] of Hs: a larger one is probably in a wrong unit
-SHORTEST, LONGEST = 2.0, 30.0  # [s] of Tp
-STEEPEST = 0.1  # 2 pi Hs/(g Tp^2); the steepest seas have 0.07
+MAIN = 0.05  # of the largest density, from which on one is compared with those beside it
 COMPASS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")
 ANGLES = np.radians(np.arange(0.0, 360.0, 2.0))
 FREQUENCIES = 400
@@ -27,14 +26,26 @@ def summary_of(spectrum: Spectrum[Any]) -> tuple[str, ...]:
 def warnings_of(height: float, period: float, gravity: float = Conditions.gravity, name: str = "Tp") -> list[str]:
     """Warnings for Hs [m] and a period [s] of this name that are unlikely."""
     steepness = 2.0 * math.pi * height / (gravity * period**2)
-    found = []
-    if height > HIGHEST:
-        found.append(f"Warning: Hs {height:.3g} m is above {HIGHEST:g} m: is the unit of the density m2/Hz?")
-    if not SHORTEST <= period <= LONGEST:
-        found.append(f"Warning: {name} {period:.3g} s is not within {SHORTEST:g} to {LONGEST:g} s: is its unit right?")
-    if steepness > STEEPEST:
-        found.append(f"Warning: the steepness 2 pi Hs/(g {name}^2) is {steepness:.2g}, above {STEEPEST:g}")
-    return found
+    return [
+        *beyond("spectrum", "Hs", height),
+        *beyond("spectrum", "period", period, said=f"{name} {period:.3g} s"),
+        *beyond("spectrum", "steepness", steepness, said=f"the steepness 2 pi Hs/(g {name}^2), {steepness:.2g},"),
+    ]
+
+
+def spike_of(frequency: np.ndarray, density: np.ndarray) -> list[str]:
+    """A warning for the density (n,) that is the farthest above both beside it, if that is unlikely.
+
+    frequency (n,) [Hz], rising.
+    """
+    beside = np.maximum(density[:-2], density[2:])
+    main = (density[1:-1] > MAIN * density.max()) & (beside > 0.0)
+    ratio = np.where(main, density[1:-1] / np.where(main, beside, 1.0), 0.0)
+    at = int(ratio.argmax()) if len(ratio) else 0
+    if not len(ratio):
+        return []
+    said = f"the density {density[at + 1]:.3g} m2/Hz, {ratio[at]:.3g} times those beside it,"
+    return beyond("spectrum", "density over those beside it", float(ratio[at]), f"{frequency[at + 1]:.4g} Hz", said)
 
 
 def bearing_of(spectrum: Spectrum[Any]) -> float | None:

@@ -6,6 +6,7 @@ Places without data, such as dry ones, are skipped.
 import datetime
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +23,7 @@ from sim.validation import argument_error
 PLACES, FREQUENCIES = ("LOCATIONS", "LONLAT"), ("AFREQ", "RFREQ")
 CONVENTIONS = {"NDIR": convention_of(["north", "from"]), "CDIR": convention_of(["axis", "to"])}
 NO_DATA = ("NODATA", "ZERO")
+MAX_LISTED = 10  # places in a message
 MAX_COUNT = 1_000_000  # of places, frequencies or directions
 UNITS = {"m2/hz": 1.0, "j/m2/hz": 1.0 / WEIGHT, "m2/hz/degr": 180.0 / math.pi, "j/m2/hz/degr": 180.0 / math.pi / WEIGHT}
 
@@ -78,7 +80,7 @@ class SwanHead(NamedTuple):
 
 
 def from_swan(text: str, path: Path, when: datetime.datetime | None, place: int | None) -> Spectrum[Any]:
-    """The spectrum at a place, counted from 1, or at the first one with data, and at the time that is nearest.
+    """The spectrum at a place, counted from 1, or at the first one with data at any time, and at the nearest time.
 
     Raises ValueError that names the line.
     """
@@ -88,23 +90,28 @@ def from_swan(text: str, path: Path, when: datetime.datetime | None, place: int 
         raise argument_error("place", place, f"1 to {len(head.places)}, the places of {path.name}")
     starts: list[int] = []  # of the spectra of each time
     times: list[datetime.datetime] = []
+    blocks: list[list[bool]] = []  # of each time: which places have data
     while lines.key:
         if head.has_times:
             times.append(time_of(lines))
         starts.append(lines.at)
-        blocks = [skip_block(lines, head) for _ in head.places]
-        if not any(blocks):
-            starts.pop()
-            times = times[: len(starts)]
-    if not starts:
+        blocks.append([skip_block(lines, head) for _ in head.places])
+    has_data = np.array(blocks, bool).reshape(-1, len(head.places))
+    if not has_data.any():
         raise argument_error("path", str(path), "a file of SWAN with data at one of its places")
-    i = nearest(times, when, path) if head.has_times else 0
+    number = int(has_data.any(axis=0).argmax()) + 1 if place is None else place
+    there = has_data[:, number - 1]
+    if not there.any():
+        raise argument_error("place", number, f"a place of {path.name} with data")
+    i = nearest(times, when, path, None if when is not None else there) if head.has_times else 0
+    if not there[i]:
+        others = ", ".join(str(one + 1) for one in np.flatnonzero(has_data[i])[:MAX_LISTED]) or "none"
+        raise argument_error("place", number, f"a place with data at {times[i]:%Y-%m-%d %H:%M}: {others}")
     lines.at = starts[i]
-    for number in range(1, len(head.places) + 1):
-        block = read_block(lines, head)
-        if block is not None and place in (None, number):
-            return spectrum_of(block, head, number, path, times[i] if head.has_times else None)
-    raise argument_error("place", place, f"a place of {path.name} with data")
+    for _ in range(number - 1):
+        skip_block(lines, head)
+    block, notes = read_block(lines, head)
+    return spectrum_of(block, head, number, path, times[i] if head.has_times else None, notes)
 
 
 def read_head(lines: Lines) -> SwanHead:
@@ -161,33 +168,64 @@ def skip_block(lines: Lines, head: SwanHead) -> bool:
     return True
 
 
-def read_block(lines: Lines, head: SwanHead) -> np.ndarray | None:
-    """The values of one place (n, m), nan for missing ones, or None without data."""
+def read_block(lines: Lines, head: SwanHead) -> tuple[np.ndarray, list[str]]:
+    """The values of a place with data (n, m), nan for rows without values; and a line on those that are missing.
+
+    A marker of missing values that is 0 is a density of 0.
+    """
     first = lines.next()[0].upper()
-    if first in NO_DATA:
-        return None
     if head.directions is None:
         if first != "LOCATION":
             raise lines.error("LOCATION and its number, or NODATA")
         rows = np.array([lines.numbers(len(head.quantities)) for _ in head.frequency])
+        is_empty = np.isclose(rows[:, 0], head.quantities[0][2]) | (rows[:, 0] == 0.0)
         for i, (_, _, none) in enumerate(head.quantities):
-            rows[np.isclose(rows[:, i], none), i] = math.nan
-        return rows
+            marked = np.isclose(rows[:, i], none)
+            # 0 degrees is a direction, too
+            rows[(marked & is_empty if none == 0.0 else marked) & ((none != 0.0) | (i > 0)), i] = math.nan
+        return rows, []
     if first != "FACTOR":
         raise lines.error("FACTOR, ZERO or NODATA")
     factor = lines.numbers(1)[0]
     rows = np.array([lines.numbers(len(head.directions)) for _ in head.frequency])
-    rows[np.isclose(rows, head.quantities[0][2])] = math.nan
-    return factor * rows
+    none = head.quantities[0][2]
+    lost = np.isclose(rows, none) & (none != 0.0)
+    some = lost & ~lost.all(axis=1, keepdims=True)
+    rows[lost.all(axis=1)] = math.nan
+    rows[some] = 0.0
+    return factor * rows, [missing_line(rows, some, head)] if some.any() else []
+
+
+def missing_line(rows: np.ndarray, lost: np.ndarray, head: SwanHead) -> str:
+    """A line on densities (n, m) that are missing and taken as 0, with the energy of those beside them."""
+    around = np.arange(rows.shape[1], dtype=float)
+    total, held = 0.0, 0.0
+    for row, gone, width in zip(rows, lost, np.abs(np.gradient(head.frequency)), strict=True):
+        there = np.flatnonzero(~gone)
+        if np.isnan(row).all():
+            continue
+        beside = np.interp(around[gone], around[there], row[there], period=len(row)) if gone.any() else np.zeros(0)
+        total, held = total + width * float(row.sum()), held + width * float(beside.sum())
+    part = 100.0 * held / (total + held) if total + held > 0.0 else 0.0
+    return (
+        f"{int(lost.sum())} of {lost.size} densities are missing and taken as 0; "
+        f"like those beside them they would hold about {part:.2g} % of the energy"
+    )
 
 
 def spectrum_of(
-    block: np.ndarray, head: SwanHead, number: int, path: Path, time: datetime.datetime | None
+    block: np.ndarray,
+    head: SwanHead,
+    number: int,
+    path: Path,
+    time: datetime.datetime | None,
+    said: Sequence[str],
 ) -> Spectrum[Any]:
-    """The spectrum of the values of a place."""
+    """The spectrum of the values of a place. said: lines on values that are missing."""
     scale = UNITS[head.quantities[0][1]]
     x, y = head.places[number - 1]
     notes = [f"place {number} of {len(head.places)}, at {x:g}, {y:g}"] if len(head.places) > 1 else []
+    notes += said
     there = np.isfinite(block).all(axis=1) if head.directions is not None else np.isfinite(block[:, 0])
     if not there.all():
         notes.append(f"left out, as they have no value: {int((~there).sum())} of {there.size} frequencies")

@@ -3,6 +3,7 @@
 import datetime
 import math
 import re
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,9 +14,22 @@ from sim.ocean.spectra.record import Spectrum
 from sim.ocean.spectrum_files.buoys import shares
 from sim.ocean.spectrum_files.contents import DIRECTIONS, FORMS, filled, made, unrepeated
 from sim.tables import ColumnTable, Meaning, Row, line_error, number_of, read_columns, split_rows, values_of
-from sim.tables.columns import DENSITY, DIRECTION, FREQUENCY, OMEGA, SHARE, SPREAD, TURN, factor_of, header_of, in_doubt
+from sim.tables.columns import (
+    DENSITY,
+    DIRECTION,
+    FREQUENCY,
+    OMEGA,
+    SHARE,
+    SPREAD,
+    TURN,
+    factor_of,
+    header_of,
+    in_doubt,
+    notes_on_nines,
+)
 from sim.tables.headers import BRACKETS, Convention, letters_of
-from sim.tables.units import measure_of
+from sim.tables.numbers import beyond_others, of_nines
+from sim.units import measure_of
 from sim.validation import argument_error
 
 MEANINGS = (
@@ -41,10 +55,11 @@ OMEGA_NAMES = next(meaning.names for meaning in MEANINGS if meaning.kind is OMEG
 LEAST_DIRECTIONS = 4  # columns of a table with a row of directions
 
 
-def from_table(text: str, path: Path) -> Spectrum[Any]:
+def from_table(text: str, path: Path, missing: Collection[float] | None = None) -> Spectrum[Any]:
     """The spectrum of a table with one row a frequency.
 
     Columns by name, or frequency and density without names; or a first row of directions, and densities over both.
+    missing: numbers that stand for a missing value.
     """
     rows, comments = split_rows(text, path)
     if len(rows) < 3:
@@ -52,8 +67,8 @@ def from_table(text: str, path: Path) -> Spectrum[Any]:
     head = rows[0].words
     numbers = [number_of(word) is not None for word in head]
     if len(head) > LEAST_DIRECTIONS and all(numbers[1:]) and (not numbers[0] or len(head) > len(MEANINGS)):
-        return from_matrix(rows, path)
-    table = read_columns(rows, comments, path, MEANINGS, ("frequency", "density"))
+        return from_matrix(rows, path, missing)
+    table = read_columns(rows, comments, path, MEANINGS, ("frequency", "density"), missing)
     if "frequency" not in table.columns or "density" not in table.columns:
         raise line_error(
             path, rows[0].number, "the columns frequency [Hz] and density [m2/Hz]; and direction and spread, or r1"
@@ -67,7 +82,9 @@ def from_columns(table: ColumnTable, path: Path, time: datetime.datetime | None 
     f, S = axis.values, density.values
     if density.is_angular is None and axis.is_angular:
         S = TURN * S
-    notes = list(table.notes)
+    written = density.nines
+    energy = (S if written is None else np.where(np.isfinite(written), written, S)) * np.abs(np.gradient(f))
+    notes = [*table.notes, *notes_on_nines(density, energy, table.lines)]
     there = np.isfinite(f) & np.isfinite(S)
     if not there.all():
         lost = ", ".join(f"{one:.4g}" for one in f[~there & np.isfinite(f)][:6])
@@ -134,8 +151,8 @@ def read_corner(text: str, path: Path, number: int) -> Corner:
     return Corner(frequency, angle, is_given, per_hertz / angle if math.isnan(density) else density, convention)
 
 
-def from_matrix(rows: list[Row], path: Path) -> Spectrum[Any]:
-    """The spectrum of rows of densities behind a frequency, under a row of directions."""
+def from_matrix(rows: list[Row], path: Path, missing: Collection[float] | None = None) -> Spectrum[Any]:
+    """The spectrum of rows of densities behind a frequency, under a row of directions. missing: as `from_table`."""
     head, rows = rows[0], rows[1:]
     corner = read_corner(head.words[0], path, head.number)
     angles = np.array([number_of(word) for word in head.words[1:]], float)
@@ -146,10 +163,12 @@ def from_matrix(rows: list[Row], path: Path) -> Spectrum[Any]:
             raise line_error(path, row.number, f"{len(head.words)} columns, not {len(row.words)}")
     columns = []
     for i in range(len(head.words)):
-        values, wrong = values_of([row.words[i] for row in rows])
+        words = [row.words[i] for row in rows]
+        values, wrong = values_of(words, (missing or ()) if i else ())
         if wrong is not None:
             raise line_error(path, rows[wrong].number, "numbers")
-        columns.append(values)
+        nines = of_nines(words)
+        columns.append(np.where(nines & beyond_others(values, nines), np.nan, values) if missing is None else values)
     values = np.stack(columns, axis=1)
     there = np.isfinite(values)
     whole, some = there.all(axis=1), there[:, 0] & there[:, 1:].any(axis=1)

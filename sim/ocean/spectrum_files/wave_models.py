@@ -68,9 +68,8 @@ def from_wavespectra(
         time, i = None, 0
         if "time" in data.dims:
             whole = (data > 0.0).any([axis for axis in data.dims if axis != "time"]).values
-            data = data.isel(time=np.flatnonzero(whole)) if whole.any() else data
             times = [datetime.datetime.fromisoformat(str(one)[:19]) for one in data["time"].values]
-            i = nearest(times, when, path)
+            i = nearest(times, when, path, whole if whole.any() else None)
             data, time = data.isel(time=i), times[i]
         lost = data.isnull().any([axis for axis in data.dims if axis != "freq"]).values
         if lost.any():

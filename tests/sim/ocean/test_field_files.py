@@ -1,5 +1,6 @@
 """Files of spectra as people have them: each is read as its owner meant it, or refused in one line."""
 
+import datetime
 import itertools
 import math
 import random
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from sim.ocean import measured_spectrum, read_record, read_spectrum, recorded_waves
+from sim.ocean.spectrum_files.buoys import moment_at, records_of, without_99
 from sim.ocean.spectrum_files.sea_summary import bearing_of
 from sim.tables.rows import split_rows
 from sim.tables.text import MAX_BYTES
@@ -335,16 +337,68 @@ def test_places_and_times_of_swan_are_chosen_and_places_without_data_passed_over
     last = read_spectrum(path)
     assert seen(last) == pytest.approx((2.0 * HEIGHT, 10.0, 270.0), rel=2e-3)
     assert last.name == "a.sp2, 2021-03-02 00:00"
-    first = read_spectrum(path, "2021-03-01 00:30")
+    assert "place 1 of 2, at 4, 52" in last.notes
+    first = read_spectrum(path, "2021-03-01 00:30", 2)
     assert seen(first) == pytest.approx((HEIGHT, 10.0, 270.0), rel=2e-3)
     assert "place 2 of 2, at 4.5, 52.5" in first.notes
-    assert_refused("place", lambda: read_spectrum(path, "2021-03-01", 1), "with data")
+    for place in (None, 1):  # one place at all times, or a series would jump
+        assert_refused(
+            "place", lambda one=place: read_spectrum(path, "2021-03-01", one), "with data at 2021-03-01 00:00: 2"
+        )
+    assert_refused("place", lambda: read_spectrum(path, "2021-03-03"), "with data at 2021-03-03 00:00: none")
     assert_refused("place", lambda: read_spectrum(path, place=3), "1 to 2")
     assert_refused("place", lambda: read_spectrum(FIELD / "spectrum_cm2.csv", place=1), "several")
     path.write_text(swan([[*block(1.0), *block(9.0)]], times=False), "utf-8")
     assert seen(read_spectrum(path, place=2))[0] == pytest.approx(3.0 * HEIGHT, rel=2e-3)
     path.write_text(swan([[*block(1.0), *block(9.0)[:-1]]], times=False), "utf-8")
     assert_refused("path", lambda: read_spectrum(path), "it ends early")
+
+
+def test_a_marker_of_0_is_a_density_of_0_and_missing_bins_are_named_with_their_energy(tmp_path):
+    path = tmp_path / "a.sp2"
+    text = swan([[*block(1.0), "NODATA"]])
+    path.write_text(text.replace(" -0.9900E+02", "  0.0000E+00"), "utf-8")  # four of eight bins of each row are 0
+    assert seen(read_spectrum(path)) == pytest.approx((HEIGHT, 10.0, 270.0), rel=2e-3)
+    assert not [note for note in read_spectrum(path).notes if "missing" in note]
+    lines = text.splitlines()
+    row = next(i for i, line in enumerate(lines) if line == "FACTOR") + 2
+    words = lines[row + 6].split()  # the row of the peak
+    lines[row + 6] = " ".join([*words[:5], "-99", *words[6:]])
+    path.write_text("\n".join(lines), "utf-8")
+    spectrum = read_spectrum(path)
+    assert HEIGHT * 0.9 < seen(spectrum)[0] < HEIGHT
+    assert re.search(r"1 of 296 densities are missing and taken as 0; .* about \d(\.\d)? % of", spectrum.notes[2])
+
+
+def test_a_time_that_is_asked_for_is_chosen_before_records_without_data_are_left_out(tmp_path):
+    source = (FIELD / "46999w2021.txt").read_text("utf-8").splitlines()
+    words = source[1].split()
+    empty = " ".join([*words[:3], f"{(int(words[3]) + 1) % 24:02d}", *words[4:5], *["999.00"] * len(words[5:])])
+    path = tmp_path / "buoy.txt"
+    path.write_text("\n".join([source[0], source[1], empty]) + "\n", "utf-8")
+    assert seen(read_spectrum(path))[1] == pytest.approx(10.0, rel=1e-2)
+    hour = empty.split()
+    assert_refused(
+        "time", lambda: read_spectrum(path, f"{'-'.join(hour[:3])} {hour[3]}:{hour[4]}"), "has none, that at"
+    )
+
+
+@pytest.mark.parametrize("beside", ["alpha1", "density"])
+def test_digits_of_9_of_a_buoy_are_missing_by_its_own_rule_only(beside, tmp_path):
+    head = "#YY  MM DD hh mm " + " ".join(f"{f:.4f}" for f in (0.08, 0.09, 0.10, 0.11, 0.12, 0.13))
+    rows = {"w": "60 80 99.00 90 70 99.00" if beside == "density" else "1 2 3 3 2 1", "d": "40 45 99 210 999 220",
+            "i": "40 45 99 210 215 220", "j": "0.9 0.9 0.9 0.9 0.9 0.9", "k": "0.8 0.8 0.8 0.8 0.8 0.8"}  # fmt: skip
+    for letter, row in rows.items():
+        (tmp_path / f"46999{letter}2021.txt").write_text(f"{head}\n2021 03 05 04 40 {row}\n", "utf-8")
+    if beside == "density":
+        density = records_of((tmp_path / "46999w2021.txt").read_text("utf-8"), tmp_path)
+        assert without_99(density.values)[0] == pytest.approx([60, 80, 99, 90, 70, 99])
+        assert np.isnan(without_99(np.array([[1.0, 2.0, 99.0, 3.0]]))).tolist() == [[False, False, True, False]]
+    else:
+        f = np.array([0.08, 0.09, 0.10, 0.11, 0.12, 0.13])
+        found = moment_at(tmp_path / "46999d2021.txt", "alpha1", datetime.datetime(2021, 3, 5, 4, 40), f)
+        assert found is not None
+        assert found.tolist() == [40, 45, 99, 210, 210, 220]
 
 
 def test_a_sea_that_is_unlikely_has_a_warning(tmp_path):
@@ -375,7 +429,7 @@ def test_a_record_is_read_with_its_units_and_without_missing_ends(head, times, h
     lines = [mark.join([*row, *(["1"] if "flag" in head else [])]) for row in rows]
     path = tmp_path / "record.csv"
     path.write_text("\n".join([*([head] if head else []), *lines]) + "\n", encoding="utf-8")
-    record = read_record(path)
+    record = read_record(path, missing=999.0 if missing == "999.00" else None)
     count = len(T) - bool(missing)
     assert record.t == pytest.approx(T[:count], abs=1e-6)
     assert record.height == pytest.approx(ETA[:count], abs=1e-7)

@@ -1,6 +1,6 @@
-"""Units in the header of a column, by the library `pint`.
+"""Units as people write them, in headers of columns and behind numbers, by the library `pint`.
 
-It is imported when a header names a unit. It counts 1 rad/s as 1 Hz; here an angle is a dimension of its own.
+It is imported when a unit has to be understood. It counts 1 rad/s as 1 Hz; here an angle is a dimension of its own.
 """
 
 import functools
@@ -12,8 +12,16 @@ SIGNS = {"²": "^2", "³": "^3", "⁻¹": "^-1", "⁻²": "^-2", "·": "*", "×"
          "}": "", "µ": "u", "μ": "u", "\\": ""}  # fmt: skip
 # A unit with an exponent of one digit: pint computes powers as they are written, however large.
 FACTOR = r"(?:[A-Za-z]+(?:\^[-+]?[1-9])?|1|%)"
-FORM = re.compile(rf"{FACTOR}(?:[*/]{FACTOR}|[*/]\({FACTOR}(?:\*{FACTOR})*\))*")
-ALIASES = {"hz": "Hz", "HZ": "Hz", "rads": "rad/s", "degs": "deg", "DEG": "deg", "mtr": "m", "secs": "s", "SEC": "s"}
+TERM = rf"(?:{FACTOR}|\({FACTOR}(?:[*/]{FACTOR})*\))"
+FORM = re.compile(rf"{TERM}(?:[*/]{TERM})*")
+ALIASES = {
+    "hz": "Hz", "HZ": "Hz", "rads": "rad/s", "degs": "deg", "DEG": "deg", "mtr": "m", "secs": "s", "SEC": "s",
+    "SECS": "s", "M": "m", "FT": "ft", "hr": "h", "hrs": "h", "mins": "min", "msec": "ms", "millisec": "ms",
+    "milisec": "ms", "usec": "us", "tonne": "t", "tonnes": "t", "te": "t", "kn": "knot", "kt": "knot", "kts": "knot",
+    "kmh": "(km/h)", "kph": "(km/h)", "Ns": "(N*s)", "kNs": "(kN*s)", "Nm": "(N*m)", "kNm": "(kN*m)", "MNm": "(MN*m)",
+    "Nms": "(N*m*s)", "kNms": "(kN*m*s)", "Pas": "(Pa*s)", "mPas": "(mPa*s)",
+}  # fmt: skip
+CONSTANTS = ("c", "k", "e", "R")  # of physics, which pint takes for units
 
 
 class UnitMeasure(NamedTuple):
@@ -31,7 +39,9 @@ def written_plainly(text: str) -> str:
         text = text.replace(sign, plain)
     text = re.sub(r"([A-Za-z])([-+]?\d)", r"\1^\2", text.strip())
     text = re.sub(r"\s*([*/^()])\s*", r"\1", text)
+    text = re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)  # N-s
     text = re.sub(r"(?<=\d)(?=[A-Za-z])|[ .]+(?=[A-Za-z1])", "*", text)
+    text = re.sub(r"(?<!^1)/(rad|deg)/(s|Hz)\b", r"/(\1/\2)", text)  # m2/rad/s: people mean m2/(rad/s)
     return re.sub(r"[A-Za-z]+", lambda found: ALIASES.get(found[0], found[0]), text)
 
 
@@ -47,7 +57,7 @@ def registry() -> Any:
 def measure_of(text: str) -> UnitMeasure | None:
     """The measure of a unit, None for an unknown one."""
     plain = written_plainly(text)
-    if len(text) > MAX_LENGTH or not FORM.fullmatch(plain):
+    if len(text) > MAX_LENGTH or plain in CONSTANTS or not FORM.fullmatch(plain):
         return None
     units = registry()
     try:

@@ -23,6 +23,7 @@ STYLES = {
     "right": "green",
     "wrong": "red",
     "failed": "red",
+    "waits": "yellow",
     "not checked": "yellow",
     "incomplete": "yellow",
     "not begun": "dim",

@@ -9,8 +9,8 @@ from sim.parameters import in_words
 
 # States of a task, and the words for how many tasks have it.
 STATES = {
-    "right": "right", "wrong": "wrong", "failed": "does not run", "incomplete": "not complete",
-    "not checked": "not checked", "not begun": "not begun",
+    "right": "right", "wrong": "wrong", "failed": "does not run", "waits": "waits for another",
+    "incomplete": "not complete", "not checked": "not checked", "not begun": "not begun",
 }  # fmt: skip
 
 

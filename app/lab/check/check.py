@@ -7,7 +7,7 @@ from pathlib import Path
 
 from app.lab.check.program_check import Points, Verdict, check_program, draw, settled
 from app.lab.course.answer_check import AnswerVerdict, check_answer
-from app.lab.course.answers import FILE, Answers, read_answers
+from app.lab.course.answers import FILE, Answers, read_answers, strangers
 from app.lab.course.folder import check_is_folder
 from app.lab.course.task import Task
 from app.lab.process.runners import Runners
@@ -84,6 +84,8 @@ def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool, runners: 
     check_is_folder(folder)
     began = time.monotonic()
     answers = read_answers(folder)
+    if not answers.error and (others := strangers(answers, tasks)):
+        answers = answers._replace(error=others[0])
     results = []
     with runners.runner(folder) as runner:
         programs = {
@@ -91,7 +93,10 @@ def check_folder(folder: Path, tasks: Sequence[Task], *, curves: bool, runners: 
         }
         for task in tasks:
             program = settled(task.name, programs)
-            judged = tuple(check_answer(question, answers.of(task, question)) for question in task.questions)
+            judged = tuple(
+                check_answer(question, answers.of(task, question), answers.unread_of(task, question))
+                for question in task.questions
+            )
             begun = program is not None and program.state in ("right", "wrong", "waits")
             results.append(TaskResult(task, program, judged, draw(runner, task) if curves and begun else None))
     return FolderResult(folder, answers, tuple(results), time.monotonic() - began)

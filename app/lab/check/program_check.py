@@ -35,10 +35,10 @@ class Verdict:
     """Result of the check of one function.
 
     state: "not begun", "right", "wrong", "failed" (no result), "not checked" (the machine is too busy), or "waits"
-    (right, but it calls a function of the course that is not). calls: the functions of the course that it calls. mistake: the
-    name of a recognised mistake, or "". place: file and line of a mistake, as an editor takes it: "rope.py:17"; "" if
-    it is unknown. file: the file that does not run, or "". equations: of a wrong function, beside the
-    right ones.
+    (right, but it calls a function of the course that is not). calls: the functions of the course that it calls.
+    mistake: the name of a recognised mistake, or "". place: file and line of a mistake, as an editor takes it:
+    "rope.py:17"; "" if it is unknown. file: the file that does not run, or "". equations: of a wrong function, beside
+    the right ones.
     """
 
     state: str

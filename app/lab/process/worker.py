@@ -13,7 +13,8 @@ at many arguments (`tabulate.py`). Printed lines are counted and dropped: the pi
 `["words", file, function, [numbers, units, clashes]]` describes some of them, and
 `["edited", file, function, [number, arguments]]` calls one of them (`diagnosis/edits.py`).
 `["course", "", "", {name: text}]` has no answer: while a function is watched, these solutions stand in for the
-functions of the course that it calls, and `["called", file, function, []]` tells which it has called. During a long call it sends
+functions of the course that it calls, and `["called", file, function, []]` tells which it has called. During a long
+call it sends
 `["at", file, line, function, work, processor time]` repeatedly on systems that do not tell the lab (`call_limit.py`).
 """
 
@@ -315,7 +316,7 @@ class Worker:
         return found
 
     def edits_in_words(self, numbers: list[int], units: dict[str, str], most: int) -> list[Any]:
-        """Edits in words, without those that join more quantities of different units than `most`. units: of arguments."""
+        """Edits in words, without those that join more than `most` pairs of other units. units: of the arguments."""
         assert self.tree is not None
         chosen = [(number, self.edits[number][0]) for number in numbers]
         clear = [(number, candidate) for number, candidate in chosen if self.tree.clashes(candidate, units) <= most]

@@ -349,9 +349,11 @@ def behave(student: StudentFunction) -> None:
 
 
 def error_with_repair(student: StudentFunction, samples: Sequence[Sample], error: RunError) -> RunError:
-    """An error of Python, with an edit that makes the function right, if there is one."""
+    """An error of Python, with an edit that makes the function right, if there is one; another error as it is."""
+    if error.kind != "raised" or error.loading:
+        return error
     first = last_input(student, samples)
     with contextlib.suppress(RunError, Wrong):
         if (found := repair(student, samples, first, "traps", "causes", "slips")) is not None:
             return RunError(error.kind, f"{error.text.rstrip('.')}. {found.text}", error.file, found.line or error.line)
-    return RunError(error.kind, in_plain_words(error.text), error.file, error.line, loading=error.loading)
+    return RunError(error.kind, in_plain_words(error.text), error.file, error.line)

@@ -19,6 +19,7 @@ from app.lab.check.diagnose import behave, diagnosed, error_with_repair, explain
 from app.lab.check.diagnosis.effects import EFFECTS
 from app.lab.check.diagnosis.explanation import Equation
 from app.lab.check.inputs import inputs_of
+from app.lab.check.python_errors import in_plain_words
 from app.lab.check.student_function import StudentFunction
 from app.lab.checking import Wrong
 from app.lab.course.task import Task
@@ -116,9 +117,12 @@ def judged(runner: Runner, task: Task, line: int | None) -> Verdict:
         place = place_of(error.file, error.line)
         if error.kind == BUSY:
             return not_checked(error.text)
+        if error.kind == "missing" and error.text == f"there is no function {task.name}":
+            return Verdict("not begun")
         if error.kind in EFFECTS:
             return Verdict("wrong", error.text, error.kind, place)
-        return Verdict("failed", error.text, error.kind, place, task.file if error.loading else "")
+        text = in_plain_words(error.text) if error.loading else error.text
+        return Verdict("failed", text, error.kind, place, task.file if error.loading else "")
     except Wrong as error:
         place = place_of(task.file, error.line or line)
         return Verdict("wrong", str(error), error.mistake, place, equations=error.equations)
@@ -172,7 +176,7 @@ def compare(student: StudentFunction) -> None:
     try:
         trials = [student.trial(sample, twice=i < TWICE) for i, sample in enumerate(samples)]
     except RunError as error:
-        raise error_with_repair(student, samples, error) if error.kind == "raised" else error from None
+        raise error_with_repair(student, samples, error) from None
     except Wrong as error:
         raise with_repair(student, samples, error) from None
     student.takes_all = False

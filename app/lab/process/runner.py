@@ -221,7 +221,7 @@ class Runner:
         if self._aborted:
             raise RunError("ended", "the lab has ended the process", file)
         if not (self.folder / file).is_file():
-            raise RunError("missing", "there is no such file", file)
+            raise RunError("missing", missing_file(self.folder, file), file, loading=True)
         if file in self._broken:
             raise self._broken[file]
         if file not in self._parsed:
@@ -457,12 +457,27 @@ def unescaped(escaped: "re.Match[str]") -> str:
     return chr(int(escaped[0][2:], 16))
 
 
+def missing_file(folder: Path, file: str) -> str:
+    """Words for a file that is not there, with one that is near."""
+    stem = file.removesuffix(".py")
+    for path in sorted(folder.glob("*")) if folder.is_dir() else ():
+        if path.suffix == ".ipynb" and path.stem.lower().startswith(stem):
+            return f"there is {path.name}, a notebook: save it as Python, as {file}"
+        if path.is_file() and re.match(rf"{stem}\W*(\d*\W*)?(copy)?\W*\.py(\.txt)?$", path.name, re.IGNORECASE):
+            return f"there is {path.name}: rename it to {file}"
+        if path.is_dir() and (path / file).is_file():
+            return f"there is {path.name}/{file}: move it one folder up"
+    return "there is no such file"
+
+
 def check_syntax(path: Path) -> None:
     """Raises RunError for a file that cannot be parsed, in the words of the process, which is not needed for it."""
     try:
         ast.parse(decoded(path.read_bytes()))
     except SyntaxError as error:
         text = f"{type(error).__name__}: {error.msg}"
+        if (error.text or "").lstrip().startswith(("%", "!")):
+            text += ". This line is for notebooks: remove it"
         raise RunError("syntax", text, path.name, error.lineno, loading=True) from None
     except (OSError, ValueError, RecursionError, MemoryError):  # the process raises these too
         pass

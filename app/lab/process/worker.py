@@ -19,6 +19,7 @@ call it sends
 """
 
 import ast
+import builtins
 import contextlib
 import difflib
 import faulthandler
@@ -62,6 +63,7 @@ from app.lab.process.wire import pack, receive, send, unpack
 MAX_LINES = 10_000  # printed in one call or march
 MEMORY = 768 * 2**20  # [bytes] that a call may allocate, if the system can limit it
 EDIT_TIME = 0.5  # [s] of processor time for the edits of a function
+OF_THE_PROGRAM = ("app", "sim", "assets")  # packages whose names a student's file may have
 SLIPS = "slips"
 EDITS = {"traps": traps, "causes": causes, "more slips": more_slips}  # kinds of edits beside `SLIPS`
 LOOK_AT_PARENT = 1.0  # [s] between two checks that the lab still runs
@@ -122,6 +124,23 @@ class Worker:
         self.folder = folder
         os.chdir(folder)
         sys.path.insert(0, str(folder))
+        own = {name: f"{name}.py" for name in OF_THE_PROGRAM if (folder / f"{name}.py").is_file()}
+        if own:
+            builtins.__import__ = self.importing(own, builtins.__import__)
+
+    def importing(self, own: dict[str, str], otherwise: Callable[..., Any]) -> Callable[..., Any]:
+        """Python's import, by which a student's file gets the student's sim.py, not the package of that name.
+
+        own: files by the names of their modules. otherwise: the import of everything else.
+        """
+
+        def own_import(name: str, known: Any = None, *rest: Any, **named: Any) -> Any:
+            importer = (known or {}).get("__file__") or ""
+            if name in own and os.path.dirname(importer) == str(self.folder):
+                return self.load(own[name])
+            return otherwise(name, known, *rest, **named)
+
+        return own_import
 
     def serve(self) -> None:
         """Report that the process is ready, then answer until the lab closes the pipe."""

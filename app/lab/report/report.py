@@ -132,7 +132,9 @@ def overview(result: FolderResult, number: int) -> Html:
 
 def state_class(state: str) -> str:
     """The class of the style sheet for a state."""
-    return {"not begun": "faint", "given": "faint", "not checked": "incomplete"}.get(state, state)
+    return {"not begun": "faint", "given": "faint", "not checked": "incomplete", "waits": "incomplete"}.get(
+        state, state
+    )
 
 
 def task_section(result: FolderResult, entry: TaskResult, anchor: str, shown: Html) -> Html:

@@ -141,6 +141,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         state = coloured("Slow motion", WARNING_COLOUR)
     if s.halted:
         state = coloured("Stopped", ERROR_COLOUR)
+    state = fill('<span class="springtide-state">{}</span>', state)
     pace = fill("×{:.2f}", s.actual_speed)
     if s.capped:
         pace = fill(
@@ -155,7 +156,7 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         f"Simulated time over real time, at {s.frame_rate:.0f} frames a second" if s.running else "",
         state,
         s.time,
-        fill(' · <span class="springtide-speed">{}</span>', pace) if s.running else "",
+        fill('<span class="springtide-speed"> · {}</span>', pace) if s.running else "",
         fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
         fill("<br>Faster: {}.", s.faster) if s.faster else "",

@@ -3,6 +3,7 @@
 /** @type {Record<string, () => Promise<object>>} */
 const PARTS = {
   cover: () => import("./cover.js"),
+  line: () => import("./line.js"),
   marks: () => import("../panel/marks.js"),
   scene: () => import("../scene/main.js"),
   camera: () => import("./camera.js"),

@@ -3,6 +3,7 @@
 Each is a file as `app/scenes/setups.py` writes it. What is in the folder and cannot be read is left out.
 """
 
+import itertools
 import re
 from pathlib import Path
 
@@ -29,13 +30,15 @@ def folder_of(kind: AnyKind) -> Path:
 
 
 def own_files(kind: AnyKind) -> dict[str, tuple[Path, Setup]]:
-    """Name -> (file, set-up), in order of the names; at most `MAX_OWN`."""
+    """Name -> (file, set-up), in order of the names; at most `MAX_OWN` of those that can be read."""
     found: dict[str, tuple[Path, Setup]] = {}
     try:
-        paths = sorted(folder_of(kind).glob("*.json"))[:MAX_OWN]
+        paths = sorted(folder_of(kind).glob("*.json"))
     except OSError:
         return found
     for path in paths:
+        if len(found) == MAX_OWN:
+            break
         try:
             with path.open("rb") as file:
                 setup = read_file(file.read(4 * MAX_LENGTH + 1).decode("utf-8"), path.name, kind.name)
@@ -60,9 +63,10 @@ def keep_own(kind: AnyKind, name: str, text: str) -> None:
     else:
         folder = folder_of(kind)
         folder.mkdir(parents=True, exist_ok=True)
-        stem = FILE_NAME.sub("-", name.lower()).strip("-") or "set-up"
-        numbers = range(2, MAX_OWN + 3)
-        path = next(p for p in (folder / f"{stem}{end}.json" for end in ("", *numbers)) if not p.exists())
+        # Windows reserves names such as "con", with any extension.
+        stem = f"set-up-{FILE_NAME.sub('-', name.lower()).strip('-')}".strip("-")
+        paths = (folder / f"{stem}{end}.json" for end in itertools.chain(("",), itertools.count(2)))
+        path = next(path for path in paths if not path.exists())
     with replacing(path) as draft:
         draft.write_text(text, "utf-8")
 

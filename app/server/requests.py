@@ -26,8 +26,8 @@ class SceneRequests:
 
     def put(self, request: SceneRequest) -> None:
         """Add a request."""
+        self.number = next(self.numbers)  # before it can be taken out
         self.waiting.put(request)
-        self.number = next(self.numbers)
 
     def pop(self) -> SceneRequest:
         """Wait for a request, and take the last one out."""

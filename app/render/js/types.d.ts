@@ -466,6 +466,7 @@ declare module "node:assert/strict" {
     equal(found: unknown, expected: unknown): void;
     deepEqual(found: unknown, expected: unknown): void;
     ok(found: unknown): void;
+    rejects(found: Promise<unknown>, expected: RegExp): Promise<void>;
   };
   export default assert;
 }

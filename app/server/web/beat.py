@@ -50,7 +50,7 @@ class Beats:
 
     def take_over(self, connection: ViserConnection) -> None:
         """End the earlier connection of the page that connects, which nobody reads any more."""
-        name = parse_qs(urlsplit(connection.request.path).query).get(PAGE, [""])[0]
+        name = parse_qs(urlsplit(str(connection.request.path)).query).get(PAGE, [""])[0]
         earlier = self.pages.get(name)
         if name:
             self.pages[name] = connection

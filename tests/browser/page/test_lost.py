@@ -297,7 +297,7 @@ def test_a_connection_that_dies_without_an_end_is_told_and_made_again(chromium: 
             assert page.evaluate(SHOWN)["state"] == "open"
             line.fall_silent(wholly=wholly)
             said = wait(lambda shown: shown["state"] != "open", MAX_SILENT)
-            assert said["line"] == "Nothing comes from the lab: this picture is old."
+            assert said["line"] == "Nothing arrives from the lab: this picture is old."
             assert said["word"] == '"Last seen at"'
             assert said["status"].startswith("t = ")
             if wholly:

@@ -11,7 +11,7 @@ import { Silence } from "./silence.js";
 const LOOK_INTERVAL = 500; // [ms]
 const WORDS = {
   open: "",
-  silent: "Nothing comes from the lab: this picture is old.",
+  silent: "Nothing arrives from the lab: this picture is old.",
   closed: "No connection to the lab: this picture is old. Connecting again …",
 };
 const root = document.documentElement;

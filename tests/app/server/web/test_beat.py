@@ -37,7 +37,7 @@ async def beat_times(client: ClientConnection, count: int) -> list[float]:
     """Times [s] at which the lab sent so many beats, from now on."""
     times: list[float] = []
     while len(times) < count:
-        sent = unpacked(bytes(await client.recv()))
+        sent = unpacked(bytes(cast(bytes, await client.recv())))
         found = sent["messages"]
         if found and found[0]["type"] == BEAT:
             assert len(found) == 1

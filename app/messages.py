@@ -236,7 +236,7 @@ class Status(NamedTuple):
     time: float  # [s] simulated
     steps: int
     speed: float  # target real-time factor
-    actual_speed: float  # real-time factor over the last second
+    actual_speed: float | None  # real-time factor over the last second of this run; None while it is not known
     capped: bool  # time that could not be made up is being dropped
     frame_rate: float  # frames per second published
     halted: str  # reason why the run stopped by itself, or ""
@@ -246,6 +246,7 @@ class Status(NamedTuple):
     unmade: bool = False  # the scene could not begin with its parameters
     pace: float = 1.0  # factor on `speed` requested by the scene: below 1 is slow motion
     restarted: bool = False  # a recent undo had to restart the run, which was not kept
+    outdated: bool = False  # the run stopped with other parameters than the present ones
     faster: str = ""  # advice that makes a capped run faster, or ""
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import viser
 
-from app.messages import Command, Pause, Play, StepOnce
+from app.messages import Command, Pause, Play, Status, StepOnce
 from app.panel.controls.remedy import Remedy
 from app.panel.settings import SceneSettings
 from app.render.handles.viser_types import GuiHandle, ViserEvent
@@ -46,6 +46,8 @@ class Head:
             self.buttons.on_click(self.on_button)
             self.status = gui.add_html("")
             self.remedy = Remedy(gui, "Use {} and start again", settings.follow)
+            self.again: GuiHandle = gui.add_button("Reset with these values", visible=False)
+            self.again.on_click(self.on_again)
             self.figures = gui.add_html("")
             self.code_line = gui.add_html("", visible=False)
             self.here = gui.add_html("")
@@ -74,6 +76,11 @@ class Head:
             case name:
                 self.settings.post(COMMANDS[name])
 
+    async def on_again(self, event: ViserEvent) -> None:
+        """Start again, for a browser."""
+        if event.client_id is not None:
+            self.settings.reset()
+
     def show_preset(self) -> None:
         """Show the list of presets, with a separate entry if an effective parameter differs from the loaded one.
 
@@ -96,15 +103,19 @@ class Head:
         if running != self.running:
             self.running = running
             self.buttons.options = button_names(running=running)
-        told, self.told = self.told, (running, snapshot.status.halted, visitors)
+        told, self.told = self.told, (running, snapshot.status.halted, snapshot.status.outdated, visitors)
         return self.told != told
 
     def show(self, snapshot: AnySnapshot, busy: float, visitors: int) -> None:
         """Show the state and the figures. busy: [s] that the present tick has taken."""
-        self.status.content = str(status_line(snapshot, busy, visitors))
-        diverged = snapshot.status.halted and not snapshot.status.unmade
-        remedy = self.settings.kind.remedy
-        self.remedy.show(remedy(snapshot) if diverged and remedy is not None else None)
+        kind, status = self.settings.kind, snapshot.status
+        is_stable = kind.is_stable is not None and kind.is_stable(snapshot)
+        self.status.content = str(status_line(snapshot, busy, visitors, is_stable=is_stable))
+        needs_remedy = status.halted and not status.unmade and not (status.outdated and is_stable)
+        self.remedy.show(kind.remedy(snapshot) if needs_remedy and kind.remedy is not None else None)
+        can_reset = status.outdated and (is_stable or kind.is_stable is None)
+        if self.again.visible != can_reset:
+            self.again.visible = can_reset
         self.figures.content = str(fill('<div class="springtide-figures">{}</div>', Html(self.view.figures(snapshot))))
 
     def show_code(self, line: Html) -> None:
@@ -133,8 +144,21 @@ def add_scene_chooser(
     return chooser
 
 
-def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> Html:
-    """State of the run, clock, pace, reason for a stop, and number of browsers that share the lab."""
+def stop_words(status: Status, *, is_stable: bool) -> str:
+    """Reason for a stop. It is that of the parameters at that moment, and says nothing of others.
+
+    is_stable: a run with the present parameters would be stable.
+    """
+    if not status.outdated:
+        return status.halted
+    return f"The run stopped with other values.{' These values are stable.' if is_stable else ''} Reset starts again."
+
+
+def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1, *, is_stable: bool = False) -> Html:
+    """State of the run, clock, pace, reason for a stop, and number of browsers that share the lab.
+
+    is_stable: a run with the present parameters would be stable.
+    """
     s = snapshot.status
     state = coloured("Running", GOOD_COLOUR) if s.running else coloured("Paused", WARNING_COLOUR)
     if (s.replayed is not None and not s.halted) or (s.running and s.pace < 1.0):
@@ -142,12 +166,12 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
     if s.halted:
         state = coloured("Stopped", ERROR_COLOUR)
     state = fill('<span class="springtide-state">{}</span>', state)
-    pace = fill("×{:.2f}", s.actual_speed)
-    if s.capped:
-        pace = fill(
-            "{}: ×{:.2f} instead of ×{:g}",
-            coloured("slower than real time", WARNING_COLOUR), s.actual_speed, s.speed * s.pace,
-        )  # fmt: skip
+    pace = Html()
+    if s.running and s.actual_speed is not None:
+        pace = fill("×{:.2f}", s.actual_speed)
+        if s.capped:
+            slower = coloured("slower than set", WARNING_COLOUR)
+            pace = fill("{}: ×{:.2f} instead of ×{:g}", slower, s.actual_speed, s.speed * s.pace)
     return fill(
         '<div class="springtide-panel" data-state="{}" data-snapshot="{}" title="{}">'
         "{} t = {:.2f} s{}{}{}{}{}{}{}</div>",
@@ -156,11 +180,13 @@ def status_line(snapshot: AnySnapshot, busy: float = 0.0, visitors: int = 1) -> 
         f"Simulated time over real time, at {s.frame_rate:.0f} frames a second" if s.running else "",
         state,
         s.time,
-        fill('<span class="springtide-speed"> · {}</span>', pace) if s.running else "",
+        fill('<span class="springtide-speed"> · {}</span>', pace) if pace else "",
         fill("<br>The run diverged. These are its last steps.") if s.replayed is not None and not s.halted else "",
         fill("<br>This step has taken {:.1f} s so far.", busy) if busy >= BUSY_SHOWN_FROM else "",
         fill("<br>Faster: {}.", s.faster) if s.faster else "",
         fill("<br>That run is no longer in memory, so this one starts at t = 0.") if s.restarted else "",
         fill("<br>{} browsers share this lab.", visitors) if visitors > 1 else "",
-        fill('<div class="springtide-stopped" role="alert">{}</div>', s.halted) if s.halted else "",
+        fill('<div class="springtide-stopped" role="alert">{}</div>', stop_words(s, is_stable=is_stable))
+        if s.halted
+        else "",
     )

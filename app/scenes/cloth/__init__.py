@@ -28,4 +28,5 @@ SCENE = SceneKind(
     quantities=QUANTITIES,
     instant=ClothInstant,
     remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
+    is_stable=lambda snapshot: snapshot.readings.stability.share <= 1.0,
 )

@@ -29,6 +29,7 @@ SCENE = SceneKind(
     frame_units={"points": "m", "reference": "m, the program's rope beside a student's", "tension": "N"},
     stability_map=StabilityMap(stiffness_parameter, build),
     remedy=lambda snapshot: holding_step(snapshot.params.time_step, snapshot.readings.stability),
+    is_stable=lambda snapshot: snapshot.readings.stability.share <= 1.0,
     quantities=QUANTITIES,
     instant=RopeInstant,
 )

@@ -71,6 +71,7 @@ class SceneRun:
         self.unmade = False  # the scene could not begin, and waits for other values
         self.running = not paused
         self.halted = ""
+        self.halted_with = scene.params  # parameters of the run that halted
         self.fixed_step = FixedStep()
         self.replay: Replay | None = None  # of a run that has just diverged
         self.seat: Seat | None = None  # at a clock shared with other loops
@@ -108,7 +109,7 @@ class SceneRun:
         if self.seat is not None:
             self.seat.tell_others(Pause())
         self.running = False
-        self.halted = reason
+        self.halted, self.halted_with = reason, self.scene.params
 
     def go_on(self, wall: float) -> bool:
         """Take steps, or replay the last moments of a divergence, within a tick; True if there is news to show.
@@ -444,7 +445,6 @@ class RunSequence:
         run = self.run
         run.clear()
         run.scene.params, run.fixed_step.cost_unknown = params, True
-        run.snapshots.forget_rates()
         run.guarded(lambda: run.scene.resume(state.value))
         run.identify(act, state.run, run.scene.time)
         if run.seat is not None:

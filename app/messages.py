@@ -166,6 +166,12 @@ class StudentAnswer(NamedTuple):
     """A result of the process that runs a student's functions, for the scene to take."""
 
 
+class GoOn(NamedTuple):
+    """Continue the run under another act of a person, such as a drag; an undo of it restores the moment before."""
+
+    act: int
+
+
 class Ask(NamedTuple):
     """Call `read` between two steps, and answer with its result or exception."""
 
@@ -187,7 +193,7 @@ class Advance(NamedTuple):
 SceneCommand = (
     Place | GrabTo | Release | PointAlong | RestartStatistics | StudentAnswer
 )  # for a scene; the rest is for the loop
-Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | Ask | Advance | SceneCommand
+Command = Play | Pause | TogglePlay | StepOnce | RunOn | Halt | Reset | Take | GoOn | Ask | Advance | SceneCommand
 
 
 class RunIdentity(NamedTuple):
@@ -197,6 +203,7 @@ class RunIdentity(NamedTuple):
     act: int = 1  # number of the person's act that began it (`History`)
     before: int = 0  # number of the run that it resumed; 0: it began at the start of the scene
     since: float = 0.0  # [s] of simulated time at that moment
+    placed: int = 1  # number of the act for which cameras are placed: of the run that others, by drags, continue
 
 
 class RunLine:

@@ -32,7 +32,7 @@ class Head:
         self.view, self.settings, self.scenes, self.reset_view = view, settings, scenes, reset_view
         self.running = True  # as shown by the buttons
         self.told: tuple[object, ...] = ()  # a change of it is shown at once
-        self.visited = ""  # preset known to the page, for Back and Forward of the browser
+        self.visited = self.query = ""  # preset known to the page, and its query, for Back and Forward of the browser
         # The page finds the block by the status line in it, which says "springtide-panel".
         with gui.add_folder("Lab") as self.folder:
             self.chooser: GuiHandle | None = None
@@ -94,8 +94,11 @@ class Head:
         if self.visited != settings.loaded:
             kind, self.visited = settings.kind, settings.loaded
             preset = self.visited if self.visited in kind.presets else ""
-            query = write_query(kind, settings.params_of(self.visited), preset)
-            self.here.content = str(fill('<span data-springtide-here="{}"></span>', query))  # js/sharing/visited.js
+            self.query = write_query(kind, settings.params_of(self.visited), preset)
+        # For js/sharing/visited.js and js/panel/acts.js.
+        words = settings.history.undo_words, settings.history.redo_words
+        acts = '<span data-springtide-here="{}" data-springtide-undo="{}" data-springtide-redo="{}"></span>'
+        self.here.content = str(fill(acts, self.query, *words))
 
     def is_stale(self, snapshot: AnySnapshot, visitors: int) -> bool:
         """True if the rarely changing parts of the head are out of date."""

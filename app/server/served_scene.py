@@ -97,7 +97,7 @@ class ServedScene:
         self.threads: list[threading.Thread] = []
         self.commands, self.scene, params = commands, scene, scene.params
         self.compile_line, self.compile_text = self.server.gui.add_html(""), ""
-        self.view = view_named(kind.name)(self.server, self.commands.put)
+        self.view = view_named(kind.name)(self.server, lambda command: self.settings.drag(command))
         self.cameras = CameraPlacing(self.server, self.view, params)
         self.settings = SceneSettings(self.server, kind, params, self.commands.put, viewer.want, viewer.first_params)
         self.panel = Panel(

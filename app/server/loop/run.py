@@ -301,7 +301,8 @@ class SceneRun:
 
     def identify(self, act: int = 0, before: int = 0, since: float = 0.0) -> None:
         """Give the new run its number; see `RunIdentity`. act: 0 for that of the run before."""
-        self.identity = RunIdentity(next(self.numbers), act or self.identity.act, before, since)
+        act = act or self.identity.act
+        self.identity = RunIdentity(next(self.numbers), act, before, since, act)
 
     def reset(self, act: int = 0, action: Callable[[], None] | None = None) -> None:
         """Restart the scene, or begin it by another action, for an act; a halted run plays again."""
@@ -458,6 +459,17 @@ class RunSequence:
         if not (run.stopped_by or run.unmade or run.unfinished):
             rows = tuple(run.snapshots.kept_rows)
             self.left.add(LeftRun(run.identity.act, run.scene.params, kept_state(run), rows, run.running))
+
+    def go_on_under(self, act: int) -> None:
+        """Continue the run under another act, and keep it as it is for an undo of that."""
+        run = self.run
+        if act == run.identity.act:
+            return
+        self.leave()
+        placed = run.identity.placed
+        run.identify(act, run.identity.number, run.scene.time)
+        run.identity = run.identity._replace(placed=placed)
+        run.snapshots.keep_rates()
 
     def keep_dropped(self, take: Take) -> None:
         """Keep a run that was to resume from a moment for an undo, when newer parameters replace it."""

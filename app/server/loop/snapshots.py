@@ -212,6 +212,10 @@ class Snapshots:
         self.history.clear()
         self.rated = self.run.identity.number
 
+    def keep_rates(self) -> None:
+        """Measure on: the present run continues the last one."""
+        self.rated = self.run.identity.number
+
     def show_restarted(self) -> None:
         """Have the panel report for a while that an undo had to restart a run."""
         self.restarted_until, self.restarted = self.run.clock.wall + RESTARTED_SHOWN, self.run.identity.number

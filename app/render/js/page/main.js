@@ -14,6 +14,7 @@ const PARTS = {
   share: () => import("../sharing/share.js"),
   scenes: () => import("../panel/scenes.js"),
   visited: () => import("../sharing/visited.js"),
+  acts: () => import("../panel/acts.js"),
   display: () => import("../panel/display.js"),
   accessibility: () => import("../panel/accessibility.js"),
   reach: () => import("./reach.js"),
